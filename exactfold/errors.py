@@ -1,0 +1,170 @@
+"""Every exception of exactfold, one class per cause.
+
+All derive from `ExactfoldError`. `InputError` means that the input is at fault (exit code 3 on the
+command line); where a vertex, edge or face is to blame, its indices are attributes of the error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+class ExactfoldError(Exception):
+    """Base class of every error raised on purpose by exactfold."""
+
+
+class InputError(ExactfoldError):
+    """The input is at fault; nothing was written."""
+
+
+class UsageError(ExactfoldError):
+    """The call asks for something that does not exist or does not apply (exit code 2)."""
+
+
+# --- numbers -------------------------------------------------------------------------------------
+
+
+class NumberError(InputError):
+    """A number could not be accepted."""
+
+
+class FloatRefusedError(NumberError, TypeError):
+    """A binary float was given where an exact number is needed."""
+
+
+class NotANumberError(NumberError, ValueError):
+    """Text, NaN, Infinity or another object that is not a rational number."""
+
+
+# --- files ---------------------------------------------------------------------------------------
+
+
+class UnreadableFileError(InputError):
+    """A file does not exist or cannot be read."""
+
+
+class UnwritableFileError(InputError):
+    """An output path cannot be written."""
+
+
+class NotJSONError(InputError):
+    """The file is not JSON, or is cut off."""
+
+
+class FoldError(InputError):
+    """Base class: the file is JSON but not a FOLD file this reader accepts."""
+
+
+class NotFoldError(FoldError):
+    """JSON without the structure of a FOLD file."""
+
+
+class MissingCoordinatesError(FoldError):
+    """`vertices_coords` is absent, or a vertex has no coordinates."""
+
+
+class OffPlaneError(FoldError):
+    """Three-component coordinates that do not lie in one plane z = constant."""
+
+
+class StaleExactCoordinatesError(FoldError):
+    """`vertices_exactfold:coords` contradicts `vertices_coords`: another program moved a vertex."""
+
+
+class NonTriangularFaceError(FoldError):
+    """A face with more than three sides."""
+
+
+class CrossingEdgesError(FoldError):
+    """Two edges of the file cross, or a vertex lies inside an edge."""
+
+
+class DanglingEdgeError(FoldError):
+    """An edge that is not a side of any face."""
+
+
+class CutEdgeError(FoldError):
+    """An edge between two faces that the file declares a cut or a boundary."""
+
+
+class CertificateFormatError(InputError):
+    """The file is not a certificate of a known format and version."""
+
+
+# --- patterns ------------------------------------------------------------------------------------
+
+
+class PatternError(InputError):
+    """The vertices and triangles are not a flat triangulated disk.
+
+    Attributes `vertices`, `edges` and `faces` hold the indices to blame (possibly empty).
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        vertices: Sequence[int] = (),
+        edges: Sequence[tuple[int, int]] = (),
+        faces: Sequence[int] = (),
+    ) -> None:
+        super().__init__(message)
+        self.vertices = tuple(vertices)
+        self.edges = tuple(edges)
+        self.faces = tuple(faces)
+
+
+class MalformedPatternError(PatternError):
+    """Vertices or triangles of the wrong shape: not pairs, not triples, an index out of range."""
+
+
+class DuplicateVertexError(PatternError):
+    """Two vertices at the same point."""
+
+
+class IsolatedVertexError(PatternError):
+    """A vertex that belongs to no triangle."""
+
+
+class DegenerateFaceError(PatternError):
+    """A triangle of zero area or with a repeated vertex."""
+
+
+class MixedOrientationError(PatternError):
+    """Some triangles are clockwise and some counter-clockwise."""
+
+
+class OverlapError(PatternError):
+    """Faces overlap, or the boundary of the sheet meets itself."""
+
+
+class NonManifoldEdgeError(PatternError):
+    """An edge on three or more faces."""
+
+
+class NotADiskError(PatternError):
+    """The faces do not form one disk."""
+
+
+class DisconnectedError(NotADiskError):
+    """Two or more separate sheets."""
+
+
+class HoleError(NotADiskError):
+    """A sheet with a hole."""
+
+
+class PinchError(NotADiskError):
+    """A vertex at which the sheet hangs together by a point only."""
+
+
+class NoInteriorVertexError(PatternError):
+    """A pattern without interior vertices has no curvature equation and no branches to count."""
+
+
+class CollinearPointsError(PatternError):
+    """Points that span no triangle."""
+
+
+class NotApplicableError(ExactfoldError):
+    """A construction or method does not apply to this pattern; the message says why."""

@@ -1,0 +1,1 @@
+"""Numbers and linear algebra over Q."""

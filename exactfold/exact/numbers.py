@@ -1,0 +1,142 @@
+"""The only door for numbers: int, Fraction, Decimal, "p/q" and decimal text; a float is refused."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from decimal import Decimal
+from fractions import Fraction
+from math import lcm
+from numbers import Rational
+from typing import TypeAlias
+
+from flint import fmpz
+
+from exactfold.errors import FloatRefusedError, NotANumberError
+
+RationalLike: TypeAlias = "int | Fraction | Decimal | str"
+
+_INTEGER = re.compile(r"[+-]?[0-9]+\Z")
+_QUOTIENT = re.compile(r"([+-]?[0-9]+)/([0-9]+)\Z")
+_DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]{1,6}))?\Z")
+_MAX_EXPONENT = 20_000
+
+
+def _int(text: str) -> int:
+    """Integer of any length; `int` alone stops at 4300 digits."""
+    return int(fmpz(text.lstrip("+"))) if len(text) > 4000 else int(text)
+
+
+def parse_rational(text: str) -> Fraction:
+    """Exact value of "p", "p/q" or decimal text such as "-1.25e-3".
+
+    Raises `NotANumberError` for anything else, including "NaN", "Infinity" and a zero denominator.
+
+    >>> parse_rational("0.1")
+    Fraction(1, 10)
+    >>> parse_rational("-3/6")
+    Fraction(-1, 2)
+    >>> parse_rational("inf")
+    Traceback (most recent call last):
+    exactfold.errors.NotANumberError: 'inf' is not a number: write an integer, "p/q" or a decimal
+    """
+    text = text.strip()
+    if _INTEGER.match(text):
+        return Fraction(_int(text))
+    if quotient := _QUOTIENT.match(text):
+        denominator = _int(quotient[2])
+        if denominator == 0:
+            raise NotANumberError(f"{_shown(text)} has a zero denominator")
+        return Fraction(_int(quotient[1]), denominator)
+    decimal = _DECIMAL.match(text)
+    if decimal and (decimal[2] or decimal[3]):
+        sign, whole, part, power = decimal[1], decimal[2], decimal[3] or "", int(decimal[4] or 0)
+        if abs(power) > _MAX_EXPONENT:
+            raise NotANumberError(f"{_shown(text)} has an exponent beyond {_MAX_EXPONENT}")
+        digits = _int(f"{sign}{whole}{part}")
+        power -= len(part)
+        return Fraction(digits * 10**power) if power >= 0 else Fraction(digits, 10**-power)
+    raise NotANumberError(
+        f'{_shown(text)} is not a number: write an integer, "p/q" or a decimal'
+    )
+
+
+def _shown(text: str) -> str:
+    return repr(text if len(text) <= 40 else text[:37] + "...")
+
+
+def as_rational(value: object) -> Fraction:
+    """`value` as a Fraction: int, Fraction, any `numbers.Rational`, Decimal, or text.
+
+    Raises `FloatRefusedError` for floats (their binary value is rarely what was meant) and
+    `NotANumberError` for booleans, non-finite numbers and other objects.
+
+    >>> as_rational("0.25"), as_rational(3)
+    (Fraction(1, 4), Fraction(3, 1))
+    >>> as_rational(0.1)
+    Traceback (most recent call last):
+    exactfold.errors.FloatRefusedError: the float 0.1 is not exact: write "0.1" or Fraction(1, 10)
+    """
+    if isinstance(value, Fraction):
+        return value
+    if isinstance(value, bool):
+        raise NotANumberError(f"{value!r} is a truth value, not a number")
+    if isinstance(value, Rational):
+        return Fraction(int(value.numerator), int(value.denominator))
+    if isinstance(value, str):
+        return parse_rational(value)
+    if isinstance(value, Decimal):
+        if not value.is_finite():
+            raise NotANumberError(f"{value} is not a finite number")
+        return parse_rational(str(value))
+    if isinstance(value, float) or type(value).__module__ == "numpy" and hasattr(value, "dtype"):
+        raise _float_refused(value)
+    raise NotANumberError(f"{value!r} is not a rational number")
+
+
+def _float_refused(value: object) -> FloatRefusedError:
+    try:
+        near = Fraction(str(value))
+    except ValueError:
+        return FloatRefusedError(f"the float {value} is not a finite number")
+    return FloatRefusedError(
+        f'the float {value} is not exact: write "{value}" or '
+        f"Fraction({near.numerator}, {near.denominator})"
+    )
+
+
+def snap(value: Fraction, denominator: int) -> Fraction:
+    """The multiple of 1/denominator nearest to `value` (ties to even).
+
+    >>> snap(Fraction("0.24999999999999994"), 1024)
+    Fraction(1, 4)
+    """
+    return Fraction(round(value * denominator), denominator)
+
+
+def format_integer(value: int) -> str:
+    """Decimal text of an integer of any length."""
+    return str(fmpz(value)) if value.bit_length() > 13_000 else str(value)
+
+
+def format_rational(value: Fraction) -> str:
+    """Canonical text: "p" or "p/q" in lowest terms with q > 1.
+
+    >>> format_rational(Fraction(2, 4)), format_rational(Fraction(3))
+    ('1/2', '3')
+    """
+    numerator = format_integer(value.numerator)
+    if value.denominator == 1:
+        return numerator
+    return f"{numerator}/{format_integer(value.denominator)}"
+
+
+def over_common_denominator(values: Iterable[Fraction]) -> tuple[list[int], int]:
+    """Integers n_i and the least d > 0 with values_i = n_i / d.
+
+    >>> over_common_denominator([Fraction(1, 2), Fraction(1, 3)])
+    ([3, 2], 6)
+    """
+    values = list(values)
+    denominator = lcm(*(value.denominator for value in values))
+    return [value.numerator * (denominator // value.denominator) for value in values], denominator

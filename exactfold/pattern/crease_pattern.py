@@ -1,0 +1,280 @@
+"""A frozen, validated, flat triangulated disk with rational vertices."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from types import MappingProxyType
+
+import networkx as nx
+
+from exactfold.exact.numbers import (
+    RationalLike,
+    as_rational,
+    format_rational,
+    over_common_denominator,
+    snap,
+)
+from exactfold.pattern import validate
+from exactfold.pattern.triangulated_triangles import find_triangulated_triangles
+
+Point = tuple[Fraction, Fraction]
+Edge = tuple[int, int]
+Triangle = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class CreasePattern:
+    """A flat sheet cut into triangles: the crease pattern of a triangulated origami.
+
+    `vertices` are points with rational coordinates (anything `as_rational` accepts), `triangles`
+    index triples in counter-clockwise order (a pattern given clockwise throughout is reversed).
+    The sheet must be one disk without overlap, every vertex in some triangle, no two vertices at
+    one point. Boundary angles of 180 degrees and edges that join two boundary vertices (`chords`)
+    are allowed. Raises a subclass of `PatternError` that names the vertex, edge or face to blame.
+
+    >>> square = CreasePattern(
+    ...     [(0, 0), (1, 0), (1, 1), (0, 1), ("1/2", "1/3")],
+    ...     [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+    ... )
+    >>> square.interior, square.boundary, square.degrees_of_freedom
+    ((4,), (0, 1, 2, 3), 1)
+    >>> square.folds
+    ((0, 4), (1, 4), (2, 4), (3, 4))
+    """
+
+    vertices: tuple[Point, ...]
+    triangles: tuple[Triangle, ...]
+
+    def __init__(
+        self,
+        vertices: Iterable[Sequence[RationalLike]],
+        triangles: Iterable[Sequence[int]],
+    ) -> None:
+        points = validate.points(vertices, as_rational)
+        triples = validate.oriented_triangles(points, validate.triples(triangles, len(points)))
+        validate.incidence(len(points), triples)
+        object.__setattr__(self, "vertices", points)
+        object.__setattr__(self, "triangles", triples)
+        validate.disk(self._next, triples)
+        validate.embedding(self.integer_vertices[0], self.boundary, self._next)
+
+    # --- combinatorics ---------------------------------------------------------------------------
+
+    @cached_property
+    def _next(self) -> Mapping[int, Mapping[int, int]]:
+        """`_next[v][a] = b` for every triangle (v, a, b): the rotation around v."""
+        rotation: dict[int, dict[int, int]] = {v: {} for v in range(len(self.vertices))}
+        for a, b, c in self.triangles:
+            rotation[a][b], rotation[b][c], rotation[c][a] = c, a, b
+        return MappingProxyType(rotation)
+
+    @cached_property
+    def boundary(self) -> tuple[int, ...]:
+        """Boundary vertices in counter-clockwise order, the smallest index first."""
+        follow = {a: b for a in self._next for b in self._next[a] if a not in self._next[b]}
+        cycle = [min(follow)]
+        while (after := follow[cycle[-1]]) != cycle[0]:
+            cycle.append(after)
+        return tuple(cycle)
+
+    @cached_property
+    def interior(self) -> tuple[int, ...]:
+        """Interior vertices in increasing order."""
+        outside = set(self.boundary)
+        return tuple(v for v in range(len(self.vertices)) if v not in outside)
+
+    @cached_property
+    def edges(self) -> tuple[Edge, ...]:
+        """All edges (i, j) with i < j, sorted."""
+        sides = (side for a, b, c in self.triangles for side in ((a, b), (b, c), (c, a)))
+        return tuple(sorted({(min(side), max(side)) for side in sides}))
+
+    @cached_property
+    def boundary_edges(self) -> tuple[Edge, ...]:
+        """The edges of the boundary (i, j) with i < j, sorted."""
+        cycle = self.boundary
+        pairs = zip(cycle, cycle[1:] + cycle[:1], strict=True)
+        return tuple(sorted((min(e), max(e)) for e in pairs))
+
+    @cached_property
+    def folds(self) -> tuple[Edge, ...]:
+        """Interior edges (i, j) with i < j, sorted."""
+        outside = set(self.boundary_edges)
+        return tuple(e for e in self.edges if e not in outside)
+
+    @cached_property
+    def chords(self) -> tuple[Edge, ...]:
+        """Folds that join two boundary vertices and so split the sheet in two."""
+        outside = set(self.boundary)
+        return tuple((i, j) for i, j in self.folds if i in outside and j in outside)
+
+    def star(self, vertex: int) -> tuple[int, ...]:
+        """Neighbours of `vertex` in counter-clockwise order.
+
+        At an interior vertex the cycle starts at the smallest index; at a boundary vertex it runs
+        from the next to the previous boundary vertex.
+        """
+        rotation = self._next[vertex]
+        start = min(rotation) if vertex in self._interior_set else self._first_spoke(vertex)
+        cycle = [start]
+        while cycle[-1] in rotation and (after := rotation[cycle[-1]]) != start:
+            cycle.append(after)
+        return tuple(cycle)
+
+    def _first_spoke(self, vertex: int) -> int:
+        rotation = self._next[vertex]
+        return next(iter(set(rotation) - set(rotation.values())))
+
+    @cached_property
+    def _interior_set(self) -> frozenset[int]:
+        return frozenset(self.interior)
+
+    def degree(self, vertex: int) -> int:
+        """Number of edges at `vertex`."""
+        return len(self.star(vertex))
+
+    def opposite(self, fold: Edge) -> Edge:
+        """For fold (i, j): the third vertices (left, right) of the triangles ijk and jil."""
+        i, j = fold
+        return self._next[i][j], self._next[j][i]
+
+    @cached_property
+    def graph(self) -> nx.Graph:
+        """The edges as a NetworkX graph, with `pos` on nodes and `fold` (bool) on edges."""
+        graph = nx.Graph()
+        graph.add_nodes_from((v, {"pos": p}) for v, p in enumerate(self.vertices))
+        graph.add_edges_from(self.folds, fold=True)
+        graph.add_edges_from(self.boundary_edges, fold=False)
+        return nx.freeze(graph)
+
+    # --- counts ----------------------------------------------------------------------------------
+
+    @property
+    def Ve(self) -> int:
+        """Number of boundary (external) vertices."""
+        return len(self.boundary)
+
+    @property
+    def Vi(self) -> int:
+        """Number of interior vertices."""
+        return len(self.interior)
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """D = Ve - 3 (the paper's Eq. Dcount)."""
+        return self.Ve - 3
+
+    D = degrees_of_freedom
+
+    @property
+    def Vt(self) -> int:
+        """Number of vertices inside triangulated triangles."""
+        return len(self.rigid_vertices)
+
+    @cached_property
+    def triangulated_triangles(self) -> tuple[tuple[Triangle, tuple[int, ...]], ...]:
+        """The maximal 3-cycles with vertices inside, each with those vertices.
+
+        The 3-cycle is counter-clockwise from its smallest index. The pattern inside stays flat on
+        every branch. A sheet with three boundary vertices is itself the only maximal one.
+        """
+        return find_triangulated_triangles(self)
+
+    @cached_property
+    def rigid_vertices(self) -> frozenset[int]:
+        """The vertices inside triangulated triangles."""
+        return frozenset(v for _, inside in self.triangulated_triangles for v in inside)
+
+    @property
+    def foldable_vertices(self) -> tuple[int, ...]:
+        """Interior vertices outside every triangulated triangle."""
+        return tuple(v for v in self.interior if v not in self.rigid_vertices)
+
+    def emptied(self) -> tuple[CreasePattern, tuple[int, ...]]:
+        """The pattern with every triangulated triangle made a single face, and its labels.
+
+        `labels[k]` is the index in this pattern of vertex k of the emptied one; order is kept.
+
+        >>> wheel = CreasePattern(
+        ...     [(0, 0), (3, 0), (0, 3), (1, 1)], [(0, 1, 3), (1, 2, 3), (2, 0, 3)])
+        >>> emptied, labels = wheel.emptied()
+        >>> emptied.triangles, labels
+        (((0, 1, 2),), (0, 1, 2))
+        """
+        gone = self.rigid_vertices
+        labels = tuple(v for v in range(len(self.vertices)) if v not in gone)
+        if not gone:
+            return self, labels
+        position = {v: k for k, v in enumerate(labels)}
+        kept = [t for t in self.triangles if gone.isdisjoint(t)]
+        kept += [t for t, _ in self.triangulated_triangles]
+        triangles = [(position[a], position[b], position[c]) for a, b, c in kept]
+        return CreasePattern([self.vertices[v] for v in labels], triangles), labels
+
+    # --- geometry --------------------------------------------------------------------------------
+
+    @cached_property
+    def integer_vertices(self) -> tuple[tuple[tuple[int, int], ...], int]:
+        """Integer points P_v and the least d > 0 with vertices_v = P_v / d."""
+        flat, denominator = over_common_denominator(x for point in self.vertices for x in point)
+        return tuple(zip(flat[::2], flat[1::2], strict=True)), denominator
+
+    @cached_property
+    def area(self) -> Fraction:
+        """Area of the sheet, in squared length units."""
+        points, denominator = self.integer_vertices
+        twice = sum(validate.orientation(*(points[v] for v in t)) for t in self.triangles)
+        return Fraction(twice, 2 * denominator**2)
+
+    @cached_property
+    def boundary_turns(self) -> tuple[int, ...]:
+        """Turn at each boundary vertex: 1 convex, 0 straight (angle pi), -1 reflex."""
+        points, _ = self.integer_vertices
+        cycle = self.boundary
+        turns = []
+        for k, v in enumerate(cycle):
+            before, after = cycle[k - 1], cycle[(k + 1) % len(cycle)]
+            turn = validate.orientation(points[before], points[v], points[after])
+            turns.append((turn > 0) - (turn < 0))
+        return tuple(turns)
+
+    @property
+    def is_convex(self) -> bool:
+        """Whether no boundary angle exceeds pi."""
+        return -1 not in self.boundary_turns
+
+    def snapped(self, denominator: int) -> tuple[CreasePattern, Fraction]:
+        """The pattern on the grid of multiples of 1/denominator, and the largest coordinate move.
+
+        >>> pattern = CreasePattern([(0, 0), ("0.99999999", 0), (0, 1)], [(0, 1, 2)])
+        >>> pattern.snapped(8)[1]
+        Fraction(1, 100000000)
+        """
+        moved = tuple((snap(x, denominator), snap(y, denominator)) for x, y in self.vertices)
+        pairs = zip(self.vertices, moved, strict=True)
+        largest = max(abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
+        return CreasePattern(moved, self.triangles), largest
+
+    # --- identity --------------------------------------------------------------------------------
+
+    @cached_property
+    def sha256(self) -> str:
+        """Digest of the exact pattern: vertices in order, triangles as a set.
+
+        The SHA-256 of the lines `exactfold pattern 1`, `v X Y` for each vertex and `t I J K` for
+        each triangle (counter-clockwise from the smallest index, sorted), each ended by a newline.
+        """
+        lines = ["exactfold pattern 1"]
+        lines += [f"v {format_rational(x)} {format_rational(y)}" for x, y in self.vertices]
+        lines += [f"t {a} {b} {c}" for a, b, c in sorted(self.triangles)]
+        return hashlib.sha256("".join(line + "\n" for line in lines).encode()).hexdigest()
+
+    def __hash__(self) -> int:
+        return hash(self.sha256)
+
+    def __repr__(self) -> str:
+        return f"<CreasePattern: {self.Vi} interior and {self.Ve} boundary vertices>"

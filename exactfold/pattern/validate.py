@@ -1,0 +1,253 @@
+"""Exact checks that vertices and triangles form one flat disk; each failure names its culprit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
+
+from exactfold.errors import (
+    DegenerateFaceError,
+    DisconnectedError,
+    DuplicateVertexError,
+    HoleError,
+    IsolatedVertexError,
+    MalformedPatternError,
+    MixedOrientationError,
+    NonManifoldEdgeError,
+    NumberError,
+    OverlapError,
+    PinchError,
+)
+
+Point = tuple[Fraction, Fraction]
+IntPoint = tuple[int, int]
+Triangle = tuple[int, int, int]
+Rotation = Mapping[int, Mapping[int, int]]
+
+
+def orientation(a: Sequence[int], b: Sequence[int], c: Sequence[int]) -> int:
+    """Twice the signed area of triangle abc, positive if counter-clockwise; exact on integers."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def points(
+    vertices: Iterable[Sequence[object]], convert: Callable[[object], Fraction]
+) -> tuple[Point, ...]:
+    """Exact distinct points, or an error that names the vertex."""
+    result: list[Point] = []
+    seen: dict[Point, int] = {}
+    for index, vertex in enumerate(vertices):
+        if isinstance(vertex, str) or not isinstance(vertex, Iterable) or len(vertex) != 2:
+            raise MalformedPatternError(
+                f"vertex {index} is {vertex!r}, not a pair of coordinates", vertices=[index]
+            )
+        try:
+            point = (convert(vertex[0]), convert(vertex[1]))
+        except NumberError as error:
+            raise type(error)(f"vertex {index}: {error}") from None
+        if point in seen:
+            raise DuplicateVertexError(
+                f"vertices {seen[point]} and {index} are at the same point ({point[0]}, {point[1]})",
+                vertices=[seen[point], index],
+            )
+        seen[point] = index
+        result.append(point)
+    if len(result) < 3:
+        raise MalformedPatternError(f"a pattern needs at least three vertices, not {len(result)}")
+    return tuple(result)
+
+
+def triples(triangles: Iterable[Sequence[int]], count: int) -> list[Triangle]:
+    """Index triples within range, no vertex twice."""
+    result: list[Triangle] = []
+    for face, triangle in enumerate(triangles):
+        if isinstance(triangle, str) or not isinstance(triangle, Iterable) or len(triangle) != 3:
+            raise MalformedPatternError(f"face {face} is {triangle!r}, not three indices",
+                                        faces=[face])
+        for v in triangle:
+            if isinstance(v, bool) or not isinstance(v, int):
+                raise MalformedPatternError(f"face {face}: {v!r} is not a vertex index",
+                                            faces=[face])
+            if not 0 <= v < count:
+                raise MalformedPatternError(
+                    f"face {face} uses vertex {v}, but there are {count} vertices", faces=[face]
+                )
+        if len(set(triangle)) < 3:
+            raise DegenerateFaceError(
+                f"face {face} repeats a vertex: {tuple(triangle)}",
+                vertices=tuple(triangle), faces=[face],
+            )
+        a, b, c = triangle
+        result.append((a, b, c))
+    if not result:
+        raise MalformedPatternError("a pattern needs at least one triangle")
+    return result
+
+
+def oriented_triangles(
+    vertices: Sequence[Point], triangles: Sequence[Triangle]
+) -> tuple[Triangle, ...]:
+    """All triangles counter-clockwise, each rotated to start at its smallest index."""
+    clockwise, counter = [], []
+    for face, (a, b, c) in enumerate(triangles):
+        (ax, ay), (bx, by), (cx, cy) = vertices[a], vertices[b], vertices[c]
+        area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+        if area == 0:
+            raise DegenerateFaceError(
+                f"face {face} ({a}, {b}, {c}) has zero area", vertices=(a, b, c), faces=[face]
+            )
+        (counter if area > 0 else clockwise).append(face)
+    if clockwise and counter:
+        raise MixedOrientationError(
+            f"face {clockwise[0]} {triangles[clockwise[0]]} is clockwise, "
+            f"face {counter[0]} {triangles[counter[0]]} is counter-clockwise",
+            faces=[clockwise[0], counter[0]],
+        )
+    result = []
+    for a, b, c in triangles:
+        cycle = (a, c, b) if clockwise else (a, b, c)
+        k = cycle.index(min(cycle))
+        result.append((cycle[k], cycle[(k + 1) % 3], cycle[(k + 2) % 3]))
+    return tuple(result)
+
+
+def incidence(count: int, triangles: Sequence[Triangle]) -> None:
+    """No isolated vertex, no edge on three faces, no two faces on one side of an edge."""
+    sides: dict[tuple[int, int], list[int]] = {}
+    directed: dict[tuple[int, int], int] = {}
+    doubled: tuple[int, int, int, int] | None = None
+    for face, (a, b, c) in enumerate(triangles):
+        for i, j in ((a, b), (b, c), (c, a)):
+            faces = sides.setdefault((min(i, j), max(i, j)), [])
+            faces.append(face)
+            if len(faces) > 2:
+                raise NonManifoldEdgeError(
+                    f"edge {min(i, j)}-{max(i, j)} is on the faces {faces}, more than two",
+                    edges=[(min(i, j), max(i, j))], faces=faces,
+                )
+            if (i, j) in directed and doubled is None:
+                doubled = (i, j, directed[i, j], face)
+            directed[i, j] = face
+    if doubled is not None:
+        i, j, first, second = doubled
+        raise OverlapError(
+            f"faces {first} and {second} overlap: both lie on the same side of edge {i}-{j}",
+            edges=[(min(i, j), max(i, j))], faces=[first, second],
+        )
+    used = {v for triangle in triangles for v in triangle}
+    if len(used) < count:
+        lonely = [v for v in range(count) if v not in used]
+        raise IsolatedVertexError(
+            f"vertex {lonely[0]} belongs to no face" + _more(lonely), vertices=lonely
+        )
+
+
+def _more(items: Sequence[object]) -> str:
+    return f" (and {len(items) - 1} more)" if len(items) > 1 else ""
+
+
+def disk(rotation: Rotation, triangles: Sequence[Triangle]) -> None:
+    """One disk: connected, no pinch, exactly one boundary cycle, Euler characteristic one."""
+    reached, stack = {triangles[0][0]}, [triangles[0][0]]
+    while stack:
+        for a, b in rotation[stack.pop()].items():
+            for v in (a, b):
+                if v not in reached:
+                    reached.add(v)
+                    stack.append(v)
+    if len(reached) < len(rotation):
+        other = min(v for v in rotation if v not in reached)
+        raise DisconnectedError(
+            f"the sheet falls apart: no faces lead from vertex {triangles[0][0]} to {other}",
+            vertices=[triangles[0][0], other],
+        )
+    follow: dict[int, int] = {}
+    for v, fan in rotation.items():
+        ends = [a for a in fan if v not in rotation[a]]
+        if len(ends) > 1 or _steps(fan, ends[0] if ends else next(iter(fan))) < len(fan):
+            raise PinchError(
+                f"the sheet hangs together by vertex {v} only: its faces form several fans",
+                vertices=[v],
+            )
+        if ends:
+            follow[v] = ends[0]
+    if not follow:
+        raise HoleError("the faces form a closed surface without boundary")
+    start = min(follow)
+    cycle = [start]
+    while (after := follow[cycle[-1]]) != start:
+        cycle.append(after)
+    if len(cycle) < len(follow):
+        inner = min(set(follow) - set(cycle))
+        raise HoleError(
+            f"the sheet has a hole: vertices {start} and {inner} are on different boundaries",
+            vertices=[start, inner],
+        )
+
+
+def _steps(fan: Mapping[int, int], start: int) -> int:
+    steps, at = 1, fan[start]
+    while at != start and at in fan:
+        at = fan[at]
+        steps += 1
+    return steps
+
+
+def embedding(vertices: Sequence[IntPoint], boundary: Sequence[int], rotation: Rotation) -> None:
+    """No overlap: the boundary is a simple polygon.
+
+    A disk whose triangles are all positively oriented covers each point off the boundary as often
+    as the boundary winds around it (degree of a map), so a simple boundary suffices.
+    """
+    sides = list(zip(boundary, [*boundary[1:], boundary[0]], strict=True))
+    boxes = []
+    for i, j in sides:
+        (ax, ay), (bx, by) = vertices[i], vertices[j]
+        boxes.append((min(ax, bx), max(ax, bx), min(ay, by), max(ay, by), i, j))
+    boxes.sort()
+    active: list[tuple[int, int, int, int, int, int]] = []
+    for box in boxes:
+        active = [other for other in active if other[1] >= box[0]]
+        for other in active:
+            if other[2] <= box[3] and box[2] <= other[3] and _meet(vertices, box[4:], other[4:]):
+                (i, j), (k, m) = box[4:], other[4:]
+                raise OverlapError(
+                    f"boundary edges {k}-{m} and {i}-{j} meet: the faces "
+                    f"({k}, {m}, {rotation[k][m]}) and ({i}, {j}, {rotation[i][j]}) "
+                    "overlap or touch",
+                    edges=[(min(i, j), max(i, j)), (min(k, m), max(k, m))],
+                )
+        active.append(box)
+
+
+def _meet(vertices: Sequence[IntPoint], first: tuple[int, int], second: tuple[int, int]) -> bool:
+    """Whether two boundary edges share a point other than a common end."""
+    shared = set(first) & set(second)
+    if shared:
+        (v,) = shared
+        (a,) = set(first) - shared
+        (b,) = set(second) - shared
+        p, q, r = vertices[v], vertices[a], vertices[b]
+        dot = (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1])
+        return orientation(p, q, r) == 0 and dot > 0
+    return segments_meet(*(vertices[v] for v in (*first, *second)))
+
+
+def segments_meet(a: IntPoint, b: IntPoint, c: IntPoint, d: IntPoint) -> bool:
+    """Whether the closed segments ab and cd have a common point; exact on integers."""
+    abc, abd = _sign(orientation(a, b, c)), _sign(orientation(a, b, d))
+    cda, cdb = _sign(orientation(c, d, a)), _sign(orientation(c, d, b))
+    if abc * abd < 0 and cda * cdb < 0:
+        return True
+    return (
+        (abc == 0 and _between(a, b, c)) or (abd == 0 and _between(a, b, d))
+        or (cda == 0 and _between(c, d, a)) or (cdb == 0 and _between(c, d, b))
+    )
+
+
+def _sign(value: int) -> int:
+    return (value > 0) - (value < 0)
+
+
+def _between(a: IntPoint, b: IntPoint, p: IntPoint) -> bool:
+    return min(a[0], b[0]) <= p[0] <= max(a[0], b[0]) and min(a[1], b[1]) <= p[1] <= max(a[1], b[1])

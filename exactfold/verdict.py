@@ -1,0 +1,34 @@
+"""Three-valued verdicts without a truth value."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import NoReturn
+
+
+class Verdict(Enum):
+    """`PROVED`, `REFUTED` or `UNDECIDED`; has no truth value, so that unknown is never read as no.
+
+    >>> PROVED is Verdict.PROVED
+    True
+    >>> str(UNDECIDED)
+    'undecided'
+    >>> bool(UNDECIDED)
+    Traceback (most recent call last):
+    TypeError: a Verdict has no truth value; compare it: `verdict is PROVED`
+    """
+
+    PROVED = "proved"
+    REFUTED = "refuted"
+    UNDECIDED = "undecided"
+
+    def __bool__(self) -> NoReturn:
+        raise TypeError("a Verdict has no truth value; compare it: `verdict is PROVED`")
+
+    def __str__(self) -> str:
+        return self.value
+
+
+PROVED = Verdict.PROVED
+REFUTED = Verdict.REFUTED
+UNDECIDED = Verdict.UNDECIDED
