@@ -1,0 +1,91 @@
+"""Curvature forms and wheel stresses of the interior vertices (theory.md section 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from exactfold.errors import UsageError
+from exactfold.exact.forms import QuadraticForm
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+
+
+def spokes(pattern: CreasePattern, vertex: int) -> tuple[tuple[int, ...], list[tuple[Fraction, Fraction]]]:
+    """Neighbours of an interior vertex counter-clockwise, and the vectors U_j - U_v to them."""
+    if vertex not in pattern.interior:
+        raise UsageError(f"vertex {vertex} is not an interior vertex")
+    x, y = pattern.vertices[vertex]
+    ring = pattern.star(vertex)
+    return ring, [(pattern.vertices[j][0] - x, pattern.vertices[j][1] - y) for j in ring]
+
+
+def wheel_stress(pattern: CreasePattern, vertex: int) -> dict[Edge, Fraction]:
+    r"""Stress densities w_e of the wheel around an interior vertex, by edge (i, j) with i < j.
+
+    With spokes d_j, c_j = d_j x d_{j+1}, s_j = d_j . d_{j+1}, L_j^2 = d_j . d_j:
+
+        rim   w_{j,j+1} = -1 / c_j
+        spoke w_j = 1/c_j + 1/c_{j-1} - (s_j/c_j + s_{j-1}/c_{j-1}) / L_j^2
+
+    (the paper's Eq. wheelstress divided by the edge lengths, so that everything is rational).
+    Unit: 1 / length^2. Raises `UsageError` unless `vertex` is interior.
+    """
+    ring, d = spokes(pattern, vertex)
+    n = len(ring)
+    c = [d[j][0] * d[(j + 1) % n][1] - d[j][1] * d[(j + 1) % n][0] for j in range(n)]
+    s = [d[j][0] * d[(j + 1) % n][0] + d[j][1] * d[(j + 1) % n][1] for j in range(n)]
+    stress = {}
+    for j in range(n):
+        length2 = d[j][0] ** 2 + d[j][1] ** 2
+        after = ring[(j + 1) % n]
+        stress[_edge(ring[j], after)] = -1 / c[j]
+        stress[_edge(vertex, ring[j])] = (
+            1 / c[j] + 1 / c[j - 1] - (s[j] / c[j] + s[j - 1] / c[j - 1]) / length2
+        )
+    return stress
+
+
+def curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
+    r"""Second-order Gaussian curvature K_v at an interior vertex, as a form in the heights.
+
+        K_v(h) = sum_j x_j x_{j+1} / c_j - (s_j / 2 c_j) (x_j^2 / L_j^2 + x_{j+1}^2 / L_{j+1}^2)
+
+    with x_j = h_j - h_v (theory.md section 1). Labels: the hub first, then the ring
+    counter-clockwise. Unit: curvature in radians when heights and lengths share a unit.
+    Inertia (1, N - 3, 3) for degree N. Raises `UsageError` unless `vertex` is interior.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> curvature_form(single_vertex(5), 5).inertia
+    (1, 2, 3)
+    """
+    ring, d = spokes(pattern, vertex)
+    n = len(ring)
+    matrix = [[Fraction(0)] * (n + 1) for _ in range(n + 1)]
+    for j in range(n):
+        k = (j + 1) % n
+        c = d[j][0] * d[k][1] - d[j][1] * d[k][0]
+        s = d[j][0] * d[k][0] + d[j][1] * d[k][1]
+        matrix[1 + j][1 + k] += 1 / (2 * c)
+        matrix[1 + k][1 + j] += 1 / (2 * c)
+        matrix[1 + j][1 + j] -= s / (2 * c) / (d[j][0] ** 2 + d[j][1] ** 2)
+        matrix[1 + k][1 + k] -= s / (2 * c) / (d[k][0] ** 2 + d[k][1] ** 2)
+    for j in range(1, n + 1):  # invariance under h -> h + constant fixes the hub's row
+        matrix[j][0] = matrix[0][j] = -sum(matrix[j][1:], Fraction(0))
+    matrix[0][0] = -sum(matrix[0][1:], Fraction(0))
+    return QuadraticForm((vertex, *ring), tuple(tuple(row) for row in matrix))
+
+
+def stress_form(pattern: CreasePattern, stress: Mapping[Edge, Fraction]) -> QuadraticForm:
+    """(1/2) sum_e w_e (h_i - h_j)^2 for stress densities w, on all vertices (paper Eq. compat)."""
+    size = len(pattern.vertices)
+    matrix = [[Fraction(0)] * size for _ in range(size)]
+    for (i, j), w in stress.items():
+        matrix[i][i] += w / 2
+        matrix[j][j] += w / 2
+        matrix[i][j] -= w / 2
+        matrix[j][i] -= w / 2
+    return QuadraticForm(tuple(range(size)), tuple(tuple(row) for row in matrix))
+
+
+def _edge(i: int, j: int) -> Edge:
+    return (i, j) if i < j else (j, i)
