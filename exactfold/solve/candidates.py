@@ -1,0 +1,25 @@
+"""What a solver returns: untrusted candidates for the zeros of a quadratic system."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Approximate zeros of a `QuadraticSystem`, one row a zero; nothing here is proved.
+
+    `points` has shape (m, n). `lost` names the paths that did not arrive, in the solver's own
+    words; `settings` records seed, tolerances and counts, so that a run can be repeated.
+    """
+
+    method: str
+    points: ComplexArray
+    lost: tuple[str, ...] = ()
+    settings: Mapping[str, int | str] = field(default_factory=dict)
