@@ -71,6 +71,25 @@ class QuadraticSystem:
         ]
 
     @cached_property
+    def realification(self) -> QuadraticSystem:
+        """The 2n real quadrics Re F_p(a + ib), Im F_p(a + ib) in the 2n unknowns (a, b)."""
+        n = self.size
+        real_parts, imaginary_parts = [], []
+        for matrix in self.matrices:
+            real = [[0] * (2 * n + 1) for _ in range(2 * n + 1)]
+            imaginary = [[0] * (2 * n + 1) for _ in range(2 * n + 1)]
+            for i in range(n):
+                for j in range(n):
+                    real[i][j], real[n + i][n + j] = matrix[i][j], -matrix[i][j]
+                    imaginary[i][n + j] = imaginary[n + j][i] = matrix[i][j]
+                real[i][2 * n] = real[2 * n][i] = matrix[i][n]
+                imaginary[n + i][2 * n] = imaginary[2 * n][n + i] = matrix[i][n]
+            real[2 * n][2 * n] = matrix[n][n]
+            real_parts.append(tuple(tuple(row) for row in real))
+            imaginary_parts.append(tuple(tuple(row) for row in imaginary))
+        return QuadraticSystem((*real_parts, *imaginary_parts))
+
+    @cached_property
     def float_tensor(self) -> FloatArray:
         """S as floats of shape (n, n+1, n+1), each S_p scaled to largest entry 1."""
         tensor = np.empty((self.size, self.size + 1, self.size + 1))
