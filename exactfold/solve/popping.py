@@ -1,0 +1,268 @@
+"""The popping homotopy: one real path for each vector of vertex signs (theory.md section 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from exactfold.errors import NotApplicableError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.curvature import curvature_form, spokes
+from exactfold.rigidity.timelike import saddle_functional
+from exactfold.solve.candidates import Candidates
+from exactfold.system.branch_system import Chart
+
+FloatArray = npt.NDArray[np.float64]
+Progress = Callable[[int, int], None]
+
+_ORDER = 8
+_BLOCK = 4096
+_MAX_STEPS = 400
+_MIN_STEP = 1e-12
+
+
+def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
+    """Candidates for all 2^Vi branches of a pattern with four boundary vertices.
+
+    With the round cone t_v, l_v(h) = K_v(t_v, h) scaled to hub coefficient 1 and K_v scaled so that
+    l_v^2 - K_v >= 0, each sign vector e is followed along
+
+        (1 - T) (l_v(h)^2 - k) + T K_v(h) = 0,   e_v l_v(h) > 0,   from T = 0 to T = 1.
+
+    For a convex boundary the path is regular for T < 1 and is the only solution in its chamber, so
+    a converged corrector with the right signs cannot have jumped (theory.md section 4). A reflex
+    corner is made interior by the triangle that closes the notch, and is given curvature k in place
+    of 0. Predictor: a Taylor series of order 8 from one inverse per step; all paths of a block
+    advance together. Paths that stall before T = 1, as they do where a vertex star ends flat, are
+    named in `lost`. Floating point throughout: nothing here is proved.
+
+    Raises `NotApplicableError` unless the pattern has four boundary vertices.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.system.branch_system import BranchSystem
+    >>> popping(BranchSystem(single_vertex(4)).chart).points.shape
+    (2, 1)
+    """
+    pattern = chart.branch_system.pattern
+    if pattern.Ve != 4:
+        raise NotApplicableError(f"popping needs four boundary vertices, not {pattern.Ve}")
+    problem = _Problem.build(pattern)
+    signs = _sign_vectors(problem.size, problem.reflex)
+    arrived, lost, steps = [], [], 0
+    for start in range(0, len(signs), _BLOCK):
+        block = signs[start : start + _BLOCK]
+        x, done, used = _track(problem, block)
+        steps += used
+        arrived.append(x[done])
+        lost += ["path " + _text(e) + " stalled before its end" for e in block[~done]]
+        if progress is not None:
+            progress(min(start + _BLOCK, len(signs)), len(signs))
+    heights = problem.full_heights(np.concatenate(arrived))
+    return Candidates(
+        method="popping",
+        points=_to_chart(chart, heights).astype(np.complex128),
+        lost=tuple(lost),
+        settings={"paths": len(signs), "steps": steps, "order": _ORDER},
+    )
+
+
+def _sign_vectors(size: int, reflex: bool) -> FloatArray:
+    """All sign vectors as rows; with a reflex corner its sign, the last, is +1 throughout."""
+    free = size - 1 if reflex else size
+    bits = (np.arange(1 << free)[:, None] >> np.arange(free)) & 1
+    signs = 1.0 - 2.0 * bits
+    return np.hstack([signs, np.ones((len(signs), 1))]) if reflex else signs
+
+
+def _text(signs: FloatArray) -> str:
+    return "".join("+" if e > 0 else "-" for e in signs)
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """Float data: K of shape (n, n+1, n+1) and l of shape (n, n+1) on (x, 1)."""
+
+    forms: FloatArray
+    lines: FloatArray
+    target: FloatArray
+    level: float
+    movable: tuple[int, ...]
+    unit: int | None
+    vertex_count: int
+
+    @property
+    def size(self) -> int:
+        return len(self.lines)
+
+    @property
+    def reflex(self) -> bool:
+        return self.unit is None
+
+    @classmethod
+    def build(cls, pattern: CreasePattern) -> _Problem:
+        """Unknowns: interior heights; boundary heights (1, 0, 0, 0), or 0 with a reflex corner."""
+        sheet, movable = pattern, pattern.interior
+        unit: int | None = next(v for v, c in saddle_functional(pattern).items() if c)
+        if not pattern.is_convex:
+            k = pattern.boundary_turns.index(-1)
+            corner = pattern.boundary[k]
+            before, after = pattern.boundary[k - 1], pattern.boundary[(k + 1) % 4]
+            sheet = CreasePattern(pattern.vertices, [*pattern.triangles, (before, after, corner)])
+            movable, unit = (*movable, corner), None
+        n = len(movable)
+        position = {v: k for k, v in enumerate(movable)}
+        if unit is not None:
+            position[unit] = n
+        forms, lines = np.zeros((n, n + 1, n + 1)), np.zeros((n, n + 1))
+        for p, v in enumerate(movable):
+            form = curvature_form(sheet, v)
+            matrix = np.array(form.matrix, dtype=float)
+            _, vectors = spokes(sheet, v)
+            cone = np.array([0.0, *(-np.hypot(float(x), float(y)) for x, y in vectors)])
+            line = matrix @ cone
+            hub = line[0]
+            keep = [k for k, label in enumerate(form.labels) if label in position]
+            at = [position[form.labels[k]] for k in keep]
+            lines[p, at] = line[keep] / hub
+            scale = (cone @ matrix @ cone) / hub**2
+            forms[p][np.ix_(at, at)] = matrix[np.ix_(keep, keep)] * scale
+        target = np.zeros(n)
+        level = 1.0
+        if unit is None:
+            target[-1] = level
+        else:
+            # A k of the order of the squared heights of the sheet with all l_v = 0.
+            rest = np.linalg.solve(lines[:, :n], -lines[:, n])
+            level = float(max(np.abs(rest).max(), 1e-3)) ** 2 / 16
+        return cls(forms, lines, target, level, tuple(movable), unit, len(pattern.vertices))
+
+    def full_heights(self, x: FloatArray) -> FloatArray:
+        """Heights of all vertices, shape (m, V)."""
+        heights = np.zeros((len(x), self.vertex_count))
+        heights[:, self.movable] = x
+        if self.unit is not None:
+            heights[:, self.unit] = 1.0
+        return heights
+
+
+def _to_chart(chart: Chart, heights: FloatArray) -> FloatArray:
+    """The same sheets in the gauge of the chart: pinned vertices at 0, functional 1."""
+    pattern = chart.branch_system.pattern
+    plane = np.array([[float(x), float(y), 1.0] for x, y in pattern.vertices])
+    pinned = list(chart.branch_system.pinned)
+    tilt = np.linalg.solve(plane[pinned], heights[:, pinned].T)
+    level = heights - (plane @ tilt).T
+    weights = np.zeros(len(plane))
+    for v, weight in chart.functional.items():
+        weights[v] = float(weight)
+    level /= (level @ weights)[:, None]
+    return np.asarray(level[:, list(chart.variables)])
+
+
+def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, npt.NDArray[np.bool_], int]:
+    """Follow every row of `signs`: end points, which of them arrived, and steps of the longest."""
+    n = problem.size
+    lines, level = problem.lines, problem.level
+    # At T = 0 the system is linear: l_v(x) = e_v sqrt(k).
+    x = np.linalg.solve(lines[:, :n], (signs * np.sqrt(level) - lines[:, n]).T).T
+    t = np.zeros(len(x))
+    reach = np.full(len(x), 1.0)
+    live = np.arange(len(x))
+    done = np.zeros(len(x), dtype=bool)
+    steps = 0
+    while live.size and steps < _MAX_STEPS:
+        steps += 1
+        series = _taylor(problem, x[live], t[live])
+        # Largest step for which the last two terms stay below the corrector's reach.
+        size = 1.0 + np.abs(series[0]).max(axis=1)
+        tail = np.maximum(
+            (np.abs(series[-1]).max(axis=1) / size) ** (1 / _ORDER),
+            (np.abs(series[-2]).max(axis=1) / size) ** (1 / (_ORDER - 1)),
+        )
+        step = reach[live] * 0.1 ** (2 / _ORDER) / np.maximum(tail, 1e-300)
+        step = np.minimum(step, 1.0 - t[live])
+        trial = series[-1]
+        for term in series[-2::-1]:
+            trial = trial * step[:, None] + term
+        arrive = t[live] + step
+        arrive[1.0 - arrive < 1e-14] = 1.0
+        trial, good = _correct(problem, trial, arrive, signs[live])
+        x[live[good]] = trial[good]
+        t[live[good]] = arrive[good]
+        reach[live] = np.where(good, np.minimum(reach[live] * 1.5, 1.0), reach[live] * 0.4)
+        done[live[good & (arrive == 1.0)]] = True
+        alive = ~done[live] & (step > _MIN_STEP)
+        live = live[alive]
+    return x, done, steps
+
+
+def _rows(problem: _Problem, z: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """K's half gradients (b, n, n+1), l (b, n) and the Jacobian (b, n, n) at (z, t)."""
+    n = problem.size
+    half = (z @ problem.forms.reshape(-1, n + 1).T).reshape(len(z), n, n + 1)
+    l = z @ problem.lines.T
+    jacobian = 2.0 * t[:, None, None] * half[:, :, :n]
+    jacobian += (2.0 * (1.0 - t))[:, None, None] * l[:, :, None] * problem.lines[None, :, :n]
+    return half, l, jacobian
+
+
+def _taylor(problem: _Problem, x: FloatArray, t: FloatArray) -> list[FloatArray]:
+    """Taylor coefficients of the paths at (x, t), orders 0 to `_ORDER`."""
+    n = problem.size
+    z = np.hstack([x, np.ones((len(x), 1))])
+    half, l, jacobian = _rows(problem, z, t)
+    inverse = np.linalg.inv(jacobian)
+    series, halves, values = [x], [half], [l]
+    for m in range(1, _ORDER + 1):
+        # Coefficient m of (1-T)(l^2 - k) + T (K - target), without the unknown term.
+        cross_l, cross_k = np.zeros_like(l), np.zeros_like(l)
+        for i in range(1, m):
+            cross_l += values[i] * values[m - i]
+            cross_k += np.einsum("bvj,bj->bv", halves[i][:, :, :n], series[m - i])
+        square_l, square_k = np.zeros_like(l), np.zeros_like(l)
+        for i in range(m):
+            square_l += values[i] * values[m - 1 - i]
+            last = series[m - 1 - i] if m - 1 - i else z
+            width = n if m - 1 - i else n + 1
+            square_k += np.einsum("bvj,bj->bv", halves[i][:, :, :width], last)
+        right = (1.0 - t)[:, None] * cross_l + t[:, None] * cross_k + square_k - square_l
+        if m == 1:
+            right += problem.level - problem.target
+        term = -np.einsum("bij,bj->bi", inverse, right)
+        series.append(term)
+        if m < _ORDER:
+            halves.append(
+                (term @ problem.forms[:, :, :n].reshape(-1, n).T).reshape(len(x), n, n + 1)
+            )
+            values.append(term @ problem.lines[:, :n].T)
+    return series
+
+
+def _correct(
+    problem: _Problem, x: FloatArray, t: FloatArray, signs: FloatArray
+) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
+    """Newton at fixed T; good where it converges fast and keeps e_v l_v > 0."""
+    good = np.ones(len(x), dtype=bool)
+    first = np.zeros(len(x))
+    for iteration in range(4):
+        z = np.hstack([x, np.ones((len(x), 1))])
+        half, l, jacobian = _rows(problem, z, t)
+        k = np.einsum("bvj,bj->bv", half, z) - problem.target
+        residual = (1.0 - t)[:, None] * (l * l - problem.level) + t[:, None] * k
+        try:
+            change = np.linalg.solve(jacobian, residual[:, :, None])[:, :, 0]
+        except np.linalg.LinAlgError:
+            return x, np.zeros(len(x), dtype=bool)
+        x = x - change
+        size = np.abs(change).max(axis=1) / (1.0 + np.abs(x).max(axis=1))
+        if iteration == 0:
+            first = size
+        if size.max() < 1e-12:
+            break
+    good &= np.isfinite(x).all(axis=1) & (first < 0.05) & (size < 1e-9)
+    z = np.hstack([x, np.ones((len(x), 1))])
+    good &= (signs * (z @ problem.lines.T) > 0.0).all(axis=1)
+    return x, good
