@@ -39,6 +39,14 @@ class IsolatingBox:
         return (Fraction(self.real[k] - self.radius, scale),
                 Fraction(self.real[k] + self.radius, scale))
 
+    def is_inside(self, other: IsolatingBox) -> bool:
+        """Whether this box lies within `other` (decided exactly)."""
+        bits = max(self.bits, other.bits)
+        mine, theirs = bits - self.bits, bits - other.bits
+        slack = (other.radius << theirs) - (self.radius << mine)
+        pairs = [*zip(self.real, other.real, strict=True), *zip(self.imag, other.imag, strict=True)]
+        return all(abs((x << mine) - (y << theirs)) <= slack for x, y in pairs)
+
     def is_disjoint_from(self, other: IsolatingBox) -> bool:
         """Whether the two boxes have no common point (decided exactly)."""
         bits = max(self.bits, other.bits)

@@ -71,6 +71,20 @@ def krawczyk(
     return [result for result in results if result is not None]
 
 
+def krawczyk_at(system: QuadraticSystem, box: IsolatingBox, bits: int) -> IsolatingBox | str:
+    """The same zero in a sharper real box, with `bits` bits after the point, or a reason.
+
+    Newton steps start from the centre of `box`; the result is returned only if it lies inside it,
+    so that both hold the same zero.
+    """
+    shift = bits - box.bits
+    centre = [m << shift if shift >= 0 else m >> -shift for m in box.real]
+    result = _Kernel(system)._attempt_exactly(centre, bits)
+    if isinstance(result, IsolatingBox) and not result.is_inside(box):
+        return f"the Newton steps at {bits} bits left the box"
+    return result
+
+
 def _named(point: npt.NDArray[np.complex128], reason: str) -> Uncertified:
     return Uncertified(tuple(point.tolist()), reason)
 

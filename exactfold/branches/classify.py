@@ -1,0 +1,127 @@
+"""What distinguishes the branches: vertex signs and mountain-valley assignments, decided exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TypeVar
+
+from exactfold.branches.branch import Branch
+from exactfold.branches.flat_folds import flat_folds
+from exactfold.branches.functionals import Functionals, Row
+from exactfold.branches.roots import BoxRoot, Root
+from exactfold.certify.box import IsolatingBox
+from exactfold.certify.krawczyk import krawczyk_at
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.system.branch_system import Chart
+
+K = TypeVar("K")
+
+_LETTERS = {1: "V", -1: "M", 0: "F"}
+_RISING = (256, 1024)
+
+
+@dataclass(frozen=True)
+class Undecided:
+    """A root whose vertex signs or folds could not all be decided, and which."""
+
+    root: Root
+    what: tuple[str, ...]
+
+
+def classify(
+    pattern: CreasePattern,
+    chart: Chart,
+    labels: Sequence[int],
+    roots: Sequence[tuple[Root, int]],
+) -> tuple[list[Branch], list[Undecided]]:
+    """Branches for proved roots of the emptied pattern's chart, sorted by vertex signs.
+
+    `chart` belongs to the emptied pattern, whose vertex k is `labels[k]` of `pattern`; each root
+    comes with its multiplicity there. A sign that a box does not decide is tried on sharper boxes
+    of the same root, then by `flat_folds`; roots with an open sign are returned apart.
+    """
+    emptied = chart.branch_system.pattern
+    functionals = Functionals(chart)
+    height_rows = _height_rows(pattern, functionals, labels)
+    branches, undecided = [], []
+    for given, multiplicity in roots:
+        root, vertex_signs, fold_signs = _decide(emptied, chart, functionals, given)
+        still_open = [f"vertex {labels[v]}" for v, s in vertex_signs.items() if s is None]
+        still_open += [
+            f"fold {labels[i]}-{labels[j]}" for (i, j), s in fold_signs.items() if s is None
+        ]
+        if still_open:
+            undecided.append(Undecided(root, tuple(still_open)))
+            continue
+        signs = dict.fromkeys(pattern.interior, 0)
+        signs |= {labels[v]: s for v, s in vertex_signs.items() if s is not None}
+        letters = dict.fromkeys(pattern.folds, "F")
+        letters |= {
+            (labels[i], labels[j]): _LETTERS[s] for (i, j), s in fold_signs.items() if s is not None
+        }
+        branches.append(Branch(signs, letters, multiplicity << pattern.Vt, root, height_rows))
+    branches.sort(key=Branch.sort_key)
+    return branches, undecided
+
+
+def _decide(
+    emptied: CreasePattern, chart: Chart, functionals: Functionals, root: Root
+) -> tuple[Root, dict[int, int | None], dict[Edge, int | None]]:
+    """Signs of all vertices and folds at the root, and the (sharpest) root used."""
+    vertices = {v: root.sign(row) for v, row in functionals.vertices.items()}
+    folds = {fold: root.sign(row) for fold, row in functionals.folds.items()}
+    for bits in _RISING:
+        if None not in vertices.values() and None not in folds.values():
+            return root, vertices, folds
+        sharper = _sharpen(chart, root, bits)
+        if sharper is None:
+            break
+        root = sharper
+        _fill(vertices, functionals.vertices, root)
+        _fill(folds, functionals.folds, root)
+    for fold in flat_folds(emptied, folds):
+        folds[fold] = 0
+    return root, vertices, folds
+
+
+def _fill(signs: dict[K, int | None], rows: Mapping[K, Row], root: Root) -> None:
+    for key, sign in signs.items():
+        if sign is None:
+            signs[key] = root.sign(rows[key])
+
+
+def _sharpen(chart: Chart, root: Root, bits: int) -> Root | None:
+    if not isinstance(root, BoxRoot) or root.box.bits >= bits:
+        return None
+    sharper = krawczyk_at(chart.system, root.box, bits)
+    return BoxRoot(sharper) if isinstance(sharper, IsolatingBox) else None
+
+
+def _height_rows(
+    pattern: CreasePattern, functionals: Functionals, labels: Sequence[int]
+) -> dict[int, tuple[Fraction, ...]]:
+    """Height of every vertex of `pattern`: rigid ones lie in the plane of their 3-cycle."""
+    rows = {labels[v]: row for v, row in functionals.heights.items()}
+    for cycle, inside in pattern.triangulated_triangles:
+        for v in inside:
+            weights = barycentric(pattern, cycle, v)
+            rows[v] = tuple(
+                sum((w * x for w, x in zip(weights, column, strict=True)), Fraction(0))
+                for column in zip(*(rows[c] for c in cycle), strict=True)
+            )
+    return dict(sorted(rows.items()))
+
+
+def barycentric(
+    pattern: CreasePattern, cycle: Sequence[int], vertex: int
+) -> tuple[Fraction, Fraction, Fraction]:
+    """Barycentric coordinates of a vertex in a triangle, exactly."""
+    (ax, ay), (bx, by), (cx, cy) = (pattern.vertices[v] for v in cycle)
+    x, y = pattern.vertices[vertex]
+    whole = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    beta = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / whole
+    gamma = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / whole
+    return 1 - beta - gamma, beta, gamma
+

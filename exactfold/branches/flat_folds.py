@@ -1,0 +1,110 @@
+"""Folds that are exactly flat on a branch, deduced vertex by vertex.
+
+At a vertex with some folds known to be flat, the bends of the others span a space of dimension d.
+If the curvature form is definite there (always for d = 1 unless it vanishes), all are flat. If
+d = 2 and the form splits into two rational lines, the branch lies on one of them; when the known
+signs exclude the other, the bends are proportional to a known vector, whose zeros are flat folds.
+This settles the crosses (collinear folds at a vertex of degree 4) and what follows from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import isqrt
+
+from exactfold.exact.linalg import nullspace
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.timelike import fold_functional
+
+
+def flat_folds(pattern: CreasePattern, signs: Mapping[Edge, int | None]) -> frozenset[Edge]:
+    """The folds proved flat on a branch with the given fold signs (None where undecided).
+
+    `signs` must be right on the branch; a fold not returned may still be flat.
+
+    >>> cross = CreasePattern(
+    ...     [(2, 0), (0, 3), (-2, 0), (0, -1), (0, 0)],
+    ...     [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
+    >>> sorted(flat_folds(cross, {(0, 4): 1, (1, 4): None, (2, 4): 1, (3, 4): None}))
+    [(1, 4), (3, 4)]
+    """
+    known = dict(signs)
+    pending = {v for fold, sign in known.items() if sign is None for v in fold}
+    pending &= set(pattern.interior)
+    while pending:
+        vertex = pending.pop()
+        found = _at_vertex(pattern, vertex, known)
+        for fold in found:
+            known[fold] = 0
+            pending |= set(fold) & set(pattern.interior)
+    return frozenset(fold for fold, sign in known.items() if sign == 0)
+
+
+def _at_vertex(
+    pattern: CreasePattern, vertex: int, known: Mapping[Edge, int | None]
+) -> list[Edge]:
+    ring = pattern.star(vertex)
+    folds = [(min(vertex, j), max(vertex, j)) for j in ring]
+    bends = [fold_functional(pattern, fold) for fold in folds]
+    # Heights of the star modulo planes: hub and two neighbouring rim vertices at 0.
+    free = ring[2:]
+    rows = [[Fraction(bend.get(j, 0)) for j in free] for bend in bends]
+    flat = [row for row, fold in zip(rows, folds, strict=True) if known[fold] == 0]
+    basis = nullspace(flat) if flat else _identity(len(free))
+    form = curvature_form(pattern, vertex)
+    lifted = [{v: Fraction(0) for v in form.labels} | dict(zip(free, b, strict=True))
+              for b in basis]
+    undecided = [k for k, fold in enumerate(folds) if known[fold] is None]
+    if len(basis) == 1 and form(lifted[0]) != 0:
+        return [folds[k] for k in undecided]
+    if len(basis) != 2:
+        return []
+    lines = _null_lines(form.polar(lifted[0], lifted[0]), form.polar(lifted[0], lifted[1]),
+                        form.polar(lifted[1], lifted[1]))
+    if lines is None:
+        return []
+    vectors = []
+    for s, t in lines:
+        heights = [s * a + t * b for a, b in zip(*basis, strict=True)]
+        vector = [sum((c * h for c, h in zip(row, heights, strict=True)), Fraction(0))
+                  for row in rows]
+        if _agrees(vector, [known[fold] for fold in folds]):
+            vectors.append(vector)
+    return [folds[k] for k in undecided if all(vector[k] == 0 for vector in vectors)]
+
+
+def _identity(size: int) -> list[list[Fraction]]:
+    return [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
+
+
+def _null_lines(
+    a: Fraction, b: Fraction, c: Fraction
+) -> list[tuple[Fraction, Fraction]] | None:
+    """Rational directions (s, t) with a s^2 + 2 b s t + c t^2 = 0; None if there may be others."""
+    if a == b == c == 0:
+        return None
+    discriminant = b * b - a * c
+    if discriminant < 0:
+        return []
+    root = _rational_sqrt(discriminant)
+    if root is None:
+        return None
+    if a != 0:
+        return [(-b + root, a), (-b - root, a)]
+    return [(Fraction(1), Fraction(0)), (-c, 2 * b)]
+
+
+def _rational_sqrt(value: Fraction) -> Fraction | None:
+    p, q = isqrt(value.numerator), isqrt(value.denominator)
+    exact = p * p == value.numerator and q * q == value.denominator
+    return Fraction(p, q) if exact else None
+
+
+def _agrees(vector: list[Fraction], signs: list[int | None]) -> bool:
+    """Whether some multiple of `vector` has the known signs (None is unknown)."""
+    pairs = [((x > 0) - (x < 0), s) for x, s in zip(vector, signs, strict=True) if s is not None]
+    return any(all(x * side == s for x, s in pairs) for side in (1, -1)) or all(
+        s == 0 for _, s in pairs
+    )
