@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 from flint import fmpz
 
-from exactfold.errors import FloatRefusedError, NotANumberError
+from exactfold.errors import FloatRefusedError, NotANumberError, UsageError
 
 RationalLike: TypeAlias = "int | Fraction | Decimal | str"
 
@@ -46,23 +46,34 @@ def parse_rational(text: str) -> Fraction:
     if quotient := _QUOTIENT.match(text):
         denominator = _int(quotient[2])
         if denominator == 0:
-            raise NotANumberError(f"{_shown(text)} has a zero denominator")
+            raise NotANumberError(f"{shown(text)} has a zero denominator")
         return Fraction(_int(quotient[1]), denominator)
     decimal = _DECIMAL.match(text)
     if decimal and (decimal[2] or decimal[3]):
         sign, whole, part, power = decimal[1], decimal[2], decimal[3] or "", int(decimal[4] or 0)
         if abs(power) > _MAX_EXPONENT:
-            raise NotANumberError(f"{_shown(text)} has an exponent beyond {_MAX_EXPONENT}")
+            raise NotANumberError(f"{shown(text)} has an exponent beyond {_MAX_EXPONENT}")
         digits = _int(f"{sign}{whole}{part}")
         power -= len(part)
         return Fraction(digits * 10**power) if power >= 0 else Fraction(digits, 10**-power)
-    raise NotANumberError(
-        f'{_shown(text)} is not a number: write an integer, "p/q" or a decimal'
-    )
+    raise NotANumberError(f'{shown(text)} is not a number: write an integer, "p/q" or a decimal')
 
 
-def _shown(text: str) -> str:
-    return repr(text if len(text) <= 40 else text[:37] + "...")
+def shown(value: object) -> str:
+    """`value` as it appears in an error message: its repr, cut to 40 characters.
+
+    >>> shown("12"), shown(10**5000)
+    ("'12'", 'an integer of 16610 bits')
+    """
+    if isinstance(value, str):
+        return repr(value if len(value) <= 40 else value[:37] + "...")
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # an int of more digits than repr allows, deep nesting
+        if isinstance(value, int):
+            return f"an integer of {value.bit_length()} bits"
+        return f"a {type(value).__name__}"
+    return text if len(text) <= 40 else text[:37] + "..."
 
 
 def as_rational(value: object) -> Fraction:
@@ -89,9 +100,9 @@ def as_rational(value: object) -> Fraction:
         if not value.is_finite():
             raise NotANumberError(f"{value} is not a finite number")
         return parse_rational(str(value))
-    if isinstance(value, float) or type(value).__module__ == "numpy" and hasattr(value, "dtype"):
+    if isinstance(value, float) or (type(value).__module__ == "numpy" and hasattr(value, "dtype")):
         raise _float_refused(value)
-    raise NotANumberError(f"{value!r} is not a rational number")
+    raise NotANumberError(f"{shown(value)} is not a rational number")
 
 
 def _float_refused(value: object) -> FloatRefusedError:
@@ -108,9 +119,13 @@ def _float_refused(value: object) -> FloatRefusedError:
 def snap(value: Fraction, denominator: int) -> Fraction:
     """The multiple of 1/denominator nearest to `value` (ties to even).
 
+    Raises `UsageError` unless `denominator` is a positive integer.
+
     >>> snap(Fraction("0.24999999999999994"), 1024)
     Fraction(1, 4)
     """
+    if isinstance(denominator, bool) or not isinstance(denominator, int) or denominator < 1:
+        raise UsageError(f"snap to multiples of 1/n with an integer n >= 1, not {denominator!r}")
     return Fraction(round(value * denominator), denominator)
 
 

@@ -1,0 +1,1 @@
+"""Crease patterns: the validated type, where patterns come from, and their files."""

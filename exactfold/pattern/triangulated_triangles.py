@@ -32,7 +32,8 @@ def find_triangulated_triangles(
                 continue
             a, b, c = (points[v] for v in cycle)
             inside = frozenset(
-                v for v in pattern.interior
+                v
+                for v in pattern.interior
                 if orientation(a, b, points[v]) > 0
                 and orientation(b, c, points[v]) > 0
                 and orientation(c, a, points[v]) > 0
@@ -41,4 +42,3 @@ def find_triangulated_triangles(
                 found.append((cycle, inside))
     maximal = [(t, s) for t, s in found if not any(s < other for _, other in found)]
     return tuple(sorted((t, tuple(sorted(s))) for t, s in maximal))
-

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from numbers import Integral
+from typing import Any
 
 from exactfold.errors import (
     DegenerateFaceError,
@@ -18,6 +20,7 @@ from exactfold.errors import (
     OverlapError,
     PinchError,
 )
+from exactfold.exact.numbers import format_rational, shown
 
 Point = tuple[Fraction, Fraction]
 IntPoint = tuple[int, int]
@@ -37,17 +40,19 @@ def points(
     result: list[Point] = []
     seen: dict[Point, int] = {}
     for index, vertex in enumerate(vertices):
-        if isinstance(vertex, str) or not isinstance(vertex, Iterable) or len(vertex) != 2:
+        pair = _entries(vertex)
+        if pair is None or len(pair) != 2:
             raise MalformedPatternError(
-                f"vertex {index} is {vertex!r}, not a pair of coordinates", vertices=[index]
+                f"vertex {index} is {shown(vertex)}, not a pair of coordinates", vertices=[index]
             )
         try:
-            point = (convert(vertex[0]), convert(vertex[1]))
+            point = (convert(pair[0]), convert(pair[1]))
         except NumberError as error:
             raise type(error)(f"vertex {index}: {error}") from None
         if point in seen:
             raise DuplicateVertexError(
-                f"vertices {seen[point]} and {index} are at the same point ({point[0]}, {point[1]})",
+                f"vertices {seen[point]} and {index} are at the same point "
+                f"({_coordinate(point[0])}, {_coordinate(point[1])})",
                 vertices=[seen[point], index],
             )
         seen[point] = index
@@ -57,27 +62,42 @@ def points(
     return tuple(result)
 
 
+def _entries(value: object) -> tuple[Any, ...] | None:
+    """The entries of any iterable but text."""
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        return None
+    return tuple(value)
+
+
+def _coordinate(value: Fraction) -> str:
+    text = format_rational(value)
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
 def triples(triangles: Iterable[Sequence[int]], count: int) -> list[Triangle]:
     """Index triples within range, no vertex twice."""
     result: list[Triangle] = []
-    for face, triangle in enumerate(triangles):
-        if isinstance(triangle, str) or not isinstance(triangle, Iterable) or len(triangle) != 3:
-            raise MalformedPatternError(f"face {face} is {triangle!r}, not three indices",
-                                        faces=[face])
-        for v in triangle:
-            if isinstance(v, bool) or not isinstance(v, int):
-                raise MalformedPatternError(f"face {face}: {v!r} is not a vertex index",
-                                            faces=[face])
-            if not 0 <= v < count:
-                raise MalformedPatternError(
-                    f"face {face} uses vertex {v}, but there are {count} vertices", faces=[face]
-                )
-        if len(set(triangle)) < 3:
-            raise DegenerateFaceError(
-                f"face {face} repeats a vertex: {tuple(triangle)}",
-                vertices=tuple(triangle), faces=[face],
+    for face, given in enumerate(triangles):
+        triangle = _entries(given)
+        if triangle is None or len(triangle) != 3:
+            raise MalformedPatternError(
+                f"face {face} is {shown(given)}, not three indices", faces=[face]
             )
-        a, b, c = triangle
+        for v in triangle:
+            if isinstance(v, bool) or not isinstance(v, Integral):
+                raise MalformedPatternError(
+                    f"face {face}: {shown(v)} is not a vertex index", faces=[face]
+                )
+            if not 0 <= int(v) < count:
+                raise MalformedPatternError(
+                    f"face {face} uses vertex {shown(v)}, but there are {count} vertices",
+                    faces=[face],
+                )
+        a, b, c = (int(v) for v in triangle)
+        if len({a, b, c}) < 3:
+            raise DegenerateFaceError(
+                f"face {face} repeats a vertex: {(a, b, c)}", vertices=(a, b, c), faces=[face]
+            )
         result.append((a, b, c))
     if not result:
         raise MalformedPatternError("a pattern needs at least one triangle")
@@ -88,7 +108,8 @@ def oriented_triangles(
     vertices: Sequence[Point], triangles: Sequence[Triangle]
 ) -> tuple[Triangle, ...]:
     """All triangles counter-clockwise, each rotated to start at its smallest index."""
-    clockwise, counter = [], []
+    clockwise: list[int] = []
+    counter: list[int] = []
     for face, (a, b, c) in enumerate(triangles):
         (ax, ay), (bx, by), (cx, cy) = vertices[a], vertices[b], vertices[c]
         area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
@@ -123,7 +144,8 @@ def incidence(count: int, triangles: Sequence[Triangle]) -> None:
             if len(faces) > 2:
                 raise NonManifoldEdgeError(
                     f"edge {min(i, j)}-{max(i, j)} is on the faces {faces}, more than two",
-                    edges=[(min(i, j), max(i, j))], faces=faces,
+                    edges=[(min(i, j), max(i, j))],
+                    faces=faces,
                 )
             if (i, j) in directed and doubled is None:
                 doubled = (i, j, directed[i, j], face)
@@ -132,7 +154,8 @@ def incidence(count: int, triangles: Sequence[Triangle]) -> None:
         i, j, first, second = doubled
         raise OverlapError(
             f"faces {first} and {second} overlap: both lie on the same side of edge {i}-{j}",
-            edges=[(min(i, j), max(i, j))], faces=[first, second],
+            edges=[(min(i, j), max(i, j))],
+            faces=[first, second],
         )
     used = {v for triangle in triangles for v in triangle}
     if len(used) < count:
@@ -240,8 +263,10 @@ def segments_meet(a: IntPoint, b: IntPoint, c: IntPoint, d: IntPoint) -> bool:
     if abc * abd < 0 and cda * cdb < 0:
         return True
     return (
-        (abc == 0 and _between(a, b, c)) or (abd == 0 and _between(a, b, d))
-        or (cda == 0 and _between(c, d, a)) or (cdb == 0 and _between(c, d, b))
+        (abc == 0 and _between(a, b, c))
+        or (abd == 0 and _between(a, b, d))
+        or (cda == 0 and _between(c, d, a))
+        or (cdb == 0 and _between(c, d, b))
     )
 
 
