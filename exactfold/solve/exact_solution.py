@@ -1,0 +1,221 @@
+"""All zeros of a quadratic system as algebraic numbers: classes of conjugate roots."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from flint import acb, acb_poly, arb, ctx, fmpq_poly, fmpz_poly
+
+from exactfold.errors import ExactfoldError
+from exactfold.exact.univariate import (
+    Interval,
+    divide_intervals,
+    evaluate_on_interval,
+    from_rational_poly,
+    isolate_real_roots,
+    to_rational_poly,
+)
+from exactfold.solve.candidates import Candidates, ComplexArray
+from exactfold.system.quadratic import QuadraticSystem
+
+
+class ParametrisationError(ExactfoldError):
+    """A parametrisation does not satisfy its system: an error of the solver, not of the input."""
+
+
+@dataclass(frozen=True)
+class RootClass:
+    """d conjugate zeros of a system, one for each root t of an irreducible polynomial p.
+
+    `polynomial` is p: primitive integer coefficients, constant term first, positive leading one.
+    The zero that belongs to t has the coordinates x_i = w_i(t) / p'(t) with `numerators` w_i of
+    degree < d over Q (the rational univariate representation of Rouillier 1999, whose
+    coefficients are much shorter than those of `coordinates`). The root itself is
+    t = sum separating_i x_i. `multiplicity` is the dimension of the local ring at each zero.
+
+    >>> pair = RootClass.from_coordinates((-2, 0, 1), [(Fraction(0), Fraction(1))], 1, (1,))
+    >>> pair.numerators, pair.coordinates
+    (((Fraction(4, 1),),), ((Fraction(0, 1), Fraction(1, 1)),))
+    >>> pair.enclose((Fraction(1), Fraction(2)))
+    ((Fraction(1, 1), Fraction(2, 1)),)
+    """
+
+    polynomial: tuple[int, ...]
+    numerators: tuple[tuple[Fraction, ...], ...]
+    multiplicity: int
+    separating: tuple[int, ...]
+
+    @classmethod
+    def from_coordinates(
+        cls,
+        polynomial: Sequence[int],
+        coordinates: Sequence[Sequence[Fraction]],
+        multiplicity: int,
+        separating: Sequence[int],
+    ) -> RootClass:
+        """The class with x_i = g_i(t), the polynomials g_i constant term first."""
+        modulus = fmpq_poly(list(polynomial))
+        slope = modulus.derivative()
+        numerators = tuple(
+            from_rational_poly(to_rational_poly(g) * slope % modulus) for g in coordinates
+        )
+        return cls(tuple(polynomial), numerators, multiplicity, tuple(separating))
+
+    @property
+    def degree(self) -> int:
+        """Number d of conjugate zeros, real and complex."""
+        return len(self.polynomial) - 1
+
+    @cached_property
+    def coordinates(self) -> tuple[tuple[Fraction, ...], ...]:
+        """g_i with x_i = g_i(t), degree < d, constant term first: w_i / p' modulo p."""
+        modulus = fmpq_poly(list(self.polynomial))
+        _, inverse, _ = modulus.derivative().xgcd(modulus)
+        return tuple(
+            from_rational_poly(to_rational_poly(w) * inverse % modulus) for w in self.numerators
+        )
+
+    def real_roots(self, bits: int) -> list[Interval]:
+        """An isolating interval of width at most 2^-bits for each real root t, ascending.
+
+        See `isolate_real_roots` for what is proved about them.
+        """
+        return isolate_real_roots(self.polynomial, bits)
+
+    def enclose(self, interval: Interval) -> tuple[Interval, ...] | None:
+        """Intervals that hold the coordinates for every root t in the given interval.
+
+        None if the interval is too wide to keep p' away from zero: refine it. Exact interval
+        arithmetic over Q.
+        """
+        slope = tuple(k * c for k, c in enumerate(self.polynomial))[1:]
+        below = evaluate_on_interval(slope, interval)
+        bounds = []
+        for numerator in self.numerators:
+            quotient = divide_intervals(evaluate_on_interval(numerator, interval), below)
+            if quotient is None:
+                return None
+            bounds.append(quotient)
+        return tuple(bounds)
+
+    def real_points(self, bits: int) -> list[tuple[Interval, ...]]:
+        """Boxes of width at most 2^-bits, one about each real zero of the class.
+
+        >>> pair = RootClass.from_coordinates((-2, 0, 1), [(Fraction(0), Fraction(1))], 1, (1,))
+        >>> [[round(float(low), 3) for low, _ in box] for box in pair.real_points(20)]
+        [[-1.414], [1.414]]
+        """
+        precision = bits + 8
+        while True:
+            boxes = [self.enclose(interval) for interval in self.real_roots(precision)]
+            found = [box for box in boxes if box is not None and _width(box) * (1 << bits) <= 1]
+            if len(found) == len(boxes):
+                return found
+            precision *= 2
+
+    def approx_points(self) -> ComplexArray:
+        """Floating-point coordinates of all d zeros, shape (d, n); real zeros are exactly real."""
+        before = ctx.prec
+        modulus = fmpz_poly(list(self.polynomial))
+        precision = 128
+        try:
+            while True:
+                ctx.prec = precision + modulus.height_bits()
+                roots = [root for root, _ in modulus.complex_roots()]
+                points = [self._approx_point(root) for root in roots]
+                found = [point for point in points if point is not None]
+                if len(found) == len(points):
+                    return np.array(found, dtype=np.complex128).reshape(self.degree, -1)
+                precision *= 2
+        finally:
+            ctx.prec = before
+
+    def _approx_point(self, root: acb) -> list[complex] | None:
+        """Coordinates at one root by ball arithmetic; None if the balls are too wide."""
+        slope = fmpz_poly(list(self.polynomial)).derivative()
+        below = acb_poly(slope)(root)
+        values = [acb_poly(to_rational_poly(w))(root) / below for w in self.numerators]
+        tolerance = arb(2) ** -60
+        if not all(v.is_finite() and v.rad() < tolerance * (1 + abs(v).mid()) for v in values):
+            return None
+        if acb(root).imag == 0:
+            return [complex(float(v.real.mid()), 0.0) for v in values]
+        return [complex(float(v.real.mid()), float(v.imag.mid())) for v in values]
+
+    def verify(self, system: QuadraticSystem) -> None:
+        """Substitute the parametrisation in every quadric: all must vanish modulo p, exactly.
+
+        Also checks that t is the stated linear form of the coordinates, so that different roots t
+        belong to different zeros. Raises `ParametrisationError` if anything fails.
+        """
+        modulus = fmpq_poly(list(self.polynomial))
+        slope = modulus.derivative()
+        if modulus.gcd(slope).degree() > 0 or modulus.degree() < 1:
+            raise ParametrisationError("the polynomial of a root class is not squarefree")
+        lifted = [to_rational_poly(w) for w in self.numerators] + [slope]
+        for p, matrix in enumerate(system.matrices):
+            value = fmpq_poly()
+            for left, row in zip(lifted, matrix, strict=True):
+                value += left * sum(
+                    (x * s for x, s in zip(lifted, row, strict=True) if s), fmpq_poly()
+                )
+            if value % modulus != 0:
+                raise ParametrisationError(f"quadric {p} does not vanish on the root class")
+        form = sum((x * c for x, c in zip(lifted, self.separating, strict=False)), fmpq_poly())
+        if (form - fmpq_poly([0, 1]) * slope) % modulus != 0:
+            raise ParametrisationError("the parameter is not the stated form of the coordinates")
+
+
+def _width(box: Sequence[Interval]) -> Fraction:
+    return max((high - low for low, high in box), default=Fraction(0))
+
+
+@dataclass(frozen=True)
+class ExactSolution:
+    """Every zero of a system in affine space, in classes of conjugate algebraic points.
+
+    `dimension` is dim_Q Q[x]/I, the number of complex zeros with multiplicity: 0 for a system
+    without zeros, None if there are infinitely many (then `classes` is empty). Every class was
+    checked by substitution; that none is missing rests on the Groebner basis unless
+    `at_infinity` is 0, when Bezout's bound 2^n on the total gives a second argument as soon as the
+    multiplicities are proved (see `dual_space`).
+    """
+
+    system: QuadraticSystem
+    dimension: int | None
+    classes: tuple[RootClass, ...]
+    engine: str
+    settings: Mapping[str, int | str] = field(default_factory=dict)
+
+    @property
+    def at_infinity(self) -> int | None:
+        """2^n - dimension: the zeros at infinity with multiplicity if those are isolated.
+
+        None if the system has infinitely many affine zeros. A system whose zeros at infinity are
+        not isolated also has a positive number here.
+        """
+        return None if self.dimension is None else self.system.bezout_number - self.dimension
+
+    @property
+    def distinct(self) -> int:
+        """Number of different complex zeros."""
+        return sum(c.degree for c in self.classes)
+
+    def real_points(self, bits: int) -> list[tuple[tuple[Interval, ...], int]]:
+        """A box of width at most 2^-bits about each real zero, with its multiplicity."""
+        return [(box, c.multiplicity) for c in self.classes for box in c.real_points(bits)]
+
+    def approx_points(self) -> ComplexArray:
+        """Floating-point coordinates of all different zeros, shape (distinct, n)."""
+        rows = [c.approx_points() for c in self.classes]
+        empty = np.empty((0, self.system.size), dtype=np.complex128)
+        return np.concatenate([empty, *rows])
+
+    @cached_property
+    def candidates(self) -> Candidates:
+        """The zeros as untrusted candidates, for a certifier of isolated regular zeros."""
+        return Candidates("groebner", self.approx_points(), settings=dict(self.settings))
