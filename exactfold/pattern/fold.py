@@ -1,0 +1,343 @@
+"""Reading FOLD 1.2 files, every number exactly; `fold_writing` writes them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from os import PathLike
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final
+
+from exactfold.errors import (
+    CutEdgeError,
+    DanglingEdgeError,
+    MissingCoordinatesError,
+    NonTriangularFaceError,
+    NotANumberError,
+    NotFoldError,
+    NotJSONError,
+    OffPlaneError,
+    StaleExactCoordinatesError,
+    UnreadableFileError,
+)
+from exactfold.exact.numbers import over_common_denominator, parse_rational, shown, snap
+from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
+from exactfold.pattern.fold_writing import EXACT_KEY, fold_document, write_fold, write_text
+from exactfold.pattern.planar import trace_faces
+
+__all__ = [
+    "EXACT_KEY",
+    "FoldFile",
+    "fold_document",
+    "load_fold",
+    "parse_fold",
+    "read_fold",
+    "write_fold",
+    "write_text",
+]
+
+ASSIGNMENTS: Final = "MVFUBCJ"
+_PREFIXES: Final = ("file_", "frame_", "vertices_", "edges_", "faces_")
+_AGREEMENT: Final = Fraction(1, 10**9)
+_ONLY_TOP: Final = "; only the top-level frame is read, and `file_frames` is ignored"
+
+
+@dataclass(frozen=True)
+class FoldFile:
+    """What a FOLD file says: the pattern, and how it was read.
+
+    `snapped` is the largest move of a coordinate by snapping (0 if none was asked for), `exact`
+    whether the coordinates came from `vertices_exactfold:coords`, `assignment` the letters of
+    `edges_assignment` by edge (i, j) with i < j (empty if the file has none).
+    """
+
+    pattern: CreasePattern
+    snapped: Fraction = Fraction(0)
+    exact: bool = False
+    assignment: Mapping[Edge, str] = field(default_factory=dict, hash=False)
+
+
+def read_fold(path: str | PathLike[str], snap: int | None = None) -> CreasePattern:
+    """The crease pattern in a FOLD file; `load_fold` also tells how far snapping moved anything."""
+    return load_fold(path, snap).pattern
+
+
+def load_fold(path: str | PathLike[str], snap: int | None = None) -> FoldFile:
+    """Read a FOLD file as `parse_fold` reads its text; also raises `UnreadableFileError`.
+
+    >>> from exactfold.data import example_path
+    >>> load_fold(example_path("two-vertex")).pattern
+    <CreasePattern: 2 interior and 4 boundary vertices>
+    """
+    try:
+        raw = Path(path).read_bytes()
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        reason = getattr(error, "strerror", None) or str(error)
+        raise UnreadableFileError(f"cannot read {path}: {reason}") from None
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise NotJSONError(f"{path} is not UTF-8 text: byte {error.start} is not valid") from None
+    return parse_fold(text, snap)
+
+
+def parse_fold(text: str, snap: int | None = None) -> FoldFile:
+    """The crease pattern in the text of a FOLD 1.2 file (its top-level frame).
+
+    Numbers are read through their text, so that 0.1 is 1/10. Where `vertices_exactfold:coords`
+    holds "p/q" pairs these are used; they must agree with `vertices_coords` to within 1e-9 of the
+    largest coordinate. Coordinates have two components, or three with one z for all vertices. With
+    `snap`, every coordinate is rounded to a multiple of 1/snap before anything is checked.
+
+    The faces are those of `faces_vertices`, or are traced in the planar graph `edges_vertices` if
+    that key is absent or empty. Where both are present each edge must be a side of a face; sides
+    that are not listed as edges are folds like any other. Assignments do not change the pattern,
+    but an edge between two faces may not be a cut "C" or a boundary "B".
+
+    Raises `NotJSONError`, `NotANumberError`, a subclass of `FoldError`, or one of the
+    `PatternError`s of `CreasePattern`; the message names the vertex, edge or face.
+
+    >>> file = parse_fold('{"vertices_coords": [[0, 0], [0.5, 0], [0, 0.1]],'
+    ...                   ' "edges_vertices": [[0, 1], [1, 2], [2, 0]]}')
+    >>> file.pattern.vertices[2]
+    (Fraction(0, 1), Fraction(1, 10))
+    """
+    document = _document(text)
+    frames = _ONLY_TOP if document.get("file_frames") else ""
+    points, largest, exact = _points(document, snap, frames)
+    edges = _index_lists(document, "edges_vertices", "edge", len(points))
+    faces = _index_lists(document, "faces_vertices", "face", len(points))
+    if not edges and not faces:
+        raise NotFoldError(f"neither `faces_vertices` nor `edges_vertices` is given{frames}")
+    for k, edge in enumerate(edges):
+        if len(edge) != 2:
+            raise NotFoldError(f"edge {k} has {len(edge)} ends: {shown(edge)}")
+    letters = _letters(document, len(edges))
+    pairs = [(edge[0], edge[1]) for edge in edges]
+    rebuilt = not faces
+    if rebuilt:
+        flat, _ = over_common_denominator(x for point in points for x in point)
+        faces = trace_faces(list(zip(flat[::2], flat[1::2], strict=True)), pairs)
+    for k, face in enumerate(faces):
+        _check_triangle(k, face, rebuilt)
+    pattern = CreasePattern(points, faces)
+    return FoldFile(pattern, largest, exact, _assignment(pattern, pairs, letters))
+
+
+# --- JSON ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Literal:
+    """The text of a JSON number with a point or exponent, or of NaN and Infinity."""
+
+    text: str
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    result = dict(pairs)
+    if len(result) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise NotJSONError(f"the key {shown(twice)} is given twice")
+    return result
+
+
+def _document(text: str) -> dict[str, Any]:
+    try:
+        document = json.loads(
+            text.removeprefix("\ufeff"),
+            parse_float=_Literal,
+            parse_int=lambda digits: parse_rational(digits).numerator,
+            parse_constant=_Literal,
+            object_pairs_hook=_unique,
+        )
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        cut = ": it ends too early" if error.pos >= len(error.doc.rstrip()) else f": {error.msg}"
+        raise NotJSONError(f"not JSON at {place}{cut}") from None
+    except RecursionError:
+        raise NotJSONError("the JSON is nested too deeply") from None
+    if not isinstance(document, dict):
+        raise NotFoldError(f"a FOLD file holds one JSON object, not {shown(document)}")
+    if not any(key.startswith(_PREFIXES) for key in document):
+        raise NotFoldError(
+            "the JSON object has no FOLD keys such as `vertices_coords` and `faces_vertices`"
+        )
+    return document
+
+
+def _list(document: Mapping[str, Any], key: str) -> list[Any]:
+    value = document.get(key)
+    if value is None:
+        return []
+    if not isinstance(value, list):
+        raise NotFoldError(f"`{key}` is {shown(value)}, not a list")
+    return value
+
+
+def _index_lists(
+    document: Mapping[str, Any], key: str, kind: str, count: int
+) -> Sequence[tuple[int, ...]]:
+    result = []
+    for k, entry in enumerate(_list(document, key)):
+        if not isinstance(entry, list):
+            raise NotFoldError(f"{kind} {k} in `{key}` is {shown(entry)}, not a list of vertices")
+        for v in entry:
+            if isinstance(v, bool) or not isinstance(v, int):
+                raise NotFoldError(f"{kind} {k} in `{key}`: {shown(v)} is not a vertex index")
+            if not 0 <= v < count:
+                raise NotFoldError(
+                    f"{kind} {k} in `{key}` uses vertex {shown(v)}, but there are {count} vertices"
+                )
+        result.append(tuple(entry))
+    return result
+
+
+# --- coordinates ---------------------------------------------------------------------------------
+
+
+def _points(
+    document: Mapping[str, Any], denominator: int | None, frames: str
+) -> tuple[list[Point], Fraction, bool]:
+    rows = _list(document, "vertices_coords")
+    if not rows:
+        raise MissingCoordinatesError(f"`vertices_coords` is missing or empty{frames}")
+    stated = [_components(v, row) for v, row in enumerate(rows)]
+    exact = _exact_points(document, stated)
+    points = stated
+    if exact:
+        points = [(x, y, z) for (x, y), (_, _, z) in zip(exact, stated, strict=True)]
+    largest = Fraction(0)
+    if denominator is not None:
+        moved = [tuple(snap(c, denominator) for c in point) for point in points]
+        changes = zip(points, moved, strict=True)
+        largest = max(abs(a - b) for p, q in changes for a, b in zip(p, q, strict=True))
+        points = [(x, y, z) for x, y, z in moved]
+    for v, point in enumerate(points):
+        if point[2] != points[0][2]:
+            raise OffPlaneError(
+                f"vertex {v} has z = {_literal(rows[v])} and vertex 0 has z = {_literal(rows[0])}: "
+                "only a flat sheet in a plane z = constant is read"
+            )
+    return [(x, y) for x, y, _ in points], largest, bool(exact)
+
+
+def _literal(row: list[Any]) -> str:
+    return shown(row[2]) if len(row) > 2 else "0"
+
+
+def _components(vertex: int, row: object) -> tuple[Fraction, Fraction, Fraction]:
+    if not isinstance(row, list):
+        raise MissingCoordinatesError(f"vertex {vertex} has {shown(row)} for coordinates")
+    values = []
+    for name, value in zip("xyz", row, strict=False):
+        try:
+            values.append(_number(value))
+        except NotANumberError as error:
+            raise NotANumberError(f"vertex {vertex}: {name}: {error}") from None
+    if len(row) < 2:
+        raise MissingCoordinatesError(f"vertex {vertex} has only {len(row)} coordinates")
+    if len(row) > 3:
+        raise OffPlaneError(f"vertex {vertex} has {len(row)} coordinates, more than three")
+    x, y, z = values if len(values) == 3 else (*values, Fraction(0))
+    return x, y, z
+
+
+def _number(value: object) -> Fraction:
+    if isinstance(value, _Literal):
+        return parse_rational(value.text)
+    if isinstance(value, int) and not isinstance(value, bool):
+        return Fraction(value)
+    raise NotANumberError(f"{shown(value)} is not a JSON number")
+
+
+def _exact_points(
+    document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ...]]
+) -> list[tuple[Fraction, Fraction]]:
+    rows = _list(document, EXACT_KEY)
+    if not rows:
+        return []
+    if len(rows) != len(stated):
+        raise StaleExactCoordinatesError(
+            f"`{EXACT_KEY}` has {len(rows)} vertices and `vertices_coords` has {len(stated)}: "
+            f"delete `{EXACT_KEY}` if another program changed the pattern"
+        )
+    tolerance = _AGREEMENT * max(abs(c) for point in stated for c in point[:2])
+    result = []
+    for v, row in enumerate(rows):
+        if not isinstance(row, list) or len(row) != 2 or not all(isinstance(c, str) for c in row):
+            raise NotANumberError(
+                f'vertex {v}: {shown(row)} in `{EXACT_KEY}` is not ["p/q", "p/q"]'
+            )
+        try:
+            x, y = parse_rational(row[0]), parse_rational(row[1])
+        except NotANumberError as error:
+            raise NotANumberError(f"vertex {v} in `{EXACT_KEY}`: {error}") from None
+        if max(abs(x - stated[v][0]), abs(y - stated[v][1])) > tolerance:
+            raise StaleExactCoordinatesError(
+                f"vertex {v}: `{EXACT_KEY}` and `vertices_coords` disagree; delete `{EXACT_KEY}` "
+                "if another program moved the vertex"
+            )
+        result.append((x, y))
+    return result
+
+
+# --- edges and faces -----------------------------------------------------------------------------
+
+
+def _check_triangle(index: int, face: tuple[int, ...], rebuilt: bool) -> None:
+    origin = " (rebuilt from the edges)" if rebuilt else ""
+    if len(face) > 3:
+        raise NonTriangularFaceError(
+            f"face {index}{origin} has {len(face)} sides: vertices {shown(face)}; "
+            "triangulate the pattern first"
+        )
+    if len(face) < 3:
+        raise NotFoldError(f"face {index}{origin} has only {len(face)} vertices: {shown(face)}")
+
+
+def _letters(document: Mapping[str, Any], count: int) -> list[str]:
+    letters = _list(document, "edges_assignment")
+    if letters and len(letters) != count:
+        first = min(len(letters), count)
+        raise NotFoldError(
+            f"`edges_assignment` has {len(letters)} letters for {count} edges: "
+            f"edge {first} has {'no letter' if first < count else 'a letter but no ends'}"
+        )
+    for k, letter in enumerate(letters):
+        if not isinstance(letter, str) or len(letter) != 1 or letter not in ASSIGNMENTS:
+            raise NotFoldError(
+                f"edge {k} has the assignment {shown(letter)}, not one of {', '.join(ASSIGNMENTS)}"
+            )
+    return letters
+
+
+def _assignment(
+    pattern: CreasePattern, edges: Sequence[Edge], letters: Sequence[str]
+) -> Mapping[Edge, str]:
+    known, folds = set(pattern.edges), set(pattern.folds)
+    assignment: dict[Edge, str] = {}
+    for k, (i, j) in enumerate(edges):
+        edge = (min(i, j), max(i, j))
+        if edge not in known:
+            raise DanglingEdgeError(f"edge {k} ({i}-{j}) is not a side of any face")
+        if not letters:
+            continue
+        letter = letters[k]
+        if letter in "BC" and edge in folds:
+            kind = "a cut" if letter == "C" else "a boundary"
+            raise CutEdgeError(
+                f"edge {k} ({i}-{j}) lies between two faces but is assigned {letter}, {kind}"
+            )
+        if assignment.setdefault(edge, letter) != letter:
+            raise NotFoldError(
+                f"edge {k} ({i}-{j}) is assigned {letter}, and {assignment[edge]} before"
+            )
+    return MappingProxyType(assignment)

@@ -1,0 +1,127 @@
+"""Writing FOLD 1.2 files that keep the exact coordinates, and writing files whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+from collections.abc import Mapping
+from fractions import Fraction
+from os import PathLike
+from pathlib import Path
+from typing import Any, Final
+
+from exactfold.errors import NotApplicableError, UnwritableFileError, UsageError
+from exactfold.exact.numbers import format_rational
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+
+EXACT_KEY: Final = "vertices_exactfold:coords"
+_ANGLES: Final = {"M": -180, "V": 180, "F": 0, "U": 0, "B": 0}
+
+
+def fold_document(
+    pattern: CreasePattern,
+    assignment: Mapping[Edge, str] | None = None,
+    title: str | None = None,
+) -> dict[str, Any]:
+    """The pattern as a FOLD 1.2 object, ready for `json.dumps`.
+
+    `assignment` gives "M", "V", "F" or "U" by fold (i, j), i < j; folds without a letter get "U".
+    Vertex indices are kept. `vertices_coords` has three components (z = 0) as the nearest doubles,
+    `vertices_exactfold:coords` the exact "p/q" pairs. `edges_foldAngle` has the sign of the letter
+    (valley positive): 180 for V and -180 for M, the fully folded target that simulators scale down,
+    and 0 for F, U and B.
+
+    Raises `UsageError` for an assignment that is not of a fold of the pattern, and
+    `NotApplicableError` if a coordinate is beyond the range of doubles.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> document = fold_document(single_vertex(3), {(0, 3): "M"})
+    >>> document["edges_vertices"], document["edges_assignment"]
+    ([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]], ['B', 'B', 'M', 'B', 'U', 'U'])
+    """
+    letters = dict.fromkeys(pattern.edges, "B")
+    letters.update(dict.fromkeys(pattern.folds, "U"))
+    for edge, letter in (assignment or {}).items():
+        if edge not in letters:
+            raise UsageError(f"{edge} is not an edge (i, j), i < j, of the pattern")
+        if letter not in (("B",) if letters[edge] == "B" else ("M", "V", "F", "U")):
+            raise UsageError(f"edge {edge} cannot be assigned {letter!r}")
+        letters[edge] = letter
+    document: dict[str, Any] = {
+        "file_spec": 1.2,
+        "file_creator": "exactfold",
+        "file_classes": ["singleModel"],
+    }
+    if title is not None:
+        document["file_title"] = title
+    document |= {
+        "frame_classes": ["creasePattern"],
+        "frame_attributes": ["2D"],
+        "vertices_coords": [
+            [_double(v, x), _double(v, y), 0.0] for v, (x, y) in enumerate(pattern.vertices)
+        ],
+        EXACT_KEY: [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
+        "edges_vertices": [list(edge) for edge in letters],
+        "edges_assignment": list(letters.values()),
+        "edges_foldAngle": [_ANGLES[letter] for letter in letters.values()],
+        "faces_vertices": [list(triangle) for triangle in pattern.triangles],
+    }
+    return document
+
+
+def write_fold(
+    pattern: CreasePattern,
+    path: str | PathLike[str],
+    assignment: Mapping[Edge, str] | None = None,
+    title: str | None = None,
+) -> None:
+    """Write `fold_document(pattern, assignment, title)`, whole or not at all.
+
+    Raises what `fold_document` raises, and `UnwritableFileError`.
+    """
+    document = fold_document(pattern, assignment, title)
+    lines = [f"  {json.dumps(key)}: {_value(value)}" for key, value in document.items()]
+    write_text(path, "{\n" + ",\n".join(lines) + "\n}\n")
+
+
+def write_text(path: str | PathLike[str], text: str) -> None:
+    """Write a UTF-8 text file whole or not at all, by renaming a temporary file beside it.
+
+    An existing symbolic link is followed; a device or pipe is written to directly. Raises
+    `UnwritableFileError`, and then leaves no partial file.
+    """
+    temporary: Path | None = None
+    try:
+        target = Path(os.path.realpath(path))
+        if target.exists() and not target.is_file() and not target.is_dir():
+            target.write_text(text, encoding="utf-8")
+            return
+        if target.is_dir():
+            raise IsADirectoryError(21, "it is a folder")
+        temporary = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.tmp")
+        with temporary.open("x", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+        os.replace(temporary, target)
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+        reason = getattr(error, "strerror", None) or str(error)
+        raise UnwritableFileError(f"cannot write {path}: {reason}") from None
+
+
+def _value(value: object) -> str:
+    """JSON text, lists of lists with one entry a line."""
+    if isinstance(value, list) and value and isinstance(value[0], list):
+        return "[\n" + ",\n".join(f"    {json.dumps(entry)}" for entry in value) + "\n  ]"
+    return json.dumps(value)
+
+
+def _double(vertex: int, value: Fraction) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise NotApplicableError(
+            f"vertex {vertex} has a coordinate beyond the range of the decimal numbers that other "
+            "programs read in a FOLD file: scale the pattern down"
+        ) from None

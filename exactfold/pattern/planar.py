@@ -1,0 +1,177 @@
+"""Faces of a straight-line planar graph, by exact angular order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cmp_to_key
+
+from exactfold.errors import (
+    CrossingEdgesError,
+    DanglingEdgeError,
+    DisconnectedError,
+    DuplicateVertexError,
+    IsolatedVertexError,
+)
+from exactfold.pattern.validate import IntPoint, orientation, segments_meet
+
+Edge = tuple[int, int]
+
+
+def trace_faces(points: Sequence[IntPoint], edges: Iterable[Edge]) -> list[tuple[int, ...]]:
+    """The bounded faces of a planar straight-line graph, sorted.
+
+    `points` are integer points (scale rational ones by a common denominator), `edges` index pairs;
+    an edge given twice counts once. Each face is a cycle of vertices, counter-clockwise from its
+    smallest index. At each vertex the edges are sorted by direction with integer cross products;
+    a face follows each edge by the next edge clockwise at its head (the rotation system of the
+    embedding), and the one cycle that is not counter-clockwise bounds the outer face.
+
+    Raises `DuplicateVertexError`, `CrossingEdgesError` (also for a vertex inside an edge),
+    `IsolatedVertexError`, `DisconnectedError` and, for an edge with one face on both its sides,
+    `DanglingEdgeError`.
+
+    >>> trace_faces([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)])
+    [(0, 1, 2), (0, 2, 3)]
+    """
+    graph = sorted({(min(i, j), max(i, j)) for i, j in edges})
+    _check_points(points)
+    for i, j in graph:
+        if i == j:
+            raise DanglingEdgeError(f"edge {i}-{j} joins a vertex to itself")
+    check_no_crossing(points, graph)
+    neighbours: list[list[int]] = [[] for _ in points]
+    for i, j in graph:
+        neighbours[i].append(j)
+        neighbours[j].append(i)
+    _check_connected(neighbours)
+    # clockwise[v][u] is the neighbour of v that follows u clockwise.
+    clockwise: list[dict[int, int]] = []
+    for v, around in enumerate(neighbours):
+        order = _counter_clockwise(points, v, around)
+        clockwise.append({u: order[k - 1] for k, u in enumerate(order)})
+    return _cycles(points, graph, clockwise)
+
+
+def check_no_crossing(points: Sequence[IntPoint], edges: Sequence[Edge]) -> None:
+    """Raise `CrossingEdgesError` if two edges meet anywhere but in a common end.
+
+    A sweep over the x-ranges; every decision is the sign of an integer determinant.
+    """
+    boxes = []
+    for i, j in edges:
+        (ax, ay), (bx, by) = points[i], points[j]
+        boxes.append((min(ax, bx), max(ax, bx), min(ay, by), max(ay, by), (i, j)))
+    boxes.sort()
+    active: list[tuple[int, int, int, int, Edge]] = []
+    for box in boxes:
+        active = [other for other in active if other[1] >= box[0]]
+        for other in active:
+            if other[2] <= box[3] and box[2] <= other[3]:
+                _check_pair(points, *sorted((other[4], box[4])))
+        active.append(box)
+
+
+def _check_pair(points: Sequence[IntPoint], first: Edge, second: Edge) -> None:
+    for one, other in ((first, second), (second, first)):
+        for v in set(other) - set(one):
+            if _inside_edge(points, v, one):
+                raise CrossingEdgesError(
+                    f"vertex {v}, an end of edge {_name(other)}, lies inside edge {_name(one)}"
+                )
+    if set(first) & set(second):
+        return
+    if segments_meet(*(points[v] for v in (*first, *second))):
+        raise CrossingEdgesError(f"edges {_name(first)} and {_name(second)} cross")
+
+
+def _inside_edge(points: Sequence[IntPoint], v: int, edge: Edge) -> bool:
+    (px, py), (ax, ay), (bx, by) = points[v], points[edge[0]], points[edge[1]]
+    if orientation((ax, ay), (bx, by), (px, py)) != 0:
+        return False
+    return (ax - px) * (bx - px) + (ay - py) * (by - py) < 0
+
+
+def _check_points(points: Sequence[IntPoint]) -> None:
+    seen: dict[IntPoint, int] = {}
+    for v, point in enumerate(points):
+        if point in seen:
+            raise DuplicateVertexError(
+                f"vertices {seen[point]} and {v} are at the same point", vertices=[seen[point], v]
+            )
+        seen[point] = v
+
+
+def _check_connected(neighbours: Sequence[Sequence[int]]) -> None:
+    lonely = [v for v, around in enumerate(neighbours) if not around]
+    if lonely:
+        more = f" (and {len(lonely) - 1} more)" if len(lonely) > 1 else ""
+        raise IsolatedVertexError(f"vertex {lonely[0]} is on no edge{more}", vertices=lonely)
+    for v, around in enumerate(neighbours):
+        if len(around) == 1:
+            raise DanglingEdgeError(
+                f"edge {_name((v, around[0]))} ends at vertex {v}, which is on no other edge"
+            )
+    reached, stack = {0}, [0]
+    while stack:
+        for v in neighbours[stack.pop()]:
+            if v not in reached:
+                reached.add(v)
+                stack.append(v)
+    if len(reached) < len(neighbours):
+        other = min(set(range(len(neighbours))) - reached)
+        raise DisconnectedError(
+            f"the graph falls apart: no edges lead from vertex 0 to vertex {other}",
+            vertices=[0, other],
+        )
+
+
+def _counter_clockwise(points: Sequence[IntPoint], v: int, around: Sequence[int]) -> list[int]:
+    x, y = points[v]
+
+    def half(u: int) -> int:
+        dx, dy = points[u][0] - x, points[u][1] - y
+        return 0 if (dy, dx) > (0, 0) else 1
+
+    def compare(a: int, b: int) -> int:
+        turn = orientation((x, y), points[a], points[b])
+        return half(a) - half(b) or (turn < 0) - (turn > 0)
+
+    return sorted(around, key=cmp_to_key(compare))
+
+
+def _cycles(
+    points: Sequence[IntPoint], edges: Sequence[Edge], clockwise: Sequence[dict[int, int]]
+) -> list[tuple[int, ...]]:
+    faces = []
+    unseen = {half for i, j in edges for half in ((i, j), (j, i))}
+    for start in sorted(unseen):
+        if start not in unseen:
+            continue
+        cycle = []
+        u, v = start
+        while (u, v) in unseen:
+            unseen.remove((u, v))
+            cycle.append(u)
+            u, v = v, clockwise[v][u]
+        _check_both_sides(cycle)
+        corners = [points[w] for w in cycle]
+        twice_area = sum(
+            orientation(corners[0], corners[k], corners[k + 1]) for k in range(1, len(cycle) - 1)
+        )
+        if twice_area > 0:
+            first = cycle.index(min(cycle))
+            faces.append((*cycle[first:], *cycle[:first]))
+    return sorted(faces)
+
+
+def _check_both_sides(cycle: Sequence[int]) -> None:
+    halves = set(zip(cycle, [*cycle[1:], cycle[0]], strict=True))
+    bridge = min((half for half in halves if half[::-1] in halves), default=None)
+    if bridge is not None:
+        raise DanglingEdgeError(
+            f"edge {_name(bridge)} has the same face on both sides: it is not a side of a face"
+        )
+
+
+def _name(edge: Edge) -> str:
+    return f"{min(edge)}-{max(edge)}"

@@ -1,0 +1,86 @@
+"""The paper's ensemble: random points in a square, Delaunay-triangulated."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final
+
+from exactfold.errors import NotApplicableError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern, Point
+from exactfold.pattern.delaunay import delaunay
+
+CORNERS: Final = ((0, 0), (1, 0), (1, 1), (0, 1))
+
+
+@dataclass(frozen=True)
+class RandomSquare:
+    """A sampled pattern with what reproduces it; `attempts` counts the sample that was kept."""
+
+    pattern: CreasePattern
+    seed: int
+    denominator: int
+    attempts: int
+
+
+def random_square(interior: int, seed: int, denominator: int = 1024) -> CreasePattern:
+    """A random triangulated unit square; the pattern of `sample_random_square`.
+
+    >>> random_square(8, seed=1)
+    <CreasePattern: 8 interior and 4 boundary vertices>
+    """
+    return sample_random_square(interior, seed, denominator).pattern
+
+
+def sample_random_square(
+    interior: int, seed: int, denominator: int = 1024, *, max_attempts: int = 10_000
+) -> RandomSquare:
+    """Sample the ensemble of the paper (section "Numerical computations") on a rational grid.
+
+    `interior` distinct points, uniform on the multiples of 1/denominator strictly inside the unit
+    square, together with the corners, are Delaunay-triangulated. A sample with an interior vertex
+    of degree 3 or an edge between opposite corners is rejected as a whole and drawn anew. Vertices
+    0 to 3 are the corners (0,0), (1,0), (1,1), (0,1), the points follow in the order drawn. The
+    result depends on the arguments only: integers from `random.Random(seed)`.
+
+    Raises `UsageError` for arguments that allow no sample, `NotApplicableError` if `max_attempts`
+    samples were rejected.
+
+    >>> sample = sample_random_square(3, seed=0)
+    >>> sample.pattern.Ve, sample.seed, sample.denominator, sample.attempts
+    (4, 0, 1024, 1)
+    """
+    _check_integer("the number of interior points", interior, 1)
+    _check_integer("the seed", seed, 0)
+    _check_integer("the denominator", denominator, 2)
+    _check_integer("the number of attempts", max_attempts, 1)
+    places = (denominator - 1) ** 2
+    if places < interior:
+        raise UsageError(
+            f"the grid of multiples of 1/{denominator} has {places} points inside the square, "
+            f"fewer than {interior}: take a larger denominator"
+        )
+    source = random.Random(seed)
+    for attempt in range(1, max_attempts + 1):
+        pattern = delaunay([*CORNERS, *_points(source, interior, denominator)])
+        if not pattern.chords and all(pattern.degree(v) > 3 for v in pattern.interior):
+            return RandomSquare(pattern, seed, denominator, attempt)
+    raise NotApplicableError(
+        f"all {max_attempts} samples with {interior} interior points on the grid of 1/{denominator}"
+        " had a vertex of degree 3 or an edge between opposite corners: "
+        "take a larger denominator, fewer points or more attempts"
+    )
+
+
+def _points(source: random.Random, count: int, denominator: int) -> list[Point]:
+    drawn: dict[Point, None] = {}  # insertion order; a point drawn again is skipped
+    while len(drawn) < count:
+        x, y = source.randrange(1, denominator), source.randrange(1, denominator)
+        drawn[Fraction(x, denominator), Fraction(y, denominator)] = None
+    return list(drawn)
+
+
+def _check_integer(name: str, value: object, least: int) -> None:
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise UsageError(f"{name} must be an integer of at least {least}, not {value!r}")
