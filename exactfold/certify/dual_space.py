@@ -1,0 +1,200 @@
+"""The Macaulay dual space of a root: the functionals that give its multiplicity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+from typing import TypeAlias
+
+from flint import fmpq_poly
+
+from exactfold.errors import ExactfoldError
+from exactfold.exact.algebraic import NumberField, Vector
+from exactfold.exact.univariate import from_rational_poly, to_rational_poly
+from exactfold.solve.exact_solution import RootClass
+from exactfold.system.quadratic import QuadraticSystem
+
+Exponent: TypeAlias = tuple[int, ...]
+Coefficient: TypeAlias = tuple[Fraction, ...]
+Functional: TypeAlias = Mapping[Exponent, Coefficient]
+Taylor: TypeAlias = dict[Exponent, fmpq_poly]
+
+
+class DualSpaceError(ExactfoldError):
+    """A dual space does not prove what it claims; the message says which condition fails."""
+
+
+@dataclass(frozen=True)
+class DualSpace:
+    """Differential functionals that vanish on the ideal of a system at a root.
+
+    A functional D = sum_a c_a (1/a!) d^a takes a polynomial F to sum_a c_a F_a, where F_a is the
+    coefficient of (x - root)^a in the Taylor expansion of F at the root. Each functional maps the
+    exponent a to c_a in Q[T]/p, a polynomial in the parameter T of the root class, constant term
+    first and without trailing zeros; absent exponents stand for zero.
+
+    `functionals[k]` has the coefficient 1 at `pivots[k]` and 0 at the other pivots, so that the
+    functionals are linearly independent at every root of p. `is_complete` says that no further
+    functional exists; then the root is isolated and its multiplicity is the dimension.
+    """
+
+    functionals: tuple[Functional, ...]
+    pivots: tuple[Exponent, ...]
+    is_complete: bool
+
+    @property
+    def dimension(self) -> int:
+        """Number of functionals: a lower bound for the multiplicity, equal if complete."""
+        return len(self.functionals)
+
+    @property
+    def depth(self) -> int:
+        """The highest order of a derivative that occurs."""
+        return max(sum(a) for functional in self.functionals for a in functional)
+
+
+def dual_space(system: QuadraticSystem, root_class: RootClass, limit: int) -> DualSpace:
+    """The dual space of the system at a root, order by order, up to at least `limit` functionals.
+
+    If D_1, ..., D_s span the functionals of order < t, those of order <= t are combinations
+    with derivatives sigma_i(D) = sum_j l_ij D_j that commute and that vanish on every quadric (the
+    integration method: Mourrain 1997, Isolated points, duality and residues). Here sigma_i lowers
+    the i-th exponent by one; it is the transpose of multiplication by x_i - root_i. The order
+    grows until nothing new appears, which proves that the root is isolated and the dimension its
+    multiplicity, or until the dimension reaches `limit`. Exact linear algebra over Q[T]/p.
+
+    Raises `DualSpaceError` if the class is not a zero of the system.
+
+    >>> from exactfold.solve.groebner import groebner
+    >>> parabola_and_axis = QuadraticSystem.from_rational(
+    ...     [[[2, 0, 0], [0, 0, -1], [0, -1, 0]], [[0, 0, 0], [0, 1, 0], [0, 0, 0]]])
+    >>> [root] = groebner(parabola_and_axis).classes
+    >>> dual = dual_space(parabola_and_axis, root, 10)
+    >>> dual.dimension, dual.is_complete, dual.depth
+    (4, True, 3)
+    """
+    field = NumberField(root_class.polynomial)
+    expansions = taylor_expansions(system, root_class)
+    size = system.size
+    origin = (0,) * size
+    if any(expansion.get(origin) for expansion in expansions):
+        raise DualSpaceError("the root class is not a zero of the system")
+    basis: list[Taylor] = [{origin: fmpq_poly([1])}]
+    pivots = [origin]
+    complete = False
+    while len(basis) < limit and not complete:
+        grown, pivots = _integrated(field, basis, expansions, size)
+        complete = len(grown) == len(basis)
+        basis = grown
+    functionals = tuple(
+        {a: from_rational_poly(c) for a, c in sorted(functional.items())} for functional in basis
+    )
+    return DualSpace(functionals, tuple(pivots), complete)
+
+
+def taylor_expansions(system: QuadraticSystem, root_class: RootClass) -> list[Taylor]:
+    """Coefficients at the root of the quadrics z^T S z, z = (x, 1), modulo p, by exponent.
+
+    Value, gradient and half the Hessian: with z at the root and S the matrix of a quadric they are
+    z^T S z, 2 (S z)_i, and S_ii or 2 S_ij.
+    """
+    field = NumberField(root_class.polynomial)
+    size = system.size
+    point = [to_rational_poly(g) for g in root_class.coordinates] + [fmpq_poly([1])]
+    units = [tuple(int(i == k) for i in range(size)) for k in range(size)]
+    expansions = []
+    for matrix in system.matrices:
+        row_values = [
+            sum((x * s for x, s in zip(point, row, strict=True) if s), fmpq_poly())
+            for row in matrix
+        ]
+        value = sum((x * y for x, y in zip(point, row_values, strict=True)), fmpq_poly())
+        terms: Taylor = {(0,) * size: value % field.modulus}
+        for i, unit in enumerate(units):
+            terms[unit] = 2 * row_values[i] % field.modulus
+            for j in range(i, size):
+                exponent = _sum(unit, units[j])
+                terms[exponent] = fmpq_poly([matrix[i][j] * (1 if i == j else 2)])
+        expansions.append({a: c for a, c in terms.items() if c != 0})
+    return expansions
+
+
+def _integrated(
+    field: NumberField, basis: Sequence[Taylor], expansions: Sequence[Taylor], size: int
+) -> tuple[list[Taylor], list[Exponent]]:
+    """The functionals whose derivatives lie in the span of `basis`, and that kill the quadrics.
+
+    The unknowns are l_ij, the coefficients of sigma_i(D) on the basis; column i * len(basis) + j.
+    """
+    count = len(basis)
+    columns = size * count
+    zero = fmpq_poly()
+
+    def row(entries: Mapping[int, fmpq_poly]) -> Vector:
+        return [entries.get(k, zero) for k in range(columns)]
+
+    rows = []
+    for i, k in combinations(range(size), 2):
+        lowered = [(_derivative(d, k), _derivative(d, i)) for d in basis]
+        for exponent in {a for pair in lowered for d in pair for a in d}:
+            entries = {}
+            for j, (first, second) in enumerate(lowered):
+                entries[i * count + j] = first.get(exponent, zero)
+                entries[k * count + j] = -second.get(exponent, zero)
+            rows.append(row(entries))
+    for expansion in expansions:
+        total: dict[int, fmpq_poly] = {}
+        for exponent, coefficient in expansion.items():
+            if not any(exponent):
+                continue
+            i = next(k for k, a in enumerate(exponent) if a)
+            below = _lowered(exponent, i)
+            for j, functional in enumerate(basis):
+                if below in functional:
+                    product = field.multiply(coefficient, functional[below])
+                    total[i * count + j] = total.get(i * count + j, zero) + product
+        rows.append(row(total))
+    found = [_integral(field, basis, solution, size) for solution in field.nullspace(rows, columns)]
+    found.append({(0,) * size: fmpq_poly([1])})
+    exponents = sorted({a for d in found for a in d}, key=lambda a: (sum(a), a), reverse=True)
+    reduced, pivots = field.echelon([[d.get(a, zero) for a in exponents] for d in found])
+    functionals = [
+        {a: c for a, c in zip(exponents, line, strict=True) if c != 0} for line in reduced
+    ]
+    functionals.reverse()
+    return functionals, [exponents[k] for k in reversed(pivots)]
+
+
+def _integral(field: NumberField, basis: Sequence[Taylor], solution: Vector, size: int) -> Taylor:
+    """The functional D without constant term with sigma_i(D) = sum_j solution_ij D_j."""
+    count = len(basis)
+    result: Taylor = {}
+    for i in range(size):
+        part: Taylor = {}
+        for j, functional in enumerate(basis):
+            weight = solution[i * count + j]
+            if weight != 0:
+                for a, c in functional.items():
+                    part[a] = part.get(a, fmpq_poly()) + field.multiply(weight, c)
+        for a, c in part.items():
+            if c != 0:
+                result[_raised(a, i)] = c
+    return result
+
+
+def _derivative(functional: Taylor, i: int) -> Taylor:
+    return {_lowered(a, i): c for a, c in functional.items() if a[i]}
+
+
+def _sum(a: Exponent, b: Exponent) -> Exponent:
+    return tuple(x + y for x, y in zip(a, b, strict=True))
+
+
+def _raised(exponent: Exponent, i: int) -> Exponent:
+    return (*exponent[:i], exponent[i] + 1, *exponent[i + 1 :])
+
+
+def _lowered(exponent: Exponent, i: int) -> Exponent:
+    return (*exponent[:i], exponent[i] - 1, *exponent[i + 1 :])
