@@ -47,6 +47,8 @@ def krawczyk(
     [1.4142135623730951, 1.4142135623730951]
     """
     array = np.atleast_2d(np.asarray(points, dtype=np.complex128))
+    if system.size == 0:  # no equation, no unknown: the one point there is
+        return [IsolatingBox((), (), 1, 0) for _ in array]
     results: list[IsolatingBox | Uncertified | None] = [None] * len(array)
     finite = np.isfinite(array).all(axis=1)
     scale = np.maximum(1.0, np.abs(array).max(axis=1, initial=0.0))

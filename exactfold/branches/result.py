@@ -1,0 +1,111 @@
+"""The answer to "in how many ways does this sheet start to fold?", with its proof."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+from exactfold.branches.branch import Branch
+from exactfold.exact.numbers import format_rational
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.verdict import UNDECIDED, Verdict
+
+
+@dataclass(frozen=True)
+class BranchCount:
+    """What is known of the branches of a pattern at the unfolded state.
+
+    `status` is PROVED when the counts are; they are None otherwise, and `reason` says what is
+    missing. `distinct` counts branches as lines (for D = 1), `with_multiplicity` the solutions of
+    the branch system with multiplicity, `real` and `nonreal` its distinct solutions by reality.
+    `true_branches` is PROVED when the count is also that of the true configuration space
+    (theory.md section 3). `branches` holds every branch decided, all of them if PROVED and D = 1;
+    for D > 1 a branch is no line and none is listed. `evidence` is what a certificate holds.
+    """
+
+    pattern: CreasePattern
+    status: Verdict
+    method: str
+    reason: str
+    distinct: int | None = None
+    with_multiplicity: int | None = None
+    real: int | None = None
+    nonreal: int | None = None
+    true_branches: Verdict = UNDECIDED
+    branches: tuple[Branch, ...] = ()
+    open_questions: tuple[str, ...] = ()
+    evidence: Mapping[str, Any] | None = None
+    settings: Mapping[str, int | str] = field(default_factory=dict)
+    snapped: Fraction = Fraction(0)
+    seconds: float = 0.0
+
+    def to_dict(self, certificate: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold count --json`."""
+        return {
+            "pattern": {
+                "interior": self.pattern.Vi,
+                "boundary": self.pattern.Ve,
+                "folds": len(self.pattern.folds),
+                "degrees_of_freedom": self.pattern.degrees_of_freedom,
+                "sha256": self.pattern.sha256,
+                "snapped": format_rational(self.snapped),
+            },
+            "status": str(self.status),
+            "reason": self.reason,
+            "method": self.method,
+            "distinct": self.distinct,
+            "with_multiplicity": self.with_multiplicity,
+            "real": self.real,
+            "nonreal": self.nonreal,
+            "true_branches": str(self.true_branches),
+            "certificate": certificate,
+            "seconds": round(self.seconds, 3),
+            "open_questions": list(self.open_questions),
+            "settings": dict(self.settings),
+            "branches": [branch.to_dict() for branch in self.branches],
+        }
+
+    @property
+    def sign_vectors(self) -> Counter[str]:
+        """How many branches have each vertex-sign vector, opposite vectors taken together."""
+        counts: Counter[str] = Counter()
+        for branch in self.branches:
+            text = branch.sign_text
+            counts[min(text, text.translate(str.maketrans("+-", "-+")))] += 1
+        return counts
+
+    @property
+    def repeated_assignments(self) -> int:
+        """Number of branches that share their mountain-valley assignment (up to reflection)."""
+        counts: Counter[str] = Counter()
+        for branch in self.branches:
+            text = branch.assignment_text
+            counts[min(text, text.translate(str.maketrans("MV", "VM")))] += 1
+        return sum(count for count in counts.values() if count > 1)
+
+    def __repr__(self) -> str:
+        found = "?" if self.distinct is None else str(self.distinct)
+        return f"<BranchCount: {self.status}, {found} branches, {self.pattern!r}>"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{branch.sign_text}</td><td>{branch.assignment_text}</td>"
+            f"<td>{branch.multiplicity}</td></tr>"
+            for branch in self.branches[:64]
+        )
+        more = len(self.branches) - 64
+        tail = f"<p>... and {more} more</p>" if more > 0 else ""
+        head = "<tr><th>vertex signs</th><th>mountain-valley</th><th>multiplicity</th></tr>"
+        count = "" if self.distinct is None else f"{self.distinct} branches, "
+        return f"<p>{count}<b>{self.status}</b> ({self.reason})</p><table>{head}{rows}</table>{tail}"
+
+    def _repr_latex_(self) -> str:
+        if self.distinct is None:
+            return r"$B = {?}\quad \text{(undecided)}$"
+        return (
+            rf"$B = {self.distinct}\ \text{{({self.status})}},\quad "
+            rf"V_i = {self.pattern.Vi},\ V_e = {self.pattern.Ve},\ V_t = {self.pattern.Vt}$"
+        )

@@ -1,0 +1,970 @@
+"""Stand-alone checker of exactfold certificates: believes nothing, needs the standard library only.
+
+    python checker.py CERTIFICATE.json
+
+rebuilds the sheet and its curvature forms from the vertices and triangles in the file by code of
+its own, and verifies every claim. Exit code 0: every claim holds. 1: some claim is not supported.
+3: not a certificate. What each kind of evidence proves is set out in docs/certificate.md; in short
+
+  isolated       2^n disjoint boxes, each with exactly one zero by Krawczyk's test in integers:
+                 by refined Bezout these are all zeros of n quadrics in P^n, all real and simple;
+  algebraic      zeros as roots of squarefree polynomials, multiplicities bounded below by dual
+                 spaces; the sum reaches 2^n, so the bounds are exact and nothing is missing;
+  rigid          a positive definite stress: the sheet cannot fold;
+  single vertex  the inertia (1, N - 3, 3) of one curvature form, N >= 5: one double cone.
+
+Floating point is used in one place, to choose the matrix Y of Krawczyk's test, which may be any.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from fractions import Fraction
+from math import gcd, isqrt, lcm
+
+FORMAT, VERSION = "exactfold certificate", 1
+
+
+class CertificateError(Exception):
+    """A claim of the certificate is not supported by its evidence."""
+
+
+class FormatError(Exception):
+    """The file is not a certificate of a known format and version."""
+
+
+def require(condition, message):
+    """Raise `CertificateError` unless the condition holds."""
+    if not condition:
+        raise CertificateError(message)
+
+
+# --- reading -------------------------------------------------------------------------------------
+
+
+def parse_integer(text):
+    """Exact integer of any length from decimal digits."""
+    sign, digits = (-1, text[1:]) if text[:1] == "-" else (1, text)
+    if not (digits.isascii() and digits.isdigit()):
+        raise CertificateError(f"{text[:40]!r} is not an integer")
+    value = 0
+    for start in range(0, len(digits), 4000):
+        part = digits[start : start + 4000]
+        value = value * 10 ** len(part) + int(part)
+    return sign * value
+
+
+def parse_rational(text):
+    """Exact rational from "p" or "p/q"."""
+    require(isinstance(text, str), f"{text!r} is not a rational number in quotes")
+    numerator, slash, denominator = text.partition("/")
+    q = parse_integer(denominator) if slash else 1
+    require(q > 0, f"{text[:40]!r} has no positive denominator")
+    return Fraction(parse_integer(numerator), q)
+
+
+def load(text):
+    """The JSON object of a certificate, without floats or repeated keys."""
+
+    def refuse(number):
+        raise FormatError(f"a certificate holds no floats, but here is {number[:40]}")
+
+    def unique(pairs):
+        keys = [key for key, _ in pairs]
+        if len(set(keys)) != len(keys):
+            raise FormatError("a key appears twice in one object")
+        return dict(pairs)
+
+    try:
+        data = json.loads(
+            text, parse_float=refuse, parse_constant=refuse, parse_int=parse_integer,
+            object_pairs_hook=unique,
+        )
+    except (ValueError, RecursionError) as error:
+        raise FormatError(f"not JSON, or cut off: {error}") from None
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise FormatError(f'not a certificate: "format" is not "{FORMAT}"')
+    if type(data.get("version")) is not int or data["version"] != VERSION:
+        raise FormatError(f"version {data.get('version')!r} is not known to this checker")
+    keys(data, "format version pattern claims evidence provenance", "certificate", FormatError)
+    return data
+
+
+def keys(value, names, what, error=CertificateError):
+    """Raise unless `value` is an object with exactly these keys."""
+    if not isinstance(value, dict) or sorted(value) != sorted(names.split()):
+        raise error(f"{what}: expected an object with the keys {names}")
+
+
+def items(value, what, length=None):
+    """`value` if it is a list (of the given length)."""
+    require(isinstance(value, list), f"{what} is not a list")
+    require(length is None or len(value) == length, f"{what} has not {length} entries")
+    return value
+
+
+def natural(value, what):
+    """`value` if it is an integer >= 0."""
+    require(type(value) is int and value >= 0, f"{what} is not a natural number")
+    return value
+
+
+# --- the sheet -----------------------------------------------------------------------------------
+
+
+def turn(a, b, c):
+    """Twice the signed area of the triangle abc."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+class Sheet:
+    """A flat triangulated disk, verified."""
+
+    def __init__(self, points, triangles):
+        self.points, self.next = points, {v: {} for v in points}
+        for a, b, c in triangles:
+            require(len({a, b, c}) == 3 and {a, b, c} <= set(points), f"bad face {(a, b, c)}")
+            require(turn(points[a], points[b], points[c]) > 0, f"face {(a, b, c)} is not positive")
+            for i, j, k in ((a, b, c), (b, c, a), (c, a, b)):
+                require(j not in self.next[i], f"two faces on one side of edge {i}-{j}")
+                self.next[i][j] = k
+        require(len(set(points.values())) == len(points), "two vertices at one point")
+        self.triangles = {frozenset(t) for t in triangles}
+        self.edges = sorted({(min(i, j), max(i, j)) for t in self.triangles
+                             for i in t for j in t if i != j})
+        self._disk()
+        self.interior = sorted(set(points) - set(self.boundary))
+        rim = set(zip(self.boundary, self.boundary[1:] + self.boundary[:1]))
+        self.folds = [(i, j) for i, j in self.edges if (i, j) not in rim and (j, i) not in rim]
+
+    def _disk(self):
+        follow = {}
+        for v, fan in self.next.items():
+            require(fan, f"vertex {v} is on no face")
+            ends = [a for a in fan if v not in self.next[a]]
+            at, steps = (ends or list(fan))[0], 0
+            start = at
+            while at in fan:
+                at, steps = fan[at], steps + 1
+                if at == start:
+                    break
+            require(len(ends) <= 1 and steps == len(fan), f"the sheet is pinched at vertex {v}")
+            if ends:
+                follow[v] = ends[0]
+        require(follow, "the sheet has no boundary")
+        cycle = [min(follow)]
+        while follow[cycle[-1]] != cycle[0]:
+            cycle.append(follow[cycle[-1]])
+        require(len(cycle) == len(follow), "the boundary is not one cycle")
+        euler = len(self.points) - len(self.edges) + len(self.triangles)
+        seen, stack = {cycle[0]}, [cycle[0]]
+        while stack:
+            for a, b in self.next[stack.pop()].items():
+                stack += [v for v in (a, b) if v not in seen]
+                seen |= {a, b}
+        require(euler == 1 and len(seen) == len(self.points), "the sheet is not one disk")
+        self.boundary = cycle
+        sides = list(zip(cycle, cycle[1:] + cycle[:1]))
+        for k, first in enumerate(sides):
+            for second in sides[:k]:
+                require(not self._meet(first, second), f"boundary edges {first}, {second} meet")
+
+    def _meet(self, first, second):
+        shared = set(first) & set(second)
+        if shared:
+            (v,), (a,), (b,) = shared, set(first) - shared, set(second) - shared
+            p, q, r = self.points[v], self.points[a], self.points[b]
+            along = sum((q[k] - p[k]) * (r[k] - p[k]) for k in (0, 1))
+            return turn(p, q, r) == 0 and along > 0
+        a, b, c, d = (self.points[v] for v in first + second)
+        abc, abd, cda, cdb = turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b)
+        if abc == abd == 0:
+            return all(min(a[k], b[k]) <= max(c[k], d[k]) and min(c[k], d[k]) <= max(a[k], b[k])
+                       for k in (0, 1))
+        return abc * abd <= 0 and cda * cdb <= 0
+
+    def star(self, vertex):
+        """Neighbours of an interior vertex, counter-clockwise."""
+        fan = self.next[vertex]
+        cycle = [min(fan)]
+        while fan[cycle[-1]] != cycle[0]:
+            cycle.append(fan[cycle[-1]])
+        return cycle
+
+    def curvature(self, vertex):
+        """The curvature form K_v as {(i, j): coefficient}, symmetric, over all pairs of the star.
+
+        K_v(h) = sum_j x_j x_{j+1} / c_j - (s_j / 2 c_j) (x_j^2 / L_j^2 + x_{j+1}^2 / L_{j+1}^2)
+        with x_j = h_j - h_v, c_j and s_j the cross and dot product of neighbouring spokes.
+        """
+        ring, (x, y) = self.star(vertex), self.points[vertex]
+        spoke = {j: (self.points[j][0] - x, self.points[j][1] - y) for j in ring}
+        form = {}
+
+        def add(i, j, weight):  # weight * x_i * x_j, with x_i = h_i - h_v
+            for a, s in ((i, 1), (vertex, -1)):
+                for b, t in ((j, 1), (vertex, -1)):
+                    form[a, b] = form.get((a, b), 0) + weight * s * t / 2
+                    form[b, a] = form.get((b, a), 0) + weight * s * t / 2
+
+        for i, j in zip(ring, ring[1:] + ring[:1]):
+            (ax, ay), (bx, by) = spoke[i], spoke[j]
+            c, s = Fraction(ax * by - ay * bx), ax * bx + ay * by
+            add(i, j, 1 / c)
+            add(i, i, -s / (2 * c) / (ax * ax + ay * ay))
+            add(j, j, -s / (2 * c) / (bx * bx + by * by))
+        return form
+
+    def sign_of_vertex(self, vertex):
+        """Coefficients of h -> K_v(t, h) for a rational t with K_v(t) > 0 that points up."""
+        form, (x, y) = self.curvature(vertex), self.points[vertex]
+        bits = 16
+        while True:
+            cone = {vertex: Fraction(0)}
+            for j in self.star(vertex):
+                square = (self.points[j][0] - x) ** 2 + (self.points[j][1] - y) ** 2
+                product = square.numerator * square.denominator << 2 * bits
+                cone[j] = -Fraction(isqrt(product), square.denominator << bits)
+            if sum(w * cone[i] * cone[j] for (i, j), w in form.items()) > 0:
+                row = {}
+                for (i, j), w in form.items():
+                    row[j] = row.get(j, 0) + w * cone[i]
+                return row
+            bits *= 2
+
+    def bend(self, fold):
+        """Coefficients of the bend across a fold, positive where the sheet is locally convex."""
+        i, j = fold
+        k, m = self.next[i][j], self.next[j][i]
+        p, q, r, s = (self.points[v] for v in (i, j, k, m))
+        return {i: -turn(q, r, s), j: turn(p, r, s), k: -turn(p, q, s), m: turn(p, q, r)}
+
+    def emptied(self, corners, inside):
+        """The sheet with the vertices inside a 3-cycle removed."""
+        faces = [self._face(t) for t in self.triangles if not t & set(inside)]
+        points = {v: p for v, p in self.points.items() if v not in set(inside)}
+        return Sheet(points, [*faces, tuple(corners)])
+
+    def _face(self, triangle):
+        a = min(triangle)
+        b = next(v for v in triangle - {a} if self.next[a].get(v) in triangle)
+        return a, b, self.next[a][b]
+
+
+def inertia(matrix):
+    """(positive, negative, zero) of a symmetric rational matrix, by completing squares."""
+    work, live, counts = [list(row) for row in matrix], list(range(len(matrix))), [0, 0]
+    while live:
+        k = next((i for i in live if work[i][i]), None)
+        if k is None:
+            pair = next(((i, j) for i in live for j in live if work[i][j]), None)
+            if pair is None:
+                break
+            k, j = pair
+            for c in live:
+                work[k][c] += work[j][c]
+            for r in live:
+                work[r][k] += work[r][j]
+        counts[work[k][k] < 0] += 1
+        live.remove(k)
+        for i in live:
+            factor = work[i][k] / work[k][k]
+            for c in live if factor else ():
+                work[i][c] -= factor * work[k][c]
+    return counts[0], counts[1], len(matrix) - sum(counts)
+
+
+def matrix_of(form, labels):
+    """The matrix of a form on the given variables, the others being 0."""
+    return [[Fraction(form.get((i, j), 0)) for j in labels] for i in labels]
+
+
+def check_lorentzian(sheet, vertex):
+    """The curvature form of a flat vertex of degree N has inertia (1, N - 3, 3)."""
+    labels = [vertex, *sheet.star(vertex)]
+    expected = (1, len(labels) - 4, 3)
+    require(inertia(matrix_of(sheet.curvature(vertex), labels)) == expected,
+            f"the curvature form of vertex {vertex} has not inertia {expected}")
+
+
+def check_triangles(sheet, evidence):
+    """Remove the triangulated triangles, each by a definite stress; the emptied sheet."""
+    emptied = sheet
+    for entry in items(evidence, "triangles"):
+        keys(entry, "corners inside multipliers", "triangle")
+        corners, inside = items(entry["corners"], "corners", 3), items(entry["inside"], "inside")
+        for v in corners + inside:
+            require(type(v) is int and v in emptied.points, f"{v!r} is no vertex")
+        a, b, c = (emptied.points[v] for v in corners)
+        require(turn(a, b, c) > 0, f"the 3-cycle {corners} is not counter-clockwise")
+        for i, j in ((0, 1), (0, 2), (1, 2)):
+            edge = (min(corners[i], corners[j]), max(corners[i], corners[j]))
+            require(edge in emptied.edges, f"{corners} is no 3-cycle of edges")
+        within = [v for v in emptied.interior
+                  if all(turn(p, q, emptied.points[v]) > 0 for p, q in ((a, b), (b, c), (c, a)))]
+        require(within and sorted(inside) == within, f"not the vertices inside {corners}")
+        weights = [parse_rational(m) for m in items(entry["multipliers"], "multipliers",
+                                                    len(inside))]
+        total = {}
+        for v, weight in zip(inside, weights):
+            require(weight > 0, "a multiplier is not positive")
+            check_lorentzian(emptied, v)
+            for pair, w in emptied.curvature(v).items():
+                total[pair] = total.get(pair, 0) + weight * w
+        require(inertia(matrix_of(total, inside)) == (len(inside), 0, 0),
+                f"the stress inside {corners} is not definite")
+        emptied = emptied.emptied(corners, inside)
+    return emptied
+
+
+# --- the branch system ---------------------------------------------------------------------------
+
+
+class BranchSystem:
+    """K_v = 0 with three boundary vertices at height 0 and the fourth, `unit`, at height 1.
+
+    `unit` is the first boundary vertex, in cyclic order from the smallest index, at which the
+    affine dependency of the four does not vanish; height 1 there is a positive boundary saddle.
+    """
+
+    def __init__(self, sheet):
+        self.sheet, b = sheet, sheet.boundary
+        corners = [sheet.points[v] for v in b]
+        self.unit = next(v for k, v in enumerate(b) if turn(*(corners[:k] + corners[k + 1 :])))
+        self.variables = sheet.interior
+        self.size = len(self.variables)
+        self.quadrics = []
+        for v in sheet.interior:
+            form = sheet.curvature(v)
+            rows = {}
+            for (i, j), w in form.items():
+                p, q = self.position(i), self.position(j)
+                if p is not None and q is not None and w:
+                    rows[p, q] = w
+            scale = lcm(*(w.denominator for w in rows.values()))
+            whole = {pq: int(w * scale) for pq, w in rows.items()}
+            common = gcd(*whole.values())
+            self.quadrics.append({pq: w // common for pq, w in whole.items()})
+
+    def position(self, vertex):
+        """Place of a vertex in (x, 1); None if its height is 0."""
+        if vertex == self.unit:
+            return self.size
+        return self.variables.index(vertex) if vertex in self.sheet.interior else None
+
+    def row(self, functional):
+        """A linear functional of the heights as integers (c_1, ..., c_n, c_0), signs kept."""
+        row = [Fraction(0)] * (self.size + 1)
+        for v, weight in functional.items():
+            if self.position(v) is not None:
+                row[self.position(v)] += weight
+        scale = lcm(*(Fraction(w).denominator for w in row))
+        return [int(w * scale) for w in row]
+
+
+# --- isolated roots ------------------------------------------------------------------------------
+
+
+class Krawczyk:
+    """Krawczyk's test for the quadrics F_p(x) = (1/2) z^T S_p z, z = (x, 1), in integers."""
+
+    def __init__(self, system):
+        self.n = system.size
+        self.quadrics = system.quadrics
+        top = max(abs(w) for q in self.quadrics for w in q.values()).bit_length()
+        self.quadrics = [
+            {pq: w << top - max(map(abs, q.values())).bit_length() for pq, w in q.items()}
+            for q in self.quadrics
+        ]
+        self.scale = top
+        self.norms = [sum(abs(w) for (i, j), w in q.items() if self.n not in (i, j))
+                      for q in self.quadrics]
+
+    def check(self, center, radius, bits):
+        """Raise unless the box |x - center/2^bits| <= radius/2^bits holds exactly one zero.
+
+        With eta = |Y F(m)|, k0 = |I - Y F'(m)|, M >= max_i sum_jk |sum_p Y_ip (H_p)_jk| it is
+        enough that k0 + r M < 1 and eta + (k0 + r M) r < r.
+        """
+        n, z = self.n, [*center, 1 << bits]
+        gradients, values = [], []
+        for quadric in self.quadrics:
+            row = [0] * (n + 1)
+            for (i, j), w in quadric.items():
+                row[i] += w * z[j]
+            gradients.append(row)  # 2^bits times the gradient
+            values.append(sum(a * b for a, b in zip(row, z)))  # 2^(2 bits + 1) F
+        for y, shift in self._preconditioners(gradients, bits):
+            unit, k0, bound, eta = 1 << (shift + bits), 0, 0, 0
+            for i, weights in enumerate(y):
+                sums = [0] * n
+                for w, row in zip(weights, gradients):
+                    for k in range(n) if w else ():
+                        sums[k] += w * row[k]
+                sums[i] -= unit
+                k0 = max(k0, sum(map(abs, sums)))
+                bound = max(bound, sum(abs(w) * s for w, s in zip(weights, self.norms)))
+                eta = max(eta, abs(sum(w * v for w, v in zip(weights, values))))
+            contraction = k0 + radius * bound
+            if contraction < unit and eta < 2 * radius * (unit - contraction):
+                return
+        raise CertificateError(f"Krawczyk's test fails for the box about {center[:2]}.../2^{bits}")
+
+    def _preconditioners(self, gradients, bits):
+        """Approximate inverses Y = y / 2^shift of F'(m): from doubles, then from exact numbers."""
+        down = 1 << (self.scale + bits)
+        try:
+            yield self._rounded(inverse([[g / down for g in row[: self.n]] for row in gradients]),
+                                56)
+        except (ZeroDivisionError, OverflowError, ValueError):
+            pass
+        exact = [[Fraction(g, down) for g in row[: self.n]] for row in gradients]
+        try:
+            yield self._rounded(inverse(exact), bits + 8)
+        except ZeroDivisionError:
+            return
+
+    def _rounded(self, matrix, digits):
+        largest = Fraction(max(abs(x) for row in matrix for x in row))
+        size = largest.numerator.bit_length() - largest.denominator.bit_length()
+        q = digits - size
+        power = Fraction(2) ** q
+        return [[round(Fraction(x) * power) for x in row] for row in matrix], q + self.scale
+
+
+def inverse(matrix):
+    """Gauss-Jordan inverse with partial pivoting, in the numbers of the matrix."""
+    n = len(matrix)
+    one = matrix[0][0] * 0 + 1
+    work = [list(row) + [one * (i == j) for j in range(n)] for i, row in enumerate(matrix)]
+    for k in range(n):
+        pivot = max(range(k, n), key=lambda i: abs(work[i][k]))
+        work[k], work[pivot] = work[pivot], work[k]
+        lead = work[k][k]
+        work[k] = [x / lead for x in work[k]]
+        for i in range(n):
+            factor = work[i][k]
+            if i != k and factor:
+                work[i] = [x - factor * y for x, y in zip(work[i], work[k])]
+    return [row[n:] for row in work]
+
+
+class Box:
+    """A box that holds one real zero; signs of functionals over the whole box."""
+
+    def __init__(self, entry, size):
+        keys(entry, "bits radius center", "root")
+        self.bits = natural(entry["bits"], "bits")
+        require(self.bits <= 1 << 20, "bits are out of range")
+        self.radius = parse_integer(text_of(entry["radius"]))
+        require(self.radius > 0, "the radius is not positive")
+        self.center = [parse_integer(text_of(m)) for m in items(entry["center"], "center", size)]
+
+    def sign(self, row):
+        """1 or -1 if the functional keeps that sign on the box, 0 if it is 0, else None."""
+        value = (row[-1] << self.bits) + sum(c * m for c, m in zip(row, self.center))
+        reach = self.radius * sum(map(abs, row[:-1]))
+        if abs(value) > reach:
+            return 1 if value > 0 else -1
+        return 0 if value == reach == 0 else None
+
+
+def text_of(value):
+    """`value` if it is a string."""
+    require(isinstance(value, str), f"{value!r} is not a number in quotes")
+    return value
+
+
+def check_disjoint(boxes):
+    """No two boxes meet. Sorted by a fixed functional; compared only where values overlap."""
+    top = max((box.bits for box in boxes), default=0)
+    keyed = []
+    for index, box in enumerate(boxes):
+        weights = [2 * k * k + 3 * k + 5 for k in range(len(box.center))]
+        value = sum(w * m for w, m in zip(weights, box.center)) << (top - box.bits)
+        reach = box.radius * sum(weights) << (top - box.bits)
+        keyed.append((value - reach, value + reach, index))
+    active = []
+    for low, high, index in sorted(keyed):
+        active = [(end, other) for end, other in active if end >= low]
+        for _, other in active:
+            a, b = boxes[index], boxes[other]
+            reach = (a.radius << (top - a.bits)) + (b.radius << (top - b.bits))
+            require(any(abs((x << (top - a.bits)) - (y << (top - b.bits))) > reach
+                        for x, y in zip(a.center, b.center)), "two boxes meet")
+        active.append((high, index))
+
+
+def check_isolated(system, evidence):
+    """All zeros by Krawczyk and refined Bezout: a list of (root, multiplicity)."""
+    keys(evidence, "kind triangles roots", "evidence")
+    boxes = [Box(entry, system.size) for entry in items(evidence["roots"], "roots")]
+    if system.size:
+        test = Krawczyk(system)
+        for box in boxes:
+            test.check(box.center, box.radius, box.bits)
+        check_disjoint(boxes)
+    require(len(boxes) == 1 << system.size, f"{len(boxes)} roots, not 2^{system.size}")
+    return [(box, 1) for box in boxes]
+
+
+# --- algebraic roots -----------------------------------------------------------------------------
+
+
+def trim(p):
+    """A polynomial (constant term first) without leading zeros."""
+    p = list(p)
+    while p and not p[-1]:
+        p.pop()
+    return p
+
+
+def times(p, q):
+    """Product of two polynomials."""
+    result = [Fraction(0)] * max(len(p) + len(q) - 1, 0)
+    for i, a in enumerate(p):
+        for j, b in enumerate(q) if a else ():
+            result[i + j] += a * b
+    return result
+
+
+def plus(p, q):
+    """Sum of two polynomials."""
+    size = max(len(p), len(q))
+    return [(p[k] if k < len(p) else 0) + (q[k] if k < len(q) else 0) for k in range(size)]
+
+
+def scaled(p, c):
+    """c times a polynomial."""
+    return [c * a for a in p]
+
+
+def remainder(p, modulus):
+    """p modulo a polynomial with non-zero leading coefficient."""
+    p = trim(p)
+    while len(p) >= len(modulus):
+        factor = Fraction(p[-1]) / modulus[-1]
+        start = len(p) - len(modulus)
+        for k, b in enumerate(modulus):
+            p[start + k] -= factor * b
+        p = trim(p[:-1])
+    return p
+
+
+def are_coprime(p, q):
+    """Whether two polynomials have no common root."""
+    p, q = trim(p), trim(q)
+    while q:
+        p, q = q, remainder(p, q)
+        q = scaled(q, 1 / q[-1]) if q else q
+    return len(p) == 1
+
+
+def derivative(p):
+    """The derivative of a polynomial."""
+    return [k * a for k, a in enumerate(p)][1:]
+
+
+def value(p, x):
+    """p(x)."""
+    result = Fraction(0)
+    for a in reversed(p):
+        result = result * x + a
+    return result
+
+
+def bounds(p, low, high):
+    """Bounds of p on [low, high] by interval Horner."""
+    a = b = Fraction(0)
+    for c in reversed(p):
+        ends = (a * low, a * high, b * low, b * high)
+        a, b = min(ends) + c, max(ends) + c
+    return a, b
+
+
+def count_real_roots(p):
+    """Number of distinct real roots of a squarefree polynomial (Sturm)."""
+    chain = [trim(p), trim(derivative(p))]
+    while len(chain[-1]) > 1:
+        last = remainder(chain[-2], chain[-1])
+        chain.append(scaled(last, -1 / abs(last[-1])))
+    changes = []
+    for side in (-1, 1):
+        signs = [(q[-1] > 0) == (side > 0 or len(q) % 2 == 1) for q in chain]
+        changes.append(sum(a != b for a, b in zip(signs, signs[1:])))
+    return changes[0] - changes[1]
+
+
+class RootClass:
+    """Zeros x_i = w_i(t) / p'(t) of the branch system, one for each root t of p."""
+
+    def __init__(self, system, separating, entry):
+        keys(entry, "polynomial numerators multiplicity functionals", "class")
+        self.system, n = system, system.size
+        self.p = [parse_integer(text_of(c)) for c in items(entry["polynomial"], "polynomial")]
+        require(len(self.p) > 1 and self.p[-1], "a class polynomial is constant")
+        self.slope = derivative(self.p)
+        require(are_coprime(self.p, self.slope), "a class polynomial has a double root")
+        self.w = [[parse_rational(c) for c in items(w, "numerator")]
+                  for w in items(entry["numerators"], "numerators", n)]
+        self.multiplicity = natural(entry["multiplicity"], "multiplicity")
+        z = [*self.w, self.slope]
+        self.gradients = []
+        for quadric in system.quadrics:
+            row = [[] for _ in z]
+            for (i, j), c in quadric.items():
+                row[i] = plus(row[i], scaled(z[j], c))
+            self.gradients.append(row)
+            total = []
+            for a, b in zip(row, z):
+                total = plus(total, times(a, b))
+            require(not remainder(total, self.p), "the parametrisation misses a quadric")
+        form = []
+        for s, w in zip(separating, self.w):
+            form = plus(form, scaled(w, s))
+        require(not remainder(plus(form, scaled([0, *self.slope], -1)), self.p),
+                "the separating form is not the root of its polynomial")
+        self._check_functionals(items(entry["functionals"], "functionals", self.multiplicity))
+
+    def _check_functionals(self, functionals):
+        """A space of differential functionals that annihilates the ideal at every root.
+
+        Given as {exponent: polynomial in t}, for sum c_a d^a / a!. Each has a pivot exponent with
+        coefficient 1 where the others have 0, so they are independent at every root; the space is
+        closed under lowering an exponent; each kills every quadric. Then it kills the ideal
+        (Leibniz), and the local ring has at least their number of dimensions (Macaulay).
+        """
+        n, space, pivots = self.system.size, [], []
+        for functional in functionals:
+            keys(functional, "pivot terms", "functional")
+            terms = {}
+            for term in items(functional["terms"], "terms"):
+                exponent, coefficient = items(term, "term", 2)
+                exponent = tuple(natural(e, "exponent") for e in items(exponent, "exponent", n))
+                require(exponent not in terms, "an exponent appears twice")
+                terms[exponent] = remainder(
+                    [parse_rational(c) for c in items(coefficient, "coefficient")], self.p)
+            space.append(terms)
+            pivots.append(tuple(items(functional["pivot"], "pivot", n)))
+        for k, pivot in enumerate(pivots):
+            for m, terms in enumerate(space):
+                require(terms.get(pivot, []) == ([1] if k == m else []), "the pivots are not")
+        for terms in space:
+            for i in range(n):
+                rest = {}
+                for a, c in terms.items():
+                    if a[i]:
+                        rest[(*a[:i], a[i] - 1, *a[i + 1 :])] = c
+                for pivot, basis in zip(pivots, space):
+                    weight = rest.get(pivot, [])
+                    for a, c in basis.items() if weight else ():
+                        less = plus(rest.get(a, []), scaled(times(weight, c), -1))
+                        rest[a] = remainder(less, self.p)
+                require(not any(trim(c) for c in rest.values()), "the functionals are not closed")
+            for quadric, gradient in zip(self.system.quadrics, self.gradients):
+                total = []  # p' times the value, F itself being 0
+                for a, c in terms.items():
+                    support = [i for i in range(n) for _ in range(a[i])] if sum(a) < 3 else []
+                    if len(support) == 1:
+                        total = plus(total, times(c, gradient[support[0]]))
+                    elif len(support) == 2:
+                        i, j = support
+                        weight = Fraction(quadric.get((i, j), 0)) / (2 if i == j else 1)
+                        total = plus(total, times(c, scaled(self.slope, weight)))
+                require(not remainder(total, self.p), "a functional does not kill a quadric")
+
+
+class AlgebraicRoot:
+    """One real root of a class, in an interval on whose ends its polynomial changes sign."""
+
+    def __init__(self, root_class, low, high):
+        self.root_class, self.low, self.high = root_class, low, high
+        left, right = value(root_class.p, low), value(root_class.p, high)
+        require(low < high and left * right < 0, "an interval holds no sign change")
+        self.rising = right > 0
+
+    def sign(self, row):
+        """Sign of a functional at the root; 0 if it vanishes identically on the class."""
+        p, f = self.root_class.p, []
+        for c, w in zip(row, [*self.root_class.w, self.root_class.slope]):
+            f = plus(f, scaled(w, c))
+        f = remainder(f, p)
+        if not f:
+            return 0
+        for _ in range(4000):
+            low, high = bounds(f, self.low, self.high)
+            if low > 0 or high < 0:
+                return 1 if (low > 0) == self.rising else -1
+            middle = (self.low + self.high) / 2
+            at = value(p, middle)
+            if at == 0:  # rational root: shrink around it
+                quarter = (self.high - self.low) / 4
+                self.low, self.high = middle - quarter, middle + quarter
+            elif (at > 0) == self.rising:
+                self.high = middle
+            else:
+                self.low = middle
+        return None
+
+
+def check_algebraic(system, evidence):
+    """All zeros as roots of polynomials: (real roots with multiplicities, non-real ones)."""
+    keys(evidence, "kind triangles separating classes roots", "evidence")
+    separating = [natural_or_negative(s) for s in items(evidence["separating"], "separating",
+                                                        system.size)]
+    classes = [RootClass(system, separating, entry)
+               for entry in items(evidence["classes"], "classes")]
+    for k, a in enumerate(classes):
+        for b in classes[:k]:
+            require(are_coprime(a.p, b.p), "two classes share a root")
+    roots, intervals = [], [[] for _ in classes]
+    for entry in items(evidence["roots"], "roots"):
+        keys(entry, "class interval", "root")
+        index = natural(entry["class"], "class")
+        require(index < len(classes), "no such class")
+        low, high = (parse_rational(x) for x in items(entry["interval"], "interval", 2))
+        intervals[index].append((low, high))
+        roots.append((AlgebraicRoot(classes[index], low, high), classes[index].multiplicity))
+    nonreal = 0
+    for root_class, ends in zip(classes, intervals):
+        ends.sort()
+        require(all(a[1] <= b[0] for a, b in zip(ends, ends[1:])), "two intervals overlap")
+        degree = len(root_class.p) - 1
+        if len(ends) < degree:
+            require(len(ends) == count_real_roots(root_class.p), "a real root is missing")
+        nonreal += degree - len(ends)
+    total = sum((len(c.p) - 1) * c.multiplicity for c in classes)
+    require(total == 1 << system.size, f"multiplicities add up to {total}, not 2^{system.size}")
+    return roots, nonreal
+
+
+def natural_or_negative(value):
+    """`value` if it is an integer."""
+    require(type(value) is int, f"{value!r} is not an integer")
+    return value
+
+
+# --- folds that are exactly flat -----------------------------------------------------------------
+
+
+def rational_sqrt(x):
+    """The square root of a rational >= 0, or None if it is irrational."""
+    p, q = isqrt(x.numerator), isqrt(x.denominator)
+    return Fraction(p, q) if p * p == x.numerator and q * q == x.denominator else None
+
+
+def kernel(rows, size):
+    """A basis of the vectors of length `size` that all rows annihilate."""
+    work, pivots = [list(map(Fraction, row)) for row in rows], []
+    for column in range(size):
+        lead = next((r for r in range(len(pivots), len(work)) if work[r][column]), None)
+        if lead is None:
+            continue
+        k = len(pivots)
+        work[k], work[lead] = work[lead], work[k]
+        work[k] = [x / work[k][column] for x in work[k]]
+        for r, row in enumerate(work):
+            if r != k and row[column]:
+                work[r] = [x - row[column] * y for x, y in zip(row, work[k])]
+        pivots.append(column)
+    basis = []
+    for free in (c for c in range(size) if c not in pivots):
+        vector = [Fraction(int(c == free)) for c in range(size)]
+        for k, column in enumerate(pivots):
+            vector[column] = -work[k][free]
+        basis.append(vector)
+    return basis
+
+
+def flat_at(sheet, vertex, signs):
+    """Folds at a vertex that must be flat, given right signs of some (None where open).
+
+    The bends at the vertex that agree with the flat folds span a space on which the curvature form
+    vanishes at the branch. In dimension 1 a non-zero form leaves only 0; in dimension 2 a form that
+    splits into rational lines leaves the lines that agree with the known signs.
+    """
+    ring = sheet.star(vertex)
+    folds = [(min(vertex, j), max(vertex, j)) for j in ring]
+    free = ring[2:]  # hub and two neighbouring rim vertices at 0: heights modulo planes
+    rows = [[Fraction(sheet.bend(f).get(j, 0)) for j in free] for f in folds]
+    basis = kernel([r for r, f in zip(rows, folds) if signs[f] == 0], len(free))
+    form = matrix_of(sheet.curvature(vertex), free)
+
+    def polar(a, b):
+        return sum(x * w * y for x, line in zip(a, form) for w, y in zip(line, b))
+
+    if len(basis) == 1 and polar(basis[0], basis[0]) != 0:
+        lines = []
+    elif len(basis) == 2:
+        u, v = basis
+        a, b, c = polar(u, u), polar(u, v), polar(v, v)
+        root = None if a == b == c == 0 or b * b < a * c else rational_sqrt(b * b - a * c)
+        if b * b < a * c:
+            lines = []
+        elif root is None:
+            return []
+        else:
+            pairs = [(-b + root, a), (-b - root, a)] if a else [(1, 0), (-c, 2 * b)]
+            lines = [[s * x + t * y for x, y in zip(u, v)] for s, t in pairs]
+    else:
+        return []
+    vectors = [[sum(r * h for r, h in zip(row, line)) for row in rows] for line in lines]
+    known = [(k, signs[f]) for k, f in enumerate(folds) if signs[f] is not None]
+
+    def agrees(vector):
+        one = [(vector[k] > 0) - (vector[k] < 0) for k, _ in known]
+        return not any(s for _, s in known) or any(
+            all(x * side == s for x, (_, s) in zip(one, known)) for side in (1, -1))
+
+    left = [vector for vector in vectors if agrees(vector)]
+    return [f for k, f in enumerate(folds)
+            if signs[f] is None and all(vector[k] == 0 for vector in left)]
+
+
+def close_flat(sheet, signs):
+    """Settle open folds by `flat_at` until nothing changes."""
+    changed = True
+    while changed and None in signs.values():
+        changed = False
+        for vertex in sheet.interior:
+            for fold in flat_at(sheet, vertex, signs):
+                signs[fold], changed = 0, True
+
+
+# --- claims --------------------------------------------------------------------------------------
+
+
+def read_sheet(data):
+    """The verified sheet and its SHA-256."""
+    keys(data, "vertices triangles", "pattern")
+    points = {}
+    for k, pair in enumerate(items(data["vertices"], "vertices")):
+        points[k] = tuple(parse_rational(x) for x in items(pair, f"vertex {k}", 2))
+    triangles = []
+    for face in items(data["triangles"], "triangles"):
+        triangles.append(tuple(natural(v, "vertex") for v in items(face, "face", 3)))
+    require(len(set(map(frozenset, triangles))) == len(triangles), "a face appears twice")
+    sheet = Sheet(points, triangles)
+
+    def text(x):
+        whole = digits(x.numerator)
+        return whole if x.denominator == 1 else f"{whole}/{digits(x.denominator)}"
+
+    rotated = sorted(min((t[k:] + t[:k]) for k in range(3)) for t in triangles)
+    lines = ["exactfold pattern 1"]
+    lines += [f"v {text(x)} {text(y)}" for x, y in points.values()]
+    lines += [f"t {a} {b} {c}" for a, b, c in rotated]
+    digest = hashlib.sha256("".join(line + "\n" for line in lines).encode()).hexdigest()
+    return sheet, digest
+
+
+def digits(n):
+    """Decimal text of an integer of any length."""
+    if n < 0:
+        return "-" + digits(-n)
+    if n < 10**4000:
+        return str(n)
+    half = n.bit_length() * 3 // 20
+    high, low = divmod(n, 10**half)
+    return digits(high) + digits(low).rjust(half, "0")
+
+
+COUNTS = "distinct with_multiplicity real nonreal true_branches"
+
+
+def check(data):
+    """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
+
+    Returns the verified claims. Passing means that the claims hold for the pattern in the file.
+    """
+    claims, evidence = data["claims"], data["evidence"]
+    keys(claims, f"interior boundary folds degrees_of_freedom sha256 {COUNTS} branches", "claims")
+    require(isinstance(evidence, dict), "the evidence is not an object")
+    sheet, digest = read_sheet(data["pattern"])
+    facts = {
+        "interior": len(sheet.interior), "boundary": len(sheet.boundary),
+        "folds": len(sheet.folds), "degrees_of_freedom": len(sheet.boundary) - 3,
+        "sha256": digest,
+    }
+    emptied = check_triangles(sheet, evidence.get("triangles"))
+    removed = len(sheet.interior) - len(emptied.interior)
+    kind = evidence.get("kind")
+    branches = items(claims["branches"], "branches")
+    if kind == "rigid":
+        keys(evidence, "kind triangles", "evidence")
+        require(len(sheet.boundary) == 3 and not emptied.interior and sheet.interior,
+                "the sheet is no triangulated triangle")
+        facts |= dict(zip(COUNTS.split(), (0, 0, 0, 0, "proved")))
+        require(not branches, "a rigid sheet has no branches")
+    elif kind == "single vertex":
+        keys(evidence, "kind triangles", "evidence")
+        require(len(emptied.interior) == 1 and len(emptied.triangles) == len(emptied.boundary) >= 5,
+                "the emptied sheet is no single vertex of degree 5 or more")
+        check_lorentzian(emptied, emptied.interior[0])
+        facts |= dict(zip(COUNTS.split(), (1, 1 << removed, 1, 0, "proved")))
+        require(not branches, "a branch of dimension two or more is not listed")
+    elif kind in ("isolated", "algebraic"):
+        require(len(sheet.boundary) == 4 and sheet.interior, "the sheet has not D = 1")
+        system, nonreal = BranchSystem(emptied), 0
+        if kind == "isolated":
+            roots = check_isolated(system, evidence)
+        else:
+            roots, nonreal = check_algebraic(system, evidence)
+        simple = all(m == 1 for _, m in roots)
+        facts |= dict(zip(COUNTS.split(), (
+            len(roots) + nonreal, 1 << len(sheet.interior), len(roots), nonreal,
+            "proved" if simple and not nonreal else "undecided")))
+        require(len(branches) == len(roots), f"{len(branches)} branches for {len(roots)} roots")
+        check_branches(sheet, system, roots, branches, removed)
+    else:
+        raise CertificateError(f"unknown kind of evidence {kind!r}")
+    for key, fact in facts.items():
+        require(type(claims[key]) is type(fact) and claims[key] == fact,
+                f"claim {key} = {claims[key]!r}, but it is {fact!r}")
+    return claims
+
+
+def check_branches(sheet, system, roots, branches, removed):
+    """Vertex signs, mountain-valley assignment and multiplicity of every branch."""
+    emptied = system.sheet
+    vertex_rows = {v: system.row(emptied.sign_of_vertex(v)) for v in emptied.interior}
+    fold_rows = {f: system.row(emptied.bend(f)) for f in emptied.folds}
+    for number, ((root, multiplicity), branch) in enumerate(zip(roots, branches)):
+        keys(branch, "vertex_signs assignment multiplicity", f"branch {number}")
+        signs = {f: root.sign(row) for f, row in fold_rows.items()}
+        close_flat(emptied, signs)
+        at = {v: root.sign(row) for v, row in vertex_rows.items()}
+        up_down = [{1: "+", -1: "-", 0: "0", None: "?"}[at.get(v, 0)] for v in sheet.interior]
+        letters = [{1: "V", -1: "M", 0: "F", None: "?"}[signs.get(f, 0)] for f in sheet.folds]
+        for key, text in (("vertex_signs", up_down), ("assignment", letters)):
+            require("?" not in text and branch[key] == "".join(text),
+                    f"branch {number}: {key} {branch[key]!r}, but it is {''.join(text)}")
+        require(type(branch["multiplicity"]) is int
+                and branch["multiplicity"] == multiplicity << removed,
+                f"branch {number}: multiplicity is {multiplicity << removed}")
+
+
+def main(arguments):
+    """Check one file and print the verdict; the exit code."""
+    if len(arguments) != 1:
+        print("usage: python checker.py CERTIFICATE.json", file=sys.stderr)
+        return 2
+    try:
+        with open(arguments[0], encoding="utf-8") as stream:
+            data = load(stream.read())
+        claims = check(data)
+    except CertificateError as error:
+        print(f"INVALID: {error}")
+        return 1
+    except (FormatError, OSError, UnicodeDecodeError) as error:
+        print(f"not a certificate: {error}", file=sys.stderr)
+        return 3
+    print(f"VALID: {claims['distinct']} branches, {claims['real']} real, "
+          f"{claims['with_multiplicity']} with multiplicity; sheet {claims['sha256']}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
