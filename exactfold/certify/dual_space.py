@@ -8,7 +8,7 @@ from fractions import Fraction
 from itertools import combinations
 from typing import TypeAlias
 
-from flint import fmpq_poly
+from flint import fmpq_poly, fmpz, nmod_poly
 
 from exactfold.errors import ExactfoldError
 from exactfold.exact.algebraic import NumberField, Vector
@@ -83,7 +83,8 @@ def dual_space(system: QuadraticSystem, root_class: RootClass, limit: int) -> Du
         raise DualSpaceError("the root class is not a zero of the system")
     basis: list[Taylor] = [{origin: fmpq_poly([1])}]
     pivots = [origin]
-    complete = False
+    gradients = [{a: c for a, c in f.items() if sum(a) == 1} for f in expansions]
+    complete = unit_rank(root_class.polynomial, gradients) == size  # a regular zero
     while len(basis) < limit and not complete:
         grown, pivots = _integrated(field, basis, expansions, size)
         complete = len(grown) == len(basis)
@@ -95,14 +96,17 @@ def dual_space(system: QuadraticSystem, root_class: RootClass, limit: int) -> Du
 
 
 def taylor_expansions(system: QuadraticSystem, root_class: RootClass) -> list[Taylor]:
-    """Coefficients at the root of the quadrics z^T S z, z = (x, 1), modulo p, by exponent.
+    """Coefficients at the root of the quadrics times p'(T)^2, modulo p, by exponent.
 
-    Value, gradient and half the Hessian: with z at the root and S the matrix of a quadric they are
-    z^T S z, 2 (S z)_i, and S_ii or 2 S_ij.
+    The factor is a unit modulo p and saves divisions. With z = (w, p') at the root and S the matrix
+    of a quadric z^T S z, value, gradient and half the Hessian are z^T S z, 2 p' (S z)_i, and
+    p'^2 S_ii or 2 p'^2 S_ij.
     """
-    field = NumberField(root_class.polynomial)
+    modulus = fmpq_poly(list(root_class.polynomial))
+    slope = modulus.derivative()
+    square = slope * slope % modulus
     size = system.size
-    point = [to_rational_poly(g) for g in root_class.coordinates] + [fmpq_poly([1])]
+    point = [to_rational_poly(w) for w in root_class.numerators] + [slope]
     units = [tuple(int(i == k) for i in range(size)) for k in range(size)]
     expansions = []
     for matrix in system.matrices:
@@ -111,14 +115,56 @@ def taylor_expansions(system: QuadraticSystem, root_class: RootClass) -> list[Ta
             for row in matrix
         ]
         value = sum((x * y for x, y in zip(point, row_values, strict=True)), fmpq_poly())
-        terms: Taylor = {(0,) * size: value % field.modulus}
+        terms: Taylor = {(0,) * size: value % modulus}
         for i, unit in enumerate(units):
-            terms[unit] = 2 * row_values[i] % field.modulus
+            terms[unit] = 2 * row_values[i] * slope % modulus
             for j in range(i, size):
-                exponent = _sum(unit, units[j])
-                terms[exponent] = fmpq_poly([matrix[i][j] * (1 if i == j else 2)])
+                terms[_sum(unit, units[j])] = square * (matrix[i][j] * (1 if i == j else 2))
         expansions.append({a: c for a, c in terms.items() if c != 0})
     return expansions
+
+
+def unit_rank(polynomial: Sequence[int], equations: Sequence[Taylor]) -> int:
+    """A proved lower bound for the rank of linear equations over Q[T]/p, at every root of p.
+
+    An equation maps an unknown to its coefficient. Elimination modulo a prime, with pivots that are
+    units modulo the prime and p: the product of the pivots is a minor up to sign, and a minor that
+    is a unit there is one in Q[T]/p. The prime (the first above 2^62 that divides no denominator
+    and not the leading coefficient of p) matters for the strength of the bound only.
+
+    >>> x, y = (1, 0), (0, 1)
+    >>> unit_rank((-2, 0, 1), [{x: fmpq_poly([0, 1]), y: fmpq_poly([2])},
+    ...                        {x: fmpq_poly([1]), y: fmpq_poly([0, 1])}])
+    1
+    """
+    denominators = [int(c.denom()) for equation in equations for c in equation.values()]
+    prime = fmpz((1 << 62) + 1)
+    while not prime.is_prime() or any(d % prime == 0 for d in (polynomial[-1], *denominators)):
+        prime += 2
+    modulus = nmod_poly(list(polynomial), int(prime))
+    rows = [
+        {a: _modulo(c, int(prime)) % modulus for a, c in equation.items()} for equation in equations
+    ]
+    rank = 0
+    while rows:
+        row = rows.pop()
+        pivot = next((a for a, c in row.items() if c != 0 and c.gcd(modulus).degree() == 0), None)
+        if pivot is None:
+            continue
+        rank += 1
+        _, inverse, _ = row[pivot].xgcd(modulus)
+        for other in rows:
+            if pivot in other:
+                factor = other.pop(pivot) * inverse % modulus
+                for a, c in row.items():
+                    if a != pivot:
+                        other[a] = (other[a] - factor * c if a in other else -factor * c) % modulus
+    return rank
+
+
+def _modulo(polynomial: fmpq_poly, prime: int) -> nmod_poly:
+    scale = pow(int(polynomial.denom()), -1, prime)
+    return nmod_poly([int(c) * scale % prime for c in polynomial.numer().coeffs()], prime)
 
 
 def _integrated(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import combinations
 
-from flint import fmpq_poly, fmpz, nmod, nmod_poly
+from flint import fmpq_poly
 
 from exactfold.certify.dual_space import (
     DualSpace,
@@ -14,14 +14,13 @@ from exactfold.certify.dual_space import (
     Taylor,
     dual_space,
     taylor_expansions,
+    unit_rank,
 )
 from exactfold.exact.univariate import to_rational_poly
 from exactfold.solve.exact_solution import RootClass
 from exactfold.system.quadratic import QuadraticSystem
 
 __all__ = ["DualSpace", "DualSpaceError", "check_complete", "check_dual_space", "dual_space"]
-
-_PRIMES_TRIED = 8
 
 
 def check_dual_space(system: QuadraticSystem, root_class: RootClass, dual: DualSpace) -> None:
@@ -86,8 +85,7 @@ def _check_isolated(
     A dual space larger than the given closed one would contain such a functional D, of lowest
     order. Its exponents are those of the space raised once; the conditions on its coefficients
     c_a are linear. They have the solutions in the space, of dimension one less than that of the
-    space (without the constant). The rank that leaves no others is proved modulo a prime: a
-    minor that is a unit modulo the prime and p is one modulo p.
+    space (without the constant); `unit_rank` proves the rank that leaves no others.
     """
     raised = {_moved(a, i, 1) for d in functionals for a in d for i in range(size)}
     unknowns = sorted(raised, key=lambda a: (sum(a), a))
@@ -95,14 +93,8 @@ def _check_isolated(
     for i in range(size):
         equations += _derivative_conditions(i, unknowns, functionals, pivots)
     wanted = len(unknowns) - (len(functionals) - 1)
-    prime = fmpz(1 << 62)
-    for _ in range(_PRIMES_TRIED):
-        prime += 1
-        while not prime.is_prime():
-            prime += 1
-        if _unit_rank(root_class.polynomial, equations, int(prime)) >= wanted:
-            return
-    raise DualSpaceError("the dual space was not proved to be complete")
+    if unit_rank(root_class.polynomial, equations) < wanted:
+        raise DualSpaceError("the dual space was not proved to be complete")
 
 
 def _derivative_conditions(
@@ -122,44 +114,6 @@ def _derivative_conditions(
         if equation:
             equations.append(equation)
     return equations
-
-
-def _unit_rank(polynomial: Sequence[int], equations: Sequence[Taylor], prime: int) -> int:
-    """Number of elimination steps with pivots that are units modulo the prime and p.
-
-    A lower bound for the rank at every root of p; 0 if the prime divides a denominator or the
-    leading coefficient of p.
-    """
-    modulus = nmod_poly(list(polynomial), prime)
-    if modulus.degree() != len(polynomial) - 1:
-        return 0
-    rows = []
-    for equation in equations:
-        if any(int(c.denom()) % prime == 0 for c in equation.values()):
-            return 0
-        rows.append(
-            {
-                a: nmod_poly([int(x) for x in c.numer().coeffs()], prime)
-                * (1 / nmod(int(c.denom()), prime))
-                % modulus
-                for a, c in equation.items()
-            }
-        )
-    rank = 0
-    while rows:
-        row = rows.pop()
-        found = next((a for a, c in row.items() if c != 0 and c.gcd(modulus).degree() == 0), None)
-        if found is None:
-            continue
-        rank += 1
-        _, inverse, _ = row[found].xgcd(modulus)
-        for other in rows:
-            if found in other:
-                factor = other.pop(found) * inverse % modulus
-                for a, c in row.items():
-                    if a != found:
-                        other[a] = (other.get(a, nmod_poly([0], prime)) - factor * c) % modulus
-    return rank
 
 
 def _moved(exponent: Exponent, i: int, step: int) -> Exponent:
