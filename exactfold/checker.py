@@ -243,11 +243,12 @@ class Sheet:
 
     def emptied(self, corners, inside):
         """The sheet with the vertices inside a 3-cycle removed."""
-        faces = [self._face(t) for t in self.triangles if not t & set(inside)]
+        faces = [self.face(t) for t in self.triangles if not t & set(inside)]
         points = {v: p for v, p in self.points.items() if v not in set(inside)}
         return Sheet(points, [*faces, tuple(corners)])
 
-    def _face(self, triangle):
+    def face(self, triangle):
+        """The triangle counter-clockwise from its smallest vertex."""
         a = min(triangle)
         b = next(v for v in triangle - {a} if self.next[a].get(v) in triangle)
         return a, b, self.next[a][b]
@@ -289,6 +290,21 @@ def check_lorentzian(sheet, vertex):
             f"the curvature form of vertex {vertex} has not inertia {expected}")
 
 
+def check_definite(sheet, inside, weights):
+    """sum_v weight_v K_v is positive definite on heights that vanish outside `inside`.
+
+    Then the K_v have no common complex zero w = a + i b but 0 there: K_v(a) = K_v(b) and
+    B_v(a, b) = 0, and if b is not 0 some K_v(b) > 0, though K_v has one positive direction only.
+    """
+    total = {}
+    for v, weight in zip(inside, weights):
+        require(weight > 0, "a multiplier is not positive")
+        check_lorentzian(sheet, v)
+        for pair, w in sheet.curvature(v).items():
+            total[pair] = total.get(pair, 0) + weight * w
+    require(inertia(matrix_of(total, inside)) == (len(inside), 0, 0), "a stress is not definite")
+
+
 def check_triangles(sheet, evidence):
     """Remove the triangulated triangles, each by a definite stress; the emptied sheet."""
     emptied = sheet
@@ -307,14 +323,7 @@ def check_triangles(sheet, evidence):
         require(within and sorted(inside) == within, f"not the vertices inside {corners}")
         weights = [parse_rational(m) for m in items(entry["multipliers"], "multipliers",
                                                     len(inside))]
-        total = {}
-        for v, weight in zip(inside, weights):
-            require(weight > 0, "a multiplier is not positive")
-            check_lorentzian(emptied, v)
-            for pair, w in emptied.curvature(v).items():
-                total[pair] = total.get(pair, 0) + weight * w
-        require(inertia(matrix_of(total, inside)) == (len(inside), 0, 0),
-                f"the stress inside {corners} is not definite")
+        check_definite(emptied, inside, weights)
         emptied = emptied.emptied(corners, inside)
     return emptied
 
@@ -682,8 +691,9 @@ class AlgebraicRoot:
     def __init__(self, root_class, low, high):
         self.root_class, self.low, self.high = root_class, low, high
         left, right = value(root_class.p, low), value(root_class.p, high)
-        require(low < high and left * right < 0, "an interval holds no sign change")
-        self.rising = right > 0
+        require(low < high and left * right < 0 or low == high and right == 0,
+                "an interval shows no root")
+        self.rising = value(root_class.slope, low) > 0 if low == high else right > 0
 
     def sign(self, row):
         """Sign of a functional at the root; 0 if it vanishes identically on the class."""
@@ -697,11 +707,12 @@ class AlgebraicRoot:
             low, high = bounds(f, self.low, self.high)
             if low > 0 or high < 0:
                 return 1 if (low > 0) == self.rising else -1
+            if self.low == self.high:
+                return 0
             middle = (self.low + self.high) / 2
             at = value(p, middle)
-            if at == 0:  # rational root: shrink around it
-                quarter = (self.high - self.low) / 4
-                self.low, self.high = middle - quarter, middle + quarter
+            if at == 0:
+                self.low = self.high = middle
             elif (at > 0) == self.rising:
                 self.high = middle
             else:
@@ -709,9 +720,28 @@ class AlgebraicRoot:
         return None
 
 
+def check_finite(sheet, multipliers):
+    """The branch system has finitely many zeros, so that multiplicities add up to 2^n exactly.
+
+    A definite stress of the sheet (its notch closed by a triangle if the boundary is not convex)
+    leaves no common zero of the curvature forms on heights that vanish on the outer boundary:
+    these fill a hyperplane (a quadric cone's section) that every curve of zeros would meet.
+    """
+    corners = sheet.boundary
+    for k, v in enumerate(corners):
+        before, after = corners[k - 1], corners[(k + 1) % len(corners)]
+        if turn(*(sheet.points[u] for u in (before, v, after))) < 0:
+            faces = [sheet.face(t) for t in sheet.triangles]
+            sheet = Sheet(sheet.points, [*faces, (before, after, v)])
+            break
+    weights = [parse_rational(m) for m in items(multipliers, "multipliers", len(sheet.interior))]
+    check_definite(sheet, sheet.interior, weights)
+
+
 def check_algebraic(system, evidence):
     """All zeros as roots of polynomials: (real roots with multiplicities, non-real ones)."""
-    keys(evidence, "kind triangles separating classes roots", "evidence")
+    keys(evidence, "kind triangles multipliers separating classes roots", "evidence")
+    check_finite(system.sheet, evidence["multipliers"])
     separating = [natural_or_negative(s) for s in items(evidence["separating"], "separating",
                                                         system.size)]
     classes = [RootClass(system, separating, entry)
@@ -730,7 +760,8 @@ def check_algebraic(system, evidence):
     nonreal = 0
     for root_class, ends in zip(classes, intervals):
         ends.sort()
-        require(all(a[1] <= b[0] for a, b in zip(ends, ends[1:])), "two intervals overlap")
+        require(all(a[1] <= b[0] and a != b for a, b in zip(ends, ends[1:])),
+                "two intervals overlap")
         degree = len(root_class.p) - 1
         if len(ends) < degree:
             require(len(ends) == count_real_roots(root_class.p), "a real root is missing")

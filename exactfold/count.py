@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from exactfold.branches.classify import Undecided, classify
 from exactfold.branches.result import BranchCount
-from exactfold.branches.roots import BoxRoot, Root
+from exactfold.branches.roots import AlgebraicRoot, BoxRoot, Root
+from exactfold.certify.algebraic import algebraic_evidence, prove_algebraic
 from exactfold.certify.certificate import box_evidence, triangle_evidence
 from exactfold.certify.isolation import Isolation, isolate
 from exactfold.certify.rigid_triangles import RigidTriangle, certify_rigid_triangles
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.solve.candidates import Candidates
+from exactfold.solve.groebner import groebner
 from exactfold.solve.homotopy import homotopy
 from exactfold.solve.popping import popping
 from exactfold.system.branch_system import BranchSystem, Chart
@@ -110,38 +112,111 @@ def _lines(
     seed: int,
     progress: Progress | None,
 ) -> BranchCount:
-    """D = 1: isolated lines."""
+    """D = 1: branches are isolated lines, zeros of the emptied pattern's system."""
     emptied, labels = pattern.emptied()
     chart = BranchSystem(emptied).chart
+    task = _Task(pattern, triangles, chart, labels)
+    if method == "groebner":
+        return _exactly(task, progress)
     used = "popping" if method == "auto" else method
     candidates = _solve(chart, used, seed, progress)
+    result = _isolated(task, used, candidates, progress)
+    if result.status is PROVED or method != "auto":
+        return result
+    size = chart.system.size
+    if size > GROEBNER_LIMIT:
+        return replace(
+            result, reason=f"{result.reason}; the exact engine is tried up to {GROEBNER_LIMIT} "
+            f"unknowns, here are {size} (use --method groebner to insist)",
+        )
+    return _exactly(task, progress)
+
+
+@dataclass(frozen=True)
+class _Task:
+    """What every method works on: the pattern, and the chart of the emptied pattern."""
+
+    pattern: CreasePattern
+    triangles: tuple[RigidTriangle, ...]
+    chart: Chart
+    labels: tuple[int, ...]
+
+
+def _isolated(
+    task: _Task, method: str, candidates: Candidates, progress: Progress | None
+) -> BranchCount:
+    """Boxes around candidates, completeness by refined Bezout, signs on the boxes."""
+    chart, pattern = task.chart, task.pattern
     isolation = isolate(chart.system, candidates, progress=_stage(progress, "certifying"))
-    settings = {**candidates.settings, "lost": len(candidates.lost)}
     roots: list[tuple[Root, int]] = [(BoxRoot(box), 1) for box in isolation.boxes if box.is_real]
-    branches, undecided = classify(pattern, chart, labels, roots)
+    branches, undecided = classify(pattern, chart, task.labels, roots)
     base = BranchCount(
-        pattern, UNDECIDED, used, "", branches=tuple(branches), settings=settings,
+        pattern, UNDECIDED, method, "", branches=tuple(branches),
+        settings={**candidates.settings, "lost": len(candidates.lost)},
         open_questions=_open(isolation, undecided, candidates),
     )
+    total = chart.system.bezout_number
     if isolation.complete is not PROVED:
-        found, total = len(isolation.boxes), chart.system.bezout_number
         return replace(
-            base, reason=f"{found} of {total} solutions isolated: the others are multiple, at "
-            "infinity or were not found",
+            base, reason=f"{len(isolation.boxes)} of {total} solutions isolated: the others are "
+            "multiple, at infinity or were not found",
         )
     if undecided:
         return replace(
-            base, reason=f"all solutions isolated, but signs of {len(undecided)} are undecided"
+            base, reason=f"all {total} solutions isolated, but signs are undecided on "
+            f"{len(undecided)} of them",
         )
     boxes = [branch.root.box for branch in branches if isinstance(branch.root, BoxRoot)]
     return replace(
-        base, status=PROVED, reason="all solutions isolated; refined Bezout: there are no others",
-        distinct=isolation.real, with_multiplicity=chart.system.bezout_number << pattern.Vt,
+        base, status=PROVED,
+        reason=f"{total} solutions isolated; by refined Bezout there are no others",
+        distinct=isolation.real + isolation.nonreal, with_multiplicity=total << pattern.Vt,
         real=isolation.real, nonreal=isolation.nonreal, true_branches=PROVED,
         evidence={
             "kind": "isolated",
-            "triangles": triangle_evidence(triangles),
+            "triangles": triangle_evidence(task.triangles),
             "roots": box_evidence(boxes),
+        },
+    )
+
+
+def _exactly(task: _Task, progress: Progress | None) -> BranchCount:
+    """Groebner basis; simple roots are then isolated in boxes, multiple ones proved as they are."""
+    chart, pattern = task.chart, task.pattern
+    report = _stage(progress, "computing a Groebner basis")
+    if report is not None:
+        report(0, 1)
+    solution = groebner(chart.system)
+    if report is not None:
+        report(1, 1)
+    total = chart.system.bezout_number
+    if solution.dimension is None:
+        return BranchCount(
+            pattern, UNDECIDED, "groebner", "the branch system has infinitely many solutions"
+        )
+    if solution.distinct == total:
+        return _isolated(task, "groebner", solution.candidates, progress)
+    proof = prove_algebraic(chart, solution)
+    given: list[tuple[Root, int]] = [(AlgebraicRoot(c, k), m) for c, k, m in proof.roots]
+    branches, undecided = classify(pattern, chart, task.labels, given)
+    base = BranchCount(
+        pattern, UNDECIDED, "groebner", proof.reason, branches=tuple(branches),
+        settings=dict(solution.settings), open_questions=_signs(undecided),
+    )
+    if proof.complete is not PROVED or undecided:
+        return base
+    roots = [
+        (branch.root.root_class, branch.root.index)
+        for branch in branches if isinstance(branch.root, AlgebraicRoot)
+    ]
+    return replace(
+        base, status=PROVED,
+        distinct=proof.distinct, with_multiplicity=total << pattern.Vt,
+        real=len(roots), nonreal=proof.distinct - len(roots),
+        evidence={
+            "kind": "algebraic",
+            "triangles": triangle_evidence(task.triangles),
+            **algebraic_evidence(proof, roots),
         },
     )
 
@@ -166,6 +241,8 @@ def _open(
     for failure in isolation.failures:
         near = ", ".join(f"{x.real:.6g}" for x in failure.point)
         questions.append(f"no box around the candidate ({near}): {failure.reason}")
-    for item in undecided:
-        questions.append("sign not decided: " + ", ".join(item.what))
-    return tuple(questions)
+    return (*questions, *_signs(undecided))
+
+
+def _signs(undecided: list[Undecided]) -> tuple[str, ...]:
+    return tuple("sign not decided: " + ", ".join(item.what) for item in undecided)

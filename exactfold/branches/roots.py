@@ -9,6 +9,8 @@ from typing import Protocol
 
 from exactfold.branches.functionals import Row
 from exactfold.certify.box import IsolatingBox
+from exactfold.exact.univariate import Interval
+from exactfold.solve.exact_solution import RootClass
 
 
 class Root(Protocol):
@@ -54,3 +56,36 @@ class BoxRoot:
         if value < -reach:
             return -1
         return 0 if value == 0 and reach == 0 else None
+
+
+@dataclass(frozen=True)
+class AlgebraicRoot:
+    """The zero of a root class that belongs to the `index`-th real root of its polynomial."""
+
+    root_class: RootClass
+    index: int
+
+    def interval(self, bits: int) -> Interval:
+        """Bounds of the parameter T, no wider than 2^-bits."""
+        return self.root_class.real_roots(bits)[self.index]
+
+    def enclose(self, row: Sequence[Fraction | int]) -> tuple[Fraction, Fraction]:
+        """Bounds of the value, no wider than 2^-64 times the largest coefficient or 1."""
+        scale = max((abs(Fraction(c)) for c in row), default=Fraction(0)) or Fraction(1)
+        bits = 80
+        while True:
+            found = self.root_class.value_on(row, self.interval(bits))
+            if found is not None and (found[1] - found[0]) * (1 << 64) <= scale:
+                return found
+            bits *= 2
+
+    def sign(self, row: Row) -> int | None:
+        """Sign of the value: 0 exactly if it vanishes modulo the irreducible polynomial."""
+        if self.root_class.vanishes(row):
+            return 0
+        bits = 40
+        while True:
+            found = self.root_class.value_on(row, self.interval(bits))
+            if found is not None and (found[0] > 0 or found[1] < 0):
+                return 1 if found[0] > 0 else -1
+            bits *= 2

@@ -247,6 +247,29 @@ class CreasePattern:
         """Whether no boundary angle exceeds pi."""
         return -1 not in self.boundary_turns
 
+    @property
+    def reflex_corner(self) -> int | None:
+        """The first boundary vertex with an angle beyond pi, or None for a convex boundary."""
+        turns = zip(self.boundary, self.boundary_turns, strict=True)
+        return next((v for v, turn in turns if turn < 0), None)
+
+    def with_notch_closed(self) -> CreasePattern:
+        """The pattern with a triangle attached at its reflex corner, which becomes interior.
+
+        The pattern itself if its boundary is convex. Raises an `OverlapError` if the triangle does
+        not fit, which cannot happen for four boundary vertices.
+
+        >>> dart = CreasePattern([(0, 0), (4, -4), (1, 0), (4, 4)], [(0, 1, 2), (0, 2, 3)])
+        >>> dart.with_notch_closed().boundary
+        (0, 1, 3)
+        """
+        corner = self.reflex_corner
+        if corner is None:
+            return self
+        k = self.boundary.index(corner)
+        before, after = self.boundary[k - 1], self.boundary[(k + 1) % self.Ve]
+        return CreasePattern(self.vertices, [*self.triangles, (before, after, corner)])
+
     def snapped(self, denominator: int) -> tuple[CreasePattern, Fraction]:
         """The pattern on the grid of multiples of 1/denominator, and the largest coordinate move.
 

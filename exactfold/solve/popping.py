@@ -106,12 +106,9 @@ class _Problem:
         """Unknowns: interior heights; boundary heights (1, 0, 0, 0), or 0 with a reflex corner."""
         sheet, movable = pattern, pattern.interior
         unit: int | None = next(v for v, c in saddle_functional(pattern).items() if c)
-        if not pattern.is_convex:
-            k = pattern.boundary_turns.index(-1)
-            corner = pattern.boundary[k]
-            before, after = pattern.boundary[k - 1], pattern.boundary[(k + 1) % 4]
-            sheet = CreasePattern(pattern.vertices, [*pattern.triangles, (before, after, corner)])
-            movable, unit = (*movable, corner), None
+        corner = pattern.reflex_corner
+        if corner is not None:
+            sheet, movable, unit = pattern.with_notch_closed(), (*movable, corner), None
         n = len(movable)
         position = {v: k for k, v in enumerate(movable)}
         if unit is not None:
