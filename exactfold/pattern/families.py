@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Final
 
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.exact.numbers import RationalLike
+from exactfold.exact.numbers import RationalLike, as_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 from exactfold.pattern.validate import orientation
 
@@ -137,7 +137,7 @@ def flat_octahedron_in_square() -> CreasePattern:
     return CreasePattern([*_CORNERS, *points], [*between, *octahedron])
 
 
-def hypar(rings: int = 1, twist: Fraction | int = Fraction(1, 12)) -> CreasePattern:
+def hypar(rings: int = 1, twist: RationalLike | None = None) -> CreasePattern:
     """Concentric squares, triangulated: the pleated hyperbolic paraboloid of folklore.
 
     Square k = 0 .. rings has its corners 4k + j, j = 0 .. 3; square 0 is the boundary, and the
@@ -146,7 +146,8 @@ def hypar(rings: int = 1, twist: Fraction | int = Fraction(1, 12)) -> CreasePatt
     is even, else from 1 to 3. Vi = 4 rings.
 
     `twist` = t turns square k by the rational rotation ((1 - t^2) / (1 + t^2), 2t / (1 + t^2)) if k
-    is odd. Without a twist the creases along one diagonal form a straight path from corner to
+    is odd; the default 1 / (6 rings + 6) moves a corner by about a third of a step. Without a twist
+    (0) the creases along one diagonal form a straight path from corner to
     corner, and the sheet has branches with flat vertices that fold along that path only.
 
     Raises `UsageError` for rings < 1 and `OverlapError` or `MixedOrientationError` for a twist too
@@ -157,7 +158,7 @@ def hypar(rings: int = 1, twist: Fraction | int = Fraction(1, 12)) -> CreasePatt
     """
     if rings < 1:
         raise UsageError(f"a hypar needs at least one ring, not {rings}")
-    t = Fraction(twist)
+    t = Fraction(1, 6 * rings + 6) if twist is None else as_rational(twist)
     cosine, sine = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
     points: list[Point] = []
     for k in range(rings + 1):
