@@ -1,0 +1,162 @@
+"""Signs, Sturm counts and root isolation against polynomials with known roots."""
+
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from exactfold.exact.univariate import (
+    divide_intervals,
+    evaluate_on_interval,
+    isolate_real_roots,
+    sign_at,
+    sturm_count,
+    sturm_sequence,
+)
+
+rationals = st.fractions(min_value=-20, max_value=20, max_denominator=30)
+root_sets = st.sets(rationals, min_size=1, max_size=5).map(sorted)
+
+
+def product(*factors):
+    result = [1]
+    for factor in factors:
+        grown = [0] * (len(result) + len(factor) - 1)
+        for i, a in enumerate(result):
+            for j, b in enumerate(factor):
+                grown[i + j] += a * b
+        result = grown
+    return tuple(result)
+
+
+def with_roots(roots):
+    return product(*((-r.numerator, r.denominator) for r in roots))
+
+
+def value(polynomial, x):
+    return sum((c * x**k for k, c in enumerate(polynomial)), Fraction(0))
+
+
+def real_roots_by_bisection(polynomial, lower, upper):
+    """Count of sign changes of a fine grid; a lower bound that is exact for separated roots."""
+    grid = [lower + (upper - lower) * k / 4096 for k in range(4097)]
+    signs = [s for x in grid if (s := sign_at(polynomial, x))]
+    return sum(a != b for a, b in pairwise(signs))
+
+
+@given(st.lists(st.integers(-50, 50), min_size=1, max_size=6), rationals)
+def test_sign_is_the_sign_of_the_value(polynomial, x):
+    exact = value(polynomial, x)
+    assert sign_at(polynomial, x) == (exact > 0) - (exact < 0)
+
+
+@given(root_sets)
+def test_sturm_counts_all_rational_roots(roots):
+    polynomial = with_roots(roots)
+    assert sturm_count(polynomial) == len(roots)
+    assert sturm_count(polynomial, None, roots[0]) == 1
+    assert sturm_count(polynomial, roots[0], None) == len(roots) - 1
+    assert sturm_count(polynomial, roots[0], roots[-1]) == len(roots) - 1
+
+
+@given(root_sets, st.lists(st.integers(1, 3), min_size=5, max_size=5))
+def test_sturm_counts_multiple_roots_once(roots, powers):
+    polynomial = product(*(with_roots([r] * m) for r, m in zip(roots, powers, strict=False)))
+    assert sturm_count(polynomial) == len(roots)
+
+
+def test_sturm_ignores_nonreal_roots():
+    assert sturm_count((1, 0, 1)) == 0
+    assert sturm_count(product((1, 0, 1), (-2, 0, 1), (5, 1, 1))) == 2
+
+
+def test_sturm_agrees_with_sign_changes_on_a_grid():
+    chebyshev = (1, 0, -32, 0, 160, 0, -256, 0, 128)  # cos(8 t) as a polynomial in cos t
+    assert sturm_count(chebyshev) == 8
+    assert sturm_count(chebyshev, Fraction(-1), Fraction(1)) == 8
+    assert real_roots_by_bisection(chebyshev, Fraction(-1), Fraction(1)) == 8
+
+
+def test_sturm_sequence_of_a_constant():
+    assert sturm_sequence((7,)) == [(1,)]
+    assert sturm_count((7,)) == 0
+
+
+@settings(max_examples=60)
+@given(root_sets, st.integers(0, 80))
+def test_isolated_rational_roots_are_enclosed_narrowly(roots, bits):
+    found = isolate_real_roots(with_roots(roots), bits)
+    assert len(found) == len(roots)
+    for (low, high), root in zip(found, roots, strict=True):
+        assert low <= root <= high
+        assert (high - low) * 2**bits <= 1
+    assert all(a[1] < b[0] for a, b in pairwise(found))
+
+
+@pytest.mark.parametrize("bits", [0, 3, 64, 400])
+def test_isolated_irrational_roots(bits):
+    polynomial = product((-2, 0, 1), (-3, 0, 1), (1, 0, 1), (-1, 2))
+    found = isolate_real_roots(polynomial, bits)
+    assert len(found) == 5 == sturm_count(polynomial)
+    for low, high in found:
+        assert high - low <= Fraction(1, 2**bits)
+        assert sturm_count(polynomial, low, high) == 1 or low == high
+    assert Fraction(1, 2) in [low for low, _ in found] or found[2][0] < Fraction(1, 2) < found[2][1]
+
+
+def test_isolation_of_close_roots():
+    tiny = Fraction(1, 10**40)
+    polynomial = with_roots([Fraction(1, 3), Fraction(1, 3) + tiny])
+    (a, b), (c, d) = isolate_real_roots(polynomial, 4)
+    assert a <= Fraction(1, 3) <= b < c <= Fraction(1, 3) + tiny <= d
+
+
+def test_isolation_of_very_large_roots():
+    [(low, high)] = isolate_real_roots((-(10**60), 0, 0, 1), 10)
+    assert low <= 10**20 <= high
+
+
+def test_isolation_without_real_roots():
+    assert isolate_real_roots((1, 0, 1), 20) == []
+    assert isolate_real_roots((5,), 20) == []
+
+
+def test_isolation_refuses_multiple_roots_error():
+    with pytest.raises(ValueError, match="squarefree"):
+        isolate_real_roots((1, 2, 1), 10)
+
+
+def test_isolation_of_zero_error():
+    with pytest.raises(ValueError, match="zero polynomial"):
+        isolate_real_roots((0,), 10)
+
+
+@given(
+    st.lists(rationals, max_size=5),
+    rationals,
+    st.fractions(min_value=0, max_value=3),
+    st.fractions(min_value=0, max_value=1),
+)
+def test_interval_value_contains_every_value(polynomial, low, width, position):
+    bounds = evaluate_on_interval(polynomial, (low, low + width))
+    exact = value(polynomial, low + position * width)
+    assert bounds[0] <= exact <= bounds[1]
+    point = evaluate_on_interval(polynomial, (low, low))
+    assert point == (value(polynomial, low),) * 2
+
+
+def test_interval_value_is_narrow():
+    low, high = evaluate_on_interval((1, -3, 2), (Fraction(1), Fraction(1) + Fraction(1, 2**50)))
+    assert high - low < Fraction(16, 2**50)
+
+
+@given(rationals, st.fractions(0, 2), rationals, st.fractions(0, 2), st.fractions(0, 1))
+def test_interval_quotient(a, width, b, depth, position):
+    quotient = divide_intervals((a, a + width), (b, b + depth))
+    if b <= 0 <= b + depth:
+        assert quotient is None
+    else:
+        exact = (a + position * width) / (b + position * depth)
+        assert quotient[0] <= exact <= quotient[1]
