@@ -1,0 +1,84 @@
+"""exactfold: proven branch counts of triangulated origami near the unfolded state.
+
+Given a flat triangulated sheet with rational coordinates, `count_branches` says in how many ways it
+starts to fold, proves it, and tells the ways apart by vertex signs and mountain-valley assignments.
+
+>>> import exactfold
+>>> result = exactfold.count_branches(exactfold.read_fold(exactfold.example_path("two-vertex")))
+>>> result
+<BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary vertices>>
+>>> [branch.sign_text for branch in result.branches]
+['--', '-+', '+-', '++']
+"""
+
+from exactfold.branches.branch import Branch
+from exactfold.branches.claims import certificate
+from exactfold.branches.result import BranchCount
+from exactfold.certify.certificate import write_certificate
+from exactfold.certify.interval_newton import interval_newton
+from exactfold.certify.isolation import isolate
+from exactfold.certify.krawczyk import krawczyk
+from exactfold.count import METHODS, count_branches
+from exactfold.data import EXAMPLES, example_path
+from exactfold.errors import ExactfoldError, InputError
+from exactfold.exact.forms import QuadraticForm
+from exactfold.exact.numbers import as_rational
+from exactfold.pattern import families
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.delaunay import delaunay
+from exactfold.pattern.fold import FoldFile, load_fold, read_fold
+from exactfold.pattern.fold_writing import write_fold
+from exactfold.pattern.random_squares import random_square
+from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stress
+from exactfold.rigidity.definite_stress import definite_stress
+from exactfold.rigidity.facts import pattern_facts
+from exactfold.rigidity.framework import rigidity_matrix, self_stresses
+from exactfold.solve.groebner import groebner
+from exactfold.solve.homotopy import homotopy
+from exactfold.solve.popping import popping
+from exactfold.system.branch_system import BranchSystem, Chart
+from exactfold.system.quadratic import QuadraticSystem
+from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+
+__all__ = [
+    "EXAMPLES",
+    "METHODS",
+    "PROVED",
+    "REFUTED",
+    "UNDECIDED",
+    "Branch",
+    "BranchCount",
+    "BranchSystem",
+    "Chart",
+    "CreasePattern",
+    "ExactfoldError",
+    "FoldFile",
+    "InputError",
+    "QuadraticForm",
+    "QuadraticSystem",
+    "Verdict",
+    "as_rational",
+    "certificate",
+    "count_branches",
+    "curvature_form",
+    "definite_stress",
+    "delaunay",
+    "example_path",
+    "families",
+    "groebner",
+    "homotopy",
+    "interval_newton",
+    "isolate",
+    "krawczyk",
+    "load_fold",
+    "pattern_facts",
+    "popping",
+    "random_square",
+    "read_fold",
+    "rigidity_matrix",
+    "self_stresses",
+    "stress_form",
+    "wheel_stress",
+    "write_certificate",
+    "write_fold",
+]

@@ -992,9 +992,15 @@ def main(arguments):
     except (FormatError, OSError, UnicodeDecodeError) as error:
         print(f"not a certificate: {error}", file=sys.stderr)
         return 3
-    print(f"VALID: {claims['distinct']} branches, {claims['real']} real, "
-          f"{claims['with_multiplicity']} with multiplicity; sheet {claims['sha256']}")
+    print(summary(claims))
     return 0
+
+
+def summary(claims):
+    """One line for verified claims."""
+    return (f"VALID: {claims['distinct']} branches ({claims['with_multiplicity']} with "
+            f"multiplicity, {claims['real']} real) of the sheet with {claims['interior']} interior "
+            f"and {claims['boundary']} boundary vertices, sha256 {claims['sha256']}")
 
 
 if __name__ == "__main__":

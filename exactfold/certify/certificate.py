@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.rigid_triangles import RigidTriangle
-from exactfold.errors import UnwritableFileError
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.fold_writing import write_text
 
 FORMAT = "exactfold certificate"
 VERSION = 1
@@ -72,25 +70,6 @@ def box_evidence(boxes: Sequence[IsolatingBox]) -> list[Document]:
     ]
 
 
-def write_json(path: str | os.PathLike[str], value: Mapping[str, Any]) -> None:
-    """Write a JSON file whole or not at all; raises `UnwritableFileError`."""
-    target = Path(path)
-    try:
-        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
-    except OSError as error:
-        raise UnwritableFileError(f"cannot write {target}: {error.strerror}") from None
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            json.dump(value, stream, separators=(",", ":"))
-            stream.write("\n")
-        os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, target)
-    except OSError as error:
-        Path(temporary).unlink(missing_ok=True)
-        raise UnwritableFileError(f"cannot write {target}: {error.strerror}") from None
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def write_certificate(path: str | os.PathLike[str], certificate: Document) -> None:
+    """Write a certificate whole or not at all; raises `UnwritableFileError`."""
+    write_text(path, json.dumps(certificate, separators=(",", ":")) + "\n")

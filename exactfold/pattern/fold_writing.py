@@ -76,13 +76,22 @@ def write_fold(
     assignment: Mapping[Edge, str] | None = None,
     title: str | None = None,
 ) -> None:
-    """Write `fold_document(pattern, assignment, title)`, whole or not at all.
+    """Write `fold_text(pattern, assignment, title)`, whole or not at all.
 
     Raises what `fold_document` raises, and `UnwritableFileError`.
     """
+    write_text(path, fold_text(pattern, assignment, title))
+
+
+def fold_text(
+    pattern: CreasePattern,
+    assignment: Mapping[Edge, str] | None = None,
+    title: str | None = None,
+) -> str:
+    """`fold_document(pattern, assignment, title)` as JSON text, one vertex, edge or face a line."""
     document = fold_document(pattern, assignment, title)
     lines = [f"  {json.dumps(key)}: {_value(value)}" for key, value in document.items()]
-    write_text(path, "{\n" + ",\n".join(lines) + "\n}\n")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:

@@ -1,0 +1,222 @@
+"""The command line: a thin shell over the public API."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from enum import Enum
+from functools import wraps
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated, Any, ParamSpec, TypeVar
+
+import typer
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from exactfold import checker, report
+from exactfold.branches.claims import certificate as certificate_of
+from exactfold.certify.certificate import write_certificate
+from exactfold.count import METHODS, count_branches
+from exactfold.errors import ExactfoldError, InputError, UsageError
+from exactfold.pattern.fold import load_fold
+from exactfold.pattern.fold_writing import fold_text, write_text
+from exactfold.pattern.random_squares import sample_random_square
+from exactfold.rigidity.facts import pattern_facts
+from exactfold.verdict import PROVED, REFUTED, UNDECIDED
+
+EXIT = {PROVED: 0, REFUTED: 1, UNDECIDED: 4}
+USAGE, BAD_INPUT = 2, 3
+
+app = typer.Typer(
+    help="Proven branch counts of triangulated origami near the unfolded state.",
+    epilog="Exit codes: 0 proved or valid, 1 refuted or certificate invalid, 2 wrong usage, "
+    "3 bad input, 4 undecided.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+)
+Method = Enum("Method", {name: name for name in METHODS}, type=str)  # type: ignore[misc]
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def _reported(command: Callable[P, R]) -> Callable[P, R]:
+    """Turn the package's errors into one line on stderr and an exit code."""
+
+    @wraps(command)
+    def wrapped(*args: P.args, **kwargs: P.kwargs) -> R:
+        try:
+            return command(*args, **kwargs)
+        except ExactfoldError as error:
+            print(f"exactfold: {type(error).__name__}: {error}", file=sys.stderr)
+            code = BAD_INPUT if isinstance(error, InputError) else USAGE
+            raise typer.Exit(code) from None
+
+    return wrapped
+
+
+class _Bar:
+    """Progress on stderr, shown once the work has taken a second; silent off a terminal."""
+
+    def __init__(self) -> None:
+        self.console = report.console(stderr=True)
+        self.start = time.monotonic()
+        self.progress: Progress | None = None
+        self.task: Any = None
+        self.stage = ""
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        if not self.console.is_terminal or time.monotonic() - self.start < 1.0:
+            return
+        if self.progress is None:
+            self.progress = Progress(
+                TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+                TimeRemainingColumn(), console=self.console, transient=True,
+            )
+            self.progress.start()
+        if stage != self.stage:
+            if self.task is not None:
+                self.progress.remove_task(self.task)
+            self.stage, self.task = stage, self.progress.add_task(stage, total=total)
+        self.progress.update(self.task, completed=done, total=total)
+
+    def close(self) -> None:
+        if self.progress is not None:
+            self.progress.stop()
+
+
+Pattern = Annotated[Path, typer.Argument(help="A FOLD file with triangular faces.")]
+Snap = Annotated[
+    int | None,
+    typer.Option(min=1, metavar="DEN", help="Round coordinates to multiples of 1/DEN first."),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+
+
+@app.command()
+@_reported
+def count(
+    pattern: Pattern,
+    method: Annotated[
+        Method, typer.Option(help="How candidates are found; the proof does not depend on it.")
+    ] = Method.auto,  # type: ignore[attr-defined]
+    certificate: Annotated[
+        Path | None, typer.Option(metavar="OUT.json", help="Write a certificate if proved.")
+    ] = None,
+    as_json: Json = False,
+    snap: Snap = None,
+    seed: Annotated[int, typer.Option(help="Seed of the complex homotopy.")] = 0,
+    everything: Annotated[bool, typer.Option("--all", help="List every branch.")] = False,
+) -> None:
+    """Count the branches of a pattern at the unfolded state, with proof."""
+    file = load_fold(pattern, snap)
+    bar = _Bar()
+    try:
+        result = count_branches(file.pattern, method=method.value, seed=seed, progress=bar)
+    finally:
+        bar.close()
+    result = replace(result, snapped=file.snapped)
+    written = None
+    if certificate is not None and result.status is PROVED:
+        write_certificate(certificate, certificate_of(result))
+        written = str(certificate)
+    elif certificate is not None:
+        print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
+    if as_json:
+        print(json.dumps(result.to_dict(written)))
+    else:
+        report.console().print(report.count_report(result, written, everything=everything))
+    raise typer.Exit(EXIT[result.status])
+
+
+@app.command()
+@_reported
+def check(
+    certificate: Annotated[Path, typer.Argument(help="A certificate written by `count`.")],
+    as_json: Json = False,
+) -> None:
+    """Verify every claim of a certificate with code that trusts nothing."""
+    data = _load_certificate(certificate)
+    try:
+        claims: dict[str, Any] | None = checker.check(data)
+        reason = "every claim holds"
+    except checker.CertificateError as error:
+        claims, reason = None, str(error)
+    if as_json:
+        short = {k: v for k, v in (claims or {}).items() if k != "branches"}
+        print(json.dumps({"valid": claims is not None, "reason": reason, "claims": short}))
+    elif claims is None:
+        print(f"INVALID: {reason}")
+    else:
+        print(checker.summary(claims))
+    raise typer.Exit(0 if claims is not None else 1)
+
+
+def _load_certificate(path: Path) -> Any:
+    from exactfold.errors import CertificateFormatError, UnreadableFileError
+
+    try:
+        return checker.load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
+    except (checker.FormatError, UnicodeDecodeError) as error:
+        raise CertificateFormatError(f"{path}: {error}") from None
+
+
+@app.command("random")
+@_reported
+def random_(
+    interior: Annotated[int, typer.Option(min=1, metavar="N", help="Number of interior vertices.")],
+    seed: Annotated[int, typer.Option(metavar="S", help="Seed; the same seed, the same pattern.")],
+    denominator: Annotated[
+        int, typer.Option(min=2, metavar="D", help="Coordinates are multiples of 1/D.")
+    ] = 1024,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE.fold", help="Default: stdout.")
+    ] = None,
+) -> None:
+    """Sample the paper's random squares: a Delaunay triangulation of random points."""
+    sample = sample_random_square(interior, seed, denominator)
+    title = f"random square, {interior} interior vertices, seed {seed}, denominator {denominator}"
+    text = fold_text(sample.pattern, title=title)
+    if output is None:
+        sys.stdout.write(text)
+    else:
+        write_text(output, text)
+
+
+@app.command()
+@_reported
+def info(pattern: Pattern, as_json: Json = False, snap: Snap = None) -> None:
+    """Report what is exactly known of a pattern without solving for its branches."""
+    file = load_fold(pattern, snap)
+    facts = pattern_facts(file.pattern)
+    if as_json:
+        print(json.dumps({**facts.to_dict(), "expected": report.expectation(facts)}))
+    else:
+        report.console().print(report.info_report(facts))
+
+
+def _version(value: bool) -> None:
+    if value:
+        print(f"exactfold {version('exactfold')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    show: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """Proven branch counts of triangulated origami near the unfolded state."""
+
+
+def main() -> None:
+    """Entry point of the `exactfold` command."""
+    with suppress(BrokenPipeError):
+        app()

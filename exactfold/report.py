@@ -1,0 +1,127 @@
+"""Tables for people: counts, facts and certificates, with rich."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.console import Console, Group
+from rich.table import Table
+from rich.text import Text
+
+from exactfold.branches.result import BranchCount
+from exactfold.rigidity.facts import PatternFacts
+from exactfold.verdict import PROVED, UNDECIDED
+
+SHOWN = 32
+"""Branches and open questions listed unless all are asked for."""
+
+
+def _facts_table(rows: list[tuple[str, str]]) -> Table:
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_column(style="bold")
+    table.add_column(overflow="fold")
+    for name, value in rows:
+        table.add_row(name, value)
+    return table
+
+
+def count_report(result: BranchCount, certificate: str | None, *, everything: bool) -> Group:
+    """The summary and the table of branches printed by `exactfold count`."""
+    pattern = result.pattern
+    rows = [
+        ("pattern", f"{pattern.Vi} interior and {pattern.Ve} boundary vertices, "
+         f"{len(pattern.folds)} folds, D = {pattern.degrees_of_freedom}"),
+    ]
+    if pattern.Vt:
+        rows.append(("rigid inside", f"{pattern.Vt} vertices in triangulated triangles stay flat"))
+    if result.snapped:
+        rows.append(("snapped", f"coordinates moved by up to {float(result.snapped):.3g}"))
+    rows.append(("status", f"{str(result.status).upper()} ({result.reason})"))
+    if result.status is PROVED:
+        rows += [
+            ("branches", f"{result.distinct} distinct, {result.with_multiplicity} with "
+             f"multiplicity; {result.real} real, {result.nonreal} not real"),
+            ("true branches", str(result.true_branches)),
+        ]
+    if result.branches:
+        each = sorted(set(result.sign_vectors.values()))
+        per = f"{each[0]}" if len(each) == 1 else f"{each[0]} to {each[-1]}"
+        rows.append(("sign vectors", f"{len(result.sign_vectors)} pairs of opposite ones, {per} "
+                     f"branch{'' if per == '1' else 'es'} each"))
+        rows.append(("shared folds", f"{result.repeated_assignments} branches share their "
+                     "mountain-valley assignment with another"))
+    rows.append(("method", f"{result.method}, {result.seconds:.2f} s"))
+    if certificate:
+        rows.append(("certificate", certificate))
+    parts: list[Any] = [_facts_table(rows)]
+    if result.branches:
+        parts += ["", *_branch_table(result, everything)]
+    if result.open_questions:
+        limit = len(result.open_questions) if everything else SHOWN
+        parts += ["", Text("Open", style="bold")]
+        parts += [Text(f"- {question}") for question in result.open_questions[:limit]]
+        parts += _more(len(result.open_questions) - limit)
+    return Group(*parts)
+
+
+def _branch_table(result: BranchCount, everything: bool) -> list[Any]:
+    limit = len(result.branches) if everything else SHOWN
+    table = Table(box=None, pad_edge=False)
+    table.add_column("vertex signs", no_wrap=True)
+    table.add_column("mountain-valley", overflow="fold")
+    table.add_column("multiplicity", justify="right")
+    for branch in result.branches[:limit]:
+        table.add_row(branch.sign_text, branch.assignment_text, str(branch.multiplicity))
+    return [table, *_more(len(result.branches) - limit)]
+
+
+def _more(count: int) -> list[Text]:
+    return [Text(f"... and {count} more (--all shows them)")] if count > 0 else []
+
+
+def info_report(facts: PatternFacts) -> Table:
+    """The table printed by `exactfold info`."""
+    pattern = facts.pattern
+    rows = [
+        ("vertices", f"{pattern.Vi} interior, {pattern.Ve} boundary"),
+        ("faces, edges, folds",
+         f"{len(pattern.triangles)}, {len(pattern.edges)}, {len(pattern.folds)}"),
+        ("degrees of freedom", f"D = Ve - 3 = {pattern.degrees_of_freedom}"),
+        ("boundary", "convex" if pattern.is_convex else f"reflex at {pattern.reflex_corner}"),
+        ("area", str(pattern.area)),
+        ("interior degrees",
+         ", ".join(f"{n} of degree {d}" for d, n in facts.degree_counts.items()) or "none"),
+        ("rank of rigidity matrix", f"{facts.rigidity_rank} = 2V - 3"
+         if facts.rigidity_rank == 2 * len(pattern.vertices) - 3 else str(facts.rigidity_rank)),
+        ("self stresses", str(facts.self_stresses)),
+        ("inertia of curvature forms",
+         "; ".join(f"{v}: {i}" for v, i in list(facts.inertias.items())[:SHOWN]) or "none"),
+        ("triangulated triangles",
+         "; ".join(f"{c} around {', '.join(map(str, inside))}"
+                   for c, inside in pattern.triangulated_triangles) or "none"),
+        ("folds that split the sheet",
+         ", ".join(f"{i}-{j}" for i, j in pattern.chords) or "none"),
+        ("expected", expectation(facts)),
+        ("sha256", pattern.sha256),
+    ]
+    return _facts_table(rows)
+
+
+def expectation(facts: PatternFacts) -> str:
+    """What `count` will settle, from the counts alone."""
+    pattern = facts.pattern
+    free = pattern.Vi - pattern.Vt
+    if not pattern.interior:
+        return "no interior vertex: nothing to count"
+    if pattern.degrees_of_freedom == 0:
+        return "rigid: 0 branches"
+    if pattern.degrees_of_freedom == 1:
+        return f"2^{pattern.Vi} solutions with multiplicity, 2^{free} branches if no star is flat"
+    if free == 1 and not pattern.emptied()[0].chords:
+        return "one branch (single vertex)"
+    return f"{UNDECIDED}: branches of dimension {pattern.degrees_of_freedom} are not counted"
+
+
+def console(*, stderr: bool = False) -> Console:
+    """A console without highlighting, so that text and tables stay as written."""
+    return Console(stderr=stderr, highlight=False, emoji=False, markup=False)
