@@ -1,0 +1,342 @@
+"""Interval Newton test in mpmath interval arithmetic, at rising precision."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, floor, isfinite
+from typing import Any, TypeAlias
+
+import numpy as np
+from mpmath.ctx_iv import MPIntervalContext
+from mpmath.ctx_mp import MPContext
+from mpmath.libmp import from_man_exp, to_rational
+
+from exactfold.certify.box import IsolatingBox, Uncertified
+from exactfold.errors import UsageError
+from exactfold.system.quadratic import QuadraticSystem
+
+_PRECISIONS = (106, 212, 424, 848, 1696)
+_NEGLIGIBLE = Fraction(1, 10**8)
+_NEWTON_STEPS = 64
+_REACH = 64  # Newton may move a candidate by max(1, |candidate|) / _REACH
+_INFLATIONS = (1, 4, 64)
+
+Coordinate: TypeAlias = "complex | float | int | Fraction"
+Point: TypeAlias = tuple[Fraction, ...]
+Interval: TypeAlias = Any  # an mpmath interval, closed, with dyadic end points
+Float: TypeAlias = Any  # an mpmath floating-point number
+
+
+def interval_newton(
+    system: QuadraticSystem,
+    points: Sequence[Sequence[Coordinate]] | np.ndarray[Any, np.dtype[Any]],
+    *,
+    precisions: Sequence[int] = _PRECISIONS,
+) -> list[IsolatingBox | Uncertified]:
+    r"""An isolating box around each candidate, proved in interval arithmetic, or a reason.
+
+    For a box X with dyadic centre m let N(X) = m - F'(X)^-1 F(m), the linear interval system solved
+    by Gaussian elimination after multiplication with an approximate inverse. If the elimination
+    succeeds and N(X) lies in the interior of X, then X holds exactly one zero; it is regular and
+    lies in N(X) (Neumaier, Interval Methods for Systems of Equations, 1990, theorem 5.1.7). Only
+    interval + - * / are used. What is returned is a cube of about twice the width of N(X) around
+    it, if that lies in X; otherwise X.
+
+    `points` has shape (m, n), floats, complex numbers or Fractions. Where imaginary parts are
+    negligible the real system is tried first, which proves the zero real; otherwise, and if that
+    fails, the 2n real equations in real and imaginary parts. Newton's method in floating point
+    chooses m, within max(1, |candidate|) / 64 of the candidate. `precisions` are bits of the
+    significand, tried in turn. No precision of mpmath's global contexts is read or changed.
+
+    Raises `UsageError` if a candidate does not have n coordinates. `Uncertified` does not mean that
+    there is no zero nearby: it may be multiple, the candidate too far off, the precision too low.
+
+    >>> line_pair = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
+    >>> box, = interval_newton(line_pair, [[1.4142]])
+    >>> low, high = box.interval(0)
+    >>> low**2 < 2 < high**2, high - low < Fraction(1, 10**29)
+    (True, True)
+    """
+    workers: dict[bool, _Worker] = {}
+
+    def worker(real: bool) -> _Worker:
+        if real not in workers:
+            workers[real] = _Worker(system if real else system.realification)
+        return workers[real]
+
+    results: list[IsolatingBox | Uncertified] = []
+    for row in points:
+        shown = tuple(_approx_complex(x) for x in row)
+        if len(shown) != system.size:
+            raise UsageError(f"a candidate has {len(shown)} coordinates, not {system.size}")
+        parts = [_exact_parts(x) for x in row]
+        finite = [part for part in parts if part is not None]
+        if len(finite) < len(parts):
+            results.append(Uncertified(shown, "the candidate is not finite"))
+            continue
+        re, im = tuple(a for a, _ in finite), tuple(b for _, b in finite)
+        results.append(_certify(worker, re, im, shown, precisions))
+    return results
+
+
+def _certify(
+    worker: Any, re: Point, im: Point, shown: tuple[complex, ...], precisions: Sequence[int]
+) -> IsolatingBox | Uncertified:
+    n = len(re)
+    scale = max([Fraction(1), *map(abs, re)])
+    reasons = []
+    if max(map(abs, im)) <= _NEGLIGIBLE * scale:
+        found = worker(True).run(re, precisions)
+        if isinstance(found, _Cube):
+            return IsolatingBox(found.centre, (), found.radius, found.bits)
+        reasons.append(found)
+    if any(im):
+        found = worker(False).run((*re, *im), precisions)
+        if isinstance(found, _Cube):
+            return IsolatingBox(found.centre[:n], found.centre[n:], found.radius, found.bits)
+        reasons.append(f"as a complex point: {found}" if reasons else found)
+    return Uncertified(shown, "; ".join(reasons))
+
+
+def _exact_parts(value: Any) -> tuple[Fraction, Fraction] | None:
+    """Real and imaginary part, exactly, or None if not finite."""
+    if isinstance(value, Fraction | int):
+        return Fraction(value), Fraction(0)
+    number = complex(value)
+    if not (isfinite(number.real) and isfinite(number.imag)):
+        return None
+    return Fraction(number.real), Fraction(number.imag)
+
+
+def _approx_complex(value: Any) -> complex:
+    try:
+        return complex(value)
+    except OverflowError:
+        return complex("inf") if value > 0 else complex("-inf")
+
+
+@dataclass(frozen=True)
+class _Cube:
+    """|x_k - centre_k / 2^bits| <= radius / 2^bits for every k."""
+
+    centre: tuple[int, ...]
+    radius: int
+    bits: int
+
+
+class _LeftError(Exception):
+    """Newton's method moved too far from the candidate; more bits will not change that."""
+
+
+class _Worker:
+    """The test for one real system, in contexts of its own."""
+
+    def __init__(self, system: QuadraticSystem) -> None:
+        self.iv = MPIntervalContext()
+        self.mp = MPContext()
+        self.size = system.size
+        self.exact = system.matrices
+        self.intervals = [
+            [[self._dyadic(s, s, 0) for s in row] for row in matrix] for matrix in system.matrices
+        ]
+
+    def run(self, start: Point, precisions: Sequence[int]) -> _Cube | str:
+        """A proved cube near `start`, or the reason why there is none."""
+        reason = "no precision was given"
+        x: list[Float] | None = None
+        for precision in precisions:
+            self.iv.prec = precision
+            self.mp.prec = precision + 16
+            begin = [self._rational(c) for c in start]
+            try:
+                x = self._newton(begin, begin if x is None else x, precision)
+            except ZeroDivisionError:
+                reason = f"the Jacobian is singular at {precision} bits"
+                x = None
+                continue
+            except _LeftError as error:
+                return f"{error} at {precision} bits"
+            found = self._enclose(x, precision)
+            if isinstance(found, _Cube):
+                return found
+            reason = found
+        return reason
+
+    # --- floating point: chooses what to try ---
+
+    def _rational(self, value: Fraction) -> Float:
+        return self.mp.mpf(value.numerator) / self.mp.mpf(value.denominator)
+
+    def _newton(self, start: list[Float], x: list[Float], precision: int) -> list[Float]:
+        mp, n = self.mp, self.size
+        reach = max([mp.one, *map(abs, start)]) / _REACH
+        for _ in range(_NEWTON_STEPS):
+            jacobian, values = self._approx_derivatives(x)
+            inverse = self._approx_inverse(jacobian)
+            step = [mp.fdot(inverse[i], values) for i in range(n)]
+            x = [a - s for a, s in zip(x, step, strict=True)]
+            if max(abs(a - b) for a, b in zip(x, start, strict=True)) > reach:
+                raise _LeftError("Newton's method left the candidate")
+            if max(map(abs, step)) <= mp.ldexp(max(map(abs, x)), 4 - precision):
+                break
+        return x
+
+    def _approx_derivatives(self, x: list[Float]) -> tuple[list[list[Float]], list[Float]]:
+        z = [*x, self.mp.one]
+        rows = [[self.mp.fdot(row, z) for row in matrix] for matrix in self.exact]
+        return [row[:-1] for row in rows], [self.mp.fdot(row, z) / 2 for row in rows]
+
+    def _approx_inverse(self, matrix: list[list[Float]]) -> list[list[Float]]:
+        """Gauss-Jordan with partial pivoting; `ZeroDivisionError` if a pivot vanishes."""
+        n, mp = self.size, self.mp
+        work = [
+            [*row, *(mp.one if i == j else mp.zero for j in range(n))]
+            for i, row in enumerate(matrix)
+        ]
+        for k in range(n):
+            pivot = max(range(k, n), key=lambda i: abs(work[i][k]))
+            work[k], work[pivot] = work[pivot], work[k]
+            lead = work[k][k]
+            work[k] = [a / lead for a in work[k]]
+            for i in range(n):
+                factor = work[i][k]
+                if i != k and factor:
+                    work[i] = [a - factor * b for a, b in zip(work[i], work[k], strict=True)]
+        return [row[n:] for row in work]
+
+    # --- interval arithmetic: proves ---
+
+    def _dyadic(self, low: int, high: int, bits: int) -> Interval:
+        """The interval [low, high] / 2^bits, exactly."""
+        return self.iv.make_mpf((from_man_exp(low, -bits), from_man_exp(high, -bits)))
+
+    def _enclose(self, x: list[Float], precision: int) -> _Cube | str:
+        """The interval Newton test on cubes about x, for the smallest radius that fits."""
+        largest = max(map(abs, x))
+        exponent = max(int(self.mp.frexp(largest)[1]), -precision) if largest else 0
+        bits = max(0, precision - exponent)
+        centre = [int(self.mp.nint(self.mp.ldexp(c, bits))) for c in x]
+        try:
+            inverse = self._approx_inverse(self._approx_derivatives(x)[0])
+        except ZeroDivisionError:
+            return f"the Jacobian is singular at {precision} bits"
+        factors = [[self.iv.make_mpf((c._mpf_, c._mpf_)) for c in row] for row in inverse]
+        point = [self._dyadic(c, c, bits) for c in centre]
+        residual = self._product(factors, [[v] for v in self._values(point)])
+        shift = max(_magnitude(row[0], bits) for row in residual)
+        reason = ""
+        for inflation in _INFLATIONS:
+            radius = (2 * shift + 1) * inflation
+            cube = [self._dyadic(c - radius, c + radius, bits) for c in centre]
+            matrix = self._product(factors, self._jacobian(cube))
+            solution = _eliminate(matrix, [row[0] for row in residual])
+            if solution is None:
+                return f"F'(X) may be singular at {precision} bits: an interval pivot contains 0"
+            image = [m - y for m, y in zip(point, solution, strict=True)]
+            if all(_inside(a, b) for a, b in zip(image, cube, strict=True)):
+                return _tighten(image, _Cube(tuple(centre), radius, bits))
+            reach = max(_magnitude(y, bits) for y in solution)
+            reason = (
+                f"no contraction at {precision} bits: |N(X) - m| = {_text(reach, bits)} "
+                f"for radius {_text(radius, bits)}"
+            )
+        return reason
+
+    def _gradients(self, x: list[Interval]) -> list[list[Interval]]:
+        """S_p (x, 1) for each p."""
+        result = []
+        for p, matrix in enumerate(self.exact):
+            rows = []
+            for i, row in enumerate(matrix):
+                total = self.intervals[p][i][-1]
+                for j, coordinate in enumerate(x):
+                    if row[j]:
+                        total = total + self.intervals[p][i][j] * coordinate
+                rows.append(total)
+            result.append(rows)
+        return result
+
+    def _jacobian(self, x: list[Interval]) -> list[list[Interval]]:
+        return [row[:-1] for row in self._gradients(x)]
+
+    def _values(self, x: list[Interval]) -> list[Interval]:
+        result = []
+        for row in self._gradients(x):
+            total = row[-1]
+            for entry, coordinate in zip(row[:-1], x, strict=True):
+                total = total + entry * coordinate
+            result.append(total / 2)
+        return result
+
+    def _product(self, a: list[list[Interval]], b: list[list[Interval]]) -> list[list[Interval]]:
+        columns = list(zip(*b, strict=True))
+        result = []
+        for row in a:
+            entries = []
+            for column in columns:
+                total = self.iv.zero
+                for left, right in zip(row, column, strict=True):
+                    total = total + left * right
+                entries.append(total)
+            result.append(entries)
+        return result
+
+
+def _eliminate(matrix: list[list[Interval]], right: list[Interval]) -> list[Interval] | None:
+    """An enclosure of {A^-1 b : A in matrix, b in right}; None if a pivot contains zero.
+
+    Gaussian elimination without pivoting. It succeeds only if every A in the interval matrix is
+    nonsingular (Neumaier 1990, section 4.5).
+    """
+    n = len(matrix)
+    rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
+    for k in range(n):
+        pivot = rows[k][k]
+        if not ((pivot > 0) is True or (pivot < 0) is True):
+            return None
+        for i in range(k + 1, n):
+            factor = rows[i][k] / pivot
+            for j in range(k + 1, n + 1):
+                rows[i][j] = rows[i][j] - factor * rows[k][j]
+    solution: list[Interval] = [None] * n
+    for k in reversed(range(n)):
+        total = rows[k][n]
+        for j in range(k + 1, n):
+            total = total - rows[k][j] * solution[j]
+        solution[k] = total / rows[k][k]
+    return solution
+
+
+def _inside(inner: Interval, outer: Interval) -> bool:
+    """Whether `inner` lies in the interior of `outer`; end points are compared exactly."""
+    return (inner.a > outer.a) is True and (inner.b < outer.b) is True
+
+
+def _tighten(image: list[Interval], proved: _Cube) -> _Cube:
+    """A cube that holds `image` and lies in `proved`: it holds the same single zero.
+
+    Twice as wide as it need be, so that the zero is well inside and other tests can replay it.
+    """
+    ends = [_outward(entry, proved.bits) for entry in image]
+    centre = tuple((low + high) // 2 for low, high in ends)
+    hull = max(max(high - c, c - low) for (low, high), c in zip(ends, centre, strict=True))
+    radius = 2 * hull + 1
+    drift = max(abs(a - b) for a, b in zip(centre, proved.centre, strict=True))
+    return _Cube(centre, radius, proved.bits) if drift + radius <= proved.radius else proved
+
+
+def _outward(value: Interval, bits: int) -> tuple[int, int]:
+    """The smallest interval of multiples of 2^-bits that holds `value`, as integers."""
+    low, high = (Fraction(*map(int, to_rational(end))) * 2**bits for end in value._mpi_)
+    return floor(low), ceil(high)
+
+
+def _magnitude(value: Interval, bits: int) -> int:
+    return max(map(abs, _outward(value, bits)))
+
+
+def _text(value: int, bits: int) -> str:
+    """About value / 2^bits, in powers of two so that nothing overflows."""
+    return f"2^{value.bit_length() - bits}" if value else "0"
