@@ -146,9 +146,9 @@ def hypar(rings: int = 1, twist: RationalLike | None = None) -> CreasePattern:
     is even, else from 1 to 3. Vi = 4 rings.
 
     `twist` = t turns square k by the rational rotation ((1 - t^2) / (1 + t^2), 2t / (1 + t^2)) if k
-    is odd; the default 1 / (6 rings + 6) moves a corner by about a third of a step. Without a twist
-    (0) the creases along one diagonal form a straight path from corner to
-    corner, and the sheet has branches with flat vertices that fold along that path only.
+    is odd; the default 1 / (6 rings + 6) moves a corner by at most about half a step. With
+    twist 0, the hypar proper, the creases along one diagonal form a straight path from corner to
+    corner; on the branch that folds along it alone, every vertex off the path is flat.
 
     Raises `UsageError` for rings < 1 and `OverlapError` or `MixedOrientationError` for a twist too
     large for the rings.

@@ -6,6 +6,7 @@ import json
 import os
 import secrets
 from collections.abc import Mapping
+from contextlib import suppress
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
@@ -108,13 +109,14 @@ def write_text(path: str | PathLike[str], text: str) -> None:
             return
         if target.is_dir():
             raise IsADirectoryError(21, "it is a folder")
-        temporary = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.tmp")
+        temporary = target.with_name(f".exactfold-{secrets.token_hex(8)}.tmp")
         with temporary.open("x", encoding="utf-8", newline="\n") as file:
             file.write(text)
         os.replace(temporary, target)
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
         if temporary is not None:
-            temporary.unlink(missing_ok=True)
+            with suppress(OSError):
+                temporary.unlink()
         reason = getattr(error, "strerror", None) or str(error)
         raise UnwritableFileError(f"cannot write {path}: {reason}") from None
 
