@@ -88,8 +88,8 @@ def _check_isolated(
     space (without the constant); `unit_rank` proves the rank that leaves no others.
     """
     raised = {_moved(a, i, 1) for d in functionals for a in d for i in range(size)}
-    unknowns = sorted(raised, key=lambda a: (sum(a), a))
-    equations: list[Taylor] = [{a: c for a, c in f.items() if any(a)} for f in expansions]
+    unknowns = sorted(raised)
+    equations: list[Taylor] = [{a: c for a, c in f.items() if a in raised} for f in expansions]
     for i in range(size):
         equations += _derivative_conditions(i, unknowns, functionals, pivots)
     wanted = len(unknowns) - (len(functionals) - 1)
