@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -35,9 +35,8 @@ class _Tolerances:
     shortest: float = 1e-9
     rounds: int = 400
 
-    @property
-    def tighter(self) -> _Tolerances:
-        return replace(self, predict=1e-10, correct=1e-8, shortest=1e-12, rounds=1500)
+
+_TIGHT = _Tolerances(predict=1e-10, correct=1e-8, shortest=1e-12, rounds=1500)
 
 
 def homotopy(
@@ -69,21 +68,17 @@ def homotopy(
     """
     if system.size == 0:
         raise UsageError("a system without unknowns has no paths to follow")
-    scaled = _balance(system.float_tensor)
-    best: _Run | None = None
-    for attempt in range(_GAMMAS):
-        rng = np.random.default_rng([seed, attempt])
-        run = _run(scaled, rng, progress)
-        if best is None or run.distinct > best.distinct:
-            best = replace(run, attempt=attempt)
-        if not run.suspicious:
-            break
-    if best is None:  # pragma: no cover - the loop above runs at least once
-        raise UsageError("no path was followed")
-    return _collect(system, scaled, best, seed)
-
-
-# --- balancing -----------------------------------------------------------------------------------
+    powers, plain = _equilibrate(system.float_tensor)
+    scaled = _Balanced(*_operator_scaling(plain), powers, plain)
+    runs: list[_Run] = []
+    while len(runs) < _GAMMAS and all(run.suspicious for run in runs):
+        rng = np.random.default_rng([seed, len(runs)])
+        runs.append(_run(scaled, rng, progress))
+    best = max(runs, key=lambda run: run.distinct)
+    settings = {"seed": seed, "gammas": len(runs), "order": _ORDER, "paths": system.bezout_number}
+    counts = {"steps": best.steps, "retried": best.retried}
+    points, lost = _collect(scaled, best)
+    return Candidates("homotopy", points, lost, {**settings, **counts})
 
 
 @dataclass(frozen=True)
@@ -94,12 +89,6 @@ class _Balanced:
     to_y: FloatArray
     powers: FloatArray
     plain: FloatArray  # the forms in the coordinates y = (x, 1) / powers
-
-
-def _balance(tensor: FloatArray) -> _Balanced:
-    powers, plain = _equilibrate(tensor)
-    forms, to_y = _operator_scaling(plain)
-    return _Balanced(forms, to_y, powers, plain)
 
 
 def _equilibrate(tensor: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -150,9 +139,6 @@ def _orthonormal(forms: FloatArray) -> FloatArray:
     return np.asarray((result + result.transpose(0, 2, 1)) / 2)
 
 
-# --- runs ----------------------------------------------------------------------------------------
-
-
 @dataclass(frozen=True)
 class _Run:
     """Ends of all paths: w (2^n, n+1), T reached, |J^-1| there, and the path met, or -1."""
@@ -163,7 +149,6 @@ class _Run:
     met: IntArray
     retried: int
     steps: int
-    attempt: int = 0
 
     @property
     def distinct(self) -> int:
@@ -184,7 +169,6 @@ def _run(scaled: _Balanced, rng: np.random.Generator, progress: Progress | None)
     total = 1 << n
     w = np.empty((total, n + 1), dtype=np.complex128)
     reached, condition = np.empty(total), np.empty(total)
-    steps = 0
 
     def follow(paths: IntArray, tolerances: _Tolerances, report: bool) -> int:
         used = 0
@@ -198,12 +182,13 @@ def _run(scaled: _Balanced, rng: np.random.Generator, progress: Progress | None)
                 progress(min(start + _BLOCK, total), total)
         return used
 
-    tolerances = _Tolerances()
-    steps += follow(np.arange(total), tolerances, True)
+    steps = follow(np.arange(total), _Tolerances(), True)
     met = _meetings(w, reached, probe)
-    again = _to_repeat(met, reached)
+    doubtful = (met >= 0) | (reached < 1.0)
+    doubtful[met[met >= 0]] = True
+    again = np.flatnonzero(doubtful)
     if again.size:
-        steps += follow(again, tolerances.tighter, False)
+        steps += follow(again, _TIGHT, False)
         met = _meetings(w, reached, probe)
     return _Run(w, reached, condition, met, int(again.size), steps)
 
@@ -235,13 +220,8 @@ def _meetings(w: ComplexArray, reached: FloatArray, probe: ComplexArray) -> IntA
     return met
 
 
-def _to_repeat(met: IntArray, reached: FloatArray) -> IntArray:
-    doubtful = (met >= 0) | (reached < 1.0)
-    doubtful[met[met >= 0]] = True
-    return np.flatnonzero(doubtful)
-
-
-def _collect(system: QuadraticSystem, scaled: _Balanced, run: _Run, seed: int) -> Candidates:
+def _collect(scaled: _Balanced, run: _Run) -> tuple[ComplexArray, tuple[str, ...]]:
+    """The finite points in the units of the unknowns, and a line for every path without one."""
     y = run.w @ scaled.to_y.T
     y /= np.linalg.norm(y, axis=1, keepdims=True)
     finite = np.abs(y[:, -1]) > _AT_INFINITY
@@ -256,21 +236,10 @@ def _collect(system: QuadraticSystem, scaled: _Balanced, run: _Run, seed: int) -
     keep = (run.reached == 1.0) & (run.met < 0) & finite
     points = _polish(scaled.plain, y[keep, :-1] / y[keep, -1:])
     points = points * (scaled.powers[:-1] / scaled.powers[-1])
-    return Candidates(
-        method="homotopy",
-        points=points,
-        lost=tuple(lost),
-        settings={
-            "seed": seed,
-            "paths": system.bezout_number,
-            "steps": run.steps,
-            "retried": run.retried,
-            "gammas": run.attempt + 1,
-            "order": _ORDER,
-        },
-    )
+    return points, tuple(lost)
 
 
+@np.errstate(all="ignore")
 def _polish(forms: FloatArray, x: ComplexArray, rounds: int = 3) -> ComplexArray:
     """Newton steps in the affine chart, each kept only if it is short."""
     n = len(forms)
@@ -278,14 +247,10 @@ def _polish(forms: FloatArray, x: ComplexArray, rounds: int = 3) -> ComplexArray
         z = np.hstack([x, np.ones((len(x), 1))])
         rows = np.einsum("pij,bj->bpi", forms, z)
         values = np.einsum("bpi,bi->bp", rows, z) / 2
-        with np.errstate(all="ignore"):
-            step = (_inverses(rows[:, :, :n]) @ values[:, :, None])[:, :, 0]
-            short = np.linalg.norm(step, axis=1) < 1e-4 * (1 + np.linalg.norm(x, axis=1))
+        step = (_inverses(rows[:, :, :n]) @ values[:, :, None])[:, :, 0]
+        short = np.linalg.norm(step, axis=1) < 1e-4 * (1 + np.linalg.norm(x, axis=1))
         x = np.where(short[:, None], x - step, x)
     return x
-
-
-# --- tracking ------------------------------------------------------------------------------------
 
 
 def _inverses(matrices: ComplexArray) -> ComplexArray:
@@ -321,6 +286,7 @@ class _Tracker:
         self.gradient = (2 * forms).transpose(2, 0, 1).reshape(n + 1, -1).astype(np.complex128)
         self.flat = forms.reshape(n, -1).T.astype(np.complex128).copy()
 
+    @np.errstate(all="ignore")
     def track(
         self, w: ComplexArray, tolerances: _Tolerances
     ) -> tuple[ComplexArray, FloatArray, FloatArray, int]:
@@ -336,17 +302,14 @@ class _Tracker:
             steps += len(live)
             target = np.where(t + step >= 1.0, 1.0, t + step)
             guess = _horner(series, target - t)
-            with np.errstate(all="ignore"):
-                inverse = _inverses(self._jacobian(guess, target))
-                new, good = self._correct(guess, target, inverse, tolerances)
+            inverse = _inverses(self._jacobian(guess, target))
+            new, good = self._correct(guess, target, inverse, tolerances)
             step = np.where(good, step, step / 2)
             if good.any():
                 w = np.where(good[:, None], new, series[0])
                 t = np.where(good, target, t)
                 moved = np.flatnonzero(good)
-                with np.errstate(all="ignore"):
-                    fresh = self._series(w[moved], t[moved], inverse[moved])
-                series[:, moved] = fresh
+                series[:, moved] = fresh = self._series(w[moved], t[moved], inverse[moved])
                 step[moved] = self._step(fresh, t[moved], tolerances)
                 end_w[live[moved]], end_t[live[moved]] = w[moved], t[moved]
                 condition[live[moved]] = np.linalg.norm(inverse[moved], axis=(1, 2))
@@ -423,13 +386,9 @@ class _Tracker:
 
     def _step(self, series: ComplexArray, t: FloatArray, tolerances: _Tolerances) -> FloatArray:
         """Step at which the last two terms of the series are below the predictor error."""
-        with np.errstate(all="ignore"):
-            last = np.linalg.norm(series[-2:], axis=2)
-            lengths = (tolerances.predict / last) ** (1.0 / np.array([[_ORDER - 1], [_ORDER]]))
-            step = np.minimum(lengths[0], lengths[1])
-        return np.where(
-            np.isfinite(step), np.minimum(step, 1 - t), np.where(last[1] == 0, 1 - t, 0)
-        )
+        last = np.linalg.norm(series[-2:], axis=2)
+        lengths = (tolerances.predict / last) ** (1.0 / np.array([[_ORDER - 1], [_ORDER]]))
+        return np.asarray(np.nan_to_num(np.minimum(lengths.min(axis=0), 1 - t), nan=0.0))
 
 
 def _horner(series: ComplexArray, step: FloatArray) -> ComplexArray:
