@@ -1,0 +1,134 @@
+from fractions import Fraction
+
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from exactfold.exact.linalg import (
+    from_fmpq,
+    inertia,
+    inertia_by_elimination,
+    nullspace,
+    rank,
+    to_flint,
+)
+
+quick = settings(max_examples=60, deadline=None)
+entries = st.one_of(st.integers(-3, 3), st.fractions(-2, 2, max_denominator=6))
+
+
+@st.composite
+def matrices(draw):
+    height, width = draw(st.integers(1, 5)), draw(st.integers(1, 5))
+    row = st.lists(entries, min_size=width, max_size=width)
+    return draw(st.lists(row, min_size=height, max_size=height))
+
+
+@st.composite
+def symmetric(draw):
+    n = draw(st.integers(1, 5))
+    matrix = [[Fraction(0)] * n for _ in range(n)]
+    for i in range(n):
+        for j in range(i + 1):
+            matrix[i][j] = matrix[j][i] = Fraction(draw(entries))
+    return matrix
+
+
+def multiply(a, b):
+    return [
+        [
+            sum((x * y for x, y in zip(row, column, strict=True)), Fraction(0))
+            for column in zip(*b, strict=True)
+        ]
+        for row in a
+    ]
+
+
+@quick
+@given(matrices())
+def test_rank_agrees_with_sympy(matrix):
+    assert rank(matrix) == sympy.Matrix(matrix).rank()
+
+
+def test_rank_of_nothing():
+    assert rank([]) == rank([[]]) == 0
+
+
+def test_rank_is_exact():
+    tiny = Fraction(1, 10**50)
+    assert rank([[1, 1], [1, 1 + tiny]]) == 2
+    assert rank([[tiny, 2 * tiny], [1, 2]]) == 1
+
+
+@quick
+@given(matrices())
+def test_nullspace_is_a_basis_of_the_kernel(matrix):
+    basis = nullspace(matrix)
+    width = len(matrix[0])
+    assert len(basis) == width - rank(matrix)
+    for vector in basis:
+        assert len(vector) == width
+        assert all(
+            sum((a * x for a, x in zip(row, vector, strict=True)), Fraction(0)) == 0
+            for row in matrix
+        )
+    if basis:
+        assert rank(basis) == len(basis)
+
+
+def test_nullspace_of_an_invertible_matrix():
+    assert nullspace([[1, 2], [3, 4]]) == []
+    assert nullspace([[0, 0]]) == [[1, 0], [0, 1]]
+
+
+@quick
+@given(symmetric())
+def test_two_ways_to_the_inertia_agree(matrix):
+    found = inertia(matrix)
+    assert found == inertia_by_elimination(matrix)
+    assert sum(found) == len(matrix)
+    assert found[2] == len(matrix) - rank(matrix)
+
+
+@quick
+@given(symmetric(), st.data())
+def test_sylvester(matrix, data):
+    n = len(matrix)
+    row = st.lists(st.integers(-3, 3), min_size=n, max_size=n)
+    change = data.draw(st.lists(row, min_size=n, max_size=n).filter(lambda m: rank(m) == n))
+    transposed = [list(column) for column in zip(*change, strict=True)]
+    moved = multiply(multiply(transposed, matrix), change)
+    assert inertia(moved) == inertia(matrix)
+    negative = [[-x for x in row] for row in matrix]
+    assert inertia(negative) == (inertia(matrix)[1], inertia(matrix)[0], inertia(matrix)[2])
+
+
+@pytest.mark.parametrize("compute", [inertia, inertia_by_elimination])
+@pytest.mark.parametrize(
+    ("matrix", "expected"),
+    [
+        ([[1, 0], [0, -1]], (1, 1, 0)),
+        ([[0, 1], [1, 0]], (1, 1, 0)),
+        ([[0, 0], [0, 0]], (0, 0, 2)),
+        ([[1, 1], [1, 1]], (1, 0, 1)),
+        ([[2, -1, 0], [-1, 2, -1], [0, -1, 2]], (3, 0, 0)),
+        ([[0, 1, 1], [1, 0, 1], [1, 1, 0]], (1, 2, 0)),
+        ([[1, 1], [1, 1 - Fraction(1, 10**60)]], (1, 1, 0)),
+    ],
+)
+def test_inertia(compute, matrix, expected):
+    assert compute(matrix) == expected
+
+
+def test_inertia_error():
+    with pytest.raises(ValueError, match="symmetric"):
+        inertia([[0, 1], [2, 0]])
+
+
+@quick
+@given(matrices())
+def test_flint_round_trip(matrix):
+    flint = to_flint(matrix)
+    back = [[from_fmpq(flint[i, j]) for j in range(flint.ncols())] for i in range(flint.nrows())]
+    assert back == [[Fraction(x) for x in row] for row in matrix]
