@@ -4,7 +4,7 @@ import sys
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pattern_strategies import patterns, quick, similarities, transformed
 
@@ -309,6 +309,45 @@ def _dump(document):
         return json.dumps(document)
     finally:
         sys.set_int_max_str_digits(limit)
+
+
+def test_a_file_cut_off_anywhere_is_not_json():
+    text = json.dumps(SQUARE)
+    for end in range(len(text)):
+        with pytest.raises(NotJSONError):
+            parse_fold(text[:end])
+
+
+values = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers(-2, 6)
+    | st.floats()
+    | st.sampled_from(["", "B", "C", "M", "1/2", "1/0", "x"]),
+    lambda inner: st.lists(inner, max_size=5) | st.dictionaries(st.text(max_size=2), inner),
+    max_leaves=12,
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.sampled_from([*SQUARE, EXACT_KEY, "file_frames"]), values, st.data())
+def test_whatever_stands_in_a_file_the_error_is_clean(key, value, data):
+    document = json.loads(json.dumps(SQUARE))
+    whole = data.draw(st.booleans())
+    if whole or not document.get(key):
+        document[key] = value
+    else:
+        k = data.draw(st.integers(0, len(document[key]) - 1))
+        row = document[key][k]
+        if isinstance(row, list) and data.draw(st.booleans()):
+            row[data.draw(st.integers(0, len(row) - 1))] = value
+        else:
+            document[key][k] = value
+    try:
+        pattern = parse_fold(json.dumps(document)).pattern
+    except InputError:  # any other exception fails the test
+        return
+    assert pattern.area > 0
 
 
 # --- edges and faces -----------------------------------------------------------------------------
