@@ -155,6 +155,14 @@ def evaluate_on_interval(polynomial: Sequence[Fraction | int], interval: Interva
     >>> evaluate_on_interval((0, 0, 1), (Fraction(-1), Fraction(2)))
     (Fraction(-2, 1), Fraction(4, 1))
     """
+    bottom, top, scale = _integer_bounds(polynomial, interval)
+    return Fraction(bottom, scale), Fraction(top, scale)
+
+
+def _integer_bounds(
+    polynomial: Sequence[Fraction | int], interval: Interval
+) -> tuple[int, int, int]:
+    """Bounds of p on an interval as integers over one positive denominator."""
     (low, high), scale = over_common_denominator(interval)
     coefficients, denominator = over_common_denominator(Fraction(c) for c in polynomial)
     bottom = top = 0
@@ -165,19 +173,41 @@ def evaluate_on_interval(polynomial: Sequence[Fraction | int], interval: Interva
             bottom, top = min(products), max(products)
             power *= scale
         bottom, top = bottom + coefficient * power, top + coefficient * power
-    return Fraction(bottom, denominator * power), Fraction(top, denominator * power)
+    return bottom, top, denominator * power
 
 
-def divide_intervals(numerator: Interval, denominator: Interval) -> Interval | None:
-    """Bounds of the quotient, or None if the denominator's interval contains zero.
+def quotients_on_interval(
+    numerators: Sequence[Sequence[Fraction | int]],
+    denominator: Sequence[Fraction | int],
+    interval: Interval,
+) -> tuple[Interval, ...] | None:
+    """Bounds of each p_i / q on an interval, or None if the bounds of q contain zero.
 
-    >>> divide_intervals((Fraction(1), Fraction(2)), (Fraction(-4), Fraction(-2)))
-    (Fraction(-1, 1), Fraction(-1, 4))
+    Exact at a point. On a proper interval the bounds are rounded outwards to multiples of a power
+    of two below a quarter of its width, which keeps their size in check.
+
+    >>> quotients_on_interval([(1,), (0, 1)], (0, 1), (Fraction(2), Fraction(4)))
+    ((Fraction(1, 4), Fraction(1, 2)), (Fraction(1, 2), Fraction(2, 1)))
+    >>> quotients_on_interval([(1,)], (0, 1), (Fraction(-1), Fraction(1))) is None
+    True
     """
-    if denominator[0] <= 0 <= denominator[1]:
+    width = interval[1] - interval[0]
+    below = _integer_bounds(denominator, interval)
+    if below[0] <= 0 <= below[1]:
         return None
-    quotients = [a / b for a in numerator for b in denominator]
-    return min(quotients), max(quotients)
+    bits = max(0, width.denominator.bit_length() - width.numerator.bit_length() + 3)
+    result = []
+    for numerator in numerators:
+        bottom, top, scale = _integer_bounds(numerator, interval)
+        pairs = [(x * below[2], y * scale) for x in (bottom, top) for y in below[:2]]
+        if width == 0:
+            value = Fraction(*pairs[0])
+            result.append((value, value))
+        else:
+            lowest = min((x << bits) // y for x, y in pairs)
+            highest = max(-((-x << bits) // y) for x, y in pairs)
+            result.append((Fraction(lowest, 1 << bits), Fraction(highest, 1 << bits)))
+    return tuple(result)
 
 
 def to_rational_poly(coefficients: Sequence[Fraction | int]) -> fmpq_poly:

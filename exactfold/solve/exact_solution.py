@@ -6,17 +6,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from math import gcd
 
 import numpy as np
-from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import acb, acb_poly, arb, ctx, fmpq_poly, fmpz_poly
 
 from exactfold.errors import ExactfoldError
+from exactfold.exact.numbers import over_common_denominator
 from exactfold.exact.univariate import (
     Interval,
-    divide_intervals,
-    evaluate_on_interval,
     from_rational_poly,
     isolate_real_roots,
+    quotients_on_interval,
     to_rational_poly,
 )
 from exactfold.solve.candidates import Candidates, ComplexArray
@@ -65,6 +66,37 @@ class RootClass:
         )
         return cls(tuple(polynomial), numerators, multiplicity, tuple(separating))
 
+    @classmethod
+    def from_monic(
+        cls,
+        monic: Sequence[Fraction],
+        numerators: Sequence[Sequence[Fraction]],
+        separating: Sequence[int],
+    ) -> RootClass:
+        """The simple zeros x_i = w_i(t) / q'(t) of a monic q over Q, with q made primitive."""
+        integers, _ = over_common_denominator(monic)
+        content = gcd(*integers)
+        polynomial = tuple(c // content for c in integers)
+        scaled = tuple(tuple(c * polynomial[-1] for c in w) for w in numerators)
+        return cls(polynomial, scaled, 1, tuple(separating))
+
+    def factors(self) -> list[RootClass]:
+        """One class for each irreducible factor of the (squarefree) polynomial.
+
+        With q = p r, q' = p' r modulo p: w_i is divided by r modulo p.
+        """
+        whole = fmpq_poly(list(self.polynomial))
+        classes = []
+        for factor, _ in fmpz_poly(list(self.polynomial)).factor()[1]:
+            modulus = fmpq_poly(factor if factor.leading_coefficient() > 0 else -factor)
+            _, inverse, _ = (whole // modulus % modulus).xgcd(modulus)
+            numerators = tuple(
+                from_rational_poly(to_rational_poly(w) * inverse % modulus) for w in self.numerators
+            )
+            polynomial = tuple(int(c) for c in modulus.coeffs())
+            classes.append(RootClass(polynomial, numerators, self.multiplicity, self.separating))
+        return sorted(classes, key=lambda c: (c.degree, c.polynomial))
+
     @property
     def degree(self) -> int:
         """Number d of conjugate zeros, real and complex."""
@@ -89,40 +121,11 @@ class RootClass:
     def enclose(self, interval: Interval) -> tuple[Interval, ...] | None:
         """Intervals that hold the coordinates for every root t in the given interval.
 
-        None if the interval is too wide to keep p' away from zero: refine it. Exact interval
-        arithmetic over Q.
+        None if the interval is too wide to keep p' away from zero: refine it. See
+        `quotients_on_interval`.
         """
         slope = tuple(k * c for k, c in enumerate(self.polynomial))[1:]
-        below = evaluate_on_interval(slope, interval)
-        bounds = []
-        for numerator in self.numerators:
-            quotient = divide_intervals(evaluate_on_interval(numerator, interval), below)
-            if quotient is None:
-                return None
-            bounds.append(quotient)
-        return tuple(bounds)
-
-    def _value(self, row: Sequence[Fraction | int]) -> fmpq_poly:
-        """p'(t) times the value of c_1 x_1 + ... + c_n x_n + c_0, modulo p."""
-        modulus = fmpq_poly(list(self.polynomial))
-        *slopes, constant = (fmpq(c.numerator, c.denominator) for c in row)
-        value = constant * modulus.derivative()
-        for c, w in zip(slopes, self.numerators, strict=True):
-            value += c * to_rational_poly(w)
-        return value % modulus
-
-    def vanishes(self, row: Sequence[Fraction | int]) -> bool:
-        """Whether c_1 x_1 + ... + c_n x_n + c_0 is zero at every zero of the class, exactly."""
-        return bool(self._value(row) == 0)
-
-    def value_on(self, row: Sequence[Fraction | int], interval: Interval) -> Interval | None:
-        """Bounds of c_1 x_1 + ... + c_n x_n + c_0 for every root t in the interval.
-
-        None if the interval is too wide to keep p' away from zero: refine it.
-        """
-        slope = tuple(k * c for k, c in enumerate(self.polynomial))[1:]
-        value = evaluate_on_interval(from_rational_poly(self._value(row)), interval)
-        return divide_intervals(value, evaluate_on_interval(slope, interval))
+        return quotients_on_interval(self.numerators, slope, interval)
 
     def real_points(self, bits: int) -> list[tuple[Interval, ...]]:
         """Boxes of width at most 2^-bits, one about each real zero of the class.

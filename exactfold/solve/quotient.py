@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
+from itertools import count, product
 from typing import TypeAlias
 
 from flint import fmpq, fmpq_mat
+
+from exactfold.system.quadratic import QuadraticSystem
 
 Exponent: TypeAlias = tuple[int, ...]
 SparsePolynomial: TypeAlias = Mapping[Exponent, fmpq]
@@ -53,6 +55,42 @@ def standard_monomials(leading: Sequence[Exponent], size: int) -> list[Exponent]
         a for a in product(*(range(b) for b in bounds)) if not any(divides(m, a) for m in leading)
     ]
     return sorted(found, key=grevlex_key)
+
+
+def sparse_quadrics(system: QuadraticSystem) -> list[dict[Exponent, int]]:
+    """The polynomials z^T S_p z, z = (x, 1), as integer coefficients by exponent.
+
+    >>> sparse_quadrics(QuadraticSystem((((1, 2), (2, 0)),)))
+    [{(2,): 1, (1,): 4}]
+    """
+    size = system.size
+    units = [tuple(int(i == k) for i in range(size)) for k in range(size + 1)]
+    result = []
+    for matrix in system.matrices:
+        terms: dict[Exponent, int] = {}
+        for i, row in enumerate(matrix):
+            for j, s in enumerate(row):
+                if s:
+                    exponent = tuple(a + b for a, b in zip(units[i], units[j], strict=True))
+                    terms[exponent] = terms.get(exponent, 0) + s
+        result.append(terms)
+    return result
+
+
+def separating_forms(size: int) -> Iterator[tuple[int, ...]]:
+    """Integer linear forms, one of which separates any given finite set of points.
+
+    The coordinates, last first; then (1, k, k^2, ...) for k = 1, 2, ...: two different points
+    agree on at most n - 1 of these, so that all but finitely many separate a finite set.
+
+    >>> from itertools import islice
+    >>> list(islice(separating_forms(2), 4))
+    [(0, 1), (1, 0), (1, 1), (1, 2)]
+    """
+    for i in reversed(range(size)):
+        yield tuple(int(k == i) for k in range(size))
+    for base in count(1):
+        yield tuple(base**k for k in range(size))
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from exactfold.exact.univariate import (
-    divide_intervals,
     evaluate_on_interval,
     isolate_real_roots,
+    quotients_on_interval,
     sign_at,
     sturm_count,
     sturm_sequence,
@@ -152,11 +152,26 @@ def test_interval_value_is_narrow():
     assert high - low < Fraction(16, 2**50)
 
 
-@given(rationals, st.fractions(0, 2), rationals, st.fractions(0, 2), st.fractions(0, 1))
-def test_interval_quotient(a, width, b, depth, position):
-    quotient = divide_intervals((a, a + width), (b, b + depth))
-    if b <= 0 <= b + depth:
-        assert quotient is None
+@given(
+    st.lists(rationals, max_size=4),
+    st.lists(rationals, min_size=1, max_size=3),
+    rationals,
+    st.fractions(0, 2, max_denominator=50),
+    st.fractions(0, 1, max_denominator=9),
+)
+def test_interval_quotient_contains_every_value(numerator, denominator, low, width, position):
+    found = quotients_on_interval([numerator], denominator, (low, low + width))
+    x = low + position * width
+    if found is None:
+        below = evaluate_on_interval(denominator, (low, low + width))
+        assert below[0] <= 0 <= below[1]
     else:
-        exact = (a + position * width) / (b + position * depth)
-        assert quotient[0] <= exact <= quotient[1]
+        [(bottom, top)] = found
+        assert bottom <= value(numerator, x) / value(denominator, x) <= top
+        assert (width == 0) <= (bottom == top)
+
+
+def test_interval_quotient_is_narrow():
+    width = Fraction(1, 2**70)
+    [(low, high)] = quotients_on_interval([(1, 1)], (2, 0, 1), (Fraction(1), Fraction(1) + width))
+    assert high - low < 4 * width

@@ -1,0 +1,109 @@
+"""Lifting from a prime field against the Groebner basis."""
+
+import pytest
+
+from exactfold.errors import NotApplicableError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.solve import lifting
+from exactfold.solve.groebner import groebner
+from exactfold.system.branch_system import BranchSystem
+from exactfold.system.quadratic import QuadraticSystem
+
+CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
+TWO_VERTICES = CreasePattern(
+    [*CORNERS, ("1/3", "1/2"), ("2/3", "2/5")],
+    [(0, 1, 5), (1, 2, 5), (2, 4, 5), (4, 0, 5), (2, 3, 4), (3, 0, 4)],
+)
+FLAT_STAR = CreasePattern(
+    [*CORNERS, ("1/2", "1/2"), ("7/10", "1/5")],
+    [(0, 1, 5), (1, 2, 5), (2, 4, 5), (4, 0, 5), (2, 3, 4), (3, 0, 4)],
+)
+INNER_TRIANGLE = CreasePattern(
+    [*CORNERS, ("1/3", "1/4"), ("3/4", "1/3"), ("1/2", "3/4")],
+    [(4, 5, 6), (0, 1, 4), (1, 5, 4), (1, 2, 5), (2, 6, 5), (2, 3, 6), (3, 4, 6), (3, 0, 4)],
+)
+FIVE_VERTICES = CreasePattern(
+    [
+        (-3, -3),
+        (3, -3),
+        (4, 3),
+        (-3, 3),
+        (-1, -1),
+        (1, "-4/5"),
+        (1, 1),
+        ("-6/5", 1),
+        ("1/7", "1/9"),
+    ],
+    [(4, 5, 8), (5, 6, 8), (6, 7, 8), (7, 4, 8)]
+    + [
+        t
+        for k in range(4)
+        for t in ((k, (k + 1) % 4, 4 + (k + 1) % 4), (k, 4 + (k + 1) % 4, 4 + k))
+    ],
+)
+
+
+def chart_system(pattern):
+    return BranchSystem(pattern).chart.system
+
+
+NONREAL = QuadraticSystem((((1, 0, 0), (0, 0, 0), (0, 0, 2)), ((0, 1, 0), (1, 2, 0), (0, 0, 3))))
+
+
+@pytest.mark.parametrize("system", [*map(chart_system, (TWO_VERTICES, INNER_TRIANGLE)), NONREAL])
+def test_lifting_agrees_with_the_groebner_basis(system):
+    assert groebner(system, engine="lifting").classes == groebner(system, engine="flint").classes
+
+
+def test_lifting_is_chosen_for_five_unknowns():
+    solution = groebner(chart_system(FIVE_VERTICES))
+    assert solution.engine == "lifting"
+    assert solution.dimension == 32
+    assert all(c.multiplicity == 1 for c in solution.classes)
+    boxes = solution.real_points(30)
+    assert len(boxes) == 32
+
+
+def test_reducible_systems_split_into_classes():
+    system = QuadraticSystem(
+        (((1, 0, 0), (0, 0, 0), (0, 0, -1)), ((0, 0, 0), (0, 1, 0), (0, 0, -4)))
+    )
+    solution = groebner(system, engine="lifting")
+    assert [c.degree for c in solution.classes] == [1, 1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        chart_system(FLAT_STAR),  # a double root
+        QuadraticSystem((((1, 0, 0), (0, 1, 0), (0, 0, -1)), ((1, 0, 0), (0, 1, 0), (0, 0, -2)))),
+        QuadraticSystem((((1, 0, 0), (0, 0, 0), (0, 0, 0)), ((0, 1, 0), (1, 0, 0), (0, 0, 0)))),
+        # one zero at infinity: x y = 1 and x (x + y) = 1 have three leading directions too few
+        QuadraticSystem((((0, 1, 0), (1, 0, 0), (0, 0, -2)), ((2, 1, 0), (1, 0, 0), (0, 0, -2)))),
+    ],
+)
+def test_lifting_that_does_not_apply_error(system):
+    assert lifting.lifted_parametrisation(system) is None
+    with pytest.raises(NotApplicableError, match="another engine"):
+        groebner(system, engine="lifting")
+    assert groebner(system).engine == "flint"
+
+
+def test_lifting_gives_up_at_the_precision_limit(monkeypatch):
+    monkeypatch.setattr(lifting, "_precision_limit", lambda system: 1)
+    assert lifting.lifted_parametrisation(chart_system(TWO_VERTICES)) is None
+
+
+def test_too_little_precision_is_noticed(monkeypatch):
+    """Wrong reconstructions are caught by substitution, and the precision rises."""
+    attempts = []
+    original = lifting._reconstructed
+
+    def recorded(*arguments):
+        attempts.append(original(*arguments))
+        return attempts[-1]
+
+    monkeypatch.setattr(lifting, "_reconstructed", recorded)
+    found = lifting.lifted_parametrisation(chart_system(INNER_TRIANGLE))
+    assert len(attempts) > 1
+    assert found is attempts[-1]
