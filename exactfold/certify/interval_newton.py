@@ -19,7 +19,7 @@ from exactfold.system.quadratic import QuadraticSystem
 
 _PRECISIONS = (106, 212, 424, 848, 1696)
 _NEGLIGIBLE = Fraction(1, 10**8)
-_NEWTON_STEPS = 64
+_NEWTON_STEPS = 128
 _REACH = 64  # Newton may move a candidate by max(1, |candidate|) / _REACH
 _INFLATIONS = (1, 4, 64)
 
@@ -145,20 +145,17 @@ class _Worker:
     def run(self, start: Point, precisions: Sequence[int]) -> _Cube | str:
         """A proved cube near `start`, or the reason why there is none."""
         reason = "no precision was given"
-        x: list[Float] | None = None
         for precision in precisions:
             self.iv.prec = precision
             self.mp.prec = precision + 16
-            begin = [self._rational(c) for c in start]
             try:
-                x = self._newton(begin, begin if x is None else x, precision)
+                # Afresh each time: lower precision may have taken a cluster to the wrong zero.
+                found = self._enclose(self._newton(start, precision), precision)
             except ZeroDivisionError:
                 reason = f"the Jacobian is singular at {precision} bits"
-                x = None
                 continue
             except _LeftError as error:
                 return f"{error} at {precision} bits"
-            found = self._enclose(x, precision)
             if isinstance(found, _Cube):
                 return found
             reason = found
@@ -169,8 +166,9 @@ class _Worker:
     def _rational(self, value: Fraction) -> Float:
         return self.mp.mpf(value.numerator) / self.mp.mpf(value.denominator)
 
-    def _newton(self, start: list[Float], x: list[Float], precision: int) -> list[Float]:
+    def _newton(self, candidate: Point, precision: int) -> list[Float]:
         mp, n = self.mp, self.size
+        x = start = [self._rational(c) for c in candidate]
         reach = max([mp.one, *map(abs, start)]) / _REACH
         for _ in range(_NEWTON_STEPS):
             jacobian, values = self._approx_derivatives(x)
@@ -218,10 +216,7 @@ class _Worker:
         exponent = max(int(self.mp.frexp(largest)[1]), -precision) if largest else 0
         bits = max(0, precision - exponent)
         centre = [int(self.mp.nint(self.mp.ldexp(c, bits))) for c in x]
-        try:
-            inverse = self._approx_inverse(self._approx_derivatives(x)[0])
-        except ZeroDivisionError:
-            return f"the Jacobian is singular at {precision} bits"
+        inverse = self._approx_inverse(self._approx_derivatives(x)[0])
         factors = [[self.iv.make_mpf((c._mpf_, c._mpf_)) for c in row] for row in inverse]
         point = [self._dyadic(c, c, bits) for c in centre]
         residual = self._product(factors, [[v] for v in self._values(point)])
