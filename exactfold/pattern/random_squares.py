@@ -40,9 +40,10 @@ def sample_random_square(
 
     `interior` distinct points, uniform on the multiples of 1/denominator strictly inside the unit
     square, together with the corners, are Delaunay-triangulated. A sample with an interior vertex
-    of degree 3 or an edge between opposite corners is rejected as a whole and drawn anew. Vertices
-    0 to 3 are the corners (0,0), (1,0), (1,1), (0,1), the points follow in the order drawn. The
-    result depends on the arguments only: integers from `random.Random(seed)`.
+    of degree 3 or an edge between opposite corners is rejected as a whole and drawn anew. (The
+    second never happens: a disk through two opposite corners holds a third or the whole square.)
+    Vertices 0 to 3 are the corners (0,0), (1,0), (1,1), (0,1), the points follow in the order
+    drawn. The result depends on the arguments only: integers from `random.Random(seed)`.
 
     Raises `UsageError` for arguments that allow no sample, `NotApplicableError` if `max_attempts`
     samples were rejected.

@@ -92,6 +92,16 @@ def test_two_ways_to_the_inertia_agree(matrix):
 
 
 @quick
+@given(st.lists(st.integers(-4, 4), min_size=15, max_size=15), st.integers(2, 6))
+def test_two_ways_to_the_inertia_agree_without_a_diagonal(weights, n):
+    matrix = [[0] * n for _ in range(n)]
+    pairs = [(i, j) for i in range(n) for j in range(i)]
+    for (i, j), weight in zip(pairs, weights, strict=False):
+        matrix[i][j] = matrix[j][i] = weight
+    assert inertia(matrix) == inertia_by_elimination(matrix)
+
+
+@quick
 @given(symmetric(), st.data())
 def test_sylvester(matrix, data):
     n = len(matrix)

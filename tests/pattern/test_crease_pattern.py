@@ -25,6 +25,7 @@ from exactfold.errors import (
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_octahedron_in_square, single_vertex
+from exactfold.pattern.validate import segments_meet
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
 HALVES = [(0, 1, 2), (0, 2, 3)]
@@ -130,6 +131,27 @@ def test_overlap_error_where_the_boundary_touches_itself():
     with pytest.raises(OverlapError, match="touch") as caught:
         CreasePattern([a, b, c, d, e, f, (5, 2), h], faces)
     assert (3, 4) in caught.value.edges
+
+
+@pytest.mark.parametrize(
+    ("c", "d", "meet"),
+    [
+        ((1, -1), (1, 1), True),  # a crossing
+        ((1, 0), (1, 5), True),  # an end inside
+        ((1, 5), (1, 0), True),
+        ((4, 0), (4, 3), True),  # a common end
+        ((2, 0), (9, 0), True),  # an overlap
+        ((5, 0), (9, 0), False),  # on one line, apart
+        ((5, -1), (5, 1), False),
+        ((1, 1), (3, 1), False),
+        ((3, 1), (9, -4), False),
+    ],
+)
+def test_segments_meet(c, d, meet):
+    a, b = (0, 0), (4, 0)
+    for p, q in ((a, b), (b, a)):
+        assert segments_meet(p, q, c, d) is meet
+        assert segments_meet(c, d, p, q) is meet
 
 
 def test_non_manifold_edge_error():
