@@ -81,3 +81,16 @@ def test_uncertified_keeps_the_point_and_the_reason() -> None:
     result = Uncertified((1j,), "no contraction")
     assert result.point == (1j,)
     assert result.reason == "no contraction"
+
+
+@given(boxes(), boxes())
+def test_inclusion_against_brute_force(a: IsolatingBox, b: IsolatingBox) -> None:
+    if a.is_real != b.is_real:
+        return
+    included = all(
+        c <= low and high <= d for (low, high), (c, d) in zip(sides(a), sides(b), strict=True)
+    )
+    assert a.is_inside(b) == included
+    assert a.is_inside(a)
+    if included:
+        assert not a.is_disjoint_from(b)

@@ -183,3 +183,19 @@ def test_careless_first_pass_is_repaired(monkeypatch: pytest.MonkeyPatch) -> Non
     assert found.lost == ()
     assert found.points.shape == (32, 5)
     assert smallest_gap(found.points) > 1e-7
+
+
+def test_every_path_without_a_point_gets_its_own_line() -> None:
+    powers, plain = module._equilibrate(random_system(2, 0).float_tensor)
+    scaled = module._Balanced(*module._operator_scaling(plain), powers, plain)
+    w = np.ones((4, 3), dtype=np.complex128)
+    w[2] = np.linalg.solve(scaled.to_y, [1.0, 2.0, 0.0])
+    reached = np.array([1.0, 1.0, 1.0, 0.25])
+    met = np.array([-1, 0, -1, -1])
+    points, lost = module._collect(scaled, module._Run(w, reached, np.ones(4), met, 2, 9))
+    assert points.shape == (1, 2)
+    assert lost == (
+        "path 1 ended at the same point as path 0",
+        "path 2 ended at infinity",
+        "path 3 stalled at T = 0.25",
+    )
