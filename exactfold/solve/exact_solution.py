@@ -9,7 +9,7 @@ from functools import cached_property
 from math import gcd
 
 import numpy as np
-from flint import acb, acb_poly, arb, ctx, fmpq_poly, fmpz_poly
+from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly, fmpz_poly
 
 from exactfold.errors import ExactfoldError
 from exactfold.exact.numbers import over_common_denominator
@@ -126,6 +126,28 @@ class RootClass:
         """
         slope = tuple(k * c for k, c in enumerate(self.polynomial))[1:]
         return quotients_on_interval(self.numerators, slope, interval)
+
+    def _value(self, row: Sequence[Fraction | int]) -> fmpq_poly:
+        """p'(t) times the value of c_1 x_1 + ... + c_n x_n + c_0, modulo p."""
+        modulus = fmpq_poly(list(self.polynomial))
+        *slopes, constant = (fmpq(c.numerator, c.denominator) for c in row)
+        value = constant * modulus.derivative()
+        for c, w in zip(slopes, self.numerators, strict=True):
+            value += c * to_rational_poly(w)
+        return value % modulus
+
+    def vanishes(self, row: Sequence[Fraction | int]) -> bool:
+        """Whether c_1 x_1 + ... + c_n x_n + c_0 is zero at every zero of the class, exactly."""
+        return bool(self._value(row) == 0)
+
+    def value_on(self, row: Sequence[Fraction | int], interval: Interval) -> Interval | None:
+        """Bounds of c_1 x_1 + ... + c_n x_n + c_0 for every root t in the interval.
+
+        None if the interval is too wide to keep p' away from zero: refine it.
+        """
+        slope = tuple(k * c for k, c in enumerate(self.polynomial))[1:]
+        found = quotients_on_interval([from_rational_poly(self._value(row))], slope, interval)
+        return None if found is None else found[0]
 
     def real_points(self, bits: int) -> list[tuple[Interval, ...]]:
         """Boxes of width at most 2^-bits, one about each real zero of the class.
