@@ -353,8 +353,9 @@ class _Tracker:
             w = w - change
             lengths.append(np.linalg.norm(change, axis=1))
         first, second, third = lengths
-        good = (first < tolerances.correct) & (second < 0.1 * first + 1e-12)
-        good &= third < 0.1 * second + 1e-12
+        noise = 1e-15 * np.linalg.norm(inverse, axis=(1, 2))
+        good = (first < tolerances.correct + noise) & (noise < 1e-4)
+        good &= (second < 0.1 * first + noise) & (third < 0.1 * second + noise)
         return w / np.linalg.norm(w, axis=1, keepdims=True), good
 
     def _series(self, w: ComplexArray, t: FloatArray, inverse: ComplexArray) -> ComplexArray:

@@ -199,3 +199,11 @@ def test_every_path_without_a_point_gets_its_own_line() -> None:
         "path 2 ended at infinity",
         "path 3 stalled at T = 0.25",
     )
+
+
+def test_two_zeros_at_distance_2e_7_are_told_apart() -> None:
+    # Rounding noise near the end of these paths exceeds a fixed tolerance on the corrector.
+    found = homotopy(BranchSystem(random_square(7, seed=27)).chart.system)
+    assert found.lost == ()
+    assert found.points.shape == (128, 7)
+    assert 1e-8 < smallest_gap(found.points) < 1e-6
