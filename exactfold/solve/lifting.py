@@ -21,20 +21,22 @@ from exactfold.system.quadratic import QuadraticSystem
 
 PRIME = 2305843009213693951  # 2^61 - 1
 _FORMS_TRIED = 12
+_LARGEST = 7  # beyond, the matrix of Macaulay does not fit in memory
 
 
 def lifted_parametrisation(system: QuadraticSystem) -> RootClass | None:
     """One parametrisation of all 2^n zeros, by a squarefree, in general reducible polynomial.
 
-    None if the method does not apply: fewer than 2^n different zeros, zeros at infinity, or an
-    unlucky prime. What is returned passed `RootClass.verify`, and the Jacobian was inverted modulo
-    the polynomial and a prime: 2^n different regular zeros, so that by Bezout there are no others.
+    None if the method does not apply: fewer than 2^n different zeros, zeros at infinity, more than
+    7 unknowns, or an unlucky prime. What is returned passed `RootClass.verify`, and the Jacobian
+    was inverted modulo the polynomial and a prime: 2^n different regular zeros, so that by Bezout
+    there are no others.
 
     >>> lines, circle = ((0, 1, 1), (1, 0, 0), (1, 0, 0)), ((1, 0, 0), (0, 1, 0), (0, 0, -9))
     >>> lifted_parametrisation(QuadraticSystem((lines, circle))).degree
     4
     """
-    modular = _modular_quotient(system)
+    modular = _modular_quotient(system) if system.size <= _LARGEST else None
     if modular is None:
         return None
     for form in islice(separating_forms(system.size), _FORMS_TRIED):
@@ -63,14 +65,19 @@ def _modular_quotient(system: QuadraticSystem) -> list[nmod_mat] | None:
     monomials = sorted(_monomials(size, top), key=grevlex_key, reverse=True)
     column = {a: k for k, a in enumerate(monomials)}
     factors = list(_monomials(size, top - 2))
-    matrix = nmod_mat(size * len(factors), len(monomials), PRIME)
-    for p, terms in enumerate(sparse_quadrics(system)):
-        for r, factor in enumerate(factors):
-            for a, c in terms.items():
-                place = column[tuple(x + y for x, y in zip(a, factor, strict=True))]
-                matrix[p * len(factors) + r, place] = c
-    echelon, rank = matrix.rref()
-    if len(monomials) - rank != system.bezout_number:
+    # x^a F_p with a_j <= 1 for j < p: as many as the rank, and of full rank for generic quadrics.
+    chosen = [(p, a) for p in range(size) for a in factors if max(a[:p], default=0) <= 1]
+    everything = [(p, a) for p in range(size) for a in factors]
+    quadrics = sparse_quadrics(system)
+    for multiples in (chosen, everything):
+        matrix = nmod_mat(len(multiples), len(monomials), PRIME)
+        for r, (p, factor) in enumerate(multiples):
+            for a, c in quadrics[p].items():
+                matrix[r, column[tuple(x + y for x, y in zip(a, factor, strict=True))]] = c
+        echelon, rank = matrix.rref()
+        if len(monomials) - rank == system.bezout_number:
+            break
+    else:
         return None
     pivot_row: dict[int, int] = {}
     k = 0

@@ -201,6 +201,28 @@ def test_enclose_refuses_a_wide_interval():
     assert pair.enclose((Fraction(-2), Fraction(2))) is None
 
 
+def test_linear_forms_on_a_class():
+    solution = groebner(chart_system(TWO_VERTICES))
+    [c] = solution.classes
+    for interval in c.real_roots(200):
+        box = c.enclose(interval)
+        row = [Fraction(2), Fraction(-3), Fraction(1, 5)]
+        low, high = c.value_on(row, interval)
+        corners = [2 * x - 3 * y + Fraction(1, 5) for x in box[0] for y in box[1]]
+        assert min(corners) <= high
+        assert low <= max(corners)
+        assert high - low < Fraction(1, 2**100)
+    assert not c.vanishes(row)
+    assert c.value_on([1, 0, 0], (Fraction(-(10**6)), Fraction(10**6))) is None
+
+
+def test_linear_form_that_vanishes_on_one_class_only():
+    # x y = 0 and x^2 + y^2 = 2: x vanishes on one pair of points, and not on the other.
+    solution = groebner(quadrics({(1, 1): 1}, {(2, 0): 1, (0, 2): 1, (0, 0): -2}))
+    assert sorted(c.vanishes([1, 0, 0]) for c in solution.classes) == [False, True]
+    assert sorted(c.vanishes([0, 1, 0]) for c in solution.classes) == [False, True]
+
+
 def test_candidates_are_near_the_zeros():
     system = chart_system(concentric_squares())
     candidates = groebner(system).candidates
