@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.certify.interval_newton import interval_newton
 from exactfold.certify.krawczyk import krawczyk
@@ -12,9 +15,13 @@ from exactfold.solve.candidates import Candidates
 from exactfold.system.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
+ComplexRow = npt.NDArray[np.complex128]
 Progress = Callable[[int, int], None]
 
 _BLOCK = 512
+_FIRST = (64,)
+_RISING = (64, 128, 256, 512)
+_INTERVAL = (106, 424)
 
 
 @dataclass(frozen=True)
@@ -65,17 +72,50 @@ def isolate(
     (2, 'proved')
     """
     boxes: list[IsolatingBox] = []
-    failures: list[Uncertified] = []
+    unsettled: list[ComplexRow] = []
     total = len(candidates.points)
     for start in range(0, total, _BLOCK):
         block = candidates.points[start : start + _BLOCK]
-        for point, result in zip(block, krawczyk(system, block), strict=True):
-            if isinstance(result, Uncertified):
-                (result,) = interval_newton(system, [point])
-            (boxes if isinstance(result, IsolatingBox) else failures).append(result)
+        for point, result in zip(block, krawczyk(system, block, precisions=_FIRST), strict=True):
+            if isinstance(result, IsolatingBox):
+                boxes.append(result)
+            else:
+                unsettled.append(point)
         if progress is not None:
             progress(min(start + _BLOCK, total), total)
+    failures: list[Uncertified] = []
+    for group in _clusters(unsettled):
+        more, failure = _settle(system, group)
+        boxes += more
+        if failure is not None:
+            failures.append(failure)
     return Isolation(system, tuple(disjoint(boxes)), tuple(failures))
+
+
+def _clusters(points: list[ComplexRow]) -> list[list[ComplexRow]]:
+    """Points that agree to about five digits together; this only chooses what to try."""
+    groups: dict[tuple[complex, ...], list[ComplexRow]] = {}
+    for point in points:
+        scale = float(np.abs(point).max(initial=0.0)) or 1.0
+        groups.setdefault(tuple(np.round(point / scale, 5).tolist()), []).append(point)
+    return list(groups.values())
+
+
+def _settle(
+    system: QuadraticSystem, group: list[ComplexRow]
+) -> tuple[list[IsolatingBox], Uncertified | None]:
+    """Higher precision and the second certifier for candidates that meet; stops at a failure."""
+    found = []
+    for point in group:
+        (result,) = krawczyk(system, [point], precisions=_RISING)
+        if isinstance(result, Uncertified):
+            (result,) = interval_newton(system, [point], precisions=_INTERVAL)
+        if isinstance(result, Uncertified):
+            left = len(group) - len(found)
+            many = f"{left} candidates meet here; " if left > 1 else ""
+            return found, Uncertified(result.point, many + result.reason)
+        found.append(result)
+    return found, None
 
 
 def disjoint(boxes: Iterable[IsolatingBox]) -> list[IsolatingBox]:

@@ -19,6 +19,7 @@ _PRECISIONS = (64, 128, 256, 512, 1024)
 _Y_BITS = 56
 _NEGLIGIBLE = 1e-8
 _NEWTON_STEPS = 12
+_SLOW = "Newton's steps do not shrink quadratically: the zero is multiple or the candidate far off"
 
 
 def krawczyk(
@@ -144,7 +145,7 @@ class _Kernel:
             if np.isfinite(inverse).all():
                 result = self._attempt(start, first, inverse)
             for bits in rising:
-                if isinstance(result, IsolatingBox):
+                if isinstance(result, IsolatingBox) or result == _SLOW:
                     break
                 result = self._attempt_exactly([_dyadic(x, bits) for x in point.tolist()], bits)
             results.append(result)
@@ -185,6 +186,8 @@ class _Kernel:
         """Newton with the exact inverse, rounded; for clusters that doubles cannot tell apart."""
         n = self.system.size
         result: IsolatingBox | str = "no Newton step was possible"
+        length: int | None = None
+        last: int | None = None
         for _ in range(_NEWTON_STEPS):
             jacobian, _values = self._evaluate(m, bits)
             try:
@@ -202,8 +205,10 @@ class _Kernel:
             before, m = m, self._newton(m, bits, y, shift)
             result = self._test(m, bits, y, entries, shift)
             if isinstance(result, IsolatingBox) or _settled(before, m):
-                break
-        return result
+                return result
+            length, last = _distance(before, m), length
+        slow = last is not None and length is not None and 8 * length > last
+        return _SLOW if slow else result
 
     def _evaluate(self, m: list[int], bits: int) -> tuple[fmpz_mat, fmpz_mat]:
         """2^bits F'(m) as an n x n matrix, and 2^(2 bits + 1) F(m) as a column."""
@@ -253,8 +258,12 @@ class _Kernel:
         return f"no contraction at {bits} bits: the zero may be multiple or too far off"
 
 
+def _distance(before: list[int], after: list[int]) -> int:
+    return max(abs(a - b) for a, b in zip(before, after, strict=True))
+
+
 def _settled(before: list[int], after: list[int]) -> bool:
-    return max(abs(a - b) for a, b in zip(before, after, strict=True)) <= 2
+    return _distance(before, after) <= 2
 
 
 def _dyadic(value: float, bits: int) -> int:

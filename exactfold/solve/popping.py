@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 import numpy.typing as npt
@@ -37,7 +38,7 @@ def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
     corner is made interior by the triangle that closes the notch, and is given curvature k in place
     of 0. Predictor: a Taylor series of order 8 from one inverse per step; all paths of a block
     advance together. Paths that stall before T = 1, as they do where a vertex star ends flat, are
-    named in `lost`. Floating point throughout: nothing here is proved.
+    named in `lost`; where they stalled is still a candidate. Floating point throughout: nothing here is proved.
 
     Raises `NotApplicableError` unless the pattern has four boundary vertices.
 
@@ -56,7 +57,7 @@ def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
         block = signs[start : start + _BLOCK]
         x, done, used = _track(problem, block)
         steps += used
-        arrived.append(x[done])
+        arrived.append(x)
         lost += ["path " + _text(e) + " stalled before its end" for e in block[~done]]
         if progress is not None:
             progress(min(start + _BLOCK, len(signs)), len(signs))
@@ -114,11 +115,13 @@ class _Problem:
         if unit is not None:
             position[unit] = n
         forms, lines = np.zeros((n, n + 1, n + 1)), np.zeros((n, n + 1))
+        size = _size(pattern)
         for p, v in enumerate(movable):
             form = curvature_form(sheet, v)
-            matrix = np.array(form.matrix, dtype=float)
+            matrix = np.array([[float(w * size**2) for w in row] for row in form.matrix])
             _, vectors = spokes(sheet, v)
-            cone = np.array([0.0, *(-np.hypot(float(x), float(y)) for x, y in vectors)])
+            lengths = [np.hypot(float(x / size), float(y / size)) for x, y in vectors]
+            cone = np.array([0.0, *(-length for length in lengths)])
             line = matrix @ cone
             hub = line[0]
             keep = [k for k, label in enumerate(form.labels) if label in position]
@@ -145,10 +148,22 @@ class _Problem:
         return heights
 
 
+def _size(pattern: CreasePattern) -> Fraction:
+    """The larger side of the bounding box: the unit of length that keeps floats in range."""
+    sides = (
+        max(p[axis] for p in pattern.vertices) - min(p[axis] for p in pattern.vertices)
+        for axis in (0, 1)
+    )
+    return max(sides)
+
+
 def _to_chart(chart: Chart, heights: FloatArray) -> FloatArray:
     """The same sheets in the gauge of the chart: pinned vertices at 0, functional 1."""
     pattern = chart.branch_system.pattern
-    plane = np.array([[float(x), float(y), 1.0] for x, y in pattern.vertices])
+    size, (x0, y0) = _size(pattern), pattern.vertices[0]
+    plane = np.array(
+        [[float((x - x0) / size), float((y - y0) / size), 1.0] for x, y in pattern.vertices]
+    )
     pinned = list(chart.branch_system.pinned)
     tilt = np.linalg.solve(plane[pinned], heights[:, pinned].T)
     level = heights - (plane @ tilt).T
