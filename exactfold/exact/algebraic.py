@@ -38,6 +38,8 @@ class NumberField:
 
     def inverse(self, a: fmpq_poly) -> fmpq_poly:
         """1/a."""
+        if a.degree() == 0:
+            return fmpq_poly([1 / a[0]])
         divisor, inverse, _ = a.xgcd(self.modulus)
         if divisor.degree() != 0:
             raise ZeroDivisionError("not invertible modulo the polynomial of the field")
@@ -54,9 +56,10 @@ class NumberField:
         pivots: list[int] = []
         for column in range(len(work[0]) if work else 0):
             top = len(pivots)
-            found = next((i for i in range(top, len(work)) if work[i][column] != 0), None)
-            if found is None:
+            live = [i for i in range(top, len(work)) if work[i][column] != 0]
+            if not live:
                 continue
+            found = min(live, key=lambda i: work[i][column].degree())
             work[top], work[found] = work[found], work[top]
             scale = self.inverse(work[top][column])
             work[top] = [self.multiply(x, scale) if x != 0 else x for x in work[top]]

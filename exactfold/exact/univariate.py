@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -92,6 +93,11 @@ def isolate_real_roots(polynomial: Sequence[int], bits: int) -> list[Interval]:
     >>> isolate_real_roots((-1, 2), 8)
     [(Fraction(1, 2), Fraction(1, 2))]
     """
+    return list(_isolated(tuple(polynomial), bits))
+
+
+@lru_cache(maxsize=256)
+def _isolated(polynomial: IntPolynomial, bits: int) -> tuple[Interval, ...]:
     proposal = fmpz_poly(list(polynomial))
     if proposal.degree() < 0:
         raise ValueError("the zero polynomial has no isolated roots")
@@ -99,12 +105,12 @@ def isolate_real_roots(polynomial: Sequence[int], bits: int) -> list[Interval]:
         raise ValueError("root isolation needs a squarefree polynomial")
     if proposal.degree() == 1:
         root = Fraction(-polynomial[0], polynomial[1])
-        return [(root, root)]
+        return ((root, root),)
     precision = bits
     while True:
         found = _proposed_intervals(proposal, precision)
         if _is_isolating(polynomial, found, bits):
-            return found
+            return tuple(found)
         precision = 2 * precision + 32
 
 

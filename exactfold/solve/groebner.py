@@ -34,7 +34,8 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
     that separates the zeros, factored over Q, and the rational univariate representation (Rouillier
     1999) describe the zeros. Multiplicities are exponents of the characteristic polynomial in the
     full algebra. Engine "lifting" does the same modulo a prime and lifts the result to Q; it
-    applies to systems with 2^n different zeros, and is much faster from n = 5 on. "auto" takes the
+    applies to systems with 2^n different zeros and n <= 7, and is much faster from n = 5 on (random
+    squares: 0.3 s at n = 5, 3 s at 6, a minute at 7, against 2 s and 150 s). "auto" takes the
     first that applies of FLINT up to n = 4, lifting, and FLINT. Every class is verified by exact
     substitution.
 
