@@ -24,6 +24,7 @@ _AT_INFINITY = 1e-10
 _SAME = 1e-9
 _SINGULAR = 1e7
 _NEAR_END = 0.99
+_STALLED_LATE = 1e-8
 
 
 @dataclass(frozen=True)
@@ -32,11 +33,11 @@ class _Tolerances:
 
     predict: float = 1e-6
     correct: float = 1e-4
-    shortest: float = 1e-9
+    shortest: float = 1e-12
     rounds: int = 400
 
 
-_TIGHT = _Tolerances(predict=1e-10, correct=1e-8, shortest=1e-12, rounds=1500)
+_TIGHT = _Tolerances(predict=1e-10, correct=1e-8, shortest=1e-14, rounds=1500)
 
 
 def homotopy(
@@ -56,9 +57,10 @@ def homotopy(
     other g_p. `progress(done, total)` counts paths. The result is a function of system and `seed`.
 
     `points` has shape (m, n) with m <= 2^n, in the units of the unknowns. `lost` names every path
-    that brought no point: it ended at infinity, stalled, or ended where another one did. Floating
-    point throughout: nothing here is proved, and a lost path does not mean that there are fewer
-    zeros. Raises `UsageError` if the system has no unknowns.
+    that did not arrive: it ended at infinity, where another one did, or stalled; where it stalled
+    is still a candidate if T was nearly 1, as it is at multiple zeros. Floating point throughout:
+    nothing here is proved, and a lost path does not mean that there are fewer zeros. Raises
+    `UsageError` if the system has no unknowns.
 
     >>> circle_and_line_pair = QuadraticSystem.from_rational(
     ...     [[[1, 0, 0], [0, 1, 0], [0, 0, -1]], [[0, 1, 0], [1, 0, 0], [0, 0, 0]]])
@@ -72,8 +74,7 @@ def homotopy(
     scaled = _Balanced(*_operator_scaling(plain), powers, plain)
     runs: list[_Run] = []
     while len(runs) < _GAMMAS and all(run.suspicious for run in runs):
-        rng = np.random.default_rng([seed, len(runs)])
-        runs.append(_run(scaled, rng, progress))
+        runs.append(_run(scaled, np.random.default_rng([seed, len(runs)]), progress))
     best = max(runs, key=lambda run: run.distinct)
     settings = {"seed": seed, "gammas": len(runs), "order": _ORDER, "paths": system.bezout_number}
     counts = {"steps": best.steps, "retried": best.retried}
@@ -221,19 +222,19 @@ def _meetings(w: ComplexArray, reached: FloatArray, probe: ComplexArray) -> IntA
 
 
 def _collect(scaled: _Balanced, run: _Run) -> tuple[ComplexArray, tuple[str, ...]]:
-    """The finite points in the units of the unknowns, and a line for every path without one."""
+    """The finite points in the units of the unknowns, and a line for every path that was lost."""
     y = run.w @ scaled.to_y.T
     y /= np.linalg.norm(y, axis=1, keepdims=True)
     finite = np.abs(y[:, -1]) > _AT_INFINITY
     lost = []
     for k in np.flatnonzero((run.reached < 1.0) | (run.met >= 0) | ~finite):
         if run.reached[k] < 1.0:
-            lost.append(f"path {k} stalled at T = {run.reached[k]:.12g}")
+            lost.append(f"path {k} stalled at 1 - T = {1 - run.reached[k]:.1e}")
         elif run.met[k] >= 0:
             lost.append(f"path {k} ended at the same point as path {run.met[k]}")
         else:
             lost.append(f"path {k} ended at infinity")
-    keep = (run.reached == 1.0) & (run.met < 0) & finite
+    keep = (run.reached > 1.0 - _STALLED_LATE) & (run.met < 0) & finite
     points = _polish(scaled.plain, y[keep, :-1] / y[keep, -1:])
     points = points * (scaled.powers[:-1] / scaled.powers[-1])
     return points, tuple(lost)
@@ -242,12 +243,11 @@ def _collect(scaled: _Balanced, run: _Run) -> tuple[ComplexArray, tuple[str, ...
 @np.errstate(all="ignore")
 def _polish(forms: FloatArray, x: ComplexArray, rounds: int = 3) -> ComplexArray:
     """Newton steps in the affine chart, each kept only if it is short."""
-    n = len(forms)
     for _ in range(rounds):
         z = np.hstack([x, np.ones((len(x), 1))])
         rows = np.einsum("pij,bj->bpi", forms, z)
         values = np.einsum("bpi,bi->bp", rows, z) / 2
-        step = (_inverses(rows[:, :, :n]) @ values[:, :, None])[:, :, 0]
+        step = (_inverses(rows[:, :, :-1]) @ values[:, :, None])[:, :, 0]
         short = np.linalg.norm(step, axis=1) < 1e-4 * (1 + np.linalg.norm(x, axis=1))
         x = np.where(short[:, None], x - step, x)
     return x
@@ -313,7 +313,7 @@ class _Tracker:
                 step[moved] = self._step(fresh, t[moved], tolerances)
                 end_w[live[moved]], end_t[live[moved]] = w[moved], t[moved]
                 condition[live[moved]] = np.linalg.norm(inverse[moved], axis=(1, 2))
-            going = (t < 1.0) & (step > tolerances.shortest)
+            going = (t < 1.0) & ((step > tolerances.shortest) | (t + step >= 1.0))
             if not going.all():
                 live, t, step, series = live[going], t[going], step[going], series[:, going]
             if not live.size:

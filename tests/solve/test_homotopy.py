@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from exactfold.certify.box import IsolatingBox
+from exactfold.certify.krawczyk import krawczyk
 from exactfold.errors import UsageError
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.pattern.random_squares import random_square
@@ -100,12 +102,14 @@ def test_zeros_at_infinity_are_named() -> None:
     assert "infinity" in found.lost[0]
 
 
-def test_double_zero_is_not_hidden() -> None:
-    found = homotopy(BranchSystem(flat_vertex_square()).chart.system)
-    assert len(found.points) + len(found.lost) == 4
-    assert len(found.points) >= 2
-    assert found.lost
-    assert found.settings["retried"] == 2
+@pytest.mark.parametrize("seed", range(3))
+def test_double_zero_is_not_hidden(seed: int) -> None:
+    # theory.md section 5: multiplicities 2, 1, 1. What arrives at the double zero is not certified.
+    system = BranchSystem(flat_vertex_square()).chart.system
+    found = homotopy(system, seed=seed)
+    assert found.points.shape == (4, 2)
+    boxes = [b for b in krawczyk(system, found.points) if isinstance(b, IsolatingBox)]
+    assert len(boxes) == 2
 
 
 @pytest.mark.parametrize(
@@ -120,8 +124,8 @@ def test_double_zero_is_not_hidden() -> None:
 )
 def test_degenerate_systems_end_with_every_path_named(matrices: list[list[list[int]]]) -> None:
     found = homotopy(QuadraticSystem.from_rational(matrices))
-    assert len(found.points) + len(found.lost) == 1 << len(matrices)
-    assert found.lost
+    assert len(found.points) <= 1 << len(matrices)
+    assert len(found.lost) == 1 << len(matrices)
     assert np.isfinite(found.points).all()
 
 
@@ -185,7 +189,7 @@ def test_careless_first_pass_is_repaired(monkeypatch: pytest.MonkeyPatch) -> Non
     assert smallest_gap(found.points) > 1e-7
 
 
-def test_every_path_without_a_point_gets_its_own_line() -> None:
+def test_every_lost_path_gets_its_own_line() -> None:
     powers, plain = module._equilibrate(random_system(2, 0).float_tensor)
     scaled = module._Balanced(*module._operator_scaling(plain), powers, plain)
     w = np.ones((4, 3), dtype=np.complex128)
@@ -197,7 +201,7 @@ def test_every_path_without_a_point_gets_its_own_line() -> None:
     assert lost == (
         "path 1 ended at the same point as path 0",
         "path 2 ended at infinity",
-        "path 3 stalled at T = 0.25",
+        "path 3 stalled at 1 - T = 7.5e-01",
     )
 
 
