@@ -19,10 +19,19 @@ Floating point is used in one place, to choose the matrix Y of Krawczyk's test, 
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import sys
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from fractions import Fraction
 from math import gcd, isqrt, lcm
+from typing import Any, NoReturn
+
+Point = tuple[Fraction, Fraction]
+Edge = tuple[int, int]
+Form = dict[tuple[int, int], Fraction]
+Poly = list[Any]
 
 FORMAT, VERSION = "exactfold certificate", 1
 
@@ -35,7 +44,7 @@ class FormatError(Exception):
     """The file is not a certificate of a known format and version."""
 
 
-def require(condition, message):
+def require(condition: object, message: str) -> None:
     """Raise `CertificateError` unless the condition holds."""
     if not condition:
         raise CertificateError(message)
@@ -44,7 +53,7 @@ def require(condition, message):
 # --- reading -------------------------------------------------------------------------------------
 
 
-def parse_integer(text):
+def parse_integer(text: str) -> int:
     """Exact integer of any length from decimal digits."""
     sign, digits = (-1, text[1:]) if text[:1] == "-" else (1, text)
     if not (digits.isascii() and digits.isdigit()):
@@ -56,7 +65,7 @@ def parse_integer(text):
     return sign * value
 
 
-def parse_rational(text):
+def parse_rational(text: Any) -> Fraction:
     """Exact rational from "p" or "p/q"."""
     require(isinstance(text, str), f"{text!r} is not a rational number in quotes")
     numerator, slash, denominator = text.partition("/")
@@ -65,13 +74,13 @@ def parse_rational(text):
     return Fraction(parse_integer(numerator), q)
 
 
-def load(text):
+def load(text: str) -> dict[str, Any]:
     """The JSON object of a certificate, without floats or repeated keys."""
 
-    def refuse(number):
+    def refuse(number: str) -> NoReturn:
         raise FormatError(f"a certificate holds no floats, but here is {number[:40]}")
 
-    def unique(pairs):
+    def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         keys = [key for key, _ in pairs]
         if len(set(keys)) != len(keys):
             raise FormatError("a key appears twice in one object")
@@ -79,7 +88,10 @@ def load(text):
 
     try:
         data = json.loads(
-            text, parse_float=refuse, parse_constant=refuse, parse_int=parse_integer,
+            text,
+            parse_float=refuse,
+            parse_constant=refuse,
+            parse_int=parse_integer,
             object_pairs_hook=unique,
         )
     except (ValueError, RecursionError) as error:
@@ -92,29 +104,30 @@ def load(text):
     return data
 
 
-def keys(value, names, what, error=CertificateError):
+def keys(value: Any, names: str, what: str, error: type[Exception] = CertificateError) -> None:
     """Raise unless `value` is an object with exactly these keys."""
     if not isinstance(value, dict) or sorted(value) != sorted(names.split()):
         raise error(f"{what}: expected an object with the keys {names}")
 
 
-def items(value, what, length=None):
+def items(value: Any, what: str, length: int | None = None) -> list[Any]:
     """`value` if it is a list (of the given length)."""
     require(isinstance(value, list), f"{what} is not a list")
     require(length is None or len(value) == length, f"{what} has not {length} entries")
-    return value
+    return list(value)
 
 
-def natural(value, what):
+def natural(value: Any, what: str) -> int:
     """`value` if it is an integer >= 0."""
-    require(type(value) is int and value >= 0, f"{what} is not a natural number")
+    if type(value) is not int or value < 0:
+        raise CertificateError(f"{what} is not a natural number")
     return value
 
 
 # --- the sheet -----------------------------------------------------------------------------------
 
 
-def turn(a, b, c):
+def turn(a: Point, b: Point, c: Point) -> Fraction:
     """Twice the signed area of the triangle abc."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
@@ -122,8 +135,9 @@ def turn(a, b, c):
 class Sheet:
     """A flat triangulated disk, verified."""
 
-    def __init__(self, points, triangles):
-        self.points, self.next = points, {v: {} for v in points}
+    def __init__(self, points: dict[int, Point], triangles: Iterable[tuple[int, ...]]) -> None:
+        self.points = points
+        self.next: dict[int, dict[int, int]] = {v: {} for v in points}
         for a, b, c in triangles:
             require(len({a, b, c}) == 3 and {a, b, c} <= set(points), f"bad face {(a, b, c)}")
             require(turn(points[a], points[b], points[c]) > 0, f"face {(a, b, c)} is not positive")
@@ -132,14 +146,15 @@ class Sheet:
                 self.next[i][j] = k
         require(len(set(points.values())) == len(points), "two vertices at one point")
         self.triangles = {frozenset(t) for t in triangles}
-        self.edges = sorted({(min(i, j), max(i, j)) for t in self.triangles
-                             for i in t for j in t if i != j})
+        self.edges = sorted(
+            {(min(i, j), max(i, j)) for t in self.triangles for i in t for j in t if i != j}
+        )
         self._disk()
         self.interior = sorted(set(points) - set(self.boundary))
-        rim = set(zip(self.boundary, self.boundary[1:] + self.boundary[:1]))
+        rim = set(zip(self.boundary, self.boundary[1:] + self.boundary[:1], strict=True))
         self.folds = [(i, j) for i, j in self.edges if (i, j) not in rim and (j, i) not in rim]
 
-    def _disk(self):
+    def _disk(self) -> None:
         follow = {}
         for v, fan in self.next.items():
             require(fan, f"vertex {v} is on no face")
@@ -166,26 +181,28 @@ class Sheet:
                 seen |= {a, b}
         require(euler == 1 and len(seen) == len(self.points), "the sheet is not one disk")
         self.boundary = cycle
-        sides = list(zip(cycle, cycle[1:] + cycle[:1]))
+        sides = list(zip(cycle, cycle[1:] + cycle[:1], strict=True))
         for k, first in enumerate(sides):
             for second in sides[:k]:
                 require(not self._meet(first, second), f"boundary edges {first}, {second} meet")
 
-    def _meet(self, first, second):
+    def _meet(self, first: Edge, second: Edge) -> bool:
         shared = set(first) & set(second)
         if shared:
-            (v,), (a,), (b,) = shared, set(first) - shared, set(second) - shared
-            p, q, r = self.points[v], self.points[a], self.points[b]
+            apex, end, other = shared, set(first) - shared, set(second) - shared
+            p, q, r = (self.points[min(only)] for only in (apex, end, other))
             along = sum((q[k] - p[k]) * (r[k] - p[k]) for k in (0, 1))
             return turn(p, q, r) == 0 and along > 0
         a, b, c, d = (self.points[v] for v in first + second)
         abc, abd, cda, cdb = turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b)
         if abc == abd == 0:
-            return all(min(a[k], b[k]) <= max(c[k], d[k]) and min(c[k], d[k]) <= max(a[k], b[k])
-                       for k in (0, 1))
+            return all(
+                min(a[k], b[k]) <= max(c[k], d[k]) and min(c[k], d[k]) <= max(a[k], b[k])
+                for k in (0, 1)
+            )
         return abc * abd <= 0 and cda * cdb <= 0
 
-    def star(self, vertex):
+    def star(self, vertex: int) -> list[int]:
         """Neighbours of an interior vertex, counter-clockwise."""
         fan = self.next[vertex]
         cycle = [min(fan)]
@@ -193,7 +210,7 @@ class Sheet:
             cycle.append(fan[cycle[-1]])
         return cycle
 
-    def curvature(self, vertex):
+    def curvature(self, vertex: int) -> Form:
         """The curvature form K_v as {(i, j): coefficient}, symmetric, over all pairs of the star.
 
         K_v(h) = sum_j x_j x_{j+1} / c_j - (s_j / 2 c_j) (x_j^2 / L_j^2 + x_{j+1}^2 / L_{j+1}^2)
@@ -201,15 +218,17 @@ class Sheet:
         """
         ring, (x, y) = self.star(vertex), self.points[vertex]
         spoke = {j: (self.points[j][0] - x, self.points[j][1] - y) for j in ring}
-        form = {}
+        form: Form = {}
 
-        def add(i, j, weight):  # weight * x_i * x_j, with x_i = h_i - h_v
+        def add(
+            i: int, j: int, weight: Fraction
+        ) -> None:  # weight * x_i * x_j, with x_i = h_i - h_v
             for a, s in ((i, 1), (vertex, -1)):
                 for b, t in ((j, 1), (vertex, -1)):
                     form[a, b] = form.get((a, b), 0) + weight * s * t / 2
                     form[b, a] = form.get((b, a), 0) + weight * s * t / 2
 
-        for i, j in zip(ring, ring[1:] + ring[:1]):
+        for i, j in zip(ring, ring[1:] + ring[:1], strict=True):
             (ax, ay), (bx, by) = spoke[i], spoke[j]
             c, s = Fraction(ax * by - ay * bx), ax * bx + ay * by
             add(i, j, 1 / c)
@@ -217,7 +236,7 @@ class Sheet:
             add(j, j, -s / (2 * c) / (bx * bx + by * by))
         return form
 
-    def sign_of_vertex(self, vertex):
+    def sign_of_vertex(self, vertex: int) -> dict[int, Fraction]:
         """Coefficients of h -> K_v(t, h) for a rational t with K_v(t) > 0 that points up."""
         form, (x, y) = self.curvature(vertex), self.points[vertex]
         bits = 16
@@ -228,33 +247,33 @@ class Sheet:
                 product = square.numerator * square.denominator << 2 * bits
                 cone[j] = -Fraction(isqrt(product), square.denominator << bits)
             if sum(w * cone[i] * cone[j] for (i, j), w in form.items()) > 0:
-                row = {}
+                row: dict[int, Fraction] = {}
                 for (i, j), w in form.items():
                     row[j] = row.get(j, 0) + w * cone[i]
                 return row
             bits *= 2
 
-    def bend(self, fold):
+    def bend(self, fold: Edge) -> dict[int, Fraction]:
         """Coefficients of the bend across a fold, positive where the sheet is locally convex."""
         i, j = fold
         k, m = self.next[i][j], self.next[j][i]
         p, q, r, s = (self.points[v] for v in (i, j, k, m))
         return {i: -turn(q, r, s), j: turn(p, r, s), k: -turn(p, q, s), m: turn(p, q, r)}
 
-    def emptied(self, corners, inside):
+    def emptied(self, corners: list[int], inside: list[int]) -> Sheet:
         """The sheet with the vertices inside a 3-cycle removed."""
         faces = [self.face(t) for t in self.triangles if not t & set(inside)]
         points = {v: p for v, p in self.points.items() if v not in set(inside)}
         return Sheet(points, [*faces, tuple(corners)])
 
-    def face(self, triangle):
+    def face(self, triangle: frozenset[int]) -> tuple[int, int, int]:
         """The triangle counter-clockwise from its smallest vertex."""
         a = min(triangle)
         b = next(v for v in triangle - {a} if self.next[a].get(v) in triangle)
         return a, b, self.next[a][b]
 
 
-def inertia(matrix):
+def inertia(matrix: list[list[Fraction]]) -> tuple[int, int, int]:
     """(positive, negative, zero) of a symmetric rational matrix, by completing squares."""
     work, live, counts = [list(row) for row in matrix], list(range(len(matrix))), [0, 0]
     while live:
@@ -277,27 +296,29 @@ def inertia(matrix):
     return counts[0], counts[1], len(matrix) - sum(counts)
 
 
-def matrix_of(form, labels):
+def matrix_of(form: Form, labels: list[int]) -> list[list[Fraction]]:
     """The matrix of a form on the given variables, the others being 0."""
     return [[Fraction(form.get((i, j), 0)) for j in labels] for i in labels]
 
 
-def check_lorentzian(sheet, vertex):
+def check_lorentzian(sheet: Sheet, vertex: int) -> None:
     """The curvature form of a flat vertex of degree N has inertia (1, N - 3, 3)."""
     labels = [vertex, *sheet.star(vertex)]
     expected = (1, len(labels) - 4, 3)
-    require(inertia(matrix_of(sheet.curvature(vertex), labels)) == expected,
-            f"the curvature form of vertex {vertex} has not inertia {expected}")
+    require(
+        inertia(matrix_of(sheet.curvature(vertex), labels)) == expected,
+        f"the curvature form of vertex {vertex} has not inertia {expected}",
+    )
 
 
-def check_definite(sheet, inside, weights):
+def check_definite(sheet: Sheet, inside: list[int], weights: list[Fraction]) -> None:
     """sum_v weight_v K_v is positive definite on heights that vanish outside `inside`.
 
     Then the K_v have no common complex zero w = a + i b but 0 there: K_v(a) = K_v(b) and
     B_v(a, b) = 0, and if b is not 0 some K_v(b) > 0, though K_v has one positive direction only.
     """
-    total = {}
-    for v, weight in zip(inside, weights):
+    total: Form = {}
+    for v, weight in zip(inside, weights, strict=True):
         require(weight > 0, "a multiplier is not positive")
         check_lorentzian(sheet, v)
         for pair, w in sheet.curvature(v).items():
@@ -305,7 +326,7 @@ def check_definite(sheet, inside, weights):
     require(inertia(matrix_of(total, inside)) == (len(inside), 0, 0), "a stress is not definite")
 
 
-def check_triangles(sheet, evidence):
+def check_triangles(sheet: Sheet, evidence: Any) -> Sheet:
     """Remove the triangulated triangles, each by a definite stress; the emptied sheet."""
     emptied = sheet
     for entry in items(evidence, "triangles"):
@@ -318,11 +339,15 @@ def check_triangles(sheet, evidence):
         for i, j in ((0, 1), (0, 2), (1, 2)):
             edge = (min(corners[i], corners[j]), max(corners[i], corners[j]))
             require(edge in emptied.edges, f"{corners} is no 3-cycle of edges")
-        within = [v for v in emptied.interior
-                  if all(turn(p, q, emptied.points[v]) > 0 for p, q in ((a, b), (b, c), (c, a)))]
+        within = [
+            v
+            for v in emptied.interior
+            if all(turn(p, q, emptied.points[v]) > 0 for p, q in ((a, b), (b, c), (c, a)))
+        ]
         require(within and sorted(inside) == within, f"not the vertices inside {corners}")
-        weights = [parse_rational(m) for m in items(entry["multipliers"], "multipliers",
-                                                    len(inside))]
+        weights = [
+            parse_rational(m) for m in items(entry["multipliers"], "multipliers", len(inside))
+        ]
         check_definite(emptied, inside, weights)
         emptied = emptied.emptied(corners, inside)
     return emptied
@@ -338,7 +363,7 @@ class BranchSystem:
     affine dependency of the four does not vanish; height 1 there is a positive boundary saddle.
     """
 
-    def __init__(self, sheet):
+    def __init__(self, sheet: Sheet) -> None:
         self.sheet, b = sheet, sheet.boundary
         corners = [sheet.points[v] for v in b]
         self.unit = next(v for k, v in enumerate(b) if turn(*(corners[:k] + corners[k + 1 :])))
@@ -357,18 +382,19 @@ class BranchSystem:
             common = gcd(*whole.values())
             self.quadrics.append({pq: w // common for pq, w in whole.items()})
 
-    def position(self, vertex):
+    def position(self, vertex: int) -> int | None:
         """Place of a vertex in (x, 1); None if its height is 0."""
         if vertex == self.unit:
             return self.size
         return self.variables.index(vertex) if vertex in self.sheet.interior else None
 
-    def row(self, functional):
+    def row(self, functional: dict[int, Fraction]) -> list[int]:
         """A linear functional of the heights as integers (c_1, ..., c_n, c_0), signs kept."""
         row = [Fraction(0)] * (self.size + 1)
         for v, weight in functional.items():
-            if self.position(v) is not None:
-                row[self.position(v)] += weight
+            place = self.position(v)
+            if place is not None:
+                row[place] += weight
         scale = lcm(*(Fraction(w).denominator for w in row))
         return [int(w * scale) for w in row]
 
@@ -379,7 +405,7 @@ class BranchSystem:
 class Krawczyk:
     """Krawczyk's test for the quadrics F_p(x) = (1/2) z^T S_p z, z = (x, 1), in integers."""
 
-    def __init__(self, system):
+    def __init__(self, system: BranchSystem) -> None:
         self.n = system.size
         self.quadrics = system.quadrics
         top = max(abs(w) for q in self.quadrics for w in q.values()).bit_length()
@@ -388,10 +414,11 @@ class Krawczyk:
             for q in self.quadrics
         ]
         self.scale = top
-        self.norms = [sum(abs(w) for (i, j), w in q.items() if self.n not in (i, j))
-                      for q in self.quadrics]
+        self.norms = [
+            sum(abs(w) for (i, j), w in q.items() if self.n not in (i, j)) for q in self.quadrics
+        ]
 
-    def check(self, center, radius, bits):
+    def check(self, center: list[int], radius: int, bits: int) -> None:
         """Raise unless the box |x - center/2^bits| <= radius/2^bits holds exactly one zero.
 
         With eta = |Y F(m)|, k0 = |I - Y F'(m)|, M >= max_i sum_jk |sum_p Y_ip (H_p)_jk| it is
@@ -404,38 +431,38 @@ class Krawczyk:
             for (i, j), w in quadric.items():
                 row[i] += w * z[j]
             gradients.append(row)  # 2^bits times the gradient
-            values.append(sum(a * b for a, b in zip(row, z)))  # 2^(2 bits + 1) F
+            values.append(sum(a * b for a, b in zip(row, z, strict=True)))  # 2^(2 bits + 1) F
         for y, shift in self._preconditioners(gradients, bits):
             unit, k0, bound, eta = 1 << (shift + bits), 0, 0, 0
             for i, weights in enumerate(y):
                 sums = [0] * n
-                for w, row in zip(weights, gradients):
+                for w, row in zip(weights, gradients, strict=True):
                     for k in range(n) if w else ():
                         sums[k] += w * row[k]
                 sums[i] -= unit
                 k0 = max(k0, sum(map(abs, sums)))
-                bound = max(bound, sum(abs(w) * s for w, s in zip(weights, self.norms)))
-                eta = max(eta, abs(sum(w * v for w, v in zip(weights, values))))
+                bound = max(
+                    bound, sum(abs(w) * s for w, s in zip(weights, self.norms, strict=True))
+                )
+                eta = max(eta, abs(sum(w * v for w, v in zip(weights, values, strict=True))))
             contraction = k0 + radius * bound
             if contraction < unit and eta < 2 * radius * (unit - contraction):
                 return
         raise CertificateError(f"Krawczyk's test fails for the box about {center[:2]}.../2^{bits}")
 
-    def _preconditioners(self, gradients, bits):
+    def _preconditioners(
+        self, gradients: list[list[int]], bits: int
+    ) -> Iterator[tuple[list[list[int]], int]]:
         """Approximate inverses Y = y / 2^shift of F'(m): from doubles, then from exact numbers."""
         down = 1 << (self.scale + bits)
-        try:
-            yield self._rounded(inverse([[g / down for g in row[: self.n]] for row in gradients]),
-                                56)
-        except (ZeroDivisionError, OverflowError, ValueError):
-            pass
+        with suppress(ArithmeticError, ValueError):
+            floats = [[g / down for g in row[: self.n]] for row in gradients]
+            yield self._rounded(inverse(floats), 56)
         exact = [[Fraction(g, down) for g in row[: self.n]] for row in gradients]
-        try:
+        with suppress(ZeroDivisionError):
             yield self._rounded(inverse(exact), bits + 8)
-        except ZeroDivisionError:
-            return
 
-    def _rounded(self, matrix, digits):
+    def _rounded(self, matrix: list[list[Any]], digits: int) -> tuple[list[list[int]], int]:
         largest = Fraction(max(abs(x) for row in matrix for x in row))
         size = largest.numerator.bit_length() - largest.denominator.bit_length()
         q = digits - size
@@ -443,7 +470,7 @@ class Krawczyk:
         return [[round(Fraction(x) * power) for x in row] for row in matrix], q + self.scale
 
 
-def inverse(matrix):
+def inverse(matrix: list[list[Any]]) -> list[list[Any]]:
     """Gauss-Jordan inverse with partial pivoting, in the numbers of the matrix."""
     n = len(matrix)
     one = matrix[0][0] * 0 + 1
@@ -456,14 +483,22 @@ def inverse(matrix):
         for i in range(n):
             factor = work[i][k]
             if i != k and factor:
-                work[i] = [x - factor * y for x, y in zip(work[i], work[k])]
+                work[i] = [x - factor * y for x, y in zip(work[i], work[k], strict=True)]
     return [row[n:] for row in work]
 
 
-class Box:
+class Root:
+    """A proved real zero."""
+
+    def sign(self, row: list[int]) -> int | None:
+        """Sign of the functional (c_1, ..., c_n, c_0); 0 if proved to vanish, None if open."""
+        raise NotImplementedError
+
+
+class Box(Root):
     """A box that holds one real zero; signs of functionals over the whole box."""
 
-    def __init__(self, entry, size):
+    def __init__(self, entry: Any, size: int) -> None:
         keys(entry, "bits radius center", "root")
         self.bits = natural(entry["bits"], "bits")
         require(self.bits <= 1 << 20, "bits are out of range")
@@ -471,42 +506,48 @@ class Box:
         require(self.radius > 0, "the radius is not positive")
         self.center = [parse_integer(text_of(m)) for m in items(entry["center"], "center", size)]
 
-    def sign(self, row):
+    def sign(self, row: list[int]) -> int | None:
         """1 or -1 if the functional keeps that sign on the box, 0 if it is 0, else None."""
-        value = (row[-1] << self.bits) + sum(c * m for c, m in zip(row, self.center))
+        value = (row[-1] << self.bits) + sum(c * m for c, m in zip(row, self.center, strict=True))
         reach = self.radius * sum(map(abs, row[:-1]))
         if abs(value) > reach:
             return 1 if value > 0 else -1
         return 0 if value == reach == 0 else None
 
 
-def text_of(value):
+def text_of(value: Any) -> str:
     """`value` if it is a string."""
-    require(isinstance(value, str), f"{value!r} is not a number in quotes")
+    if not isinstance(value, str):
+        raise CertificateError(f"{value!r} is not a number in quotes")
     return value
 
 
-def check_disjoint(boxes):
+def check_disjoint(boxes: list[Box]) -> None:
     """No two boxes meet. Sorted by a fixed functional; compared only where values overlap."""
     top = max((box.bits for box in boxes), default=0)
     keyed = []
     for index, box in enumerate(boxes):
         weights = [2 * k * k + 3 * k + 5 for k in range(len(box.center))]
-        value = sum(w * m for w, m in zip(weights, box.center)) << (top - box.bits)
+        value = sum(w * m for w, m in zip(weights, box.center, strict=True)) << (top - box.bits)
         reach = box.radius * sum(weights) << (top - box.bits)
         keyed.append((value - reach, value + reach, index))
-    active = []
+    active: list[tuple[int, int]] = []
     for low, high, index in sorted(keyed):
         active = [(end, other) for end, other in active if end >= low]
         for _, other in active:
             a, b = boxes[index], boxes[other]
             reach = (a.radius << (top - a.bits)) + (b.radius << (top - b.bits))
-            require(any(abs((x << (top - a.bits)) - (y << (top - b.bits))) > reach
-                        for x, y in zip(a.center, b.center)), "two boxes meet")
+            require(
+                any(
+                    abs((x << (top - a.bits)) - (y << (top - b.bits))) > reach
+                    for x, y in zip(a.center, b.center, strict=True)
+                ),
+                "two boxes meet",
+            )
         active.append((high, index))
 
 
-def check_isolated(system, evidence):
+def check_isolated(system: BranchSystem, evidence: Any) -> list[tuple[Root, int]]:
     """All zeros by Krawczyk and refined Bezout: a list of (root, multiplicity)."""
     keys(evidence, "kind triangles roots", "evidence")
     boxes = [Box(entry, system.size) for entry in items(evidence["roots"], "roots")]
@@ -522,7 +563,7 @@ def check_isolated(system, evidence):
 # --- algebraic roots -----------------------------------------------------------------------------
 
 
-def trim(p):
+def trim(p: Iterable[Any]) -> Poly:
     """A polynomial (constant term first) without leading zeros."""
     p = list(p)
     while p and not p[-1]:
@@ -530,7 +571,7 @@ def trim(p):
     return p
 
 
-def times(p, q):
+def times(p: Poly, q: Poly) -> Poly:
     """Product of two polynomials."""
     result = [Fraction(0)] * max(len(p) + len(q) - 1, 0)
     for i, a in enumerate(p):
@@ -539,18 +580,18 @@ def times(p, q):
     return result
 
 
-def plus(p, q):
+def plus(p: Poly, q: Poly) -> Poly:
     """Sum of two polynomials."""
     size = max(len(p), len(q))
     return [(p[k] if k < len(p) else 0) + (q[k] if k < len(q) else 0) for k in range(size)]
 
 
-def scaled(p, c):
+def scaled(p: Poly, c: Any) -> Poly:
     """c times a polynomial."""
     return [c * a for a in p]
 
 
-def remainder(p, modulus):
+def remainder(p: Poly, modulus: Poly) -> Poly:
     """p modulo a polynomial with non-zero leading coefficient."""
     p = trim(p)
     while len(p) >= len(modulus):
@@ -562,7 +603,7 @@ def remainder(p, modulus):
     return p
 
 
-def are_coprime(p, q):
+def are_coprime(p: Poly, q: Poly) -> bool:
     """Whether two polynomials have no common root."""
     p, q = trim(p), trim(q)
     while q:
@@ -571,12 +612,12 @@ def are_coprime(p, q):
     return len(p) == 1
 
 
-def derivative(p):
+def derivative(p: Poly) -> Poly:
     """The derivative of a polynomial."""
     return [k * a for k, a in enumerate(p)][1:]
 
 
-def value(p, x):
+def value(p: Poly, x: Fraction) -> Fraction:
     """p(x)."""
     result = Fraction(0)
     for a in reversed(p):
@@ -584,7 +625,7 @@ def value(p, x):
     return result
 
 
-def bounds(p, low, high):
+def bounds(p: Poly, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
     """Bounds of p on [low, high] by interval Horner."""
     a = b = Fraction(0)
     for c in reversed(p):
@@ -593,7 +634,7 @@ def bounds(p, low, high):
     return a, b
 
 
-def count_real_roots(p):
+def count_real_roots(p: Poly) -> int:
     """Number of distinct real roots of a squarefree polynomial (Sturm)."""
     chain = [trim(p), trim(derivative(p))]
     while len(chain[-1]) > 1:
@@ -602,42 +643,47 @@ def count_real_roots(p):
     changes = []
     for side in (-1, 1):
         signs = [(q[-1] > 0) == (side > 0 or len(q) % 2 == 1) for q in chain]
-        changes.append(sum(a != b for a, b in zip(signs, signs[1:])))
-    return changes[0] - changes[1]
+        changes.append(sum(a != b for a, b in itertools.pairwise(signs)))
+    before, after = changes
+    return int(before - after)
 
 
 class RootClass:
     """Zeros x_i = w_i(t) / p'(t) of the branch system, one for each root t of p."""
 
-    def __init__(self, system, separating, entry):
+    def __init__(self, system: BranchSystem, separating: list[int], entry: Any) -> None:
         keys(entry, "polynomial numerators multiplicity functionals", "class")
         self.system, n = system, system.size
         self.p = [parse_integer(text_of(c)) for c in items(entry["polynomial"], "polynomial")]
         require(len(self.p) > 1 and self.p[-1], "a class polynomial is constant")
         self.slope = derivative(self.p)
         require(are_coprime(self.p, self.slope), "a class polynomial has a double root")
-        self.w = [[parse_rational(c) for c in items(w, "numerator")]
-                  for w in items(entry["numerators"], "numerators", n)]
+        self.w = [
+            [parse_rational(c) for c in items(w, "numerator")]
+            for w in items(entry["numerators"], "numerators", n)
+        ]
         self.multiplicity = natural(entry["multiplicity"], "multiplicity")
         z = [*self.w, self.slope]
         self.gradients = []
         for quadric in system.quadrics:
-            row = [[] for _ in z]
+            row: list[Poly] = [[] for _ in z]
             for (i, j), c in quadric.items():
                 row[i] = plus(row[i], scaled(z[j], c))
             self.gradients.append(row)
-            total = []
-            for a, b in zip(row, z):
+            total: Poly = []
+            for a, b in zip(row, z, strict=True):
                 total = plus(total, times(a, b))
             require(not remainder(total, self.p), "the parametrisation misses a quadric")
-        form = []
-        for s, w in zip(separating, self.w):
+        form: Poly = []
+        for s, w in zip(separating, self.w, strict=True):
             form = plus(form, scaled(w, s))
-        require(not remainder(plus(form, scaled([0, *self.slope], -1)), self.p),
-                "the separating form is not the root of its polynomial")
+        require(
+            not remainder(plus(form, scaled([0, *self.slope], -1)), self.p),
+            "the separating form is not the root of its polynomial",
+        )
         self._check_functionals(items(entry["functionals"], "functionals", self.multiplicity))
 
-    def _check_functionals(self, functionals):
+    def _check_functionals(self, functionals: list[Any]) -> None:
         """A space of differential functionals that annihilates the ideal at every root.
 
         Given as {exponent: polynomial in t}, for sum c_a d^a / a!. Each has a pivot exponent with
@@ -654,7 +700,8 @@ class RootClass:
                 exponent = tuple(natural(e, "exponent") for e in items(exponent, "exponent", n))
                 require(exponent not in terms, "an exponent appears twice")
                 terms[exponent] = remainder(
-                    [parse_rational(c) for c in items(coefficient, "coefficient")], self.p)
+                    [parse_rational(c) for c in items(coefficient, "coefficient")], self.p
+                )
             space.append(terms)
             pivots.append(tuple(items(functional["pivot"], "pivot", n)))
         for k, pivot in enumerate(pivots):
@@ -666,39 +713,42 @@ class RootClass:
                 for a, c in terms.items():
                     if a[i]:
                         rest[(*a[:i], a[i] - 1, *a[i + 1 :])] = c
-                for pivot, basis in zip(pivots, space):
+                for pivot, basis in zip(pivots, space, strict=True):
                     weight = rest.get(pivot, [])
                     for a, c in basis.items() if weight else ():
                         less = plus(rest.get(a, []), scaled(times(weight, c), -1))
                         rest[a] = remainder(less, self.p)
                 require(not any(trim(c) for c in rest.values()), "the functionals are not closed")
-            for quadric, gradient in zip(self.system.quadrics, self.gradients):
-                total = []  # p' times the value, F itself being 0
+            for quadric, gradient in zip(self.system.quadrics, self.gradients, strict=True):
+                total: Poly = []  # p' times the value, F itself being 0
                 for a, c in terms.items():
                     support = [i for i in range(n) for _ in range(a[i])] if sum(a) < 3 else []
                     if len(support) == 1:
                         total = plus(total, times(c, gradient[support[0]]))
                     elif len(support) == 2:
                         i, j = support
-                        weight = Fraction(quadric.get((i, j), 0)) / (2 if i == j else 1)
-                        total = plus(total, times(c, scaled(self.slope, weight)))
+                        half = Fraction(quadric.get((i, j), 0)) / (2 if i == j else 1)
+                        total = plus(total, times(c, scaled(self.slope, half)))
                 require(not remainder(total, self.p), "a functional does not kill a quadric")
 
 
-class AlgebraicRoot:
+class AlgebraicRoot(Root):
     """One real root of a class, in an interval on whose ends its polynomial changes sign."""
 
-    def __init__(self, root_class, low, high):
+    def __init__(self, root_class: RootClass, low: Fraction, high: Fraction) -> None:
         self.root_class, self.low, self.high = root_class, low, high
         left, right = value(root_class.p, low), value(root_class.p, high)
-        require(low < high and left * right < 0 or low == high and right == 0,
-                "an interval shows no root")
+        require(
+            (low < high and left * right < 0) or (low == high and right == 0),
+            "an interval shows no root",
+        )
         self.rising = value(root_class.slope, low) > 0 if low == high else right > 0
 
-    def sign(self, row):
+    def sign(self, row: list[int]) -> int | None:
         """Sign of a functional at the root; 0 if it vanishes identically on the class."""
-        p, f = self.root_class.p, []
-        for c, w in zip(row, [*self.root_class.w, self.root_class.slope]):
+        p = self.root_class.p
+        f: Poly = []
+        for c, w in zip(row, [*self.root_class.w, self.root_class.slope], strict=True):
             f = plus(f, scaled(w, c))
         f = remainder(f, p)
         if not f:
@@ -720,7 +770,7 @@ class AlgebraicRoot:
         return None
 
 
-def check_finite(sheet, multipliers):
+def check_finite(sheet: Sheet, multipliers: Any) -> None:
     """The branch system has finitely many zeros, so that multiplicities add up to 2^n exactly.
 
     A definite stress of the sheet (its notch closed by a triangle if the boundary is not convex)
@@ -738,18 +788,21 @@ def check_finite(sheet, multipliers):
     check_definite(sheet, sheet.interior, weights)
 
 
-def check_algebraic(system, evidence):
+def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Root, int]], int]:
     """All zeros as roots of polynomials: (real roots with multiplicities, non-real ones)."""
     keys(evidence, "kind triangles multipliers separating classes roots", "evidence")
     check_finite(system.sheet, evidence["multipliers"])
-    separating = [natural_or_negative(s) for s in items(evidence["separating"], "separating",
-                                                        system.size)]
-    classes = [RootClass(system, separating, entry)
-               for entry in items(evidence["classes"], "classes")]
+    separating = [
+        natural_or_negative(s) for s in items(evidence["separating"], "separating", system.size)
+    ]
+    classes = [
+        RootClass(system, separating, entry) for entry in items(evidence["classes"], "classes")
+    ]
     for k, a in enumerate(classes):
         for b in classes[:k]:
             require(are_coprime(a.p, b.p), "two classes share a root")
-    roots, intervals = [], [[] for _ in classes]
+    roots: list[tuple[Root, int]] = []
+    intervals: list[list[tuple[Fraction, Fraction]]] = [[] for _ in classes]
     for entry in items(evidence["roots"], "roots"):
         keys(entry, "class interval", "root")
         index = natural(entry["class"], "class")
@@ -758,10 +811,12 @@ def check_algebraic(system, evidence):
         intervals[index].append((low, high))
         roots.append((AlgebraicRoot(classes[index], low, high), classes[index].multiplicity))
     nonreal = 0
-    for root_class, ends in zip(classes, intervals):
+    for root_class, ends in zip(classes, intervals, strict=True):
         ends.sort()
-        require(all(a[1] <= b[0] and a != b for a, b in zip(ends, ends[1:])),
-                "two intervals overlap")
+        require(
+            all(a[1] <= b[0] and a != b for a, b in itertools.pairwise(ends)),
+            "two intervals overlap",
+        )
         degree = len(root_class.p) - 1
         if len(ends) < degree:
             require(len(ends) == count_real_roots(root_class.p), "a real root is missing")
@@ -771,24 +826,25 @@ def check_algebraic(system, evidence):
     return roots, nonreal
 
 
-def natural_or_negative(value):
+def natural_or_negative(value: Any) -> int:
     """`value` if it is an integer."""
-    require(type(value) is int, f"{value!r} is not an integer")
+    if type(value) is not int:
+        raise CertificateError(f"{value!r} is not an integer")
     return value
 
 
 # --- folds that are exactly flat -----------------------------------------------------------------
 
 
-def rational_sqrt(x):
+def rational_sqrt(x: Fraction) -> Fraction | None:
     """The square root of a rational >= 0, or None if it is irrational."""
     p, q = isqrt(x.numerator), isqrt(x.denominator)
     return Fraction(p, q) if p * p == x.numerator and q * q == x.denominator else None
 
 
-def kernel(rows, size):
+def kernel(rows: list[list[Fraction]], size: int) -> list[list[Fraction]]:
     """A basis of the vectors of length `size` that all rows annihilate."""
-    work, pivots = [list(map(Fraction, row)) for row in rows], []
+    work, pivots = [list(map(Fraction, row)) for row in rows], list[int]()
     for column in range(size):
         lead = next((r for r in range(len(pivots), len(work)) if work[r][column]), None)
         if lead is None:
@@ -798,7 +854,7 @@ def kernel(rows, size):
         work[k] = [x / work[k][column] for x in work[k]]
         for r, row in enumerate(work):
             if r != k and row[column]:
-                work[r] = [x - row[column] * y for x, y in zip(row, work[k])]
+                work[r] = [x - row[column] * y for x, y in zip(row, work[k], strict=True)]
         pivots.append(column)
     basis = []
     for free in (c for c in range(size) if c not in pivots):
@@ -809,7 +865,7 @@ def kernel(rows, size):
     return basis
 
 
-def flat_at(sheet, vertex, signs):
+def flat_at(sheet: Sheet, vertex: int, signs: dict[Edge, int | None]) -> list[Edge]:
     """Folds at a vertex that must be flat, given right signs of some (None where open).
 
     The bends at the vertex that agree with the flat folds span a space on which the curvature form
@@ -820,41 +876,50 @@ def flat_at(sheet, vertex, signs):
     folds = [(min(vertex, j), max(vertex, j)) for j in ring]
     free = ring[2:]  # hub and two neighbouring rim vertices at 0: heights modulo planes
     rows = [[Fraction(sheet.bend(f).get(j, 0)) for j in free] for f in folds]
-    basis = kernel([r for r, f in zip(rows, folds) if signs[f] == 0], len(free))
+    basis = kernel([r for r, f in zip(rows, folds, strict=True) if signs[f] == 0], len(free))
     form = matrix_of(sheet.curvature(vertex), free)
 
-    def polar(a, b):
-        return sum(x * w * y for x, line in zip(a, form) for w, y in zip(line, b))
+    def polar(a: list[Fraction], b: list[Fraction]) -> Fraction:
+        terms = (
+            x * w * y
+            for x, line in zip(a, form, strict=True)
+            for w, y in zip(line, b, strict=False)
+        )
+        return sum(terms, Fraction(0))
 
-    if len(basis) == 1 and polar(basis[0], basis[0]) != 0:
-        lines = []
-    elif len(basis) == 2:
+    lines: list[list[Fraction]] = []  # where the form vanishes
+    if (len(basis) == 1 and polar(basis[0], basis[0]) == 0) or len(basis) not in (1, 2):
+        return []
+    if len(basis) == 2:
         u, v = basis
         a, b, c = polar(u, u), polar(u, v), polar(v, v)
-        root = None if a == b == c == 0 or b * b < a * c else rational_sqrt(b * b - a * c)
-        if b * b < a * c:
-            lines = []
-        elif root is None:
+        root = rational_sqrt(b * b - a * c) if b * b > a * c else None
+        if b * b >= a * c and root is None:
             return []
-        else:
-            pairs = [(-b + root, a), (-b - root, a)] if a else [(1, 0), (-c, 2 * b)]
-            lines = [[s * x + t * y for x, y in zip(u, v)] for s, t in pairs]
-    else:
-        return []
-    vectors = [[sum(r * h for r, h in zip(row, line)) for row in rows] for line in lines]
+        if root is not None:
+            pairs = [(-b + root, a), (-b - root, a)] if a else [(root / root, 0 * b), (-c, 2 * b)]
+            lines = [[s * x + t * y for x, y in zip(u, v, strict=True)] for s, t in pairs]
+    vectors = [
+        [sum((r * h for r, h in zip(row, line, strict=True)), Fraction(0)) for row in rows]
+        for line in lines
+    ]
     known = [(k, signs[f]) for k, f in enumerate(folds) if signs[f] is not None]
 
-    def agrees(vector):
+    def agrees(vector: list[Fraction]) -> bool:
         one = [(vector[k] > 0) - (vector[k] < 0) for k, _ in known]
         return not any(s for _, s in known) or any(
-            all(x * side == s for x, (_, s) in zip(one, known)) for side in (1, -1))
+            all(x * side == s for x, (_, s) in zip(one, known, strict=True)) for side in (1, -1)
+        )
 
     left = [vector for vector in vectors if agrees(vector)]
-    return [f for k, f in enumerate(folds)
-            if signs[f] is None and all(vector[k] == 0 for vector in left)]
+    return [
+        f
+        for k, f in enumerate(folds)
+        if signs[f] is None and all(vector[k] == 0 for vector in left)
+    ]
 
 
-def close_flat(sheet, signs):
+def close_flat(sheet: Sheet, signs: dict[Edge, int | None]) -> None:
     """Settle open folds by `flat_at` until nothing changes."""
     changed = True
     while changed and None in signs.values():
@@ -867,19 +932,20 @@ def close_flat(sheet, signs):
 # --- claims --------------------------------------------------------------------------------------
 
 
-def read_sheet(data):
+def read_sheet(data: Any) -> tuple[Sheet, str]:
     """The verified sheet and its SHA-256."""
     keys(data, "vertices triangles", "pattern")
-    points = {}
+    points: dict[int, Point] = {}
     for k, pair in enumerate(items(data["vertices"], "vertices")):
-        points[k] = tuple(parse_rational(x) for x in items(pair, f"vertex {k}", 2))
+        x, y = items(pair, f"vertex {k}", 2)
+        points[k] = (parse_rational(x), parse_rational(y))
     triangles = []
     for face in items(data["triangles"], "triangles"):
         triangles.append(tuple(natural(v, "vertex") for v in items(face, "face", 3)))
     require(len(set(map(frozenset, triangles))) == len(triangles), "a face appears twice")
     sheet = Sheet(points, triangles)
 
-    def text(x):
+    def text(x: Fraction) -> str:
         whole = digits(x.numerator)
         return whole if x.denominator == 1 else f"{whole}/{digits(x.denominator)}"
 
@@ -891,7 +957,7 @@ def read_sheet(data):
     return sheet, digest
 
 
-def digits(n):
+def digits(n: int) -> str:
     """Decimal text of an integer of any length."""
     if n < 0:
         return "-" + digits(-n)
@@ -905,7 +971,7 @@ def digits(n):
 COUNTS = "distinct with_multiplicity real nonreal true_branches"
 
 
-def check(data):
+def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     Returns the verified claims. Passing means that the claims hold for the pattern in the file.
@@ -915,8 +981,10 @@ def check(data):
     require(isinstance(evidence, dict), "the evidence is not an object")
     sheet, digest = read_sheet(data["pattern"])
     facts = {
-        "interior": len(sheet.interior), "boundary": len(sheet.boundary),
-        "folds": len(sheet.folds), "degrees_of_freedom": len(sheet.boundary) - 3,
+        "interior": len(sheet.interior),
+        "boundary": len(sheet.boundary),
+        "folds": len(sheet.folds),
+        "degrees_of_freedom": len(sheet.boundary) - 3,
         "sha256": digest,
     }
     emptied = check_triangles(sheet, evidence.get("triangles"))
@@ -925,16 +993,20 @@ def check(data):
     branches = items(claims["branches"], "branches")
     if kind == "rigid":
         keys(evidence, "kind triangles", "evidence")
-        require(len(sheet.boundary) == 3 and not emptied.interior and sheet.interior,
-                "the sheet is no triangulated triangle")
-        facts |= dict(zip(COUNTS.split(), (0, 0, 0, 0, "proved")))
+        require(
+            len(sheet.boundary) == 3 and not emptied.interior and sheet.interior,
+            "the sheet is no triangulated triangle",
+        )
+        facts |= dict(zip(COUNTS.split(), (0, 0, 0, 0, "proved"), strict=True))
         require(not branches, "a rigid sheet has no branches")
     elif kind == "single vertex":
         keys(evidence, "kind triangles", "evidence")
-        require(len(emptied.interior) == 1 and len(emptied.triangles) == len(emptied.boundary) >= 5,
-                "the emptied sheet is no single vertex of degree 5 or more")
+        require(
+            len(emptied.interior) == 1 and len(emptied.triangles) == len(emptied.boundary) >= 5,
+            "the emptied sheet is no single vertex of degree 5 or more",
+        )
         check_lorentzian(emptied, emptied.interior[0])
-        facts |= dict(zip(COUNTS.split(), (1, 1 << removed, 1, 0, "proved")))
+        facts |= dict(zip(COUNTS.split(), (1, 1 << removed, 1, 0, "proved"), strict=True))
         require(not branches, "a branch of dimension two or more is not listed")
     elif kind in ("isolated", "algebraic"):
         require(len(sheet.boundary) == 4 and sheet.interior, "the sheet has not D = 1")
@@ -944,25 +1016,43 @@ def check(data):
         else:
             roots, nonreal = check_algebraic(system, evidence)
         simple = all(m == 1 for _, m in roots)
-        facts |= dict(zip(COUNTS.split(), (
-            len(roots) + nonreal, 1 << len(sheet.interior), len(roots), nonreal,
-            "proved" if simple and not nonreal else "undecided")))
+        facts |= dict(
+            zip(
+                COUNTS.split(),
+                (
+                    len(roots) + nonreal,
+                    1 << len(sheet.interior),
+                    len(roots),
+                    nonreal,
+                    "proved" if simple and not nonreal else "undecided",
+                ),
+                strict=True,
+            )
+        )
         require(len(branches) == len(roots), f"{len(branches)} branches for {len(roots)} roots")
         check_branches(sheet, system, roots, branches, removed)
     else:
         raise CertificateError(f"unknown kind of evidence {kind!r}")
     for key, fact in facts.items():
-        require(type(claims[key]) is type(fact) and claims[key] == fact,
-                f"claim {key} = {claims[key]!r}, but it is {fact!r}")
-    return claims
+        require(
+            type(claims[key]) is type(fact) and claims[key] == fact,
+            f"claim {key} = {claims[key]!r}, but it is {fact!r}",
+        )
+    return dict(claims)
 
 
-def check_branches(sheet, system, roots, branches, removed):
+def check_branches(
+    sheet: Sheet,
+    system: BranchSystem,
+    roots: list[tuple[Root, int]],
+    branches: list[Any],
+    removed: int,
+) -> None:
     """Vertex signs, mountain-valley assignment and multiplicity of every branch."""
     emptied = system.sheet
     vertex_rows = {v: system.row(emptied.sign_of_vertex(v)) for v in emptied.interior}
     fold_rows = {f: system.row(emptied.bend(f)) for f in emptied.folds}
-    for number, ((root, multiplicity), branch) in enumerate(zip(roots, branches)):
+    for number, ((root, multiplicity), branch) in enumerate(zip(roots, branches, strict=True)):
         keys(branch, "vertex_signs assignment multiplicity", f"branch {number}")
         signs = {f: root.sign(row) for f, row in fold_rows.items()}
         close_flat(emptied, signs)
@@ -970,14 +1060,18 @@ def check_branches(sheet, system, roots, branches, removed):
         up_down = [{1: "+", -1: "-", 0: "0", None: "?"}[at.get(v, 0)] for v in sheet.interior]
         letters = [{1: "V", -1: "M", 0: "F", None: "?"}[signs.get(f, 0)] for f in sheet.folds]
         for key, text in (("vertex_signs", up_down), ("assignment", letters)):
-            require("?" not in text and branch[key] == "".join(text),
-                    f"branch {number}: {key} {branch[key]!r}, but it is {''.join(text)}")
-        require(type(branch["multiplicity"]) is int
-                and branch["multiplicity"] == multiplicity << removed,
-                f"branch {number}: multiplicity is {multiplicity << removed}")
+            require(
+                "?" not in text and branch[key] == "".join(text),
+                f"branch {number}: {key} {branch[key]!r}, but it is {''.join(text)}",
+            )
+        require(
+            type(branch["multiplicity"]) is int
+            and branch["multiplicity"] == multiplicity << removed,
+            f"branch {number}: multiplicity is {multiplicity << removed}",
+        )
 
 
-def main(arguments):
+def main(arguments: list[str]) -> int:
     """Check one file and print the verdict; the exit code."""
     if len(arguments) != 1:
         print("usage: python checker.py CERTIFICATE.json", file=sys.stderr)
@@ -996,11 +1090,13 @@ def main(arguments):
     return 0
 
 
-def summary(claims):
+def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
-    return (f"VALID: {claims['distinct']} branches ({claims['with_multiplicity']} with "
-            f"multiplicity, {claims['real']} real) of the sheet with {claims['interior']} interior "
-            f"and {claims['boundary']} boundary vertices, sha256 {claims['sha256']}")
+    return (
+        f"VALID: {claims['distinct']} branches ({claims['with_multiplicity']} with "
+        f"multiplicity, {claims['real']} real) of the sheet with {claims['interior']} interior "
+        f"and {claims['boundary']} boundary vertices, sha256 {claims['sha256']}"
+    )
 
 
 if __name__ == "__main__":

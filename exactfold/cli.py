@@ -21,7 +21,7 @@ from exactfold import checker, report
 from exactfold.branches.claims import certificate as certificate_of
 from exactfold.certify.certificate import write_certificate
 from exactfold.count import METHODS, count_branches
-from exactfold.errors import ExactfoldError, InputError, UsageError
+from exactfold.errors import ExactfoldError, InputError
 from exactfold.pattern.fold import load_fold
 from exactfold.pattern.fold_writing import fold_text, write_text
 from exactfold.pattern.random_squares import sample_random_square
@@ -74,8 +74,12 @@ class _Bar:
             return
         if self.progress is None:
             self.progress = Progress(
-                TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
-                TimeRemainingColumn(), console=self.console, transient=True,
+                TextColumn("{task.description}"),
+                BarColumn(),
+                MofNCompleteColumn(),
+                TimeRemainingColumn(),
+                console=self.console,
+                transient=True,
             )
             self.progress.start()
         if stage != self.stage:

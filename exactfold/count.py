@@ -64,7 +64,9 @@ def count_branches(
     triangles = certify_rigid_triangles(pattern)
     if triangles is None:
         result = BranchCount(
-            pattern, UNDECIDED, method,
+            pattern,
+            UNDECIDED,
+            method,
             "no definite stress was found for a triangulated triangle",
         )
     elif pattern.Ve == 3:
@@ -78,9 +80,15 @@ def count_branches(
 
 def _rigid(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> BranchCount:
     return BranchCount(
-        pattern, PROVED, "definite stress",
+        pattern,
+        PROVED,
+        "definite stress",
         "the sheet is a triangulated triangle, hence rigid",
-        distinct=0, with_multiplicity=0, real=0, nonreal=0, true_branches=PROVED,
+        distinct=0,
+        with_multiplicity=0,
+        real=0,
+        nonreal=0,
+        true_branches=PROVED,
         evidence={"kind": "rigid", "triangles": triangle_evidence(triangles)},
     )
 
@@ -91,15 +99,23 @@ def _higher(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bra
     if emptied.Vi == 1 and not emptied.chords:
         weight = 1 << pattern.Vt
         return BranchCount(
-            pattern, PROVED, "single vertex",
+            pattern,
+            PROVED,
+            "single vertex",
             f"one double cone of dimension {pattern.degrees_of_freedom}, the null cone of the "
             "curvature form",
-            distinct=1, with_multiplicity=weight, real=1, nonreal=0, true_branches=PROVED,
+            distinct=1,
+            with_multiplicity=weight,
+            real=1,
+            nonreal=0,
+            true_branches=PROVED,
             evidence={"kind": "single vertex", "triangles": triangle_evidence(triangles)},
         )
     chords = "".join(f"; the fold {i}-{j} splits the sheet" for i, j in emptied.chords[:1])
     return BranchCount(
-        pattern, UNDECIDED, "none",
+        pattern,
+        UNDECIDED,
+        "none",
         f"with D = {pattern.degrees_of_freedom} branches are not isolated lines, and only the "
         f"single-vertex pattern is settled{chords}",
     )
@@ -126,7 +142,8 @@ def _lines(
     size = chart.system.size
     if size > GROEBNER_LIMIT:
         return replace(
-            result, reason=f"{result.reason}; the exact engine is tried up to {GROEBNER_LIMIT} "
+            result,
+            reason=f"{result.reason}; the exact engine is tried up to {GROEBNER_LIMIT} "
             f"unknowns, here are {size} (use --method groebner to insist)",
         )
     return _exactly(task, progress)
@@ -151,27 +168,37 @@ def _isolated(
     roots: list[tuple[Root, int]] = [(BoxRoot(box), 1) for box in isolation.boxes if box.is_real]
     branches, undecided = classify(pattern, chart, task.labels, roots)
     base = BranchCount(
-        pattern, UNDECIDED, method, "", branches=tuple(branches),
+        pattern,
+        UNDECIDED,
+        method,
+        "",
+        branches=tuple(branches),
         settings={**candidates.settings, "lost": len(candidates.lost)},
         open_questions=_open(isolation, undecided, candidates),
     )
     total = chart.system.bezout_number
     if isolation.complete is not PROVED:
         return replace(
-            base, reason=f"{len(isolation.boxes)} of {total} solutions isolated: the others are "
+            base,
+            reason=f"{len(isolation.boxes)} of {total} solutions isolated: the others are "
             "multiple, at infinity or were not found",
         )
     if undecided:
         return replace(
-            base, reason=f"all {total} solutions isolated, but signs are undecided on "
+            base,
+            reason=f"all {total} solutions isolated, but signs are undecided on "
             f"{len(undecided)} of them",
         )
     boxes = [branch.root.box for branch in branches if isinstance(branch.root, BoxRoot)]
     return replace(
-        base, status=PROVED,
+        base,
+        status=PROVED,
         reason=f"{total} solutions isolated; by refined Bezout there are no others",
-        distinct=isolation.real + isolation.nonreal, with_multiplicity=total << pattern.Vt,
-        real=isolation.real, nonreal=isolation.nonreal, true_branches=PROVED,
+        distinct=isolation.real + isolation.nonreal,
+        with_multiplicity=total << pattern.Vt,
+        real=isolation.real,
+        nonreal=isolation.nonreal,
+        true_branches=PROVED,
         evidence={
             "kind": "isolated",
             "triangles": triangle_evidence(task.triangles),
@@ -200,19 +227,28 @@ def _exactly(task: _Task, progress: Progress | None) -> BranchCount:
     given: list[tuple[Root, int]] = [(AlgebraicRoot(c, k), m) for c, k, m in proof.roots]
     branches, undecided = classify(pattern, chart, task.labels, given)
     base = BranchCount(
-        pattern, UNDECIDED, "groebner", proof.reason, branches=tuple(branches),
-        settings=dict(solution.settings), open_questions=_signs(undecided),
+        pattern,
+        UNDECIDED,
+        "groebner",
+        proof.reason,
+        branches=tuple(branches),
+        settings=dict(solution.settings),
+        open_questions=_signs(undecided),
     )
     if proof.complete is not PROVED or undecided:
         return base
     roots = [
         (branch.root.root_class, branch.root.index)
-        for branch in branches if isinstance(branch.root, AlgebraicRoot)
+        for branch in branches
+        if isinstance(branch.root, AlgebraicRoot)
     ]
     return replace(
-        base, status=PROVED,
-        distinct=proof.distinct, with_multiplicity=total << pattern.Vt,
-        real=len(roots), nonreal=proof.distinct - len(roots),
+        base,
+        status=PROVED,
+        distinct=proof.distinct,
+        with_multiplicity=total << pattern.Vt,
+        real=len(roots),
+        nonreal=proof.distinct - len(roots),
         evidence={
             "kind": "algebraic",
             "triangles": triangle_evidence(task.triangles),

@@ -29,8 +29,11 @@ def count_report(result: BranchCount, certificate: str | None, *, everything: bo
     """The summary and the table of branches printed by `exactfold count`."""
     pattern = result.pattern
     rows = [
-        ("pattern", f"{pattern.Vi} interior and {pattern.Ve} boundary vertices, "
-         f"{len(pattern.folds)} folds, D = {pattern.degrees_of_freedom}"),
+        (
+            "pattern",
+            f"{pattern.Vi} interior and {pattern.Ve} boundary vertices, "
+            f"{len(pattern.folds)} folds, D = {pattern.degrees_of_freedom}",
+        ),
     ]
     if pattern.Vt:
         rows.append(("rigid inside", f"{pattern.Vt} vertices in triangulated triangles stay flat"))
@@ -39,17 +42,30 @@ def count_report(result: BranchCount, certificate: str | None, *, everything: bo
     rows.append(("status", f"{str(result.status).upper()} ({result.reason})"))
     if result.status is PROVED:
         rows += [
-            ("branches", f"{result.distinct} distinct, {result.with_multiplicity} with "
-             f"multiplicity; {result.real} real, {result.nonreal} not real"),
+            (
+                "branches",
+                f"{result.distinct} distinct, {result.with_multiplicity} with "
+                f"multiplicity; {result.real} real, {result.nonreal} not real",
+            ),
             ("true branches", str(result.true_branches)),
         ]
     if result.branches:
         each = sorted(set(result.sign_vectors.values()))
         per = f"{each[0]}" if len(each) == 1 else f"{each[0]} to {each[-1]}"
-        rows.append(("sign vectors", f"{len(result.sign_vectors)} pairs of opposite ones, {per} "
-                     f"branch{'' if per == '1' else 'es'} each"))
-        rows.append(("shared folds", f"{result.repeated_assignments} branches share their "
-                     "mountain-valley assignment with another"))
+        rows.append(
+            (
+                "sign vectors",
+                f"{len(result.sign_vectors)} pairs of opposite ones, {per} "
+                f"branch{'' if per == '1' else 'es'} each",
+            )
+        )
+        rows.append(
+            (
+                "shared folds",
+                f"{result.repeated_assignments} branches share their "
+                "mountain-valley assignment with another",
+            )
+        )
     rows.append(("method", f"{result.method}, {result.seconds:.2f} s"))
     if certificate:
         rows.append(("certificate", certificate))
@@ -84,23 +100,37 @@ def info_report(facts: PatternFacts) -> Table:
     pattern = facts.pattern
     rows = [
         ("vertices", f"{pattern.Vi} interior, {pattern.Ve} boundary"),
-        ("faces, edges, folds",
-         f"{len(pattern.triangles)}, {len(pattern.edges)}, {len(pattern.folds)}"),
+        (
+            "faces, edges, folds",
+            f"{len(pattern.triangles)}, {len(pattern.edges)}, {len(pattern.folds)}",
+        ),
         ("degrees of freedom", f"D = Ve - 3 = {pattern.degrees_of_freedom}"),
         ("boundary", "convex" if pattern.is_convex else f"reflex at {pattern.reflex_corner}"),
         ("area", str(pattern.area)),
-        ("interior degrees",
-         ", ".join(f"{n} of degree {d}" for d, n in facts.degree_counts.items()) or "none"),
-        ("rank of rigidity matrix", f"{facts.rigidity_rank} = 2V - 3"
-         if facts.rigidity_rank == 2 * len(pattern.vertices) - 3 else str(facts.rigidity_rank)),
+        (
+            "interior degrees",
+            ", ".join(f"{n} of degree {d}" for d, n in facts.degree_counts.items()) or "none",
+        ),
+        (
+            "rank of rigidity matrix",
+            f"{facts.rigidity_rank} = 2V - 3"
+            if facts.rigidity_rank == 2 * len(pattern.vertices) - 3
+            else str(facts.rigidity_rank),
+        ),
         ("self stresses", str(facts.self_stresses)),
-        ("inertia of curvature forms",
-         "; ".join(f"{v}: {i}" for v, i in list(facts.inertias.items())[:SHOWN]) or "none"),
-        ("triangulated triangles",
-         "; ".join(f"{c} around {', '.join(map(str, inside))}"
-                   for c, inside in pattern.triangulated_triangles) or "none"),
-        ("folds that split the sheet",
-         ", ".join(f"{i}-{j}" for i, j in pattern.chords) or "none"),
+        (
+            "inertia of curvature forms",
+            "; ".join(f"{v}: {i}" for v, i in list(facts.inertias.items())[:SHOWN]) or "none",
+        ),
+        (
+            "triangulated triangles",
+            "; ".join(
+                f"{c} around {', '.join(map(str, inside))}"
+                for c, inside in pattern.triangulated_triangles
+            )
+            or "none",
+        ),
+        ("folds that split the sheet", ", ".join(f"{i}-{j}" for i, j in pattern.chords) or "none"),
         ("expected", expectation(facts)),
         ("sha256", pattern.sha256),
     ]

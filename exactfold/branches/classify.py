@@ -1,4 +1,4 @@
-"""What distinguishes the branches: vertex signs and mountain-valley assignments, decided exactly."""
+"""What distinguishes the branches: vertex signs and mountain-valley folds, decided exactly."""
 
 from __future__ import annotations
 
@@ -124,4 +124,3 @@ def barycentric(
     beta = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / whole
     gamma = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / whole
     return 1 - beta - gamma, beta, gamma
-

@@ -42,9 +42,7 @@ def flat_folds(pattern: CreasePattern, signs: Mapping[Edge, int | None]) -> froz
     return frozenset(fold for fold, sign in known.items() if sign == 0)
 
 
-def _at_vertex(
-    pattern: CreasePattern, vertex: int, known: Mapping[Edge, int | None]
-) -> list[Edge]:
+def _at_vertex(pattern: CreasePattern, vertex: int, known: Mapping[Edge, int | None]) -> list[Edge]:
     ring = pattern.star(vertex)
     folds = [(min(vertex, j), max(vertex, j)) for j in ring]
     bends = [fold_functional(pattern, fold) for fold in folds]
@@ -54,22 +52,27 @@ def _at_vertex(
     flat = [row for row, fold in zip(rows, folds, strict=True) if known[fold] == 0]
     basis = nullspace(flat) if flat else _identity(len(free))
     form = curvature_form(pattern, vertex)
-    lifted = [{v: Fraction(0) for v in form.labels} | dict(zip(free, b, strict=True))
-              for b in basis]
+    lifted = [
+        {v: Fraction(0) for v in form.labels} | dict(zip(free, b, strict=True)) for b in basis
+    ]
     undecided = [k for k, fold in enumerate(folds) if known[fold] is None]
     if len(basis) == 1 and form(lifted[0]) != 0:
         return [folds[k] for k in undecided]
     if len(basis) != 2:
         return []
-    lines = _null_lines(form.polar(lifted[0], lifted[0]), form.polar(lifted[0], lifted[1]),
-                        form.polar(lifted[1], lifted[1]))
+    lines = _null_lines(
+        form.polar(lifted[0], lifted[0]),
+        form.polar(lifted[0], lifted[1]),
+        form.polar(lifted[1], lifted[1]),
+    )
     if lines is None:
         return []
     vectors = []
     for s, t in lines:
         heights = [s * a + t * b for a, b in zip(*basis, strict=True)]
-        vector = [sum((c * h for c, h in zip(row, heights, strict=True)), Fraction(0))
-                  for row in rows]
+        vector = [
+            sum((c * h for c, h in zip(row, heights, strict=True)), Fraction(0)) for row in rows
+        ]
         if _agrees(vector, [known[fold] for fold in folds]):
             vectors.append(vector)
     return [folds[k] for k in undecided if all(vector[k] == 0 for vector in vectors)]
@@ -79,9 +82,7 @@ def _identity(size: int) -> list[list[Fraction]]:
     return [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
 
 
-def _null_lines(
-    a: Fraction, b: Fraction, c: Fraction
-) -> list[tuple[Fraction, Fraction]] | None:
+def _null_lines(a: Fraction, b: Fraction, c: Fraction) -> list[tuple[Fraction, Fraction]] | None:
     """Rational directions (s, t) with a s^2 + 2 b s t + c t^2 = 0; None if there may be others."""
     if a == b == c == 0:
         return None

@@ -22,7 +22,7 @@ def integer_row(row: list[Fraction]) -> Row:
 
 @dataclass(frozen=True)
 class Functionals:
-    """Sign functionals of a chart: of every interior vertex and of every fold (theory.md section 2).
+    """Sign functionals of a chart, of every interior vertex and every fold (theory.md section 2).
 
     A row (c_1, ..., c_n, c_0) takes the value c . x + c_0 at the point x of the chart.
     """
@@ -31,7 +31,7 @@ class Functionals:
 
     @cached_property
     def vertices(self) -> Mapping[int, Row]:
-        """Positive where the vertex is popped up, negative where down, zero where its star is flat."""
+        """Positive where the vertex is popped up, negative where down, zero where it is flat."""
         pattern = self.chart.branch_system.pattern
         return {
             v: integer_row(self.chart.restrict(vertex_sign_functional(pattern, v)))
@@ -51,6 +51,4 @@ class Functionals:
     def heights(self) -> Mapping[int, tuple[Fraction, ...]]:
         """The height of every vertex."""
         pattern = self.chart.branch_system.pattern
-        return {
-            v: tuple(self.chart.restrict({v: 1})) for v in range(len(pattern.vertices))
-        }
+        return {v: tuple(self.chart.restrict({v: 1})) for v in range(len(pattern.vertices))}

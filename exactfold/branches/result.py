@@ -100,7 +100,9 @@ class BranchCount:
         tail = f"<p>... and {more} more</p>" if more > 0 else ""
         head = "<tr><th>vertex signs</th><th>mountain-valley</th><th>multiplicity</th></tr>"
         count = "" if self.distinct is None else f"{self.distinct} branches, "
-        return f"<p>{count}<b>{self.status}</b> ({self.reason})</p><table>{head}{rows}</table>{tail}"
+        return (
+            f"<p>{count}<b>{self.status}</b> ({self.reason})</p><table>{head}{rows}</table>{tail}"
+        )
 
     def _repr_latex_(self) -> str:
         if self.distinct is None:

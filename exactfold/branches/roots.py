@@ -33,11 +33,13 @@ class BoxRoot:
         """Bounds of the value over the whole box."""
         box = self.box
         *slopes, constant = row
-        terms = (c * m for c, m in zip(slopes, box.real, strict=True) if c)
-        value = sum(terms, Fraction(0)) + (constant << box.bits if isinstance(constant, int)
-                                           else constant * (1 << box.bits))
-        reach = box.radius * sum((abs(c) for c in slopes), Fraction(0))
         scale = 1 << box.bits
+        value, reach = Fraction(constant) * scale, Fraction(0)
+        for c, m in zip(slopes, box.real, strict=True):
+            if c:
+                value += c * m
+                reach += c if c > 0 else -c
+        reach *= box.radius
         return (value - reach) / scale, (value + reach) / scale
 
     def sign(self, row: Row) -> int | None:

@@ -10,7 +10,7 @@ from fractions import Fraction
 class IsolatingBox:
     """A box proved to hold exactly one zero of a system, a regular one.
 
-    Centre (real + i imag) / 2^bits and radius / 2^bits in the sup norm over the unknowns; in a
+    Centre (real + i imag) / 2^bits, radius / 2^bits in the sup norm over the unknowns; in a
     complex box real and imaginary parts each keep within the radius (a box of R^2n). `imag` is empty
     if the zero is proved real.
 
@@ -36,15 +36,21 @@ class IsolatingBox:
     def interval(self, k: int) -> tuple[Fraction, Fraction]:
         """Bounds of the real part of unknown k."""
         scale = 1 << self.bits
-        return (Fraction(self.real[k] - self.radius, scale),
-                Fraction(self.real[k] + self.radius, scale))
+        return (
+            Fraction(self.real[k] - self.radius, scale),
+            Fraction(self.real[k] + self.radius, scale),
+        )
 
     def is_inside(self, other: IsolatingBox) -> bool:
         """Whether this box lies within `other` (decided exactly)."""
         bits = max(self.bits, other.bits)
         mine, theirs = bits - self.bits, bits - other.bits
         slack = (other.radius << theirs) - (self.radius << mine)
-        pairs = [*zip(self.real, other.real, strict=True), *zip(self.imag, other.imag, strict=True)]
+        flat = (0,) * len(self.real)
+        pairs = [
+            *zip(self.real, other.real, strict=True),
+            *zip(self.imag or flat, other.imag or flat, strict=True),
+        ]
         return all(abs((x << mine) - (y << theirs)) <= slack for x, y in pairs)
 
     def is_disjoint_from(self, other: IsolatingBox) -> bool:

@@ -67,7 +67,8 @@ def isolate(
 
     >>> import numpy as np
     >>> system = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
-    >>> found = isolate(system, Candidates("guess", np.array([[1.4], [-1.4], [1.5]], dtype=complex)))
+    >>> guesses = np.array([[1.4], [-1.4], [1.5]], dtype=complex)
+    >>> found = isolate(system, Candidates("guess", guesses))
     >>> found.real, str(found.complete)
     (2, 'proved')
     """
@@ -105,11 +106,11 @@ def _settle(
     system: QuadraticSystem, group: list[ComplexRow]
 ) -> tuple[list[IsolatingBox], Uncertified | None]:
     """Higher precision and the second certifier for candidates that meet; stops at a failure."""
-    found = []
+    found: list[IsolatingBox] = []
     for point in group:
         (result,) = krawczyk(system, [point], precisions=_RISING)
         if isinstance(result, Uncertified):
-            (result,) = interval_newton(system, [point], precisions=_INTERVAL)
+            (result,) = interval_newton(system, [point.tolist()], precisions=_INTERVAL)
         if isinstance(result, Uncertified):
             left = len(group) - len(found)
             many = f"{left} candidates meet here; " if left > 1 else ""

@@ -19,6 +19,7 @@ _PRECISIONS = (64, 128, 256, 512, 1024)
 _Y_BITS = 56
 _NEGLIGIBLE = 1e-8
 _NEWTON_STEPS = 12
+_WIDE = 1 << 16
 _SLOW = "Newton's steps do not shrink quadratically: the zero is multiple or the candidate far off"
 
 
@@ -144,6 +145,10 @@ class _Kernel:
             result: IsolatingBox | str = "the Jacobian is singular in double precision"
             if np.isfinite(inverse).all():
                 result = self._attempt(start, first, inverse)
+            if isinstance(result, IsolatingBox) and result.radius > _WIDE:
+                sharper = self._attempt_exactly(list(result.real), first)
+                if isinstance(sharper, IsolatingBox) and sharper.is_inside(result):
+                    result = sharper
             for bits in rising:
                 if isinstance(result, IsolatingBox) or result == _SLOW:
                     break
@@ -195,7 +200,8 @@ class _Kernel:
             except ZeroDivisionError:
                 return f"the Jacobian is singular at {bits} bits"
             # jacobian = 2^(bits) F'(m); keep about `bits` significant bits of its inverse.
-            size = max(_magnitude(inverse[i, j]) for i in range(n) for j in range(n))
+            cells = (inverse[i, j] for i in range(n) for j in range(n))
+            size = max(_magnitude(cell) for cell in cells if cell != 0)
             q = bits + 8 - size - self.shifted[1] - bits
             shift = q + self.shifted[1]
             entries = [
@@ -217,9 +223,7 @@ class _Kernel:
         products = (self.stacked * z).entries()
         rows = fmpz_mat(n, n + 1, products)
         values = rows * z
-        jacobian = fmpz_mat(
-            n, n, [products[p * (n + 1) + k] for p in range(n) for k in range(n)]
-        )
+        jacobian = fmpz_mat(n, n, [products[p * (n + 1) + k] for p in range(n) for k in range(n)])
         return jacobian, values
 
     def _newton(self, m: list[int], bits: int, y: fmpz_mat, shift: int) -> list[int]:
@@ -269,8 +273,10 @@ def _settled(before: list[int], after: list[int]) -> bool:
 def _dyadic(value: float, bits: int) -> int:
     """The integer nearest to value * 2^bits, exactly rounded from the double."""
     numerator, denominator = value.as_integer_ratio()
-    return _divide_round(numerator << bits, denominator) if bits >= 0 else _divide_round(
-        numerator, denominator << -bits
+    return (
+        _divide_round(numerator << bits, denominator)
+        if bits >= 0
+        else _divide_round(numerator, denominator << -bits)
     )
 
 
@@ -283,7 +289,7 @@ def _shift_round(value: fmpz, bits: int) -> fmpz:
 
 
 def _magnitude(value: fmpq) -> int:
-    """Bit length of |value|, roughly: floor(log2 |value|) + 1 within one."""
+    """Bit length of |value| within one, for value != 0."""
     return int(value.p).bit_length() - int(value.q).bit_length()
 
 

@@ -26,8 +26,13 @@ class QuadraticForm:
         left = [a[v] for v in self.labels]
         right = [b[v] for v in self.labels]
         return sum(
-            (x * m * y for x, row in zip(left, self.matrix, strict=True) if x
-             for m, y in zip(row, right, strict=True) if m),
+            (
+                x * m * y
+                for x, row in zip(left, self.matrix, strict=True)
+                if x
+                for m, y in zip(row, right, strict=True)
+                if m
+            ),
             Fraction(0),
         )
 

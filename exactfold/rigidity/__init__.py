@@ -1,0 +1,1 @@
+"""What statics and kinematics say of the flat sheet."""

@@ -10,7 +10,9 @@ from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 
-def spokes(pattern: CreasePattern, vertex: int) -> tuple[tuple[int, ...], list[tuple[Fraction, Fraction]]]:
+def spokes(
+    pattern: CreasePattern, vertex: int
+) -> tuple[tuple[int, ...], list[tuple[Fraction, Fraction]]]:
     """Neighbours of an interior vertex counter-clockwise, and the vectors U_j - U_v to them."""
     if vertex not in pattern.interior:
         raise UsageError(f"vertex {vertex} is not an interior vertex")

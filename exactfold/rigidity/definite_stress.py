@@ -6,8 +6,8 @@ w = a + i b, K_v(a) = K_v(b) and B_v(a, b) = 0 for all v. If b is not 0, some K_
 K_v(a) > 0 too, while K_v has only one positive direction and a is orthogonal to b: contradiction.
 So b = 0, and the same argument with K_v(a) = K_v(b) = 0 gives a = 0.
 
-The multipliers are those of theory.md section 4 (the key lemma): lambda_v = 1 - eps |U_v - c|^2. The
-first part is positive semidefinite for a convex boundary, and on its kernel the second is
+The multipliers are lambda_v = 1 - eps |U_v - c|^2 (theory.md section 4, the key lemma). The first
+part is positive semidefinite for a convex boundary, and on its kernel the second is
 proportional to the integral of |grad w|^2. This is the prestress stability of triangulated convex
 polygons (Connelly & Gortler 2017), with the stress in closed form.
 """
@@ -37,9 +37,12 @@ def definite_stress(pattern: CreasePattern) -> dict[int, Fraction] | None:
     if not pattern.interior:
         return {}
     count = len(pattern.boundary)
-    centre = [sum(pattern.vertices[v][axis] for v in pattern.boundary) / count for axis in (0, 1)]
+    centre = [
+        sum((pattern.vertices[v][axis] for v in pattern.boundary), Fraction(0)) / count
+        for axis in (0, 1)
+    ]
     distance = {
-        v: sum((pattern.vertices[v][axis] - centre[axis]) ** 2 for axis in (0, 1))
+        v: (pattern.vertices[v][0] - centre[0]) ** 2 + (pattern.vertices[v][1] - centre[1]) ** 2
         for v in pattern.interior
     }
     largest = max(distance.values()) or Fraction(1)

@@ -79,7 +79,11 @@ def saddle_functional(pattern: CreasePattern) -> dict[int, Fraction]:
         (ax, ay), (bx, by), (cx, cy) = points[i], points[j], points[k]
         return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
-    weights = [area(b[1], b[2], b[3]), -area(b[0], b[2], b[3]), area(b[0], b[1], b[3]),
-               -area(b[0], b[1], b[2])]
+    weights = [
+        area(b[1], b[2], b[3]),
+        -area(b[0], b[2], b[3]),
+        area(b[0], b[1], b[3]),
+        -area(b[0], b[1], b[2]),
+    ]
     first = next(w for w in weights if w)
     return {v: w / first for v, w in zip(b, weights, strict=True)}

@@ -1,0 +1,1 @@
+"""Candidates for the zeros of the branch system, exact or approximate."""

@@ -38,7 +38,8 @@ def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
     corner is made interior by the triangle that closes the notch, and is given curvature k in place
     of 0. Predictor: a Taylor series of order 8 from one inverse per step; all paths of a block
     advance together. Paths that stall before T = 1, as they do where a vertex star ends flat, are
-    named in `lost`; where they stalled is still a candidate. Floating point throughout: nothing here is proved.
+    named in `lost`; where they stalled is still a candidate. Floating point throughout: nothing
+    here is proved.
 
     Raises `NotApplicableError` unless the pattern has four boundary vertices.
 
@@ -74,8 +75,8 @@ def _sign_vectors(size: int, reflex: bool) -> FloatArray:
     """All sign vectors as rows; with a reflex corner its sign, the last, is +1 throughout."""
     free = size - 1 if reflex else size
     bits = (np.arange(1 << free)[:, None] >> np.arange(free)) & 1
-    signs = 1.0 - 2.0 * bits
-    return np.hstack([signs, np.ones((len(signs), 1))]) if reflex else signs
+    signs = np.where(bits == 0, 1.0, -1.0)
+    return np.asarray(np.hstack([signs, np.ones((len(signs), 1))]) if reflex else signs)
 
 
 def _text(signs: FloatArray) -> str:
@@ -211,30 +212,32 @@ def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, npt.NDArra
     return x, done, steps
 
 
-def _rows(problem: _Problem, z: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _rows(
+    problem: _Problem, z: FloatArray, t: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """K's half gradients (b, n, n+1), l (b, n) and the Jacobian (b, n, n) at (z, t)."""
     n = problem.size
     half = (z @ problem.forms.reshape(-1, n + 1).T).reshape(len(z), n, n + 1)
-    l = z @ problem.lines.T
+    line = z @ problem.lines.T
     jacobian = 2.0 * t[:, None, None] * half[:, :, :n]
-    jacobian += (2.0 * (1.0 - t))[:, None, None] * l[:, :, None] * problem.lines[None, :, :n]
-    return half, l, jacobian
+    jacobian += (2.0 * (1.0 - t))[:, None, None] * line[:, :, None] * problem.lines[None, :, :n]
+    return half, line, jacobian
 
 
 def _taylor(problem: _Problem, x: FloatArray, t: FloatArray) -> list[FloatArray]:
     """Taylor coefficients of the paths at (x, t), orders 0 to `_ORDER`."""
     n = problem.size
     z = np.hstack([x, np.ones((len(x), 1))])
-    half, l, jacobian = _rows(problem, z, t)
+    half, line, jacobian = _rows(problem, z, t)
     inverse = np.linalg.inv(jacobian)
-    series, halves, values = [x], [half], [l]
+    series, halves, values = [x], [half], [line]
     for m in range(1, _ORDER + 1):
         # Coefficient m of (1-T)(l^2 - k) + T (K - target), without the unknown term.
-        cross_l, cross_k = np.zeros_like(l), np.zeros_like(l)
+        cross_l, cross_k = np.zeros_like(line), np.zeros_like(line)
         for i in range(1, m):
             cross_l += values[i] * values[m - i]
             cross_k += np.einsum("bvj,bj->bv", halves[i][:, :, :n], series[m - i])
-        square_l, square_k = np.zeros_like(l), np.zeros_like(l)
+        square_l, square_k = np.zeros_like(line), np.zeros_like(line)
         for i in range(m):
             square_l += values[i] * values[m - 1 - i]
             last = series[m - 1 - i] if m - 1 - i else z
@@ -261,9 +264,9 @@ def _correct(
     first = np.zeros(len(x))
     for iteration in range(4):
         z = np.hstack([x, np.ones((len(x), 1))])
-        half, l, jacobian = _rows(problem, z, t)
+        half, line, jacobian = _rows(problem, z, t)
         k = np.einsum("bvj,bj->bv", half, z) - problem.target
-        residual = (1.0 - t)[:, None] * (l * l - problem.level) + t[:, None] * k
+        residual = (1.0 - t)[:, None] * (line * line - problem.level) + t[:, None] * k
         try:
             change = np.linalg.solve(jacobian, residual[:, :, None])[:, :, 0]
         except np.linalg.LinAlgError:

@@ -1,0 +1,1 @@
+"""The exact polynomial system with its gauge written down."""

@@ -65,8 +65,10 @@ class QuadraticSystem:
         """z^T S_p z = 2 F_p(x), exactly."""
         z = [*x, Fraction(1)]
         return [
-            sum((z[i] * s * z[j] for i, row in enumerate(matrix) for j, s in enumerate(row) if s),
-                Fraction(0))
+            sum(
+                (z[i] * s * z[j] for i, row in enumerate(matrix) for j, s in enumerate(row) if s),
+                Fraction(0),
+            )
             for matrix in self.matrices
         ]
 

@@ -105,13 +105,7 @@ def test_coefficients_of_seventy_bits(certify: Certifier) -> None:
 @pytest.mark.parametrize(
     "certify",
     [
-        pytest.param(
-            krawczyk,
-            marks=pytest.mark.xfail(
-                strict=True,
-                reason="a zero in the inverse Jacobian spoils the scale of Y at high precision",
-            ),
-        ),
+        krawczyk,
         interval_newton,
     ],
 )
