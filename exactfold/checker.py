@@ -508,7 +508,9 @@ class Box(Root):
 
     def sign(self, row: list[int]) -> int | None:
         """1 or -1 if the functional keeps that sign on the box, 0 if it is 0, else None."""
-        value = (row[-1] << self.bits) + sum(c * m for c, m in zip(row, self.center, strict=True))
+        value = (row[-1] << self.bits) + sum(
+            c * m for c, m in zip(row[:-1], self.center, strict=True)
+        )
         reach = self.radius * sum(map(abs, row[:-1]))
         if abs(value) > reach:
             return 1 if value > 0 else -1

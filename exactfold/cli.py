@@ -106,7 +106,12 @@ Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 def count(
     pattern: Pattern,
     method: Annotated[
-        Method, typer.Option(help="How candidates are found; the proof does not depend on it.")
+        Method,
+        typer.Option(
+            metavar="METHOD",
+            help="auto, popping, homotopy or groebner: how solutions are found. The proof does "
+            "not depend on it.",
+        ),
     ] = Method.auto,  # type: ignore[attr-defined]
     certificate: Annotated[
         Path | None, typer.Option(metavar="OUT.json", help="Write a certificate if proved.")
@@ -133,7 +138,7 @@ def count(
     if as_json:
         print(json.dumps(result.to_dict(written)))
     else:
-        report.console().print(report.count_report(result, written, everything=everything))
+        report.show(report.count_report(result, written, everything=everything))
     raise typer.Exit(EXIT[result.status])
 
 
@@ -202,7 +207,7 @@ def info(pattern: Pattern, as_json: Json = False, snap: Snap = None) -> None:
     if as_json:
         print(json.dumps({**facts.to_dict(), "expected": report.expectation(facts)}))
     else:
-        report.console().print(report.info_report(facts))
+        report.show(report.info_report(facts))
 
 
 def _version(value: bool) -> None:

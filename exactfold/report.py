@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rich.console import Console, Group
+from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
@@ -150,6 +150,17 @@ def expectation(facts: PatternFacts) -> str:
     if free == 1 and not pattern.emptied()[0].chords:
         return "one branch (single vertex)"
     return f"{UNDECIDED}: branches of dimension {pattern.degrees_of_freedom} are not counted"
+
+
+def show(content: RenderableType) -> None:
+    """Print to stdout; off a terminal without styles and trailing blanks, 80 columns wide."""
+    out = console()
+    if out.is_terminal:
+        out.print(content)
+        return
+    with out.capture() as captured:
+        out.print(content)
+    print("\n".join(line.rstrip() for line in captured.get().splitlines()))
 
 
 def console(*, stderr: bool = False) -> Console:

@@ -11,8 +11,8 @@ class IsolatingBox:
     """A box proved to hold exactly one zero of a system, a regular one.
 
     Centre (real + i imag) / 2^bits, radius / 2^bits in the sup norm over the unknowns; in a
-    complex box real and imaginary parts each keep within the radius (a box of R^2n). `imag` is empty
-    if the zero is proved real.
+    complex box real and imaginary parts each keep within the radius (a box of R^2n). `imag` is
+    empty if the zero is proved real.
 
     >>> IsolatingBox((3,), (), 1, 2).interval(0)
     (Fraction(1, 2), Fraction(1, 1))

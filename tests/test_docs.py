@@ -1,0 +1,47 @@
+"""Every console example in README and docs is run and its output compared."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def examples(page: Path) -> list[tuple[str, str]]:
+    """(command, expected output) of each `$` line in the page's console blocks."""
+    found = []
+    for block in re.findall(r"```console\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
+        for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
+            command, _, output = part.partition("\n")
+            found.append((command, output))
+    return found
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "exactfold" / "data", tmp_path / "exactfold" / "data")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"}
+    for command, expected in examples(page):
+        words = shlex.split(command)
+        assert words[0] == "exactfold"
+        run = subprocess.run(
+            [sys.executable, "-c", "from exactfold.cli import main; main()", *words[1:]],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        pattern = re.escape(expected.rstrip()).replace(re.escape("..."), r"\S+")
+        assert re.fullmatch(pattern, run.stdout.rstrip()), f"{command}\n{run.stdout}{run.stderr}"
+
+
+def test_examples_are_found() -> None:
+    assert sum(len(examples(page)) for page in PAGES) >= 4
