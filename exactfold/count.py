@@ -5,8 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-
-import numpy as np
+from typing import Any
 
 from exactfold.branches.classify import Undecided, classify
 from exactfold.branches.result import BranchCount
@@ -15,16 +14,16 @@ from exactfold.certify.algebraic import algebraic_evidence, prove_algebraic
 from exactfold.certify.certificate import box_evidence, triangle_evidence
 from exactfold.certify.isolation import Isolation, isolate
 from exactfold.certify.rigid_triangles import RigidTriangle, certify_rigid_triangles
-from exactfold.errors import NoInteriorVertexError, UsageError
+from exactfold.errors import NoInteriorVertexError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.groebner import groebner
-from exactfold.solve.homotopy import homotopy
-from exactfold.solve.popping import popping
+from exactfold.solve.methods import METHODS, Choice, choose, solve
 from exactfold.system.branch_system import BranchSystem, Chart
 from exactfold.verdict import PROVED, UNDECIDED
 
-METHODS = ("auto", "popping", "homotopy", "groebner")
+__all__ = ["METHODS", "count_branches"]
+
 Progress = Callable[[str, int, int], None]
 
 GROEBNER_LIMIT = 5
@@ -41,8 +40,8 @@ def count_branches(
     """The number of branches at the unfolded state, proved, and what distinguishes them.
 
     For D = 1: solve the branch system of the emptied pattern, isolate every solution by an exact
-    test, prove by refined Bezout that there are no others (theory.md section 3), and decide all
-    vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For D >= 2 only the
+    test, prove by refined Bezout that there are no others (docs/mathematics.md, 3 to 5), and decide
+    all vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For D >= 2 only the
     single-vertex pattern is settled. `method` is one of `METHODS`; "auto" follows popping paths and
     turns to the exact engine where roots are multiple and the pattern is small.
 
@@ -54,8 +53,7 @@ def count_branches(
     >>> result.status, result.distinct, result.real
     (<Verdict.PROVED: 'proved'>, 2, 2)
     """
-    if method not in METHODS:
-        raise UsageError(f"unknown method {method!r}: choose one of {', '.join(METHODS)}")
+    choose(method)
     if not pattern.interior:
         raise NoInteriorVertexError(
             "the pattern has no interior vertex: there is no curvature equation to solve"
@@ -66,7 +64,7 @@ def count_branches(
         result = BranchCount(
             pattern,
             UNDECIDED,
-            method,
+            "none",
             "no definite stress was found for a triangulated triangle",
         )
     elif pattern.Ve == 3:
@@ -121,6 +119,49 @@ def _higher(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bra
     )
 
 
+@dataclass(frozen=True)
+class _Task:
+    """What every method works on: the pattern, and the chart of the emptied pattern."""
+
+    pattern: CreasePattern
+    triangles: tuple[RigidTriangle, ...]
+    chart: Chart
+    labels: tuple[int, ...]
+    choice: Choice
+    progress: Progress | None
+
+    @property
+    def total(self) -> int:
+        """2^n, what the solutions of the emptied pattern must add up to."""
+        return self.chart.system.bezout_number
+
+    def stage(self, name: str) -> Callable[[int, int], None]:
+        """Progress of one stage."""
+        report = self.progress
+        return lambda done, total: None if report is None else report(name, done, total)
+
+    def undecided(self, reason: str, **known: Any) -> BranchCount:
+        """An undecided count, with what is known."""
+        choice = self.choice
+        return BranchCount(
+            self.pattern, UNDECIDED, choice.method, reason=reason, why=choice.why, **known
+        )
+
+    def proved(
+        self, open_count: BranchCount, reason: str, evidence: dict[str, Any], **counts: Any
+    ) -> BranchCount:
+        """The same count, proved."""
+        return replace(
+            open_count,
+            status=PROVED,
+            reason=reason,
+            open_questions=(),
+            with_multiplicity=self.total << self.pattern.Vt,
+            evidence={"triangles": triangle_evidence(self.triangles), **evidence},
+            **counts,
+        )
+
+
 def _lines(
     pattern: CreasePattern,
     triangles: tuple[RigidTriangle, ...],
@@ -131,153 +172,96 @@ def _lines(
     """D = 1: branches are isolated lines, zeros of the emptied pattern's system."""
     emptied, labels = pattern.emptied()
     chart = BranchSystem(emptied).chart
-    task = _Task(pattern, triangles, chart, labels)
-    if method == "groebner":
-        return _exactly(task, progress)
-    used = "popping" if method == "auto" else method
-    candidates = _solve(chart, used, seed, progress)
-    result = _isolated(task, used, candidates, progress)
+    task = _Task(pattern, triangles, chart, labels, choose(method), progress)
+    size = chart.system.size
+    if task.choice.method == "groebner" and size:
+        return _exactly(task)
+    result = _isolated(task, solve(chart, method, seed=seed, progress=task.stage("solving")))
     if result.status is PROVED or method != "auto":
         return result
-    size = chart.system.size
     if size > GROEBNER_LIMIT:
-        return replace(
-            result,
-            reason=f"{result.reason}; the exact engine is tried up to {GROEBNER_LIMIT} "
-            f"unknowns, here are {size} (use --method groebner to insist)",
+        advice = (
+            f"the exact engine is tried up to {GROEBNER_LIMIT} unknowns, here are {size} "
+            "(--method groebner insists)"
         )
-    return _exactly(task, progress)
+        return replace(result, reason=f"{result.reason}; {advice}")
+    return _exactly(replace(task, choice=Choice("groebner", "popping paths did not settle it")))
 
 
-@dataclass(frozen=True)
-class _Task:
-    """What every method works on: the pattern, and the chart of the emptied pattern."""
-
-    pattern: CreasePattern
-    triangles: tuple[RigidTriangle, ...]
-    chart: Chart
-    labels: tuple[int, ...]
-
-
-def _isolated(
-    task: _Task, method: str, candidates: Candidates, progress: Progress | None
-) -> BranchCount:
+def _isolated(task: _Task, candidates: Candidates) -> BranchCount:
     """Boxes around candidates, completeness by refined Bezout, signs on the boxes."""
-    chart, pattern = task.chart, task.pattern
-    isolation = isolate(chart.system, candidates, progress=_stage(progress, "certifying"))
+    isolation = isolate(task.chart.system, candidates, progress=task.stage("certifying"))
     roots: list[tuple[Root, int]] = [(BoxRoot(box), 1) for box in isolation.boxes if box.is_real]
-    branches, undecided = classify(pattern, chart, task.labels, roots)
-    base = BranchCount(
-        pattern,
-        UNDECIDED,
-        method,
-        "",
+    branches, open_signs = classify(task.pattern, task.chart, task.labels, roots)
+    result = task.undecided(
+        f"all {task.total} solutions isolated, but signs are undecided on {len(open_signs)}",
         branches=tuple(branches),
         settings={**candidates.settings, "lost": len(candidates.lost)},
-        open_questions=_open(isolation, undecided, candidates),
+        open_questions=(*candidates.lost, *_failures(isolation), *_signs(open_signs)),
     )
-    total = chart.system.bezout_number
     if isolation.complete is not PROVED:
         return replace(
-            base,
-            reason=f"{len(isolation.boxes)} of {total} solutions isolated: the others are "
+            result,
+            reason=f"{len(isolation.boxes)} of {task.total} solutions isolated: the others are "
             "multiple, at infinity or were not found",
         )
-    if undecided:
-        return replace(
-            base,
-            reason=f"all {total} solutions isolated, but signs are undecided on "
-            f"{len(undecided)} of them",
-        )
+    if open_signs:
+        return result
     boxes = [branch.root.box for branch in branches if isinstance(branch.root, BoxRoot)]
-    return replace(
-        base,
-        status=PROVED,
-        reason=f"{total} solutions isolated; by refined Bezout there are no others",
+    return task.proved(
+        result,
+        f"{task.total} solutions isolated; by refined Bezout there are no others",
+        {"kind": "isolated", "roots": box_evidence(boxes)},
         distinct=isolation.real + isolation.nonreal,
-        with_multiplicity=total << pattern.Vt,
         real=isolation.real,
         nonreal=isolation.nonreal,
         true_branches=PROVED,
-        evidence={
-            "kind": "isolated",
-            "triangles": triangle_evidence(task.triangles),
-            "roots": box_evidence(boxes),
-        },
     )
 
 
-def _exactly(task: _Task, progress: Progress | None) -> BranchCount:
+def _exactly(task: _Task) -> BranchCount:
     """Groebner basis; simple roots are then isolated in boxes, multiple ones proved as they are."""
-    chart, pattern = task.chart, task.pattern
-    report = _stage(progress, "computing a Groebner basis")
-    if report is not None:
-        report(0, 1)
-    solution = groebner(chart.system)
-    if report is not None:
-        report(1, 1)
-    total = chart.system.bezout_number
+    stage = task.stage("computing a Groebner basis")
+    stage(0, 1)
+    solution = groebner(task.chart.system)
+    stage(1, 1)
     if solution.dimension is None:
-        return BranchCount(
-            pattern, UNDECIDED, "groebner", "the branch system has infinitely many solutions"
-        )
-    if solution.distinct == total:
-        return _isolated(task, "groebner", solution.candidates, progress)
-    proof = prove_algebraic(chart, solution)
+        return task.undecided("the branch system has infinitely many solutions")
+    if solution.distinct == task.total:
+        return _isolated(task, solution.candidates)
+    proof = prove_algebraic(task.chart, solution)
     given: list[tuple[Root, int]] = [(AlgebraicRoot(c, k), m) for c, k, m in proof.roots]
-    branches, undecided = classify(pattern, chart, task.labels, given)
-    base = BranchCount(
-        pattern,
-        UNDECIDED,
-        "groebner",
+    branches, open_signs = classify(task.pattern, task.chart, task.labels, given)
+    result = task.undecided(
         proof.reason,
         branches=tuple(branches),
         settings=dict(solution.settings),
-        open_questions=_signs(undecided),
+        open_questions=_signs(open_signs),
     )
-    if proof.complete is not PROVED or undecided:
-        return base
+    if proof.complete is not PROVED or open_signs:
+        return result
     roots = [
         (branch.root.root_class, branch.root.index)
         for branch in branches
         if isinstance(branch.root, AlgebraicRoot)
     ]
-    return replace(
-        base,
-        status=PROVED,
+    return task.proved(
+        result,
+        proof.reason,
+        {"kind": "algebraic", **algebraic_evidence(proof, roots)},
         distinct=proof.distinct,
-        with_multiplicity=total << pattern.Vt,
         real=len(roots),
         nonreal=proof.distinct - len(roots),
-        evidence={
-            "kind": "algebraic",
-            "triangles": triangle_evidence(task.triangles),
-            **algebraic_evidence(proof, roots),
-        },
     )
 
 
-def _solve(chart: Chart, method: str, seed: int, progress: Progress | None) -> Candidates:
-    if chart.system.size == 0:
-        return Candidates("none", np.zeros((1, 0), dtype=np.complex128))
-    if method == "homotopy":
-        return homotopy(chart.system, seed=seed, progress=_stage(progress, "solving"))
-    return popping(chart, progress=_stage(progress, "solving"))
-
-
-def _stage(progress: Progress | None, name: str) -> Callable[[int, int], None] | None:
-    return None if progress is None else lambda done, total: progress(name, done, total)
-
-
-def _open(
-    isolation: Isolation, undecided: list[Undecided], candidates: Candidates
-) -> tuple[str, ...]:
-    """What is missing, in words: lost paths, candidates without a box, undecided signs."""
-    questions = list(candidates.lost)
-    for failure in isolation.failures:
-        near = ", ".join(f"{x.real:.6g}" for x in failure.point)
-        questions.append(f"no box around the candidate ({near}): {failure.reason}")
-    return (*questions, *_signs(undecided))
+def _failures(isolation: Isolation) -> list[str]:
+    """Where no box was found, and why."""
+    return [
+        f"no box around the candidate ({', '.join(f'{x.real:.6g}' for x in failure.point)}): "
+        f"{failure.reason}"
+        for failure in isolation.failures
+    ]
 
 
 def _signs(undecided: list[Undecided]) -> tuple[str, ...]:

@@ -66,7 +66,8 @@ def count_report(result: BranchCount, certificate: str | None, *, everything: bo
                 "mountain-valley assignment with another",
             )
         )
-    rows.append(("method", f"{result.method}, {result.seconds:.2f} s"))
+    why = f" ({result.why})" if result.why else ""
+    rows.append(("method", f"{result.method}{why}, {result.seconds:.2f} s"))
     if certificate:
         rows.append(("certificate", certificate))
     parts: list[Any] = [_facts_table(rows)]

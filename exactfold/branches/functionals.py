@@ -22,7 +22,7 @@ def integer_row(row: list[Fraction]) -> Row:
 
 @dataclass(frozen=True)
 class Functionals:
-    """Sign functionals of a chart, of every interior vertex and every fold (theory.md section 2).
+    """Sign functionals of a chart, of every interior vertex and every fold (docs/conventions.md).
 
     A row (c_1, ..., c_n, c_0) takes the value c . x + c_0 at the point x of the chart.
     """

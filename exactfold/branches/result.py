@@ -19,10 +19,10 @@ class BranchCount:
     """What is known of the branches of a pattern at the unfolded state.
 
     `status` is PROVED when the counts are; they are None otherwise, and `reason` says what is
-    missing. `distinct` counts branches as lines (for D = 1), `with_multiplicity` the solutions of
-    the branch system with multiplicity, `real` and `nonreal` its distinct solutions by reality.
-    `true_branches` is PROVED when the count is also that of the true configuration space
-    (theory.md section 3). `branches` holds every branch decided, all of them if PROVED and D = 1;
+    missing; `why` says why the method was chosen. `distinct` counts branches as lines (for D = 1),
+    `with_multiplicity` the solutions of the branch system with multiplicity, `real` and `nonreal`
+    its distinct solutions by reality. `true_branches` is PROVED when the count is also that of the
+    true configuration space (docs/mathematics.md, 5). `branches` holds every branch decided, all of them if PROVED and D = 1;
     for D > 1 a branch is no line and none is listed. `evidence` is what a certificate holds.
     """
 
@@ -30,6 +30,7 @@ class BranchCount:
     status: Verdict
     method: str
     reason: str
+    why: str = ""
     distinct: int | None = None
     with_multiplicity: int | None = None
     real: int | None = None
@@ -56,6 +57,7 @@ class BranchCount:
             "status": str(self.status),
             "reason": self.reason,
             "method": self.method,
+            "why": self.why,
             "distinct": self.distinct,
             "with_multiplicity": self.with_multiplicity,
             "real": self.real,

@@ -20,7 +20,7 @@ from exactfold.verdict import PROVED, UNDECIDED, Verdict
 class AlgebraicProof:
     """Root classes with dual spaces, and multipliers of a definite stress of the closed sheet.
 
-    The stress leaves no zero on a hyperplane of P^n (theory.md section 4, part (a)), so there are
+    The stress leaves no zero on a hyperplane of P^n (docs/mathematics.md, 8), so there are
     finitely many zeros and their multiplicities add up to 2^n. Dual spaces bound the multiplicities
     from below; where the bounds add up to 2^n they are exact and no zero is missing.
     """

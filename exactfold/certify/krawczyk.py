@@ -34,7 +34,7 @@ def krawczyk(
     With m dyadic, Y any dyadic matrix, r > 0 and sup norms let eta = |Y F(m)|,
     k0 = |I - Y F'(m)| and M = max_i sum_jk |sum_p Y_ip (H_p)_jk|. If k0 + r M < 1 and
     eta + (k0 + r M) r < r, then x -> x - Y F(x) maps the box |x - m| <= r into its interior and
-    contracts: the box holds exactly one zero, a regular one (Krawczyk 1969; theory.md section 3).
+    contracts: the box holds exactly one zero, a regular one (Krawczyk 1969; docs/mathematics.md, 3).
 
     `points` has shape (m, n). A candidate whose imaginary parts are negligible is tried as a real
     point, which then proves the zero real; the others are treated as points of R^2n. Floating
@@ -210,11 +210,12 @@ class _Kernel:
             y = fmpz_mat(n, n, entries)
             before, m = m, self._newton(m, bits, y, shift)
             result = self._test(m, bits, y, entries, shift)
-            if isinstance(result, IsolatingBox) or _settled(before, m):
+            sharp = isinstance(result, IsolatingBox) and result.radius <= _WIDE
+            if sharp or _settled(before, m):
                 return result
             length, last = _distance(before, m), length
         slow = last is not None and length is not None and 8 * length > last
-        return _SLOW if slow else result
+        return _SLOW if slow and not isinstance(result, IsolatingBox) else result
 
     def _evaluate(self, m: list[int], bits: int) -> tuple[fmpz_mat, fmpz_mat]:
         """2^bits F'(m) as an n x n matrix, and 2^(2 bits + 1) F(m) as a column."""

@@ -20,7 +20,7 @@ _CORNERS: Final = ((0, 0), (1, 0), (1, 1), (0, 1))
 def collinear_folds(pattern: CreasePattern) -> tuple[tuple[int, int, int], ...]:
     """The crease paths (i, v, j) that run straight through an interior vertex v, i < j.
 
-    Straight paths are the usual cause of branches with flat vertices (theory.md section 5).
+    Straight paths are the usual cause of branches with flat vertices (docs/mathematics.md, 8).
 
     >>> collinear_folds(waterbomb())
     ((0, 6, 2), (1, 6, 3), (4, 6, 5))
@@ -104,7 +104,7 @@ def two_vertex() -> CreasePattern:
 def flat_vertex_square() -> CreasePattern:
     """A square in which a vertex star is flat on a branch, without any triangulated triangle.
 
-    The example of theory.md section 5 ("Flat vertices"): the diagonal is a straight crease path
+    An example with multiplicities 1, 1, 2: the diagonal is a straight crease path
     through vertex 4; there are three distinct branches, of multiplicities 2, 1 and 1.
 
     >>> collinear_folds(flat_vertex_square()), flat_vertex_square().Vt

@@ -1,4 +1,4 @@
-"""Curvature forms and wheel stresses of the interior vertices (theory.md section 1)."""
+"""Curvature forms and wheel stresses of the interior vertices (docs/mathematics.md, 1)."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
 
         K_v(h) = sum_j x_j x_{j+1} / c_j - (s_j / 2 c_j) (x_j^2 / L_j^2 + x_{j+1}^2 / L_{j+1}^2)
 
-    with x_j = h_j - h_v (theory.md section 1). Labels: the hub first, then the ring
+    with x_j = h_j - h_v (docs/mathematics.md, 1). Labels: the hub first, then the ring
     counter-clockwise. Unit: curvature in radians when heights and lengths share a unit.
     Inertia (1, N - 3, 3) for degree N. Raises `UsageError` unless `vertex` is interior.
 

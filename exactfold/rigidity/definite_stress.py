@@ -6,7 +6,7 @@ w = a + i b, K_v(a) = K_v(b) and B_v(a, b) = 0 for all v. If b is not 0, some K_
 K_v(a) > 0 too, while K_v has only one positive direction and a is orthogonal to b: contradiction.
 So b = 0, and the same argument with K_v(a) = K_v(b) = 0 gives a = 0.
 
-The multipliers are lambda_v = 1 - eps |U_v - c|^2 (theory.md section 4, the key lemma). The first
+The multipliers are lambda_v = 1 - eps |U_v - c|^2 (docs/mathematics.md, 6). The first
 part is positive semidefinite for a convex boundary, and on its kernel the second is
 proportional to the integral of |grad w|^2. This is the prestress stability of triangulated convex
 polygons (Connelly & Gortler 2017), with the stress in closed form.

@@ -20,7 +20,7 @@ def sqrt_approximation(value: Fraction, bits: int) -> Fraction:
 def round_cone(pattern: CreasePattern, vertex: int, bits: int = 16) -> dict[int, Fraction]:
     """A rational vector near the round cone t_v = 0, t_j = -L_j, with K_v(t) > 0 exactly.
 
-    The round cone has K_v(t) = sum_j tan(a_j / 2) > 0 and points up (theory.md section 2); the
+    The round cone has K_v(t) = sum_j tan(a_j / 2) > 0 and points up (docs/conventions.md); the
     precision of the lengths is doubled until the rational vector passes the exact test.
     """
     form = curvature_form(pattern, vertex)
@@ -38,7 +38,7 @@ def vertex_sign_functional(pattern: CreasePattern, vertex: int) -> dict[int, int
     """Integer coefficients of h -> K_v(t, h), t timelike and pointing up, by vertex.
 
     On the null cone of K_v its sign is +1 where the vertex is popped up, -1 where it is popped
-    down, and 0 exactly where the star of the vertex is flat (theory.md section 2).
+    down, and 0 exactly where the star of the vertex is flat (docs/conventions.md).
     """
     coefficients = curvature_form(pattern, vertex).functional(round_cone(pattern, vertex))
     integers, _ = over_common_denominator(coefficients.values())

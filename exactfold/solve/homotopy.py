@@ -113,7 +113,7 @@ def _equilibrate(tensor: FloatArray) -> tuple[FloatArray, FloatArray]:
 def _operator_scaling(forms: FloatArray, rounds: int = 30) -> tuple[FloatArray, FloatArray]:
     """(B, L) with B_p = sum_q R_pq L^T A_q L: trace-orthonormal, sum_p B_p^2 near a multiple of I.
 
-    The alternation of theory.md section 5; directions that are null for all forms are left alone.
+    Directions that are null for all forms are left alone.
     """
     n, size, _ = forms.shape
     change = np.eye(size)

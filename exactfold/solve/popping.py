@@ -1,4 +1,4 @@
-"""The popping homotopy: one real path for each vector of vertex signs (theory.md section 5)."""
+"""The popping homotopy: one real path for each vector of vertex signs (docs/mathematics.md, 11)."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
         (1 - T) (l_v(h)^2 - k) + T K_v(h) = 0,   e_v l_v(h) > 0,   from T = 0 to T = 1.
 
     For a convex boundary the path is regular for T < 1 and is the only solution in its chamber, so
-    a converged corrector with the right signs cannot have jumped (theory.md section 4). A reflex
-    corner is made interior by the triangle that closes the notch, and is given curvature k in place
+    a converged corrector with the right signs cannot have jumped (docs/mathematics.md, 11). A
+    reflex corner is made interior by the triangle that closes the notch, and is given curvature k in place
     of 0. Predictor: a Taylor series of order 8 from one inverse per step; all paths of a block
     advance together. Paths that stall before T = 1, as they do where a vertex star ends flat, are
     named in `lost`; where they stalled is still a candidate. Floating point throughout: nothing

@@ -19,7 +19,7 @@ from exactfold.system.quadratic import QuadraticSystem
 class BranchSystem:
     """K_v(h) = 0 for every interior vertex v, with three non-collinear vertices pinned at h = 0.
 
-    Vi homogeneous quadrics in the Vi + D heights of `variables` (theory.md section 3). Pinning
+    Vi homogeneous quadrics in the Vi + D heights of `variables` (docs/mathematics.md, 2). Pinning
     removes the affine functions, on which all curvature forms vanish. By default the pinned
     vertices lie on the boundary; for D = 1 they are the boundary vertices but the one whose height
     the chart `saddle = 1` then fixes to 1.

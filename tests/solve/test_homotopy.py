@@ -104,7 +104,7 @@ def test_zeros_at_infinity_are_named() -> None:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_double_zero_is_not_hidden(seed: int) -> None:
-    # theory.md section 5: multiplicities 2, 1, 1. What arrives at the double zero is not certified.
+    # Multiplicities 2, 1, 1. What arrives at the double zero is not certified.
     system = BranchSystem(flat_vertex_square()).chart.system
     found = homotopy(system, seed=seed)
     assert found.points.shape == (4, 2)
