@@ -34,7 +34,8 @@ def krawczyk(
     With m dyadic, Y any dyadic matrix, r > 0 and sup norms let eta = |Y F(m)|,
     k0 = |I - Y F'(m)| and M = max_i sum_jk |sum_p Y_ip (H_p)_jk|. If k0 + r M < 1 and
     eta + (k0 + r M) r < r, then x -> x - Y F(x) maps the box |x - m| <= r into its interior and
-    contracts: the box holds exactly one zero, a regular one (Krawczyk 1969; docs/mathematics.md, 3).
+    contracts: the box holds exactly one zero, a regular one (Krawczyk 1969; statement 3 of
+    docs/mathematics.md).
 
     `points` has shape (m, n). A candidate whose imaginary parts are negligible is tried as a real
     point, which then proves the zero real; the others are treated as points of R^2n. Floating
