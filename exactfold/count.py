@@ -42,8 +42,8 @@ def count_branches(
     For D = 1: solve the branch system of the emptied pattern, isolate every solution by an exact
     test, prove by refined Bezout that there are no others (docs/mathematics.md, 3 to 5), and decide
     all vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For D >= 2 only
-    the single-vertex pattern is settled. `method` is one of `METHODS`; "auto" follows popping paths and
-    turns to the exact engine where roots are multiple and the pattern is small.
+    the single-vertex pattern is settled. `method` is one of `METHODS`; "auto" follows popping paths
+    and turns to the exact engine where roots are multiple and the pattern is small.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
     `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.

@@ -168,3 +168,14 @@ class CollinearPointsError(PatternError):
 
 class NotApplicableError(ExactfoldError):
     """A construction or method does not apply to this pattern; the message says why."""
+
+
+# --- the exact engine ----------------------------------------------------------------------------
+
+
+class ParametrisationError(ExactfoldError):
+    """A parametrisation does not satisfy its system: an error of the solver, not of the input."""
+
+
+class DualSpaceError(ExactfoldError):
+    """A dual space does not prove what it claims; the message says which condition fails."""

@@ -23,7 +23,8 @@ class BranchCount:
     `with_multiplicity` the solutions of the branch system with multiplicity, `real` and `nonreal`
     its distinct solutions by reality. `true_branches` is PROVED when the count is also that of the
     true configuration space (docs/mathematics.md, 5). `branches` holds every branch decided, all of
-    them if PROVED and D = 1; for D > 1 a branch is no line and none is listed. `evidence` is what a certificate holds.
+    them if PROVED and D = 1; for D > 1 a branch is no line and none is listed. `evidence` is what a
+    certificate holds.
     """
 
     pattern: CreasePattern

@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 from flint import fmpq_poly, fmpz, nmod_poly
 
-from exactfold.errors import ExactfoldError
+from exactfold.errors import DualSpaceError
 from exactfold.exact.algebraic import NumberField, Vector
 from exactfold.exact.univariate import from_rational_poly, to_rational_poly
 from exactfold.solve.exact_solution import RootClass
@@ -20,10 +20,6 @@ Exponent: TypeAlias = tuple[int, ...]
 Coefficient: TypeAlias = tuple[Fraction, ...]
 Functional: TypeAlias = Mapping[Exponent, Coefficient]
 Taylor: TypeAlias = dict[Exponent, fmpq_poly]
-
-
-class DualSpaceError(ExactfoldError):
-    """A dual space does not prove what it claims; the message says which condition fails."""
 
 
 @dataclass(frozen=True)

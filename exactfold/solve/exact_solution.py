@@ -11,7 +11,7 @@ from math import gcd
 import numpy as np
 from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly, fmpz_poly
 
-from exactfold.errors import ExactfoldError
+from exactfold.errors import ParametrisationError
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.exact.univariate import (
     Interval,
@@ -22,10 +22,6 @@ from exactfold.exact.univariate import (
 )
 from exactfold.solve.candidates import Candidates, ComplexArray
 from exactfold.system.quadratic import QuadraticSystem
-
-
-class ParametrisationError(ExactfoldError):
-    """A parametrisation does not satisfy its system: an error of the solver, not of the input."""
 
 
 @dataclass(frozen=True)

@@ -36,9 +36,9 @@ def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
     For a convex boundary the path is regular for T < 1 and is the only solution in its chamber, so
     a converged corrector with the right signs cannot have jumped (docs/mathematics.md, 11). A
     reflex corner is made interior by the triangle that closes the notch, and is given curvature k
-    in place of 0. Predictor: a Taylor series of order 8 from one inverse per step; all paths of a block
-    advance together. Paths that stall before T = 1, as they do where a vertex star ends flat, are
-    named in `lost`; where they stalled is still a candidate. Floating point throughout: nothing
+    in place of 0. Predictor: a Taylor series of order 8 from one inverse per step; all paths of a
+    block advance together. Paths that stall before T = 1, as they do where a vertex star ends flat,
+    are named in `lost`; where they stalled is still a candidate. Floating point throughout: nothing
     here is proved.
 
     Raises `NotApplicableError` unless the pattern has four boundary vertices.
