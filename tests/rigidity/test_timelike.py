@@ -92,7 +92,7 @@ def test_round_cone_asks_for_more_bits_until_it_is_timelike(monkeypatch):
         return sqrt_approximation(x, bits) if bits >= 64 else Fraction(len(asked) ** 2)
 
     monkeypatch.setattr(timelike, "sqrt_approximation", crude)
-    pattern = wheel([(1000, 1), (-3, 5), (-3, -5), (1000, -1)])
+    pattern = wheel([(1, "1/1000"), (-3, 5), (-3, -5), (1, "-1/1000")])
     cone = round_cone(pattern, 4)
     assert sorted(set(asked)) == [16, 32, 64]
     assert curvature_form(pattern, 4)(cone) > 0
