@@ -9,18 +9,15 @@ from flint import fmpq_poly
 
 from exactfold.certify.dual_space import (
     DualSpace,
-    DualSpaceError,
     Exponent,
     Taylor,
-    dual_space,
     taylor_expansions,
     unit_rank,
 )
+from exactfold.errors import DualSpaceError
 from exactfold.exact.univariate import to_rational_poly
 from exactfold.solve.exact_solution import RootClass
 from exactfold.system.quadratic import QuadraticSystem
-
-__all__ = ["DualSpace", "DualSpaceError", "check_complete", "check_dual_space", "dual_space"]
 
 
 def check_dual_space(system: QuadraticSystem, root_class: RootClass, dual: DualSpace) -> None:

@@ -7,9 +7,9 @@ from dataclasses import replace
 import sympy
 from flint import Ordering, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
-from exactfold.errors import NotApplicableError, UsageError
+from exactfold.errors import NotApplicableError, ParametrisationError, UsageError
 from exactfold.exact.univariate import from_rational_poly
-from exactfold.solve.exact_solution import ExactSolution, ParametrisationError, RootClass
+from exactfold.solve.exact_solution import ExactSolution, RootClass
 from exactfold.solve.lifting import lifted_parametrisation
 from exactfold.solve.quotient import (
     QuotientAlgebra,
@@ -19,8 +19,6 @@ from exactfold.solve.quotient import (
     sparse_quadrics,
 )
 from exactfold.system.quadratic import QuadraticSystem
-
-__all__ = ["ExactSolution", "ParametrisationError", "RootClass", "groebner"]
 
 ENGINES = ("lifting", "flint", "sympy")
 _SMALL = 4  # up to here a basis over Q is as fast as lifting

@@ -15,7 +15,8 @@ from math import isqrt
 
 from flint import fmpz_mod_ctx, fmpz_mod_poly, fmpz_mod_poly_ctx, nmod_mat, nmod_poly
 
-from exactfold.solve.exact_solution import ParametrisationError, RootClass
+from exactfold.errors import ParametrisationError
+from exactfold.solve.exact_solution import RootClass
 from exactfold.solve.quotient import Exponent, grevlex_key, separating_forms, sparse_quadrics
 from exactfold.system.quadratic import QuadraticSystem
 

@@ -5,15 +5,11 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold.certify.multiplicity import (
-    DualSpace,
-    DualSpaceError,
-    check_complete,
-    check_dual_space,
-    dual_space,
-)
+from exactfold.certify.dual_space import DualSpace, dual_space
+from exactfold.certify.multiplicity import check_complete, check_dual_space
+from exactfold.errors import DualSpaceError, ParametrisationError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.solve.exact_solution import ParametrisationError, RootClass
+from exactfold.solve.exact_solution import RootClass
 from exactfold.solve.groebner import groebner
 from exactfold.system.branch_system import BranchSystem
 from exactfold.system.quadratic import QuadraticSystem

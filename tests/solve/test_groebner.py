@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.errors import UsageError
+from exactfold.errors import ParametrisationError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.solve.exact_solution import ParametrisationError, RootClass
+from exactfold.solve.exact_solution import RootClass
 from exactfold.solve.groebner import groebner
 from exactfold.solve.quotient import separating_forms
 from exactfold.system.branch_system import BranchSystem
