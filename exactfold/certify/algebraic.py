@@ -10,8 +10,7 @@ from exactfold.certify.dual_space import DualSpace, dual_space
 from exactfold.certify.multiplicity import check_dual_space
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.rigidity.definite_stress import definite_stress
-from exactfold.solve.exact_solution import RootClass
-from exactfold.solve.groebner import ExactSolution
+from exactfold.solve.exact_solution import ExactSolution, RootClass
 from exactfold.system.branch_system import Chart
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 

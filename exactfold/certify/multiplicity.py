@@ -128,6 +128,7 @@ def check_complete(system: QuadraticSystem, proofs: Sequence[tuple[RootClass, Du
 
     Raises `DualSpaceError` if the proof is incomplete, which says nothing about what is missing.
 
+    >>> from exactfold.certify.dual_space import dual_space
     >>> from exactfold.solve.groebner import groebner
     >>> hyperbola = [[0, 0, 0], [0, 1, 0], [0, 0, -1]]
     >>> double_line = [[1, 0, 0], [0, 0, 0], [0, 0, 0]]
