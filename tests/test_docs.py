@@ -2,6 +2,7 @@
 
 import os
 import re
+import runpy
 import shlex
 import shutil
 import subprocess
@@ -45,3 +46,9 @@ def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> Non
 
 def test_examples_are_found() -> None:
     assert sum(len(examples(page)) for page in PAGES) >= 4
+
+
+def test_reference_is_up_to_date() -> None:
+    page = ROOT / "docs" / "make_reference.py"
+    names = runpy.run_path(str(page))
+    assert names["PAGE"].read_text(encoding="utf-8") == names["reference"]()

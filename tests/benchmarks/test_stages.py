@@ -1,0 +1,42 @@
+"""Cost of each stage by size. Run with: python -m pytest tests/benchmarks --benchmark-enable."""
+
+import json
+from typing import Any
+
+import pytest
+
+from exactfold import BranchSystem, certificate, checker, count_branches, isolate, random_square
+from exactfold.solve.homotopy import homotopy
+from exactfold.solve.popping import popping
+
+SIZES = [4, 6, 8]
+
+
+@pytest.mark.parametrize("interior", SIZES)
+def test_popping(benchmark: Any, interior: int) -> None:
+    chart = BranchSystem(random_square(interior, seed=1)).chart
+    assert len(benchmark(popping, chart).points) == 1 << interior
+
+
+@pytest.mark.parametrize("interior", SIZES)
+def test_homotopy(benchmark: Any, interior: int) -> None:
+    system = BranchSystem(random_square(interior, seed=1)).chart.system
+    assert len(benchmark(homotopy, system).points) == 1 << interior
+
+
+@pytest.mark.parametrize("interior", SIZES)
+def test_isolation(benchmark: Any, interior: int) -> None:
+    chart = BranchSystem(random_square(interior, seed=1)).chart
+    assert benchmark(isolate, chart.system, popping(chart)).real == 1 << interior
+
+
+@pytest.mark.parametrize("interior", SIZES)
+def test_whole_count(benchmark: Any, interior: int) -> None:
+    assert benchmark(count_branches, random_square(interior, seed=1)).distinct == 1 << interior
+
+
+@pytest.mark.parametrize("interior", SIZES)
+def test_checker(benchmark: Any, interior: int) -> None:
+    text = json.dumps(certificate(count_branches(random_square(interior, seed=1))))
+    claims = benchmark(lambda: checker.check(checker.load(text)))
+    assert claims["distinct"] == 1 << interior
