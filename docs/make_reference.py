@@ -10,8 +10,8 @@ import exactfold
 PAGE = Path(__file__).with_name("reference.md")
 HEAD = """# Reference
 
-Everything `import exactfold` offers, with the first sentence of its docstring; `help(name)` shows the
-rest, with an example that runs. Written by `python docs/make_reference.py`.
+Everything `import exactfold` offers, with the first sentence of its docstring; `help(name)` shows
+the rest, with an example that runs. Written by `python docs/make_reference.py`.
 
 | name | what it is |
 |---|---|

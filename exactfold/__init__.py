@@ -35,8 +35,16 @@ from exactfold.rigidity.facts import pattern_facts
 from exactfold.rigidity.framework import rigidity_matrix, self_stresses
 from exactfold.solve.groebner import groebner
 from exactfold.solve.homotopy import homotopy
+from exactfold.solve.methods import solve
 from exactfold.solve.popping import popping
 from exactfold.system.branch_system import BranchSystem, Chart
+from exactfold.system.export import (
+    to_homotopy_continuation,
+    to_macaulay2,
+    to_msolve,
+    to_singular,
+    to_sympy,
+)
 from exactfold.system.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
@@ -77,7 +85,13 @@ __all__ = [
     "read_fold",
     "rigidity_matrix",
     "self_stresses",
+    "solve",
     "stress_form",
+    "to_homotopy_continuation",
+    "to_macaulay2",
+    "to_msolve",
+    "to_singular",
+    "to_sympy",
     "wheel_stress",
     "write_certificate",
     "write_fold",
