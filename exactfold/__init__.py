@@ -35,7 +35,7 @@ from exactfold.rigidity.facts import pattern_facts
 from exactfold.rigidity.framework import rigidity_matrix, self_stresses
 from exactfold.solve.groebner import groebner
 from exactfold.solve.homotopy import homotopy
-from exactfold.solve.methods import solve
+from exactfold.solve.methods import find_candidates
 from exactfold.solve.popping import popping
 from exactfold.system.branch_system import BranchSystem, Chart
 from exactfold.system.export import (
@@ -73,6 +73,7 @@ __all__ = [
     "delaunay",
     "example_path",
     "families",
+    "find_candidates",
     "groebner",
     "homotopy",
     "interval_newton",
@@ -85,7 +86,6 @@ __all__ = [
     "read_fold",
     "rigidity_matrix",
     "self_stresses",
-    "solve",
     "stress_form",
     "to_homotopy_continuation",
     "to_macaulay2",

@@ -18,7 +18,7 @@ from exactfold.errors import NoInteriorVertexError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.groebner import groebner
-from exactfold.solve.methods import METHODS, Choice, choose, solve
+from exactfold.solve.methods import METHODS, Choice, choose, find_candidates
 from exactfold.system.branch_system import BranchSystem, Chart
 from exactfold.verdict import PROVED, UNDECIDED
 
@@ -176,7 +176,9 @@ def _lines(
     size = chart.system.size
     if task.choice.method == "groebner" and size:
         return _exactly(task)
-    result = _isolated(task, solve(chart, method, seed=seed, progress=task.stage("solving")))
+    result = _isolated(
+        task, find_candidates(chart, method, seed=seed, progress=task.stage("solving"))
+    )
     if result.status is PROVED or method != "auto":
         return result
     if size > GROEBNER_LIMIT:

@@ -1,4 +1,4 @@
-"""The ensemble of the literature at full size: a hundred random squares for each size, all proved."""
+"""The ensemble of the literature at full size: a hundred random squares a size, all proved."""
 
 import json
 

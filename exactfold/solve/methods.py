@@ -47,7 +47,7 @@ def choose(method: str) -> Choice:
     return Choice("popping", "four boundary vertices: one real path for each sign vector")
 
 
-def solve(
+def find_candidates(
     chart: Chart, method: str = "auto", *, seed: int = 0, progress: Progress | None = None
 ) -> Candidates:
     """Candidates for all zeros of the system of a chart; untrusted, whatever the method.
@@ -58,7 +58,7 @@ def solve(
     >>> from exactfold.pattern.families import two_vertex
     >>> from exactfold.system.branch_system import BranchSystem
     >>> chart = BranchSystem(two_vertex()).chart
-    >>> [len(solve(chart, method).points) for method in METHODS]
+    >>> [len(find_candidates(chart, method).points) for method in METHODS]
     [4, 4, 4, 4]
     """
     chosen = choose(method).method
