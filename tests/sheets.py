@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.families import collinear_folds
 from exactfold.pattern.random_squares import random_square
 
 Point = tuple[Fraction, Fraction]
@@ -75,7 +76,7 @@ def scrambled(
     """A triangulation of a polygon far from Delaunay: random insertions, then random flips.
 
     The polygon must be star-shaped from its corner 0. Tried anew until there is no chord and, if
-    `loose`, no triangulated triangle.
+    `loose`, no triangulated triangle and no straight crease path.
     """
     source = random.Random(seed)
     fan = [(0, k, k + 1) for k in range(1, len(corners) - 1)]
@@ -83,12 +84,13 @@ def scrambled(
         pattern = CreasePattern(corners, fan)
         for _ in range(inside):
             face = source.randrange(len(pattern.triangles))
-            a, b, c = (source.randint(1, 6) for _ in range(3))
+            a, b, c = source.sample(range(5, 60), 3)
             pattern = with_point(pattern, face, (a, b, c))
         for _ in range(6 * inside):
             other = flipped(pattern, source.choice(pattern.folds))
             pattern = other or pattern
-        if not pattern.chords and not (loose and pattern.Vt):
+        stiff = pattern.Vt or collinear_folds(pattern)
+        if not pattern.chords and not (loose and stiff):
             return pattern
 
 

@@ -1,0 +1,568 @@
+"""Proven counts: every family and example, every method, and brute force for few vertices."""
+
+import random
+from collections import Counter
+from fractions import Fraction
+from itertools import product
+
+import pytest
+import sympy
+from sheets import (
+    HEXAGON,
+    SQUARE,
+    TRIANGLE,
+    dart,
+    mapped,
+    nested_triangles,
+    random_wheel,
+    reflex_corners,
+    relabelled,
+    scrambled,
+    straight_side,
+    two_triangles,
+    wheel,
+    with_point,
+)
+
+from exactfold import (
+    EXAMPLES,
+    PROVED,
+    UNDECIDED,
+    CreasePattern,
+    count_branches,
+    example_path,
+    random_square,
+    read_fold,
+)
+from exactfold import count as module
+from exactfold.errors import NoInteriorVertexError, UsageError
+from exactfold.pattern.families import FAMILIES, h1_sequence, hypar, single_vertex, two_vertex
+from exactfold.solve.candidates import Candidates
+
+# (distinct, with multiplicity); None where D > 1 or flat vertices make it other than a power of 2.
+EXPECTED = {
+    "single-vertex": (2, 2),
+    "single-vertex-4": (2, 2),
+    "waterbomb": (1, 1),
+    "two-vertex": (4, 4),
+    "flat-vertex": (3, 4),
+    "flat-octahedron": (8, 64),
+    "hypar": (16, 16),
+    "hypar-2": (256, 256),
+    "h1": (16, 16),
+    "h1-4": (16, 16),
+    "random-8": (256, 256),
+}
+
+
+def counts(result):
+    return result.distinct, result.with_multiplicity, result.real, result.nonreal
+
+
+def all_pairs(size):
+    """Every vertex-sign vector up to reversal, twice."""
+    vectors = ["".join(signs) for signs in product("+-", repeat=size) if signs[0] == "+"]
+    return Counter(dict.fromkeys(vectors, 2))
+
+
+def check_generic(pattern, result):
+    """2^(Vi - Vt) simple branches, two for each pair of opposite sign vectors."""
+    free = pattern.Vi - pattern.Vt
+    assert result.status is PROVED
+    assert result.true_branches is PROVED
+    assert counts(result) == (1 << free, 1 << pattern.Vi, 1 << free, 0)
+    assert len(result.branches) == 1 << free
+    loose = [pattern.interior.index(v) for v in pattern.foldable_vertices]
+    seen = Counter()
+    for branch in result.branches:
+        assert branch.multiplicity == 1 << pattern.Vt
+        assert all(branch.vertex_signs[v] == 0 for v in pattern.rigid_vertices)
+        signs = "".join(branch.sign_text[k] for k in loose)
+        assert "0" not in signs
+        seen[signs if signs[:1] == "+" else signs.translate(str.maketrans("+-", "-+"))] += 1
+    assert seen == all_pairs(free) if free else seen == Counter({"": 1})
+
+
+# --- families and examples -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_families(name):
+    result = count_branches(FAMILIES[name]())
+    assert result.status is PROVED
+    assert (result.distinct, result.with_multiplicity) == EXPECTED[name]
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_examples(name):
+    result = count_branches(read_fold(example_path(name)))
+    assert result.status is PROVED
+    assert (result.distinct, result.with_multiplicity) == EXPECTED[name]
+
+
+def test_every_family_and_example_is_expected():
+    assert set(FAMILIES) | set(EXAMPLES) == set(EXPECTED)
+
+
+@pytest.mark.parametrize("size", range(1, 7))
+@pytest.mark.parametrize("seed", range(4))
+def test_random_squares(size, seed):
+    pattern = random_square(size, seed=seed)
+    check_generic(pattern, count_branches(pattern))
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("steps", [1, 2, 3, 5])
+def test_h1_sequences(steps, seed):
+    pattern = h1_sequence(steps, seed=seed)
+    check_generic(pattern, count_branches(pattern))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_triangulations_far_from_delaunay(seed):
+    pattern = scrambled(seed, SQUARE, 5)
+    check_generic(pattern, count_branches(pattern))
+
+
+# --- non-generic sheets --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", ["auto", "groebner"])
+def test_flat_vertex_example(method):
+    result = count_branches(FAMILIES["flat-vertex"](), method=method)
+    assert counts(result) == (3, 4, 3, 0)
+    assert result.true_branches is UNDECIDED
+    assert sorted(branch.multiplicity for branch in result.branches) == [1, 1, 2]
+    (double,) = (branch for branch in result.branches if branch.multiplicity == 2)
+    assert list(double.vertex_signs.values()).count(0) == 1
+    # The sheet folds along the diagonal 0-4-2 alone.
+    bent = {fold for fold, letter in double.assignment.items() if letter != "F"}
+    assert bent == {(0, 4), (2, 4)}
+
+
+@pytest.mark.parametrize("method", ["popping", "homotopy"])
+def test_multiple_roots_are_undecided_without_the_exact_engine(method):
+    result = count_branches(FAMILIES["flat-vertex"](), method=method)
+    assert result.status is UNDECIDED
+    assert result.distinct is result.with_multiplicity is result.real is None
+    assert "2 of 4 solutions isolated" in result.reason
+    assert result.open_questions
+
+
+def test_multiple_roots_of_a_large_pattern_are_undecided(monkeypatch):
+    monkeypatch.setattr(module, "GROEBNER_LIMIT", 1)
+    result = count_branches(FAMILIES["flat-vertex"]())
+    assert result.status is UNDECIDED
+    assert "the exact engine is tried up to 1 unknowns, here are 2" in result.reason
+
+
+def test_hypar_with_a_straight_diagonal():
+    pattern = hypar(1, twist=0)
+    result = count_branches(pattern)
+    assert result.status is PROVED
+    assert result.with_multiplicity == sum(b.multiplicity for b in result.branches) == 16
+    assert result.distinct == len(result.branches) == 13
+    multiple = [branch for branch in result.branches if branch.multiplicity > 1]
+    assert [branch.vertex_signs[v] for branch in multiple for v in pattern.interior].count(0) > 0
+
+
+def test_flat_vertices_in_a_non_convex_sheet():
+    """A straight crease 3-4-6 in a non-convex quadrilateral: multiple branches again."""
+    points = [(7, -1), (5, -6), (9, 2), (0, -8), ("23/5", "-16/5"), ("23/3", "-1/3")]
+    points += [("92/15", "-8/5"), ("923/165", "-122/55")]
+    faces = [(2, 3, 4), (0, 1, 5), (1, 2, 5), (2, 4, 6), (0, 6, 7), (4, 7, 6), (0, 5, 6)]
+    pattern = CreasePattern(points, [*faces, (2, 6, 5), (0, 7, 3), (3, 7, 4)])
+    assert not pattern.is_convex
+    result = count_branches(pattern)
+    assert counts(result) == (12, 16, 12, 0)
+    assert result.true_branches is UNDECIDED
+    for branch in result.branches:
+        assert branch.multiplicity == (2 if "0" in branch.sign_text else 1)
+
+
+def test_degree_four_cross_folds_along_its_lines():
+    result = count_branches(wheel([(1, 0), (0, 2), (-3, 0), (0, -1)]))
+    assert counts(result) == (2, 2, 2, 0)
+    assert {branch.assignment_text for branch in result.branches} == {"FVFV", "MFMF"}
+
+
+# --- triangulated triangles ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
+def test_one_vertex_of_degree_three(method):
+    pattern = with_point(two_vertex(), 2, (1, 2, 2))
+    assert pattern.Vt == 1
+    check_generic(pattern, count_branches(pattern, method=method))
+
+
+@pytest.mark.parametrize("pattern", [two_triangles(), nested_triangles()])
+def test_several_triangulated_triangles(pattern):
+    assert pattern.Vt in (2, 3)
+    check_generic(pattern, count_branches(pattern))
+
+
+def test_only_rigid_vertices_leave_one_fold():
+    # A square cut by a diagonal with a vertex of degree 3 in one half: the diagonal alone folds.
+    pattern = with_point(CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), 0, (1, 1, 1))
+    result = count_branches(pattern)
+    assert counts(result) == (1, 2, 1, 0)
+    (branch,) = result.branches
+    assert branch.assignment[0, 2] != "F"
+    assert set(branch.assignment.values()) == {"F", branch.assignment[0, 2]}
+
+
+def test_multiplicities_agree_with_the_full_system():
+    """The emptied pattern's roots keep multiplicity 2^Vt: the quotient of the full ideal has
+    dimension 2^Vi, and its radical 2^(Vi - Vt)."""
+    pattern = with_point(single_vertex(4), 1, (1, 2, 3))
+    forms, unknowns = brute_force_system(pattern)
+    basis = sympy.groebner(forms, *unknowns, order="grevlex")
+    assert basis.is_zero_dimensional
+    leading = [sympy.Poly(g, *unknowns).monoms(order="grevlex")[0] for g in basis.exprs]
+    standard = [
+        m
+        for m in product(range(8), repeat=2)
+        if not any(all(a >= b for a, b in zip(m, lead, strict=True)) for lead in leading)
+    ]
+    result = count_branches(pattern)
+    assert len(standard) == result.with_multiplicity == 4
+    assert result.distinct == 2
+
+
+# --- rigid sheets and more degrees of freedom ----------------------------------------------------
+
+
+@pytest.mark.parametrize("inside", [1, 2, 5])
+@pytest.mark.parametrize("seed", range(3))
+def test_triangular_sheet_is_rigid(inside, seed):
+    pattern = scrambled(seed, TRIANGLE, inside)
+    assert pattern.Ve == 3
+    result = count_branches(pattern)
+    assert result.status is PROVED
+    assert result.true_branches is PROVED
+    assert counts(result) == (0, 0, 0, 0)
+    assert result.branches == ()
+
+
+@pytest.mark.parametrize("degree", range(5, 13))
+def test_single_vertex_with_more_folds(degree):
+    result = count_branches(random_wheel(degree, degree))
+    assert result.status is PROVED
+    assert counts(result) == (1, 1, 1, 0)
+    assert result.method == "single vertex"
+
+
+def test_single_vertex_with_a_rigid_triangle():
+    result = count_branches(with_point(single_vertex(6), 2, (1, 1, 2)))
+    assert (result.status, result.distinct, result.with_multiplicity) == (PROVED, 1, 2)
+
+
+@pytest.mark.parametrize("corners", [5, 6])
+def test_two_vertices_with_more_degrees_of_freedom_are_undecided(corners):
+    pattern = scrambled(1, HEXAGON[:corners], 2, loose=True)
+    assert pattern.degrees_of_freedom == corners - 3
+    result = count_branches(pattern)
+    assert result.status is UNDECIDED
+    assert f"D = {corners - 3}" in result.reason
+    assert counts(result) == (None,) * 4
+    assert result.evidence is None
+
+
+def test_chord_of_a_sheet_with_more_degrees_of_freedom_is_named():
+    # One interior vertex of degree 4, and a chord that cuts off a flap: not one double cone.
+    inner = wheel([(0, 0), (4, 0), (4, 4), (0, 4)], (1, 2))
+    flap = CreasePattern([*inner.vertices, (7, 2)], [*inner.triangles, (1, 5, 2)])
+    assert (flap.Ve, flap.chords) == (5, ((1, 2),))
+    result = count_branches(flap)
+    assert result.status is UNDECIDED
+    assert "the fold 1-2 splits the sheet" in result.reason
+
+
+def test_no_interior_vertex_error():
+    with pytest.raises(NoInteriorVertexError, match="no interior vertex"):
+        count_branches(CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]))
+
+
+def test_unknown_method_error():
+    with pytest.raises(UsageError, match="unknown method 'guess': choose one of auto"):
+        count_branches(two_vertex(), method="guess")
+
+
+# --- chords, reflex corners, straight sides ------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
+def test_chord_between_two_halves_with_vertices(method):
+    """Each half is a triangle, hence rigid: one branch, the fold along the chord."""
+    pattern = CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)])
+    pattern = with_point(with_point(pattern, 1, (1, 1, 1)), 0, (1, 1, 1))
+    assert pattern.chords == ((0, 2),)
+    assert pattern.Vt == 2
+    result = count_branches(pattern, method=method)
+    assert result.status is PROVED
+    assert counts(result) == (1, 4, 1, 0)
+    bent = [fold for fold, letter in result.branches[0].assignment.items() if letter != "F"]
+    assert bent == [(0, 2)]
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("inside", [1, 2, 4])
+def test_random_non_convex_quadrilaterals(seed, inside):
+    corners = reflex_corners(seed)
+    pattern = scrambled(seed, corners, inside) if inside > 1 else star_in(corners)
+    assert not pattern.is_convex
+    check_generic(pattern, count_branches(pattern))
+
+
+def star_in(corners):
+    """One vertex near the reflex corner, on the diagonal through it, joined to all corners."""
+    (ax, ay), _, (cx, cy), _ = corners
+    near = Fraction(1, 50)
+    return wheel(corners, (ax + near * (cx - ax), ay + near * (cy - ay)))
+
+
+@pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
+def test_dart(method):
+    check_generic(dart(), count_branches(dart(), method=method))
+
+
+@pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("first", range(4))
+def test_boundary_angle_of_pi_wherever_numbering_starts(method, first):
+    pattern = straight_side(smallest=True)
+    order = [(first + k) % 4 for k in range(4)]
+    pattern = relabelled(pattern, [*order, *pattern.interior])
+    assert sorted(pattern.boundary_turns) == [0, 1, 1, 1]
+    check_generic(pattern, count_branches(pattern, method=method))
+
+
+def test_some_smallest_corner_has_no_weight_in_the_saddle():
+    # Corner 0 opposite the straight vertex: moving it out of the others' plane is a tilt.
+    pattern = relabelled(straight_side(smallest=True), [2, 3, 0, 1, 4, 5])
+    result = count_branches(pattern)
+    check_generic(pattern, result)
+    for branch in result.branches:
+        assert branch.heights[0] == (0, 0)
+        assert branch.heights[1] == (1, 1)
+
+
+# --- methods agree -------------------------------------------------------------------------------
+
+
+def summary(result):
+    return [(b.sign_text, b.assignment_text, b.multiplicity) for b in result.branches]
+
+
+AGREEMENT = {
+    **{f"random square {n}-{s}": random_square(n, seed=s) for n in (1, 2, 3, 4) for s in (5, 6)},
+    "h1": h1_sequence(3, seed=4),
+    "scrambled": scrambled(9, SQUARE, 4),
+    "reflex": scrambled(7, reflex_corners(7), 3, loose=True),
+    "straight side": straight_side(smallest=False),
+}
+
+
+@pytest.mark.parametrize("pattern", AGREEMENT.values(), ids=AGREEMENT.keys())
+def test_methods_agree(pattern):
+    results = [count_branches(pattern, method=m) for m in ("popping", "homotopy", "groebner")]
+    for result in results:
+        check_generic(pattern, result)
+        assert summary(result) == summary(results[0])
+        for one, other in zip(result.branches, results[0].branches, strict=True):
+            for v in range(len(pattern.vertices)):
+                (a, b), (c, d) = one.heights[v], other.heights[v]
+                assert max(a, c) <= min(b, d)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 12345])
+def test_seed_of_the_homotopy_does_not_matter(seed):
+    pattern = random_square(3, seed=2)
+    result = count_branches(pattern, method="homotopy", seed=seed)
+    assert summary(result) == summary(count_branches(pattern))
+
+
+# --- brute force ---------------------------------------------------------------------------------
+
+
+def brute_force_system(pattern):
+    """Curvature polynomials in the interior heights, by angles between spokes alone (SymPy).
+
+    Twice the second-order angle deficit: sum over faces of the expansion of the angle at v. The
+    first corner with weight in the affine dependency of the boundary is at height 1, others at 0.
+    """
+    corners = pattern.boundary
+    plane = sympy.Matrix([[1, *map(to_sympy, pattern.vertices[v])] for v in corners])
+    (dependency,) = plane.T.nullspace()
+    unit = next(v for v, weight in zip(corners, dependency, strict=True) if weight != 0)
+    unknowns = sympy.symbols(f"h0:{pattern.Vi}")
+    height = dict.fromkeys(corners, sympy.Integer(0)) | {unit: sympy.Integer(1)}
+    height |= dict(zip(pattern.interior, unknowns, strict=True))
+    forms = []
+    for v in pattern.interior:
+        total = sympy.Integer(0)
+        for face in pattern.triangles:
+            if v not in face:
+                continue
+            k = face.index(v)
+            a, b = (
+                [
+                    to_sympy(p - q)
+                    for p, q in zip(pattern.vertices[u], pattern.vertices[v], strict=True)
+                ]
+                for u in (face[(k + 1) % 3], face[(k + 2) % 3])
+            )
+            x, y = height[face[(k + 1) % 3]] - height[v], height[face[(k + 2) % 3]] - height[v]
+            cross, dot = a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]
+            squares = x**2 / (a[0] ** 2 + a[1] ** 2) + y**2 / (b[0] ** 2 + b[1] ** 2)
+            total += (2 * x * y - dot * squares) / cross
+        forms.append(sympy.expand(total))
+    return forms, unknowns
+
+
+def to_sympy(x):
+    return sympy.Rational(x.numerator, x.denominator)
+
+
+def brute_wheels():
+    patterns = [random_wheel(seed, 4) for seed in range(6)]
+    patterns += [star_in(reflex_corners(seed)) for seed in range(4)]
+    return [*patterns, dart(), wheel([(1, 0), (0, 2), (-3, 0), (0, -1)])]
+
+
+@pytest.mark.parametrize("pattern", brute_wheels())
+def test_one_vertex_against_the_quadratic_formula(pattern):
+    (form,), (h,) = brute_force_system(pattern)
+    a, b, c = sympy.Poly(form, h).all_coeffs()
+    assert a != 0
+    assert b * b - 4 * a * c > 0
+    roots = sorted((-b + s * sympy.sqrt(b * b - 4 * a * c)) / (2 * a) for s in (1, -1))
+    result = count_branches(pattern)
+    assert counts(result) == (2, 2, 2, 0)
+    boxes = sorted(branch.heights[pattern.interior[0]] for branch in result.branches)
+    for root, (low, high) in zip(roots, boxes, strict=True):
+        assert to_sympy(low) <= root <= to_sympy(high)
+        assert high - low < Fraction(1, 10**9) * (1 + abs(low))
+
+
+def brute_pairs():
+    patterns = [random_square(2, seed=s, denominator=16) for s in range(4)]
+    patterns += [two_vertex(), scrambled(3, reflex_corners(3), 2, loose=True)]
+    return [*patterns, FAMILIES["flat-vertex"]()]
+
+
+@pytest.mark.parametrize("pattern", brute_pairs())
+def test_two_vertices_against_a_resultant(pattern):
+    (first, second), (x, y) = brute_force_system(pattern)
+    resultant = sympy.Poly(sympy.resultant(first, second, y), x)
+    result = count_branches(pattern)
+    assert resultant.degree() == result.with_multiplicity == 4
+    assert resultant.count_roots() == len({*resultant.real_roots()}) == result.real
+    v = pattern.interior[0]
+    for branch in result.branches:
+        low, high = (to_sympy(bound) for bound in branch.heights[v])
+        multiplicity = [
+            m for r, m in sympy.Poly(resultant, x).sqf_list()[1] if r.count_roots(low, high)
+        ]
+        assert multiplicity == [branch.multiplicity]
+
+
+# --- numbers of any size -------------------------------------------------------------------------
+
+
+def test_huge_denominators():
+    source = random.Random(0)
+    noise = Fraction(1, 10**60)
+    pattern = mapped(
+        random_square(3, seed=1),
+        lambda p: tuple(x + noise * source.randint(-(10**50), 10**50) for x in p),
+    )
+    assert max(x.denominator for p in pattern.vertices for x in p) > 10**57
+    check_generic(pattern, count_branches(pattern))
+
+
+@pytest.mark.parametrize("scale", [Fraction(10**40), Fraction(1, 10**40), Fraction(10**150)])
+@pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
+def test_scale_does_not_matter(scale, method):
+    pattern = random_square(3, seed=8)
+    scaled = mapped(pattern, lambda p: (scale * p[0], scale * p[1]))
+    result = count_branches(scaled, method=method)
+    check_generic(scaled, result)
+    assert summary(result) == summary(count_branches(pattern))
+
+
+def test_far_from_the_origin():
+    pattern = mapped(random_square(3, seed=8), lambda p: (p[0] + 10**30, p[1] - 10**31))
+    assert summary(count_branches(pattern)) == summary(count_branches(random_square(3, seed=8)))
+
+
+def test_thin_sheet():
+    pattern = mapped(random_square(3, seed=4), lambda p: (p[0], p[1] / 10**4))
+    check_generic(pattern, count_branches(pattern))
+
+
+def test_nearly_straight_path_is_counted_apart():
+    # The flat-vertex example with its path bent by 1e-12: four simple branches, two of them close.
+    vertices = list(FAMILIES["flat-vertex"]().vertices)
+    vertices[4] = (vertices[4][0] + Fraction(1, 10**12), vertices[4][1])
+    pattern = CreasePattern(vertices, FAMILIES["flat-vertex"]().triangles)
+    check_generic(pattern, count_branches(pattern))
+
+
+# --- what a count records ------------------------------------------------------------------------
+
+
+def test_progress_is_reported():
+    seen = []
+    count_branches(random_square(3, seed=0), progress=lambda *event: seen.append(event))
+    assert [stage for stage, done, total in seen if done == total == 8] == ["solving", "certifying"]
+
+
+def test_progress_of_the_exact_engine_is_reported():
+    seen = []
+    count_branches(two_vertex(), method="groebner", progress=lambda *event: seen.append(event))
+    assert seen[:2] == [("computing a Groebner basis", 0, 1), ("computing a Groebner basis", 1, 1)]
+
+
+def test_settings_and_time_are_recorded():
+    result = count_branches(two_vertex(), method="homotopy", seed=7)
+    assert result.method == "homotopy"
+    assert result.settings["seed"] == 7
+    assert result.settings["lost"] == 0
+    assert result.seconds > 0
+
+
+def test_a_missing_candidate_is_undecided(monkeypatch):
+    """A solver that loses a path must cost the proof, never the count."""
+    real = module.solve
+
+    def forgetful(chart, method, **options):
+        found = real(chart, method, **options)
+        return Candidates("popping", found.points[:-1], ("path lost on purpose",), found.settings)
+
+    monkeypatch.setattr(module, "solve", forgetful)
+    result = count_branches(random_square(2, seed=0), method="popping")
+    assert result.status is UNDECIDED
+    assert "3 of 4 solutions isolated" in result.reason
+    assert "path lost on purpose" in result.open_questions
+    assert len(result.branches) == 3
+    assert result.distinct is None
+    assert count_branches(random_square(2, seed=0)).status is PROVED  # by the exact engine
+
+
+def test_a_false_candidate_is_never_counted(monkeypatch):
+    real = module.solve
+
+    def inventive(chart, method, **options):
+        points = real(chart, method, **options).points.copy()
+        points[0] = 10 + points[1]
+        points[2] = points[3]
+        return Candidates("popping", points)
+
+    monkeypatch.setattr(module, "solve", inventive)
+    result = count_branches(random_square(2, seed=0), method="popping")
+    assert result.status is UNDECIDED
+    assert result.distinct is None
+    assert 1 <= len(result.branches) < 4
+    boxes = [branch.root.box for branch in result.branches]
+    assert all(a.is_disjoint_from(b) for k, a in enumerate(boxes) for b in boxes[:k])
