@@ -705,7 +705,9 @@ class RootClass:
                     [parse_rational(c) for c in items(coefficient, "coefficient")], self.p
                 )
             space.append(terms)
-            pivots.append(tuple(items(functional["pivot"], "pivot", n)))
+            pivots.append(
+                tuple(natural(e, "pivot") for e in items(functional["pivot"], "pivot", n))
+            )
         for k, pivot in enumerate(pivots):
             for m, terms in enumerate(space):
                 require(terms.get(pivot, []) == ([1] if k == m else []), "the pivots are not")
