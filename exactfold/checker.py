@@ -80,6 +80,11 @@ def load(text: str) -> dict[str, Any]:
     def refuse(number: str) -> NoReturn:
         raise FormatError(f"a certificate holds no floats, but here is {number[:40]}")
 
+    def integer(number: str) -> int:
+        if len(number) > 4000:  # longer ones are written as text; Python would not print them
+            raise FormatError(f"an integer is too long: {number[:40]}...")
+        return int(number)
+
     def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         keys = [key for key, _ in pairs]
         if len(set(keys)) != len(keys):
@@ -91,7 +96,7 @@ def load(text: str) -> dict[str, Any]:
             text,
             parse_float=refuse,
             parse_constant=refuse,
-            parse_int=parse_integer,
+            parse_int=integer,
             object_pairs_hook=unique,
         )
     except (ValueError, RecursionError) as error:
