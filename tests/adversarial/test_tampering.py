@@ -1,6 +1,7 @@
 """A changed certificate is rejected, or what it still says is true."""
 
 import json
+import re
 from collections import Counter
 
 import pytest
@@ -287,3 +288,12 @@ def test_deep_nesting_inside_a_certificate_is_no_crash():
     text = json.dumps(original).replace('"provenance": {', '"provenance": {"a": ' + "[" * 10**5)
     with pytest.raises(checker.FormatError):
         checker.load(text)
+
+
+def test_integers_too_long_to_print_are_no_crash():
+    original = document("rigid vertex")
+    text = json.dumps(original)
+    for old in ('"distinct": 4', '"version": 1', '"inside": [6', '"multiplicity": 2', "[[0, 1, 4]"):
+        assert old in text, old
+        with pytest.raises(checker.FormatError, match="too long"):
+            checker.load(text.replace(old, re.sub(r"\d+$", "9" * 5000, old)))
