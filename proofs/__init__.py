@@ -1,0 +1,7 @@
+"""Machine-checked verdicts on the statements of the paper and on those exactfold adds to it.
+
+One module a theorem or family. Each has `prove(change=None) -> Proof`, runs alone
+(`python -m proofs.NAME`), and is listed in `proofs.MODULES`; `python -m proofs` runs them all.
+"""
+
+MODULES: tuple[str, ...] = ("length_equations",)

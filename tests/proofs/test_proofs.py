@@ -1,0 +1,63 @@
+"""Every proof goes through, and every deliberate mistake in one is refused."""
+
+import importlib
+import json
+import runpy
+import sys
+from pathlib import Path
+
+import pytest
+
+from exactfold.verdict import PROVED, REFUTED
+from proofs import MODULES
+from proofs.__main__ import load, main
+from proofs.framework import Ruling
+
+ROOT = Path(__file__).parent.parent.parent
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_is_proved(name: str) -> None:
+    proof = load(name)
+    assert [step.text for step in proof.steps if not step.holds] == []
+    assert proof.verdict is PROVED
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_every_change_is_refused(name: str) -> None:
+    module = importlib.import_module(f"proofs.{name}")
+    changes = load(name).changes
+    assert changes, "a proof that cannot be broken proves nothing"
+    for change in changes:
+        assert module.prove(change).verdict is REFUTED, change
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_corrections_are_stated(name: str) -> None:
+    for statement in load(name).statements:
+        assert bool(statement.corrected) == (statement.ruling is not Ruling.AS_PRINTED)
+
+
+def test_keys_are_unique() -> None:
+    keys = [statement.key for name in MODULES for statement in load(name).statements]
+    assert len(set(keys)) == len(keys)
+
+
+def test_is_not_proved_with_an_unknown_change() -> None:
+    module = importlib.import_module(f"proofs.{MODULES[0]}")
+    with pytest.raises(ValueError, match="no change"):
+        module.prove("no such change")
+
+
+def test_runs_alone(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", [MODULES[0]])
+    with pytest.raises(SystemExit) as stop:
+        runpy.run_path(str(ROOT / "proofs" / f"{MODULES[0]}.py"), run_name="__main__")
+    assert stop.value.code == 0
+    assert "Verdict: proved" in capsys.readouterr().out
+
+
+def test_json_lists_every_step(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([MODULES[0], "--json"]) == 0
+    (proof,) = json.loads(capsys.readouterr().out)["proofs"]
+    assert len(proof["steps"]) == len(load(MODULES[0]).steps)
