@@ -897,7 +897,7 @@ def flat_at(sheet: Sheet, vertex: int, signs: dict[Edge, int | None]) -> list[Ed
         return sum(terms, Fraction(0))
 
     lines: list[list[Fraction]] = []  # where the form vanishes
-    if (len(basis) == 1 and polar(basis[0], basis[0]) == 0) or len(basis) not in (1, 2):
+    if (len(basis) == 1 and polar(basis[0], basis[0]) == 0) or len(basis) > 2:
         return []
     if len(basis) == 2:
         u, v = basis

@@ -56,7 +56,7 @@ def _at_vertex(pattern: CreasePattern, vertex: int, known: Mapping[Edge, int | N
         {v: Fraction(0) for v in form.labels} | dict(zip(free, b, strict=True)) for b in basis
     ]
     undecided = [k for k, fold in enumerate(folds) if known[fold] is None]
-    if len(basis) == 1 and form(lifted[0]) != 0:
+    if not basis or (len(basis) == 1 and form(lifted[0]) != 0):
         return [folds[k] for k in undecided]
     if len(basis) != 2:
         return []
