@@ -71,7 +71,7 @@ class Proof:
     statements: tuple[Statement, ...]
     steps: tuple[Step, ...]
     changes: tuple[str, ...] = ()
-    """Names of the deliberate mistakes that `prove(change=...)` can make, each of which must fail."""
+    """Names of the deliberate mistakes that `prove(change)` can make; each must be refused."""
 
     @property
     def verdict(self) -> Verdict:
