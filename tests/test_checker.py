@@ -133,6 +133,12 @@ def test_main_prints_the_verdict(tmp_path, capsys):
     assert checker.main([str(tmp_path / "c.json")]) == 0
     assert "VALID: 2 branches (2 with multiplicity, 2 real)" in capsys.readouterr().out
     assert checker.main([]) == 2
+    capsys.readouterr()
+    false = proof("dart")
+    false["claims"]["folds"] = 5
+    write_certificate(tmp_path / "f.json", false)
+    assert checker.main([str(tmp_path / "f.json")]) == 1
+    assert capsys.readouterr().out == "INVALID: claim folds = 5, but it is 4\n"
 
 
 # --- every kind of evidence ----------------------------------------------------------------------
@@ -310,6 +316,15 @@ def test_bad_sheet_is_refused(points, faces, message):
     exact = {k: (Fraction(x), Fraction(y)) for k, (x, y) in enumerate(points)}
     with pytest.raises(checker.CertificateError, match=message):
         checker.Sheet(exact, faces)
+
+
+def test_boundary_edges_on_one_line_need_not_meet():
+    """A sheet shaped like a U: both tops lie on one line, apart from each other."""
+    points = [(0, 0), (6, 0), (6, 5), (4, 5), (4, 2), (2, 2), (2, 5), (0, 5)]
+    faces = [(0, 5, 7), (5, 6, 7), (0, 4, 5), (0, 1, 4), (1, 2, 4), (2, 3, 4)]
+    sheet = checked_sheet(CreasePattern(points, faces))
+    assert sheet.boundary == list(range(8))
+    assert sheet.interior == []
 
 
 def test_face_given_twice_is_refused():

@@ -561,3 +561,28 @@ def test_progress_on_a_terminal(monkeypatch):
     assert bar.progress is not None
     assert [task.description for task in bar.progress.tasks] == ["certifying"]
     bar.close()
+
+
+def test_colours_on_a_terminal_only(monkeypatch):
+    plain = run("count", example_path("two-vertex")).stdout
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    styled = run("count", example_path("two-vertex")).stdout
+    assert "\x1b[" in styled
+    assert "\x1b[" not in plain
+
+
+def test_main_runs_the_application(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["exactfold", "info", str(example_path("two-vertex"))])
+    with pytest.raises(SystemExit) as stopped:
+        cli.main()
+    assert stopped.value.code in (0, None)
+    assert "2 interior, 4 boundary" in capsys.readouterr().out
+
+
+def test_main_survives_a_closed_pipe(monkeypatch):
+    def closed():
+        raise BrokenPipeError
+
+    monkeypatch.setattr(cli, "app", closed)
+    assert cli.main() is None

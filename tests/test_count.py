@@ -1,10 +1,12 @@
 """Proven counts: every family and example, every method, and brute force for few vertices."""
 
+import dataclasses
 import random
 from collections import Counter
 from fractions import Fraction
 from itertools import product
 
+import numpy as np
 import pytest
 import sympy
 from sheets import (
@@ -35,9 +37,13 @@ from exactfold import (
     read_fold,
 )
 from exactfold import count as module
+from exactfold.branches import classify
+from exactfold.certify import algebraic, rigid_triangles
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.pattern.families import FAMILIES, h1_sequence, hypar, single_vertex, two_vertex
 from exactfold.solve.candidates import Candidates
+from exactfold.solve.methods import SOLVERS
+from exactfold.solve.popping import popping
 
 # (distinct, with multiplicity); None where D > 1 or flat vertices make it other than a power of 2.
 EXPECTED = {
@@ -534,13 +540,11 @@ def test_settings_and_time_are_recorded():
 
 def test_a_missing_candidate_is_undecided(monkeypatch):
     """A solver that loses a path must cost the proof, never the count."""
-    real = module.solve
 
-    def forgetful(chart, method, **options):
-        found = real(chart, method, **options)
-        return Candidates("popping", found.points[:-1], ("path lost on purpose",), found.settings)
+    def forgetful(chart, seed, progress):
+        return Candidates("popping", popping(chart).points[:-1], ("path lost on purpose",))
 
-    monkeypatch.setattr(module, "solve", forgetful)
+    monkeypatch.setitem(SOLVERS, "popping", forgetful)
     result = count_branches(random_square(2, seed=0), method="popping")
     assert result.status is UNDECIDED
     assert "3 of 4 solutions isolated" in result.reason
@@ -551,18 +555,73 @@ def test_a_missing_candidate_is_undecided(monkeypatch):
 
 
 def test_a_false_candidate_is_never_counted(monkeypatch):
-    real = module.solve
-
-    def inventive(chart, method, **options):
-        points = real(chart, method, **options).points.copy()
+    def inventive(chart, seed, progress):
+        points = popping(chart).points.copy()
         points[0] = 10 + points[1]
         points[2] = points[3]
         return Candidates("popping", points)
 
-    monkeypatch.setattr(module, "solve", inventive)
+    monkeypatch.setitem(SOLVERS, "popping", inventive)
     result = count_branches(random_square(2, seed=0), method="popping")
     assert result.status is UNDECIDED
     assert result.distinct is None
     assert 1 <= len(result.branches) < 4
     boxes = [branch.root.box for branch in result.branches]
     assert all(a.is_disjoint_from(b) for k, a in enumerate(boxes) for b in boxes[:k])
+
+
+def test_no_candidates_at_all_are_undecided(monkeypatch):
+    empty = Candidates("popping", np.zeros((0, 2), dtype=complex))
+    monkeypatch.setitem(SOLVERS, "popping", lambda chart, seed, progress: empty)
+    result = count_branches(two_vertex(), method="popping")
+    assert result.status is UNDECIDED
+    assert "0 of 4 solutions isolated" in result.reason
+    assert result.branches == ()
+
+
+# --- a missing lemma is never papered over -------------------------------------------------------
+
+
+def test_undecided_without_a_stress_for_a_triangulated_triangle(monkeypatch):
+    monkeypatch.setattr(rigid_triangles, "definite_stress", lambda pattern: None)
+    for pattern in (scrambled(1, TRIANGLE, 2), two_triangles()):
+        result = count_branches(pattern)
+        assert result.status is UNDECIDED
+        assert "no definite stress" in result.reason
+        assert counts(result) == (None,) * 4
+
+
+def test_undecided_without_a_proof_of_finiteness(monkeypatch):
+    monkeypatch.setattr(algebraic, "definite_stress", lambda pattern: None)
+    result = count_branches(FAMILIES["flat-vertex"]())
+    assert result.status is UNDECIDED
+    assert "finiteness is not proved" in result.reason
+    assert counts(result) == (None,) * 4
+
+
+def test_undecided_where_a_multiplicity_is_too_small(monkeypatch):
+    real = algebraic.dual_space
+    monkeypatch.setattr(algebraic, "dual_space", lambda system, root, bound: real(system, root, 1))
+    result = count_branches(FAMILIES["flat-vertex"]())
+    assert result.status is UNDECIDED
+    assert counts(result) == (None,) * 4
+    assert result.evidence is None
+
+
+def test_undecided_where_the_engine_finds_a_curve_of_solutions(monkeypatch):
+    real = module.groebner
+    monkeypatch.setattr(
+        module, "groebner", lambda system: dataclasses.replace(real(system), dimension=None)
+    )
+    result = count_branches(two_vertex(), method="groebner")
+    assert result.status is UNDECIDED
+    assert "infinitely many" in result.reason
+
+
+def test_undecided_where_signs_stay_open(monkeypatch):
+    monkeypatch.setattr(classify.BoxRoot, "sign", lambda self, row: None)
+    result = count_branches(two_vertex(), method="popping")
+    assert result.status is UNDECIDED
+    assert "all 4 solutions isolated, but signs are undecided on 4" in result.reason
+    assert "vertex 4" in result.open_questions[0]
+    assert result.branches == ()

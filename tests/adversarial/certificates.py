@@ -92,7 +92,7 @@ def leaf_changes(value: Any) -> Iterator[Any]:
 
 def type_changes(value: Any) -> Iterator[Any]:
     """Values of other types, among them a number that compares equal."""
-    yield from (None, True, False, [], {}, "", "x", "1/0", "0", -1, 10**30, [[]], {"a": 1})
+    yield from (None, True, [], {}, "", "1/0", -1, 10**30)
     if type(value) is int:
         yield from (str(value), bool(value))
     if isinstance(value, str):
