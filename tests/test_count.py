@@ -41,6 +41,7 @@ from exactfold.branches import classify
 from exactfold.certify import algebraic, rigid_triangles
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.pattern.families import FAMILIES, h1_sequence, hypar, single_vertex, two_vertex
+from exactfold.rigidity.curvature import curvature_form
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.methods import SOLVERS
 from exactfold.solve.popping import popping
@@ -331,6 +332,20 @@ def star_in(corners):
 @pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
 def test_dart(method):
     check_generic(dart(), count_branches(dart(), method=method))
+
+
+@pytest.mark.parametrize("method", ["auto", "popping", "homotopy", "groebner"])
+def test_branch_with_a_flat_boundary_is_not_lost_silently(method):
+    """Here raising the hub alone bends the sheet without curvature: the saddle of that branch is 0.
+
+    It has no representative of positive saddle. One branch alone must never be called all.
+    """
+    pattern = wheel([(2, -2), ("2/3", 0), (2, 2), (-2, 0)])
+    hub = dict.fromkeys(range(4), Fraction(0)) | {4: Fraction(1)}
+    assert curvature_form(pattern, 4)(hub) == 0
+    result = count_branches(pattern, method=method)
+    assert result.status is UNDECIDED or counts(result) == (2, 2, 2, 0)
+    assert len(result.branches) < 2 or result.status is PROVED
 
 
 @pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
