@@ -1,8 +1,9 @@
-"""Appendix-free warm-up: the expansion of the length equations (Section II A)."""
+"""The length equations and their expansion at the unfolded state (Section II A)."""
 
 from __future__ import annotations
 
 import sys
+from fractions import Fraction
 from pathlib import Path
 
 if not __package__:  # run as a file
@@ -10,15 +11,38 @@ if not __package__:  # run as a file
 
 import sympy
 
+from exactfold import CreasePattern, curvature_form, families, rigidity_matrix, self_stresses
+from exactfold.exact.linalg import rank
+from exactfold.rigidity.timelike import fold_functional
 from proofs.framework import Proof, Ruling, Script, run
 
 NAME = "length_equations"
 TITLE = "The expansion of the length equations"
 
+Heights = dict[int, Fraction]
+
+CROSS = CreasePattern(
+    [(1, 0), (0, 1), (-1, 0), (0, -1), (0, 0)], [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+)
+"""A square whose two straight creases meet in its centre: K(h) = (x_0 + x_2)(x_1 + x_3) / 2."""
+
 
 def prove(change: str | None = None) -> Proof:
-    """Eq. (expanded): |X_n - X_m|^2 - L^2 under X = U + t^2 u + t h z, order by order in t."""
-    script = Script(NAME, TITLE, ("an edge of length L > 0; any displacements u and h",), change)
+    """Every formula of Section II A: expansion, orders, self stresses, energy, fold angles."""
+    script = Script(
+        NAME, TITLE, ("a triangulated disk in the plane; any displacements u and h",), change
+    )
+    _expansion(script)
+    _in_plane(script)
+    _stresses(script)
+    _extension(script)
+    _energy(script)
+    _fold_angles(script)
+    return script.proof()
+
+
+def _expansion(script: Script) -> None:
+    """Eq. (expanded), first-order flexes, and the size of the in-plane displacement."""
     t, h = sympy.symbols("t h")
     U, u = sympy.Matrix(sympy.symbols("U_x U_y")), sympy.Matrix(sympy.symbols("u_x u_y"))
     factor = script.alter("factor two dropped", 2, 1)
@@ -27,8 +51,26 @@ def prove(change: str | None = None) -> Proof:
     script.identity(
         "|X|^2 - L^2 = t^2 (2 U.u + h^2) + t^4 |u|^2", moved - leading - t**4 * u.dot(u)
     )
+    a, b = sympy.Matrix(sympy.symbols("a1:4")), sympy.Matrix(sympy.symbols("b1:4"))
+    script.identity(
+        "three lengths of a triangle fix the angle: 2 a.b = |a|^2 + |b|^2 - |a - b|^2",
+        2 * a.dot(b) - a.dot(a) - b.dot(b) + (a - b).dot(a - b),
+    )
+    tilt = U + t * script.alter("an in-plane displacement of first order", 0, 1) * u
+    script.identity(
+        "with u = 0 the squared length has no term of first order in t",
+        sympy.diff(tilt.dot(tilt) + (t * h) ** 2, t).subs(t, 0),
+    )
     script.state(
-        "II.2",
+        "IIA.1",
+        "Section II A, Eq. (length)",
+        r"|\mathbf X_n-\mathbf X_m|^2-L_{(n,m)}^2=0",
+        Ruling.AS_PRINTED,
+        note="the definition of a configuration; equal lengths imply equal face angles (polarity)",
+        code="CreasePattern.edges",
+    )
+    script.state(
+        "IIA.2",
         "Section II A, Eq. (expanded)",
         r"2\frac{U_n-U_m}{|U_n-U_m|}\cdot(u_n-u_m)+\frac{(h_n-h_m)^2}{|U_n-U_m|}\approx 0",
         Ruling.AS_PRINTED,
@@ -36,7 +78,297 @@ def prove(change: str | None = None) -> Proof:
         "t^4 |u_n - u_m|^2 / |U_n - U_m|",
         code="BranchSystem",
     )
-    return script.proof()
+    script.state(
+        "IIA.3",
+        "Section II A, after Eq. (expanded)",
+        r"\mathbf u_n=0\text{ for all }n\text{ preserves lengths to first order}",
+        Ruling.AS_PRINTED,
+    )
+
+
+def _in_plane(script: Script) -> None:
+    """ker C consists of rigid motions: triangles are rigid, and gluing along an edge keeps that."""
+    p, q, r = sympy.symbols("p q r")
+    x = sympy.Matrix(sympy.symbols("x1:4 y1:4")).reshape(2, 3)
+    d = [sympy.Matrix(v) for v in ((p, 0), (q, r), (q - p, r))]
+    pairs = ((0, 1), (0, 2), (1, 2))
+    if script.alter("a triangle with one side missing", False, True):
+        pairs = pairs[:2]
+    unknowns = list(x)
+    rows = sympy.Matrix(
+        [
+            [sympy.diff(d[k].dot(x[:, j] - x[:, i]), z) for z in unknowns]
+            for k, (i, j) in enumerate(pairs)
+        ]
+    )
+    minor = rows.extract(list(range(len(pairs))), [1, 2, 5][: len(pairs)])
+    rigid = len(pairs) == 3 and not sympy.simplify(minor.det() ** 2 - (p * p * r) ** 2)
+    script.certificate(
+        "a triangle (0,0), (p,0), (q,r) has rank 3: a 3 x 3 minor of C is +-p^2 r", rigid
+    )
+    w, a, b = sympy.symbols("omega a b")
+    end = sympy.Matrix([a, b]) + w * sympy.Matrix([0, p])
+    solution = sympy.solve([a, b, *end], [w, a, b], dict=True)
+    script.certificate(
+        "a planar rigid motion that fixes both ends of an edge is zero, so motions of two pieces "
+        "glued along an edge agree: rank 2V - 3 by induction over the triangles",
+        solution == [{w: 0, a: 0, b: 0}],
+    )
+    patterns = (families.waterbomb(), families.flat_vertex_square(), families.hypar(2))
+    script.cases(
+        "rank of the rigidity matrix is 2V - 3, and there are Vi self stresses",
+        (
+            rank(rigidity_matrix(f)) == 2 * len(f.vertices) - 3 and len(self_stresses(f)) == f.Vi
+            for f in patterns
+        ),
+    )
+    norm, h, c = sympy.symbols("norm h c")
+    share = script.alter("in-plane term not small", 2, 3)
+    script.identity(
+        "0 <= |u| <= c (|h|^2 + |u|^2) and |u| <= 1/(2c) give |u| <= 2c |h|^2, because "
+        "2c|h|^2 - |u| = 2 [c (|h|^2 + |u|^2) - |u|] + |u| (1 - 2c|u|)",
+        2 * c * h**2 - norm - 2 * (c * (h**2 + norm**2) - norm) - norm * (1 - share * c * norm),
+    )
+    script.state(
+        "IIA.4",
+        "Section II A, after Eq. (expanded)",
+        r"\text{``we can safely neglect terms of order }\mathcal O(\mathbf u_n^2)\text{''}",
+        Ruling.AS_PRINTED,
+        note="C is injective modulo rigid motions, so |u| <= c(|h|^2 + |u|^2) on configurations: "
+        "u = O(h^2) and u^2 = O(h^4)",
+    )
+    script.state(
+        "IIA.5",
+        "Section II A, after Eq. (expanded2)",
+        r"\ker\mathbf C\text{ is generically generated by translations and rotations only}",
+        Ruling.AS_PRINTED,
+        note="true of every triangulated disk with non-degenerate triangles: neither Laman's "
+        "theorem nor genericity is needed",
+        code="rigidity_matrix",
+    )
+
+
+def _stresses(script: Script) -> None:
+    """Rows of C are edges, not folds; Eq. (compat) and what it says."""
+    s, length, h, cu = sympy.symbols("sigma ell h Cu")
+    half = script.alter("Eq. (compat) with the in-plane term left in", 0, 1)
+    script.identity(
+        "sigma . (2 C u + h^2/|U|), with sigma C = 0, is the sum of sigma h^2 / |U|",
+        s * (2 * half * cu + h**2 / length) - s * h**2 / length,
+    )
+    spokes_only = [
+        row for e, row in zip(CROSS.edges, rigidity_matrix(CROSS), strict=True) if e in CROSS.folds
+    ]
+    script.counterexample(
+        "with rows for the folds (interior edges) only, a single vertex has no self stress, "
+        "with rows for all edges it has one",
+        rank(spokes_only) == len(spokes_only) and len(self_stresses(CROSS)) == 1,
+    )
+    (stress,) = self_stresses(CROSS)
+    bent = {0: Fraction(1), 1: Fraction(0), 2: Fraction(-1), 3: Fraction(1), 4: Fraction(0)}
+    terms = {e: w * (bent[e[0]] - bent[e[1]]) ** 2 for e, w in stress.items()}
+    over = script.alter("sum over the folds only", CROSS.edges, CROSS.folds)
+    script.counterexample(
+        "on a branch of the cross the sum of Eq. (compat) over all edges is 0, over folds it is not",
+        sum(terms[e] for e in over) == 0 and sum(terms[e] for e in CROSS.folds) != 0,
+    )
+    dx, dy, zi, zj = sympy.symbols("dx dy z_i z_j")
+    script.identity(
+        "a self stress of the flat sheet in the plane is one in space: where z_i = z_j the squared "
+        "length does not change with z_i to first order",
+        sympy.diff(dx**2 + dy**2 + (zi - zj) ** 2, zi).subs(zi, zj),
+    )
+    outcomes = []
+    for pattern in (CROSS, families.two_vertex(), families.flat_vertex_square()):
+        for k in range(12):
+            heights = {
+                v: Fraction((v * v * (k + 3) + 5 * k * v + k) % 7 - 3)
+                for v in range(len(pattern.vertices))
+            }
+            outcomes.append(_solvable(pattern, heights) == _is_solution(pattern, heights))
+        flat = dict.fromkeys(range(len(pattern.vertices)), Fraction(0))
+        outcomes.append(_solvable(pattern, flat))
+    outcomes.append(_solvable(CROSS, bent) and _is_solution(CROSS, bent))
+    script.cases("2 C u = -(h_n - h_m)^2 / L is solvable exactly if all K_v(h) = 0", outcomes)
+    script.state(
+        "IIA.6",
+        "Section II A, Eq. (isometry): rows of C",
+        r"\text{rows indexed by the unique folds }(n,m)",
+        Ruling.CORRECTED,
+        r"\text{rows indexed by all edges }(n,m)\text{, boundary edges included}",
+        "folds were defined as interior edges; with those rows alone the four spokes of a single "
+        "vertex carry no self stress",
+        "rigidity_matrix",
+    )
+    script.state(
+        "IIA.7",
+        "Section II A, Eq. (expanded2)",
+        r"2[\mathbf C\mathbf u]_{(n,m)}+\frac{(h_n-h_m)^2}{|U_n-U_m|}\approx 0",
+        Ruling.AS_PRINTED,
+    )
+    script.state(
+        "IIA.8",
+        "Section II A, Eq. (compat)",
+        r"\sum_{(n,m)}\frac{\sigma_{(n,m)}}{|U_n-U_m|}(h_n-h_m)^2=0,\text{ the sum over all folds}",
+        Ruling.CORRECTED,
+        r"\text{the same sum over all edges; }\bm\sigma\text{ has one component per edge}",
+        "cross (1,0), (0,1), (-1,0), (0,-1) about the origin with heights 1, 0, -1, 1, hub 0: the "
+        "terms of the boundary edges are not zero",
+        "stress_form",
+    )
+    script.state(
+        "IIA.9",
+        "Section II A, footnote",
+        r"\text{the space of self stresses is the same in 2D and 3D}",
+        Ruling.AS_PRINTED,
+    )
+    script.state(
+        "IIA.10",
+        "Section II A, after Eq. (compat)",
+        r"\text{``these conditions which are necessary \dots\ are also sufficient''}",
+        Ruling.AS_PRINTED,
+        note="Fredholm: b is in the image of C exactly if every left null vector annihilates it",
+        code="BranchSystem",
+    )
+
+
+def _extension(script: Script) -> None:
+    """Regular second-order solutions are tangents of true configurations."""
+    t, h = sympy.symbols("t h")
+    U, u = sympy.Matrix(sympy.symbols("U_x U_y")), sympy.Matrix(sympy.symbols("u_x u_y"))
+    X = U + t**2 * u
+    power = script.alter("remainder of first order in t", 2, 1)
+    script.identity(
+        "(|X|^2 - L^2) / t^2 = 2 U.u + h^2 + t^2 |u|^2, analytic in (t, u, h)",
+        (X.dot(X) + t**2 * h**2 - U.dot(U)) / t**2 - 2 * U.dot(u) - h**2 - t**power * u.dot(u),
+    )
+    w, hi, hj = sympy.symbols("w h_i h_j")
+    two = script.alter("derivative without its factor", 2, 1)
+    script.identity(
+        "a left null vector of (2C | d(h_n - h_m)^2) is a self stress sum_v m_v w_v with "
+        "sum_v m_v dK_v = 0: rows of the length equations are independent iff the dK_v are",
+        sympy.diff(w * (hi - hj) ** 2 / 2, hi) * 2 - two * w * (hi - hj),
+    )
+    root: Heights = {0: Fraction(1), 1: Fraction(2), 2: Fraction(-1), 3: Fraction(1), 4: Fraction()}
+    flat = dict.fromkeys(root, Fraction(0))
+    script.cases(
+        "full row rank of the length equations iff full row rank of the dK_v (cross: branch, flat)",
+        (
+            _is_solution(CROSS, point)
+            and (_length_rank(CROSS, point) == len(CROSS.edges))
+            == any(curvature_form(CROSS, 4).functional(point).values())
+            == regular
+            for point, regular in ((root, True), (flat, False))
+        ),
+    )
+    script.state(
+        "IIA.11",
+        "Section II A, last paragraph",
+        r"\text{``a second-order solution may not be a solution at all orders''}",
+        Ruling.AS_PRINTED,
+        note="but a regular solution always is: the length equations divided by t^2 are analytic "
+        "with independent rows at t = 0, so the implicit function theorem gives an analytic curve "
+        "of true configurations (docs/mathematics.md, 5)",
+        code="BranchCount.true_branches",
+    )
+
+
+def _energy(script: Script) -> None:
+    """The order of the sum of (|X| - L)^2 along X = U + t^2 u + t h z."""
+    t, h, h2, L = sympy.symbols("t h h_2 L", positive=True)
+    u = sympy.Matrix(sympy.symbols("u_x u_y"))
+    u3 = sympy.Matrix(sympy.symbols("v_x v_y"))
+    bend = -(h**2) / (2 * L)  # the second-order condition 2 U.u + h^2 = 0 with U = (L, 0)
+    u = u.subs(u[0], bend)
+
+    def order(displacement: sympy.Matrix, height: sympy.Expr) -> int:
+        X = sympy.Matrix([L, 0]) + displacement
+        error = sympy.Poly(sympy.expand(X.dot(X) + height**2 - L**2), t)
+        return 2 * min(power for (power,) in error.monoms())
+
+    expected = script.alter("energy of sixth order", 8, 6)
+    script.certificate(
+        "squared length errors t^4 |u|^2: |X| - L = t^4 |u|^2 / (2L) + ..., energy of order 8",
+        order(t**2 * u, t * h) == expected,
+    )
+    script.certificate(
+        "without the in-plane displacement: order 4; with arbitrary terms of third order "
+        "(and second-order heights): order 6",
+        order(sympy.zeros(2, 1), t * h) == 4
+        and order(t**2 * u + t**3 * u3, t * h + t**2 * h2) == 6,
+    )
+    fourth = sympy.Matrix([-u.dot(u) / (2 * L), 0])
+    script.certificate(
+        "when the terms t^4 u_4, t^3 h_3 of the true configuration are added: order 12",
+        order(t**2 * u + t**4 * fourth, t * h) == 12,
+    )
+    script.state(
+        "IIA.12",
+        "Section II A, last paragraph",
+        r"\text{``can only change the stretching energy to at most sixth-order''}",
+        Ruling.CORRECTED,
+        r"E=\sum(|X_n-X_m|-L)^2=t^8\sum\frac{|u_n-u_m|^4}{4L^2}+\mathcal O(t^{10})",
+        "eighth order along X = U + t^2 u + t h z. As a bound O(t^6) the printed claim is true and "
+        "attained only if arbitrary terms of third order are added; heights alone give order 4",
+    )
+
+
+def _fold_angles(script: Script) -> None:
+    """Fold angles are, to first order, injective linear functions of the heights."""
+    a, b, c, d = (sympy.Matrix(sympy.symbols(f"{n}_x {n}_y {n}_z")) for n in "abcd")
+    e, f, g = b - a, c - a, d - a
+    normals = e.cross(f).cross(g.cross(e))
+    triple = sympy.Matrix.hstack(e, f, g).det()
+    sign = script.alter("volume with the wrong sign", 1, -1)
+    script.identity(
+        "the normals of two faces at the fold e satisfy (e x f) x (g x e) = -det(e, f, g) e",
+        *(normals + sign * triple * e),
+    )
+    script.certificate(
+        "over fixed plane positions det(e, f, g) is linear in the four heights",
+        sympy.Poly(triple, a[2], b[2], c[2], d[2]).total_degree() == 1,
+    )
+    injective = []
+    for pattern in (families.two_vertex(), families.waterbomb(), families.hypar(1)):
+        rows = []
+        for fold in pattern.folds:
+            functional = fold_functional(pattern, fold)
+            rows.append([functional.get(v, 0) for v in range(len(pattern.vertices))])
+        injective.append(rank(rows) == len(pattern.vertices) - 3)
+    script.cases("the bends of all folds vanish only on affine heights (rank V - 3)", injective)
+    script.state(
+        "IIA.13",
+        "Section II A, second paragraph",
+        r"\text{``one can linearize the fold angles as functions of the displacements''}",
+        Ruling.AS_PRINTED,
+        note="the linear map is injective modulo rigid motions: a piecewise linear function on a "
+        "disk without bends is affine, so branches look alike in both coordinates",
+        code="fold_functional",
+    )
+
+
+def _solvable(pattern: CreasePattern, heights: Heights) -> bool:
+    """Whether some in-plane displacement compensates the heights to second order."""
+    rows = rigidity_matrix(pattern)
+    augmented = [
+        [*row, (heights[i] - heights[j]) ** 2]
+        for row, (i, j) in zip(rows, pattern.edges, strict=True)
+    ]
+    return rank(rows) == rank(augmented)
+
+
+def _is_solution(pattern: CreasePattern, heights: Heights) -> bool:
+    return all(curvature_form(pattern, v)(heights) == 0 for v in pattern.interior)
+
+
+def _length_rank(pattern: CreasePattern, heights: Heights) -> int:
+    """Rank of the length equations divided by t^2, in (u, h), at t = 0."""
+    rows = []
+    for row, (i, j) in zip(rigidity_matrix(pattern), pattern.edges, strict=True):
+        vertical = [Fraction(0)] * len(pattern.vertices)
+        vertical[i], vertical[j] = heights[i] - heights[j], heights[j] - heights[i]
+        rows.append([*row, *vertical])
+    return rank(rows)
 
 
 if __name__ == "__main__":
