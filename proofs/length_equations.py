@@ -13,7 +13,6 @@ import sympy
 
 from exactfold import CreasePattern, curvature_form, families, rigidity_matrix, self_stresses
 from exactfold.exact.linalg import rank
-from exactfold.rigidity.timelike import fold_functional
 from proofs.framework import Proof, Ruling, Script, run
 
 NAME = "length_equations"
@@ -28,16 +27,13 @@ CROSS = CreasePattern(
 
 
 def prove(change: str | None = None) -> Proof:
-    """Every formula of Section II A: expansion, orders, self stresses, energy, fold angles."""
+    """Eqs. (length) to (compat): expansion, orders, rigidity in the plane, self stresses."""
     script = Script(
         NAME, TITLE, ("a triangulated disk in the plane; any displacements u and h",), change
     )
     _expansion(script)
     _in_plane(script)
     _stresses(script)
-    _extension(script)
-    _energy(script)
-    _fold_angles(script)
     return script.proof()
 
 
@@ -91,9 +87,8 @@ def _in_plane(script: Script) -> None:
     p, q, r = sympy.symbols("p q r")
     x = sympy.Matrix(sympy.symbols("x1:4 y1:4")).reshape(2, 3)
     d = [sympy.Matrix(v) for v in ((p, 0), (q, r), (q - p, r))]
-    pairs = ((0, 1), (0, 2), (1, 2))
-    if script.alter("a triangle with one side missing", False, True):
-        pairs = pairs[:2]
+    pairs: tuple[tuple[int, int], ...] = ((0, 1), (0, 2), (1, 2))
+    pairs = script.alter("a triangle with one side missing", pairs, pairs[:2])
     unknowns = list(x)
     rows = sympy.Matrix(
         [
@@ -169,7 +164,7 @@ def _stresses(script: Script) -> None:
     terms = {e: w * (bent[e[0]] - bent[e[1]]) ** 2 for e, w in stress.items()}
     over = script.alter("sum over the folds only", CROSS.edges, CROSS.folds)
     script.counterexample(
-        "on a branch of the cross the sum of Eq. (compat) over all edges is 0, over folds it is not",
+        "on a branch of the cross the sum of Eq. (compat) is 0 over all edges, not over the folds",
         sum(terms[e] for e in over) == 0 and sum(terms[e] for e in CROSS.folds) != 0,
     )
     dx, dy, zi, zj = sympy.symbols("dx dy z_i z_j")
@@ -185,10 +180,10 @@ def _stresses(script: Script) -> None:
                 v: Fraction((v * v * (k + 3) + 5 * k * v + k) % 7 - 3)
                 for v in range(len(pattern.vertices))
             }
-            outcomes.append(_solvable(pattern, heights) == _is_solution(pattern, heights))
+            outcomes.append(_solvable(pattern, heights) == is_solution(pattern, heights))
         flat = dict.fromkeys(range(len(pattern.vertices)), Fraction(0))
         outcomes.append(_solvable(pattern, flat))
-    outcomes.append(_solvable(CROSS, bent) and _is_solution(CROSS, bent))
+    outcomes.append(_solvable(CROSS, bent) and is_solution(CROSS, bent))
     script.cases("2 C u = -(h_n - h_m)^2 / L is solvable exactly if all K_v(h) = 0", outcomes)
     script.state(
         "IIA.6",
@@ -232,121 +227,6 @@ def _stresses(script: Script) -> None:
     )
 
 
-def _extension(script: Script) -> None:
-    """Regular second-order solutions are tangents of true configurations."""
-    t, h = sympy.symbols("t h")
-    U, u = sympy.Matrix(sympy.symbols("U_x U_y")), sympy.Matrix(sympy.symbols("u_x u_y"))
-    X = U + t**2 * u
-    power = script.alter("remainder of first order in t", 2, 1)
-    script.identity(
-        "(|X|^2 - L^2) / t^2 = 2 U.u + h^2 + t^2 |u|^2, analytic in (t, u, h)",
-        (X.dot(X) + t**2 * h**2 - U.dot(U)) / t**2 - 2 * U.dot(u) - h**2 - t**power * u.dot(u),
-    )
-    w, hi, hj = sympy.symbols("w h_i h_j")
-    two = script.alter("derivative without its factor", 2, 1)
-    script.identity(
-        "a left null vector of (2C | d(h_n - h_m)^2) is a self stress sum_v m_v w_v with "
-        "sum_v m_v dK_v = 0: rows of the length equations are independent iff the dK_v are",
-        sympy.diff(w * (hi - hj) ** 2 / 2, hi) * 2 - two * w * (hi - hj),
-    )
-    root: Heights = {0: Fraction(1), 1: Fraction(2), 2: Fraction(-1), 3: Fraction(1), 4: Fraction()}
-    flat = dict.fromkeys(root, Fraction(0))
-    script.cases(
-        "full row rank of the length equations iff full row rank of the dK_v (cross: branch, flat)",
-        (
-            _is_solution(CROSS, point)
-            and (_length_rank(CROSS, point) == len(CROSS.edges))
-            == any(curvature_form(CROSS, 4).functional(point).values())
-            == regular
-            for point, regular in ((root, True), (flat, False))
-        ),
-    )
-    script.state(
-        "IIA.11",
-        "Section II A, last paragraph",
-        r"\text{``a second-order solution may not be a solution at all orders''}",
-        Ruling.AS_PRINTED,
-        note="but a regular solution always is: the length equations divided by t^2 are analytic "
-        "with independent rows at t = 0, so the implicit function theorem gives an analytic curve "
-        "of true configurations (docs/mathematics.md, 5)",
-        code="BranchCount.true_branches",
-    )
-
-
-def _energy(script: Script) -> None:
-    """The order of the sum of (|X| - L)^2 along X = U + t^2 u + t h z."""
-    t, h, h2, L = sympy.symbols("t h h_2 L", positive=True)
-    u = sympy.Matrix(sympy.symbols("u_x u_y"))
-    u3 = sympy.Matrix(sympy.symbols("v_x v_y"))
-    bend = -(h**2) / (2 * L)  # the second-order condition 2 U.u + h^2 = 0 with U = (L, 0)
-    u = u.subs(u[0], bend)
-
-    def order(displacement: sympy.Matrix, height: sympy.Expr) -> int:
-        X = sympy.Matrix([L, 0]) + displacement
-        error = sympy.Poly(sympy.expand(X.dot(X) + height**2 - L**2), t)
-        return 2 * min(power for (power,) in error.monoms())
-
-    expected = script.alter("energy of sixth order", 8, 6)
-    script.certificate(
-        "squared length errors t^4 |u|^2: |X| - L = t^4 |u|^2 / (2L) + ..., energy of order 8",
-        order(t**2 * u, t * h) == expected,
-    )
-    script.certificate(
-        "without the in-plane displacement: order 4; with arbitrary terms of third order "
-        "(and second-order heights): order 6",
-        order(sympy.zeros(2, 1), t * h) == 4
-        and order(t**2 * u + t**3 * u3, t * h + t**2 * h2) == 6,
-    )
-    fourth = sympy.Matrix([-u.dot(u) / (2 * L), 0])
-    script.certificate(
-        "when the terms t^4 u_4, t^3 h_3 of the true configuration are added: order 12",
-        order(t**2 * u + t**4 * fourth, t * h) == 12,
-    )
-    script.state(
-        "IIA.12",
-        "Section II A, last paragraph",
-        r"\text{``can only change the stretching energy to at most sixth-order''}",
-        Ruling.CORRECTED,
-        r"E=\sum(|X_n-X_m|-L)^2=t^8\sum\frac{|u_n-u_m|^4}{4L^2}+\mathcal O(t^{10})",
-        "eighth order along X = U + t^2 u + t h z. As a bound O(t^6) the printed claim is true and "
-        "attained only if arbitrary terms of third order are added; heights alone give order 4",
-    )
-
-
-def _fold_angles(script: Script) -> None:
-    """Fold angles are, to first order, injective linear functions of the heights."""
-    a, b, c, d = (sympy.Matrix(sympy.symbols(f"{n}_x {n}_y {n}_z")) for n in "abcd")
-    e, f, g = b - a, c - a, d - a
-    normals = e.cross(f).cross(g.cross(e))
-    triple = sympy.Matrix.hstack(e, f, g).det()
-    sign = script.alter("volume with the wrong sign", 1, -1)
-    script.identity(
-        "the normals of two faces at the fold e satisfy (e x f) x (g x e) = -det(e, f, g) e",
-        *(normals + sign * triple * e),
-    )
-    script.certificate(
-        "over fixed plane positions det(e, f, g) is linear in the four heights",
-        sympy.Poly(triple, a[2], b[2], c[2], d[2]).total_degree() == 1,
-    )
-    injective = []
-    for pattern in (families.two_vertex(), families.waterbomb(), families.hypar(1)):
-        rows = []
-        for fold in pattern.folds:
-            functional = fold_functional(pattern, fold)
-            rows.append([functional.get(v, 0) for v in range(len(pattern.vertices))])
-        injective.append(rank(rows) == len(pattern.vertices) - 3)
-    script.cases("the bends of all folds vanish only on affine heights (rank V - 3)", injective)
-    script.state(
-        "IIA.13",
-        "Section II A, second paragraph",
-        r"\text{``one can linearize the fold angles as functions of the displacements''}",
-        Ruling.AS_PRINTED,
-        note="the linear map is injective modulo rigid motions: a piecewise linear function on a "
-        "disk without bends is affine, so branches look alike in both coordinates",
-        code="fold_functional",
-    )
-
-
 def _solvable(pattern: CreasePattern, heights: Heights) -> bool:
     """Whether some in-plane displacement compensates the heights to second order."""
     rows = rigidity_matrix(pattern)
@@ -357,18 +237,9 @@ def _solvable(pattern: CreasePattern, heights: Heights) -> bool:
     return rank(rows) == rank(augmented)
 
 
-def _is_solution(pattern: CreasePattern, heights: Heights) -> bool:
+def is_solution(pattern: CreasePattern, heights: Heights) -> bool:
+    """Whether every curvature form vanishes."""
     return all(curvature_form(pattern, v)(heights) == 0 for v in pattern.interior)
-
-
-def _length_rank(pattern: CreasePattern, heights: Heights) -> int:
-    """Rank of the length equations divided by t^2, in (u, h), at t = 0."""
-    rows = []
-    for row, (i, j) in zip(rigidity_matrix(pattern), pattern.edges, strict=True):
-        vertical = [Fraction(0)] * len(pattern.vertices)
-        vertical[i], vertical[j] = heights[i] - heights[j], heights[j] - heights[i]
-        rows.append([*row, *vertical])
-    return rank(rows)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,161 @@
+"""What second-order solutions say about true configurations (Section II A, last paragraphs)."""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+import sympy
+
+from exactfold import CreasePattern, curvature_form, families, rigidity_matrix
+from exactfold.exact.linalg import rank
+from exactfold.rigidity.timelike import fold_functional
+from proofs.framework import Proof, Ruling, Script, run
+from proofs.length_equations import CROSS, Heights, is_solution
+
+NAME = "second_order_motions"
+TITLE = "Second-order solutions and true configurations"
+
+
+def prove(change: str | None = None) -> Proof:
+    """Extension of regular solutions, the order of the energy, and fold angles as coordinates."""
+    script = Script(
+        NAME, TITLE, ("a triangulated disk; a second-order solution X = U + t^2 u + t h z",), change
+    )
+    _extension(script)
+    _energy(script)
+    _fold_angles(script)
+    return script.proof()
+
+
+def _extension(script: Script) -> None:
+    """Regular second-order solutions are tangents of true configurations."""
+    t, h = sympy.symbols("t h")
+    U, u = sympy.Matrix(sympy.symbols("U_x U_y")), sympy.Matrix(sympy.symbols("u_x u_y"))
+    X = U + t**2 * u
+    power = script.alter("remainder of first order in t", 2, 1)
+    script.identity(
+        "(|X|^2 - L^2) / t^2 = 2 U.u + h^2 + t^2 |u|^2, analytic in (t, u, h)",
+        (X.dot(X) + t**2 * h**2 - U.dot(U)) / t**2 - 2 * U.dot(u) - h**2 - t**power * u.dot(u),
+    )
+    w, hi, hj = sympy.symbols("w h_i h_j")
+    two = script.alter("derivative without its factor", 2, 1)
+    script.identity(
+        "a left null vector of (2C | d(h_n - h_m)^2) is a self stress sum_v m_v w_v with "
+        "sum_v m_v dK_v = 0: rows of the length equations are independent iff the dK_v are",
+        sympy.diff(w * (hi - hj) ** 2 / 2, hi) * 2 - two * w * (hi - hj),
+    )
+    root: Heights = {0: Fraction(1), 1: Fraction(2), 2: Fraction(-1), 3: Fraction(1), 4: Fraction()}
+    flat = dict.fromkeys(root, Fraction(0))
+    script.cases(
+        "full row rank of the length equations iff full row rank of the dK_v (cross: branch, flat)",
+        (
+            is_solution(CROSS, point)
+            and (_length_rank(CROSS, point) == len(CROSS.edges))
+            == any(curvature_form(CROSS, 4).functional(point).values())
+            == regular
+            for point, regular in ((root, True), (flat, False))
+        ),
+    )
+    script.state(
+        "IIA.11",
+        "Section II A, last paragraph",
+        r"\text{``a second-order solution may not be a solution at all orders''}",
+        Ruling.AS_PRINTED,
+        note="but a regular solution always is: the length equations divided by t^2 are analytic "
+        "with independent rows at t = 0, so the implicit function theorem gives an analytic curve "
+        "of true configurations (docs/mathematics.md, 5)",
+        code="BranchCount.true_branches",
+    )
+
+
+def _energy(script: Script) -> None:
+    """The order of the sum of (|X| - L)^2 along X = U + t^2 u + t h z."""
+    t, h, h2, L = sympy.symbols("t h h_2 L", positive=True)
+    u = sympy.Matrix(sympy.symbols("u_x u_y"))
+    u3 = sympy.Matrix(sympy.symbols("v_x v_y"))
+    bend = -(h**2) / (2 * L)  # the second-order condition 2 U.u + h^2 = 0 with U = (L, 0)
+    u = u.subs(u[0], bend)
+
+    def order(displacement: sympy.Matrix, height: sympy.Expr) -> int:
+        X = sympy.Matrix([L, 0]) + displacement
+        error = sympy.Poly(sympy.expand(X.dot(X) + height**2 - L**2), t)
+        return 2 * int(min(power for (power,) in error.monoms()))
+
+    expected = script.alter("energy of sixth order", 8, 6)
+    script.certificate(
+        "squared length errors t^4 |u|^2: |X| - L = t^4 |u|^2 / (2L) + ..., energy of order 8",
+        order(t**2 * u, t * h) == expected,
+    )
+    script.certificate(
+        "without the in-plane displacement: order 4; with arbitrary terms of third order "
+        "(and second-order heights): order 6",
+        order(sympy.zeros(2, 1), t * h) == 4
+        and order(t**2 * u + t**3 * u3, t * h + t**2 * h2) == 6,
+    )
+    fourth = sympy.Matrix([-u.dot(u) / (2 * L), 0])
+    script.certificate(
+        "when the terms t^4 u_4, t^3 h_3 of the true configuration are added: order 12",
+        order(t**2 * u + t**4 * fourth, t * h) == 12,
+    )
+    script.state(
+        "IIA.12",
+        "Section II A, last paragraph",
+        r"\text{``can only change the stretching energy to at most sixth-order''}",
+        Ruling.CORRECTED,
+        r"E=\sum(|X_n-X_m|-L)^2=t^8\sum\frac{|u_n-u_m|^4}{4L^2}+\mathcal O(t^{10})",
+        "eighth order along X = U + t^2 u + t h z. As a bound O(t^6) the printed claim is true and "
+        "attained only if arbitrary terms of third order are added; heights alone give order 4",
+    )
+
+
+def _fold_angles(script: Script) -> None:
+    """Fold angles are, to first order, injective linear functions of the heights."""
+    a, b, c, d = (sympy.Matrix(sympy.symbols(f"{n}_x {n}_y {n}_z")) for n in "abcd")
+    e, f, g = b - a, c - a, d - a
+    normals = e.cross(f).cross(g.cross(e))
+    triple = sympy.Matrix.hstack(e, f, g).det()
+    sign = script.alter("volume with the wrong sign", 1, -1)
+    script.identity(
+        "the normals of two faces at the fold e satisfy (e x f) x (g x e) = -det(e, f, g) e",
+        *(normals + sign * triple * e),
+    )
+    script.certificate(
+        "over fixed plane positions det(e, f, g) is linear in the four heights",
+        sympy.Poly(triple, a[2], b[2], c[2], d[2]).total_degree() == 1,
+    )
+    injective = []
+    for pattern in (families.two_vertex(), families.waterbomb(), families.hypar(1)):
+        rows = []
+        for fold in pattern.folds:
+            functional = fold_functional(pattern, fold)
+            rows.append([functional.get(v, 0) for v in range(len(pattern.vertices))])
+        injective.append(rank(rows) == len(pattern.vertices) - 3)
+    script.cases("the bends of all folds vanish only on affine heights (rank V - 3)", injective)
+    script.state(
+        "IIA.13",
+        "Section II A, second paragraph",
+        r"\text{``one can linearize the fold angles as functions of the displacements''}",
+        Ruling.AS_PRINTED,
+        note="the linear map is injective modulo rigid motions: a piecewise linear function on a "
+        "disk without bends is affine, so branches look alike in both coordinates",
+        code="fold_functional",
+    )
+
+
+def _length_rank(pattern: CreasePattern, heights: Heights) -> int:
+    """Rank of the length equations divided by t^2, in (u, h), at t = 0."""
+    rows = []
+    for row, (i, j) in zip(rigidity_matrix(pattern), pattern.edges, strict=True):
+        vertical = [Fraction(0)] * len(pattern.vertices)
+        vertical[i], vertical[j] = heights[i] - heights[j], heights[j] - heights[i]
+        rows.append([*row, *vertical])
+    return rank(rows)
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
