@@ -4,4 +4,11 @@ One module a theorem or family. Each has `prove(change=None) -> Proof`, runs alo
 (`python -m proofs.NAME`), and is listed in `proofs.MODULES`; `python -m proofs` runs them all.
 """
 
-MODULES: tuple[str, ...] = ("length_equations", "curvature_expansion", "second_order_motions")
+MODULES: tuple[str, ...] = (
+    "length_equations",
+    "curvature_expansion",
+    "wheel_stress",
+    "second_order_motions",
+    "vertex_forms",
+    "vertex_eigenvalues",
+)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,62 +13,12 @@ from sympy import QQ
 from sympy.polys.fields import field
 from sympy.polys.rings import ring
 
-from exactfold import CreasePattern, curvature_form, families, stress_form, wheel_stress
+from exactfold import curvature_form, stress_form, wheel_stress
 from proofs.framework import Proof, Ruling, Script, run
+from proofs.wheel_stress import Angle, free_wheel
 
 NAME = "curvature_expansion"
 TITLE = "The second-order Gaussian curvature of a vertex"
-
-
-@dataclass(frozen=True)
-class Angle:
-    """An angle by cosine and sine, in any field: sums and functions of angles are then rational."""
-
-    cos: Any
-    sin: Any
-
-    @classmethod
-    def twice_arctan(cls, p: Any) -> Angle:
-        """The angle 2 arctan p; every angle but pi is one, and p > 0 gives those in (0, pi)."""
-        return cls((1 - p * p) / (1 + p * p), 2 * p / (1 + p * p))
-
-    def __add__(self, other: Angle) -> Angle:
-        return Angle(
-            self.cos * other.cos - self.sin * other.sin, self.sin * other.cos + self.cos * other.sin
-        )
-
-    def __neg__(self) -> Angle:
-        return Angle(self.cos, -self.sin)
-
-    @property
-    def csc(self) -> Any:
-        """Cosecant."""
-        return 1 / self.sin
-
-    @property
-    def cot(self) -> Any:
-        """Cotangent."""
-        return self.cos / self.sin
-
-
-def with_vertices(pattern: CreasePattern, vertices: list[tuple[Any, Any]]) -> CreasePattern:
-    """The triangulation of `pattern` with other coordinates, elements of any field of functions.
-
-    exactfold's formulas then run over that field, so that an identity between their results holds
-    for every geometry with this triangulation.
-    """
-    free = object.__new__(CreasePattern)
-    object.__setattr__(free, "vertices", tuple(vertices))
-    object.__setattr__(free, "triangles", pattern.triangles)
-    return free
-
-
-def free_wheel(n: int) -> CreasePattern:
-    """The wheel with n free spokes: hub n at the origin, spoke ends 0 .. n - 1."""
-    names = [f"{axis}{j}" for j in range(n) for axis in "xy"]
-    K, *g = field(names, QQ)
-    ends = [(g[2 * j], g[2 * j + 1]) for j in range(n)]
-    return with_vertices(families.single_vertex(n), [*ends, (K(0), K(0))])
 
 
 def prove(change: str | None = None) -> Proof:
@@ -230,7 +179,7 @@ def _heights(script: Script) -> None:
     main = x / L * (x1 / L1) / a.sin - a.cot / 2 * ((x / L) ** 2 + (x1 / L1) ** 2)
     script.identity("the summand of Section II B, with psi = +x/L from the xy-plane", delta - main)
     script.state(
-        "II.B.1",
+        "IIB.1",
         "Section II B, curvature constraint (before Eq. wheelstress)",
         r"0=\sum_I\left\{\frac{\psi_I\psi_{I+1}}{\sin\alpha_{I,I+1}}-\frac12\cot\alpha_{I,I+1}"
         r"\left[\psi_I^2+\psi_{I+1}^2\right]\right\}",
@@ -240,7 +189,7 @@ def _heights(script: Script) -> None:
         code="curvature_form",
     )
     script.state(
-        "II.B.2",
+        "IIB.2",
         "Section II B, psi to lowest order",
         r"\psi_{(n,m)}=(h_n-h_m)/|\mathbf U_n-\mathbf U_m|",
         Ruling.AS_PRINTED,
