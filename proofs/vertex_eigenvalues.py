@@ -1,0 +1,218 @@
+"""Eigenvalues of the form of one vertex: equal angles, all angles, and what follows.
+
+Appendix C from the Toeplitz matrix on, and Section II B on the matrix Q_nm and its null cone.
+"""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+from exactfold import curvature_form
+from exactfold.pattern.families import single_vertex
+from exactfold.rigidity.kapovich_millson import kapovich_millson
+from proofs.framework import Proof, Ruling, Script, run
+from proofs.vertex_forms import cross, dot, symbols, unit
+
+NAME = "vertex_eigenvalues"
+TITLE = "Eigenvalues of the form of one vertex, and its null cone"
+HYPOTHESES = (
+    "a flat vertex of degree N >= 3, all angles in (0, pi) with sum 2 pi, spokes of any lengths",
+    "equal angles and lengths for C.8 to C.10 only",
+)
+
+
+def prove(change: str | None = None) -> Proof:
+    """The eigenvalue formulas with their ranges, the inertia, and the null cone."""
+    script = Script(NAME, TITLE, HYPOTHESES, change)
+    _equal_angles(script)
+    _all_angles(script)
+    _three_folds(script)
+    _cone(script)
+    return script.proof()
+
+
+def _equal_angles(script: Script) -> None:
+    phi, theta, f, g = symbols("phi theta f g")
+    (cn, sn), (c1, s1) = unit(phi), unit(theta)  # phi: the angle n theta, free
+    sign = script.alter("sign of the cosine", 1, -1)
+    script.identity(
+        "v_n = sin(n theta) satisfies g v_{n-1} + f v_n + g v_{n+1} = (f + 2 g cos theta) v_n",
+        g * (sn * c1 - cn * s1) + f * sn + g * (sn * c1 + cn * s1) - (f + 2 * sign * g * c1) * sn,
+    )
+    last = script.alter("range of m as printed", 0, 1)
+    cosines = [Fraction(1, 2), Fraction(-1, 2), Fraction(-1)]  # of m pi/3, m = 1, 2, 3
+    sign = script.alter("plus for minus", -1, 1)
+    rows = kapovich_millson([(1, 0), (0, 1), (-1, 0), (0, -1)]).form.matrix[2:4]
+    script.certificate(
+        "v_0 = 0 always and v_{N-1} = 0 at theta = m pi/(N-1); m = 1, ..., N-2 gives N-2 "
+        "different cosines, so these are all eigenvalues of the N-2 rows. For N = 4 and L = 1 the "
+        "matrix is [[0, -1], [-1, 0]], and lambda_1 = -1, lambda_2 = 1",
+        [list(row[2:4]) for row in rows] == [[0, -1], [-1, 0]]
+        and [sign * 2 * c for c in cosines[: 2 + last]] == [-1, 1],
+    )
+    script.state(
+        "C.8",
+        "Appendix C, eigenvalues of the Toeplitz matrix",
+        r"\lambda_m=f+2|g|\cos\frac{m\pi}{N-1},\quad m=1,\dots,N-1",
+        Ruling.CORRECTED,
+        r"\lambda_m=f-2|g|\cos\frac{m\pi}{N-1},\quad m=1,\dots,N-2",
+        note="the matrix has N-2 rows; m = N-1 gives f - 2|g|, no eigenvalue (N = 4, L = 1: -2 "
+        "besides 1 and -1). Either sign gives the same set, with m replaced by N-1-m, but the "
+        "minus sign (g < 0) is that of Eq. (equalangleeigs), to which 'Thus' leads, and the one "
+        "with lambda_1 < 0",
+    )
+    script.state(
+        "C.9",
+        "Appendix C, Eq. (equalangleeigs)",
+        r"\lambda_m=2\frac{\csc(2\pi/N)}{L^2}\Big[\cos\frac{2\pi}{N}-\cos\frac{m\pi}{N-1}\Big]",
+        Ruling.AS_PRINTED,
+        note="for m = 1, ..., N-2 (C.8). Its sign differs from the printed line before it, whose "
+        "lambda_m is this lambda_{N-1-m}",
+    )
+    k, j = symbols("k j")  # N = 3 + k, m = 2 + j with k, j >= 0
+    N, m = k + 3, 2 + script.alter("m from 1", j, j - 1)
+    script.certificate(
+        "1/(N-1) < 2/N and m/(N-1) > 2/N for m >= 2: both differences, cleared of denominators, "
+        "have positive coefficients in N - 3 >= 0 and m - 2 >= 0; cosine decreases on [0, pi]",
+        _positive_coefficients(2 * (N - 1) - N) and _positive_coefficients(m * N - 2 * (N - 1)),
+    )
+    script.state(
+        "C.10",
+        "Appendix C, after Eq. (equalangleeigs)",
+        r"\lambda_1<0\text{ and the other eigenvalues are positive}",
+        Ruling.AS_PRINTED,
+        note="with Eq. (equalangleeigs), m = 1, ..., N-2; with the line before it, it would be "
+        "lambda_{N-2}",
+    )
+
+
+def _positive_coefficients(polynomial: Any) -> bool:
+    return polynomial.denom == 1 and all(c > 0 for c in polynomial.numer.coeffs())
+
+
+def _all_angles(script: Script) -> None:
+    positive = script.alter("inertia of the form of Appendix C", 1, 0)
+    script.certificate(
+        "chi(N) c_1...c_{N-1} = d_1 x d_N = -c_N: with all c_n > 0 chi(N) is negative everywhere "
+        "on a connected set (angles: a simplex; lengths: an orthant), so the one negative "
+        "eigenvalue of the equal angles (C.10) remains one; library inertia of K_v for N = 3 to 9",
+        all(
+            curvature_form(single_vertex(n), n).inertia == (positive, n - 2 - positive, 3)
+            for n in range(3, 10)
+        ),
+    )
+    script.state(
+        "C.11",
+        "Appendix C, after Eq. (equalangleeigs)",
+        r"\text{always one negative eigenvalue so long as the angles between adjacent folds "
+        r"remain in }(0,\pi);\ N\ge4:\text{ eigenvalues of both signs; }N-3\text{ stabilized "
+        r"motions}",
+        Ruling.AS_PRINTED,
+        note="in the sign of Appendix C: inertia (N-3, 1, 3). That the N-3 others 'primarily "
+        "increase' the rim is heuristic",
+        code="curvature_form, QuadraticForm.inertia",
+    )
+    matrix_inertia = curvature_form(single_vertex(5), 5).inertia
+    script.counterexample(
+        "with Eqs. (compat), (wheelstress) as printed a five-fold star has inertia (1, 2, 3): two "
+        "negative eigenvalues",
+        matrix_inertia == (1, 2, 3),
+    )
+    script.state(
+        "IIB.21",
+        "Section II B, after Eq. (stressmatrix)",
+        r"Q_{nm}\text{ has }N-2\text{ nonzero eigenvalues, exactly one of which is negative}",
+        Ruling.CORRECTED,
+        r"\text{exactly one of which is positive, }N-3\text{ negative (with the signs of Eqs. "
+        r"(compat), (wheelstress)); in the sign of Appendix C, which is }-2K_v\text{, exactly one "
+        r"is negative}",
+        note="Q = 2 K_v. The number N-2 and the size N+1 hold; five equal angles: inertia (1, 2, "
+        "3)",
+        code="curvature_form",
+    )
+
+
+def _three_folds(script: Script) -> None:
+    *points, h0, x, y, z = symbols("ax ay bx by cx cy h0 x y z")
+    a, b, c = points[:2], points[2:4], points[4:]
+    areas = cross(b, c), cross(c, a), cross(a, b)
+    heights, spokes = (x, y, z), (a, b, c)
+    curvature = 0 * x
+    for j in range(3):
+        p, q = spokes[j], spokes[(j + 1) % 3]
+        u, v = heights[j] - h0, heights[(j + 1) % 3] - h0
+        ratio = dot(p, q) / (2 * cross(p, q))
+        curvature += u * v / cross(p, q) - ratio * (u**2 / dot(p, p) + v**2 / dot(q, q))
+    lift = sum(w * (h - h0) for w, h in zip(areas, heights, strict=True))
+    product = areas[0] * areas[1] * areas[2]
+    script.identity(
+        "N = 3: 2 K_v = (w_1 x_1 + w_2 x_2 + w_3 x_3)^2 / (w_1 w_2 w_3) with w_1 = d_2 x d_3 > 0 "
+        "and so on: K_v vanishes only where hub and ring are coplanar",
+        2 * curvature - lift**2 / product * script.alter("factor of the rank one form", 1, 2),
+    )
+    pattern = single_vertex(3)
+    first_order = len(pattern.vertices) - 3
+    script.counterexample(
+        "N = 3: the star has one height motion that is no rigid motion, and its lengths are kept "
+        "to first order, so it is not infinitesimally rigid in the usual (first-order) sense",
+        first_order == 1,
+    )
+    script.state(
+        "C.12",
+        "Appendix C, after Eq. (equalangleeigs)",
+        r"\text{the vertex is infinitesimally rigid when all eigenvalues have the same sign "
+        r"(as happens when }N=3)",
+        Ruling.CORRECTED,
+        r"\text{the vertex is rigid to second order, hence rigid, iff all nonzero eigenvalues "
+        r"have the same sign, which for angles in }(0,\pi)\text{ is }N=3;\text{ to first order it "
+        r"has }N-2\ge1\text{ motions}",
+        note="infinitesimal rigidity means that there are no first-order motions; Section II A "
+        "calls every displacement of the heights a first-order motion",
+        code="count_branches",
+    )
+
+
+def _cone(script: Script) -> None:
+    script.certificate(
+        "N + 1 heights less 3 rigid motions leave N - 2; the form there is nondegenerate (chi(N) "
+        "is not 0), so its null cone is a hypersurface, smooth but for 0: dimension N - 3",
+        all(
+            (n + 1) - 3 == sum(curvature_form(single_vertex(n), n).inertia[:2]) for n in range(3, 9)
+        ),
+    )
+    t, y1, y2, s = symbols("t y1 y2 s")
+    script.identity(
+        "in axes of the form, K = t^2 - y_1^2 - ... - y_{N-3}^2: each nappe is t = +-|y|, a graph "
+        "over R^{N-3}; rescaling by s > 0 keeps it, so it is the cone over |y| = 1, a sphere of "
+        "dimension N-4",
+        (s * t) ** 2 - (s * y1) ** 2 - (s * y2) ** 2 - s**2 * (t**2 - y1**2 - y2**2),
+    )
+    script.state(
+        "IIB.22",
+        "Section II B, after Eq. (stressmatrix)",
+        r"\text{a single }N\text{-fold vertex has }N-2\text{ first-order motions; Eq. "
+        r"(stressmatrix) defines an }(N-3)\text{-dimensional surface, the null cone}",
+        Ruling.AS_PRINTED,
+        note="first-order motions: height motions modulo rigid ones. For N = 3 the cone is the "
+        "point 0, of dimension 0",
+        code="BranchSystem",
+    )
+    script.state(
+        "IIB.23",
+        "Section II B, after Eq. (stressmatrix)",
+        r"\text{two nappes meet at the unfolded state; topologically they are cones over }(N-4)"
+        r"\text{-dimensional spheres}",
+        Ruling.AS_PRINTED,
+        note="N >= 4. For N = 4 the sphere is two points: a nappe is two rays, and the cone two "
+        "lines",
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
