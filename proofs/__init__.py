@@ -11,4 +11,5 @@ MODULES: tuple[str, ...] = (
     "second_order_motions",
     "vertex_forms",
     "vertex_eigenvalues",
+    "mountain_valley",
 )
