@@ -12,4 +12,5 @@ MODULES: tuple[str, ...] = (
     "vertex_forms",
     "vertex_eigenvalues",
     "mountain_valley",
+    "kapovich_millson",
 )
