@@ -29,6 +29,7 @@ from exactfold.pattern.delaunay import delaunay
 from exactfold.pattern.fold import FoldFile, load_fold, read_fold
 from exactfold.pattern.fold_writing import write_fold
 from exactfold.pattern.random_squares import random_square
+from exactfold.rigidity.all_real import decide_all_branches_real
 from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stress
 from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.rigidity.facts import pattern_facts
@@ -69,6 +70,7 @@ __all__ = [
     "certificate",
     "count_branches",
     "curvature_form",
+    "decide_all_branches_real",
     "definite_stress",
     "delaunay",
     "example_path",

@@ -8,9 +8,13 @@ MODULES: tuple[str, ...] = (
     "length_equations",
     "curvature_expansion",
     "wheel_stress",
+    "force_balance",
+    "hub_balance",
     "second_order_motions",
     "vertex_forms",
     "vertex_eigenvalues",
     "mountain_valley",
     "kapovich_millson",
+    "all_real",
+    "butterfly",
 )

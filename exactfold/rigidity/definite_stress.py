@@ -1,15 +1,18 @@
 """A positive definite combination of the curvature forms: why a sheet with given rim cannot fold.
 
-If sum_v lambda_v K_v, all lambda_v > 0, is positive definite on the heights w that vanish on the
-boundary, then the forms K_v have no common complex zero among these w but w = 0. Indeed for a zero
+If sum_v m_v K_v, all m_v > 0, is positive definite on the heights w that vanish on the boundary,
+then the forms K_v have no common complex zero among these w but w = 0. Indeed for a zero
 w = a + i b, K_v(a) = K_v(b) and B_v(a, b) = 0 for all v. If b is not 0, some K_v(b) > 0, so
 K_v(a) > 0 too, while K_v has only one positive direction and a is orthogonal to b: contradiction.
-So b = 0, and the same argument with K_v(a) = K_v(b) = 0 gives a = 0.
+So b = 0, and then all K_v(a) = 0 gives a = 0.
 
-The multipliers are lambda_v = 1 - eps |U_v - c|^2 (docs/mathematics.md, 6). The first
-part is positive semidefinite for a convex boundary, and on its kernel the second is
-proportional to the integral of |grad w|^2. This is the prestress stability of triangulated convex
-polygons (Connelly & Gortler 2017), with the stress in closed form.
+For a convex boundary the multipliers m_v = R^2 - |U_v - c|^2 of any disk (c, R) around the sheet
+will do: with the gradient of w on each face and the curvature A_b <= 0 at each boundary vertex,
+
+    sum_v m_v K_v(w) = integral |grad w|^2 - sum_b m_b A_b(w)
+
+(docs/theorem.md, Key lemma). This makes the prestress stability of triangulated convex polygons
+(Connelly & Gortler 2017) explicit.
 """
 
 from __future__ import annotations
@@ -21,37 +24,39 @@ from exactfold.exact.linalg import inertia
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 from exactfold.rigidity.curvature import curvature_form
 
-_HALVINGS = 64
-
 
 def definite_stress(pattern: CreasePattern) -> dict[int, Fraction] | None:
     """Positive multipliers, by interior vertex, of a definite combination of curvature forms.
 
-    None if none of the form 1 - eps |U_v - c|^2 was found; that decides nothing. For a convex
-    boundary one exists for every small eps > 0 (see the module's text), so there the search ends.
+    R^2 - |U_v - c|^2 for a disk about the centroid c of the boundary vertices (docs/theorem.md, Key
+    lemma), verified exactly. Unit: squared length. None if the combination is not definite, which
+    can happen for a boundary with reflex corners only, and decides nothing.
 
-    >>> from exactfold.pattern.families import single_vertex
-    >>> definite_stress(single_vertex(3))
-    {3: Fraction(1, 1)}
+    >>> from exactfold.pattern.crease_pattern import CreasePattern
+    >>> pyramid = [(0, 0), (3, 0), (0, 3), (1, 1)]
+    >>> definite_stress(CreasePattern(pyramid, [(0, 1, 3), (1, 2, 3), (2, 0, 3)]))
+    {3: Fraction(5, 1)}
     """
     if not pattern.interior:
         return {}
+    multipliers = disk_multipliers(pattern)
+    stress = {v: multipliers[v] for v in pattern.interior}
+    positive = all(weight > 0 for weight in stress.values())
+    return stress if positive and is_definite(pattern, stress) else None
+
+
+def disk_multipliers(pattern: CreasePattern) -> dict[int, Fraction]:
+    """R^2 - |U_v - c|^2 for every vertex: c the centroid of the boundary, R its largest distance.
+
+    Zero at the boundary vertex farthest from c; positive at interior vertices of a convex sheet.
+    """
     count = len(pattern.boundary)
-    centre = [
-        sum((pattern.vertices[v][axis] for v in pattern.boundary), Fraction(0)) / count
-        for axis in (0, 1)
-    ]
-    distance = {
-        v: (pattern.vertices[v][0] - centre[0]) ** 2 + (pattern.vertices[v][1] - centre[1]) ** 2
-        for v in pattern.interior
-    }
-    largest = max(distance.values()) or Fraction(1)
-    for halving in range(_HALVINGS):
-        eps = Fraction(1, 2 << halving) / largest if halving else Fraction(0)
-        stress = {v: 1 - eps * d for v, d in distance.items()}
-        if is_definite(pattern, stress):
-            return stress
-    return None
+    cx, cy = (
+        sum((pattern.vertices[v][k] for v in pattern.boundary), Fraction(0)) / count for k in (0, 1)
+    )
+    square = {v: (x - cx) ** 2 + (y - cy) ** 2 for v, (x, y) in enumerate(pattern.vertices)}
+    largest = max(square[v] for v in pattern.boundary)
+    return {v: largest - s for v, s in square.items()}
 
 
 def is_definite(pattern: CreasePattern, multipliers: Mapping[int, Fraction]) -> bool:

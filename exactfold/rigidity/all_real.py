@@ -1,0 +1,58 @@
+"""What the theorem "all branches are real" gives for a pattern."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.definite_stress import definite_stress
+from exactfold.verdict import PROVED, UNDECIDED, Verdict
+
+
+@dataclass(frozen=True)
+class Reality:
+    """Whether all solutions of the branch system are known to be real, and how many there are.
+
+    `solutions` counts with multiplicity: branches as lines for D = 1, solutions for any given
+    boundary heights for D > 1, 0 for a rigid sheet; None if undecided. `multipliers` is the
+    definite stress that proves it, by interior vertex of the sheet (its notch closed if it has
+    one).
+    """
+
+    verdict: Verdict
+    statement: str
+    solutions: int | None = None
+    multipliers: dict[int, Fraction] | None = None
+
+
+def decide_all_branches_real(pattern: CreasePattern) -> Reality:
+    """What docs/theorem.md says of a pattern, its hypotheses checked exactly.
+
+    The theorem covers every triangulated convex polygon (boundary angles of pi, chords, vertices of
+    degree three and separating triangles included) and every quadrilateral. UNDECIDED for other
+    sheets does not mean that non-real solutions exist.
+
+    >>> from exactfold.pattern.families import flat_vertex_square
+    >>> reality = decide_all_branches_real(flat_vertex_square())
+    >>> str(reality.verdict), reality.solutions
+    ('proved', 4)
+    """
+    if not pattern.is_convex and pattern.Ve != 4:
+        return Reality(
+            UNDECIDED,
+            f"the boundary has a reflex corner at vertex {pattern.reflex_corner} and more than "
+            "four vertices",
+        )
+    stress = definite_stress(pattern.with_notch_closed())
+    if stress is None:
+        return Reality(UNDECIDED, "the disk multipliers do not give a definite stress")
+    count = 1 << pattern.Vi
+    if pattern.Ve == 3:
+        return Reality(PROVED, "three boundary vertices: the sheet is rigid", 0, stress)
+    if pattern.Ve == 4:
+        shape = "convex" if pattern.is_convex else "reflex, its notch closed by a triangle"
+        text = f"boundary quadrilateral ({shape}): {count} branches with multiplicity, all real"
+        return Reality(PROVED, text, count, stress)
+    text = f"convex boundary: {count} solutions for any given boundary heights, all real"
+    return Reality(PROVED, text, count, stress)

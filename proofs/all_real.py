@@ -1,0 +1,402 @@
+"""The theorem of docs/theorem.md: all branches are real, one for each sign vector."""
+
+from __future__ import annotations
+
+import random
+import sys
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+import sympy
+from sympy import QQ
+from sympy.polys.fields import field
+
+from exactfold import (
+    CreasePattern,
+    QuadraticSystem,
+    count_branches,
+    curvature_form,
+    definite_stress,
+)
+from exactfold.certify.isolation import isolate
+from exactfold.errors import PatternError
+from exactfold.pattern.families import flat_vertex_square
+from exactfold.pattern.random_squares import random_square
+from exactfold.rigidity.definite_stress import disk_multipliers
+from exactfold.rigidity.timelike import vertex_sign_functional
+from exactfold.solve.homotopy import homotopy
+from exactfold.verdict import PROVED
+from proofs.framework import Proof, Ruling, Script, run
+
+NAME = "all_real"
+TITLE = "All branches are real: the central theorem"
+
+Vector = tuple[Any, Any]
+
+
+def prove(change: str | None = None) -> Proof:
+    """Every identity and inequality of the proof, and its conclusions on hostile patterns."""
+    script = Script(
+        NAME,
+        TITLE,
+        (
+            "a straight-line triangulation of a convex polygon; boundary angles of pi, chords, "
+            "vertices of degree 3 and separating triangles allowed",
+            "for four boundary vertices also a quadrilateral with a reflex corner",
+        ),
+        change,
+    )
+    _state(script)
+    _corner_identity(script)
+    _face_identities(script)
+    _one_positive_direction(script)
+    _wirtinger(script)
+    _theorem_1_on_patterns(script)
+    _conclusions_on_patterns(script)
+    return script.proof()
+
+
+def _state(script: Script) -> None:
+    script.state(
+        "T.1",
+        "Section III A, 'amazingly, all 2^{Vi+1} of them are real' (numerical)",
+        r"\text{all solutions are real, } B = 2^{V_i}",
+        Ruling.CORRECTED,
+        r"2^{V_i}\text{ branches with multiplicity, all real, for every convex or reflex boundary "
+        r"quadrilateral; distinct exactly when no vertex star is flat on any of them}",
+        "a theorem, not only generic: docs/theorem.md, Theorem 2 (a), (b), (e) and section 4",
+        "decide_all_branches_real, count_branches",
+    )
+    script.state(
+        "T.2",
+        "Section III B, 'exactly two branches with each such pair of sign patterns' (numerical)",
+        r"\text{exactly two branches for each pair of opposite vertex sign patterns}",
+        Ruling.CORRECTED,
+        r"\text{exactly two, one for each sign of the boundary saddle, if no vertex star is flat "
+        r"on any branch}",
+        "docs/theorem.md, Theorem 2 (e) and section 4; the paper: 'proving ... remains elusive'",
+        "BranchCount.sign_vectors",
+    )
+
+
+def _dot(d: Vector, e: Vector) -> Any:
+    return d[0] * e[0] + d[1] * e[1]
+
+
+def _turned(d: Vector) -> Vector:
+    return -d[1], d[0]
+
+
+def _minus(d: Vector, e: Vector) -> Vector:
+    return d[0] - e[0], d[1] - e[1]
+
+
+def _corner(d: Vector, e: Vector, g: Vector) -> Any:
+    """What the face with spokes d, e (counter-clockwise) adds to the curvature form, by c and s."""
+    c, s = _dot(_turned(d), e), _dot(d, e)
+    x, y = _dot(g, d), _dot(g, e)
+    return x * y / c - s / (2 * c) * (x**2 / _dot(d, d) + y**2 / _dot(e, e))
+
+
+def _corner_identity(script: Script) -> None:
+    _, *x = field("d1 d2 e1 e2 g1 g2", QQ)
+    d, e, g = (x[0], x[1]), (x[2], x[3]), (x[4], x[5])
+    sign = script.alter("sign of the corner term", 1, -1)
+
+    def end(spoke: Vector) -> Any:
+        return _dot(g, spoke) * _dot(g, _turned(spoke)) / _dot(spoke, spoke)
+
+    script.identity(
+        "(1): k = (1/2) [(g.d)(g.Jd)/|d|^2 - (g.d')(g.Jd')/|d'|^2] is the corner's part of K_v",
+        _corner(d, e, g) - sign * (end(d) - end(e)) / 2,
+    )
+    r, angle = sympy.Function("r"), sympy.Symbol("theta")
+    slope = sympy.Symbol("g1") * sympy.cos(angle) + sympy.Symbol("g2") * sympy.sin(angle)
+    primitive = -slope * sympy.diff(slope, angle)
+    difference = slope**2 - sympy.diff(slope, angle) ** 2 - sympy.diff(primitive, angle)
+    script.identity(
+        "rho^2 - rho'^2 = (-rho rho')' for rho = g . e(theta)",
+        sympy.simplify(sympy.expand(difference)),
+    )
+    picone = (sympy.diff(r(angle), angle) - r(angle) * sympy.cot(angle)) ** 2
+    boundary = sympy.diff(r(angle) ** 2 * sympy.cot(angle), angle)
+    sign = script.alter("sign in Picone's identity", 1, -1)
+    script.identity(
+        "Picone: rho'^2 - rho^2 = (rho' - rho cot)^2 + (rho^2 cot)'",
+        sympy.expand(sympy.diff(r(angle), angle) ** 2 - sign * r(angle) ** 2 - picone - boundary),
+    )
+
+
+def _face_identities(script: Script) -> None:
+    """(2) and (3) for a general triangle and any gradient; the centre c is the origin."""
+    _, *x = field("a1 a2 b1 b2 p1 p2 g1 g2", QQ)
+    corners, g = [(x[0], x[1]), (x[2], x[3]), (x[4], x[5])], (x[6], x[7])
+    halves = script.alter("area halved", 2, 4)
+    sign = script.alter("sign of the edge term", 1, -1)
+    total, moment, edges = 0 * x[0], 0 * x[0], 0 * x[0]
+    for k in range(3):
+        at, after, before = corners[k], corners[(k + 1) % 3], corners[k - 1]
+        part = _corner(_minus(after, at), _minus(before, at), g)
+        total += part
+        moment += _dot(at, at) * part
+        side = _minus(after, at)
+        twice_middle = (after[0] + at[0], after[1] + at[1])
+        edges += _dot(g, side) ** 2 * _dot(twice_middle, _turned(side)) / (2 * _dot(side, side))
+    u, v = _minus(corners[1], corners[0]), _minus(corners[2], corners[0])
+    area = _dot(_turned(u), v) / halves
+    script.identity("(2): the three corners of a face add up to 0", total)
+    script.identity(
+        "(3): sum |U_v - c|^2 k + |T| |g|^2 + sum (g.d)^2 ((M - c).Jd)/|d|^2 = 0",
+        moment + area * _dot(g, g) + sign * edges,
+    )
+    d, m = (x[0], x[1]), (x[2], x[3])
+    there = _dot(g, d) ** 2 * _dot(m, _turned(d))
+    back = _dot(g, (-d[0], -d[1])) ** 2 * _dot(m, _turned((-d[0], -d[1])))
+    script.identity("the edge term changes sign with the direction of the edge", there + back)
+
+
+def _one_positive_direction(script: Script) -> None:
+    m = sympy.Symbol("m", integer=True, positive=True)
+    angle = sympy.Symbol("theta")
+    shift = script.alter("wrong Fourier weight", 1, 2)
+    for name, wave in (("cos", sympy.cos(m * angle)), ("sin", sympy.sin(m * angle))):
+        integral = sympy.integrate(wave**2 - sympy.diff(wave, angle) ** 2, (angle, 0, 2 * sympy.pi))
+        script.identity(
+            f"the integral of rho^2 - rho'^2 for rho = {name} m theta is pi (1 - m^2)",
+            sympy.simplify(integral - sympy.pi * (shift - m**2)),
+        )
+
+
+def _wirtinger(script: Script) -> None:
+    """The form of -A_b in the inner slopes has minors sin(S) prod csc > 0 while S < pi.
+
+    With angles a_1, ..., a_k between consecutive spokes, the form is tridiagonal with diagonal
+    (cot a_j + cot a_{j+1})/2 and off-diagonal -(csc a_{j+1})/2; in units of 1/2 its leading minors
+    are D_j = sin(a_1 + ... + a_{j+1}) / (sin a_1 ... sin a_{j+1}). Base and induction step.
+    """
+    t, u, w = sympy.symbols("t u w")
+
+    def half(parameter: sympy.Symbol) -> tuple[sympy.Expr, sympy.Expr]:
+        return (1 - parameter**2) / (1 + parameter**2), 2 * parameter / (1 + parameter**2)
+
+    (cs, ss), (ca, sa), (cb, sb) = half(t), half(u), half(w)  # S, a_j, a_{j+1}
+    one_more = ss * ca + cs * sa
+    two_more = one_more * cb + (cs * ca - ss * sa) * sb
+    sign = script.alter("sign in the continuant", 1, -1)
+    # D_{j-2} = sin S / P, D_{j-1} = sin(S + a) / (P sin a), D_j = sin(S + a + b) / (P sin a sin b)
+    recurrence = (ca / sa + cb / sb) * one_more / sa - sign * ss / sa**2
+    script.identity(
+        "D_j = (cot a_j + cot a_{j+1}) D_{j-1} - csc^2 a_j D_{j-2}",
+        recurrence - two_more / (sa * sb),
+    )
+    script.identity(
+        "D_1 = cot a_1 + cot a_2 = sin(a_1 + a_2) csc a_1 csc a_2",
+        ca / sa + cb / sb - (sa * cb + ca * sb) / (sa * sb),
+    )
+
+
+def _theorem_1_on_patterns(script: Script) -> None:
+    """The identity of Theorem 1 against the package's own curvature forms, with any heights."""
+    shift = script.alter("multipliers shifted", Fraction(0), Fraction(1, 7))
+
+    def holds(pattern: CreasePattern, seed: int) -> bool:
+        source = random.Random(seed)
+        w = {v: Fraction(source.randint(-9, 9), source.randint(1, 5)) for v in pattern.interior}
+        w |= dict.fromkeys(pattern.boundary, Fraction(0))
+        weights = disk_multipliers(pattern)
+        left = sum((weights[v] * curvature_form(pattern, v)(w) for v in pattern.interior), -shift)
+        energy, corner = Fraction(0), Fraction(0)
+        for a, b, c in pattern.triangles:
+            part, gradient = _energy(pattern, w, (a, b, c))
+            energy += part
+            for i, j, k in ((a, b, c), (b, c, a), (c, a, b)):
+                if i in pattern.boundary:
+                    corner += weights[i] * _boundary_corner(pattern, gradient, i, j, k)
+        return left == energy - corner
+
+    script.cases(
+        "Theorem 1: sum m_v K_v(w) = int |grad w|^2 - sum m_b A_b(w)",
+        (holds(pattern, seed) for seed, pattern in enumerate(hostile_patterns(24))),
+    )
+    script.cases(
+        "Key lemma: the disk multipliers give a definite stress (exact elimination)",
+        (definite_stress(pattern) is not None for pattern in hostile_patterns(24)),
+    )
+    spiky = CreasePattern(
+        [(4, -4), ("1/10", 0), (4, 4), (-4, 0), (0, 0)],
+        [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+    )
+    hub = {v: Fraction(int(v == 4)) for v in range(5)}
+    script.counterexample(
+        "convexity is needed: hub (0,0) in (4,-4), (1/10,0), (4,4), (-4,0) has K(hub) < 0",
+        curvature_form(spiky, 4)(hub) < 0 and definite_stress(spiky) is None,
+    )
+
+
+def _gradient(
+    pattern: CreasePattern, w: dict[int, Fraction], face: tuple[int, int, int]
+) -> tuple[Fraction, Fraction, Fraction]:
+    """Gradient of w on a face, and twice the area."""
+    (ax, ay), (bx, by), (cx, cy) = (pattern.vertices[v] for v in face)
+    ux, uy, vx, vy = bx - ax, by - ay, cx - ax, cy - ay
+    twice = ux * vy - uy * vx
+    p, q = w[face[1]] - w[face[0]], w[face[2]] - w[face[0]]
+    return (p * vy - q * uy) / twice, (q * ux - p * vx) / twice, twice
+
+
+def _energy(
+    pattern: CreasePattern, w: dict[int, Fraction], face: tuple[int, int, int]
+) -> tuple[Fraction, tuple[Fraction, Fraction]]:
+    gx, gy, twice = _gradient(pattern, w, face)
+    return twice / 2 * (gx * gx + gy * gy), (gx, gy)
+
+
+def _boundary_corner(
+    pattern: CreasePattern, g: tuple[Fraction, Fraction], i: int, j: int, k: int
+) -> Fraction:
+    """(1) for the corner i of the counter-clockwise face ijk."""
+
+    def end(j: int) -> Fraction:
+        dx = pattern.vertices[j][0] - pattern.vertices[i][0]
+        dy = pattern.vertices[j][1] - pattern.vertices[i][1]
+        return (g[0] * dx + g[1] * dy) * (g[1] * dx - g[0] * dy) / (dx * dx + dy * dy)
+
+    return (end(j) - end(k)) / 2
+
+
+def _conclusions_on_patterns(script: Script) -> None:
+    """(a), (b), (d), (e) and section 4, by counting that knows nothing of the theorem."""
+    extra = script.alter("one branch too many", 0, 1)
+
+    def counted(pattern: CreasePattern) -> bool:
+        result = count_branches(pattern)
+        right = result.with_multiplicity == (1 << pattern.Vi) + extra
+        return result.status is PROVED and right and result.nonreal == 0
+
+    squares = [random_square(n, seed) for n in (2, 3, 4) for seed in range(4)]
+    script.cases(
+        "section 4: 2^Vi branches with multiplicity, all real, convex and reflex quadrilaterals",
+        (counted(pattern) for pattern in [*squares, *_quadrilaterals(12)]),
+    )
+    script.cases(
+        "(e): two branches for each pair of opposite sign vectors where no vertex is flat",
+        (set(count_branches(p).sign_vectors.values()) == {2} for p in squares if p.Vt == 0),
+    )
+    result = count_branches(flat_vertex_square())
+    script.counterexample(
+        "a flat vertex star: three branches, of multiplicities 1, 1, 2, instead of four",
+        sorted(b.multiplicity for b in result.branches) == [1, 1, 2],
+    )
+    script.cases(
+        "(d): for positive curvatures one real solution for each sign vector, any boundary",
+        (_one_solution_each(pattern, seed) for seed, pattern in enumerate(hostile_patterns(8, 4))),
+    )
+
+
+def _one_solution_each(pattern: CreasePattern, seed: int) -> bool:
+    """Isolate all solutions of K_v = k_v > 0 for random k and boundary heights; compare signs."""
+    source = random.Random(seed)
+    fixed = {v: Fraction(source.randint(-5, 5)) for v in pattern.boundary}
+    position = {v: k for k, v in enumerate(pattern.interior)}
+    n = len(position)
+
+    def row(functional: dict[int, Fraction] | dict[int, int]) -> list[Fraction]:
+        line = [Fraction(0)] * (n + 1)
+        for v, c in functional.items():
+            line[position.get(v, n)] += c * fixed.get(v, Fraction(1))
+        return line
+
+    matrices = []
+    for v in pattern.interior:
+        form = curvature_form(pattern, v)
+        matrix = [[Fraction(0)] * (n + 1) for _ in range(n + 1)]
+        for a, line in zip(form.labels, form.matrix, strict=True):
+            for b, weight in zip(form.labels, line, strict=True):
+                i, j = position.get(a, n), position.get(b, n)
+                matrix[i][j] += weight * fixed.get(a, Fraction(1)) * fixed.get(b, Fraction(1))
+        matrix[n][n] -= Fraction(source.randint(1, 9), source.randint(1, 9))
+        matrices.append(matrix)
+    system = QuadraticSystem.from_rational(matrices)
+    found = isolate(system, homotopy(system))
+    rows = [row(vertex_sign_functional(pattern, v)) for v in pattern.interior]
+    signs = set()
+    for box in found.boxes:
+        values = [
+            sum(
+                (c * Fraction(m, 1 << box.bits) for c, m in zip(line[:n], box.real, strict=True)),
+                line[n],
+            )
+            for line in rows
+        ]
+        signs.add(tuple(value > 0 for value in values))
+    return found.complete is PROVED and found.real == 1 << n and len(signs) == 1 << n
+
+
+def hostile_patterns(count: int, interior: int = 7) -> Iterator[CreasePattern]:
+    """Convex patterns far from Delaunay: points put into random faces, then random edge flips."""
+    for seed in range(count):
+        source = random.Random(seed)
+        sides = 3 + seed % 5
+        rim = [(0, 0), (60, 0), (90, 30), (70, 80), (20, 90), (-10, 50), (-8, 20)][:sides]
+        points = [(Fraction(x), Fraction(y)) for x, y in rim]
+        faces = [(0, k, k + 1) for k in range(1, sides - 1)]
+        for _ in range(1 + seed % interior):
+            face = faces.pop(source.randrange(len(faces)))
+            weights = [source.choice((1, 1, 2, 40)) for _ in face]
+            point = [
+                sum((w * points[v][k] for w, v in zip(weights, face, strict=True)), Fraction(0))
+                / sum(weights)
+                for k in (0, 1)
+            ]
+            points.append((point[0], point[1]))
+            a, b, c = face
+            new = len(points) - 1
+            faces += [(a, b, new), (b, c, new), (c, a, new)]
+        yield _flipped(CreasePattern(points, faces), source)
+
+
+def _flipped(pattern: CreasePattern, source: random.Random) -> CreasePattern:
+    """Thirty random edge flips, those that leave a triangulation."""
+    for _ in range(30):
+        if not pattern.folds:
+            break
+        i, j = source.choice(pattern.folds)
+        left, right = pattern.opposite((i, j))
+        if (min(left, right), max(left, right)) in pattern.edges:
+            continue
+        faces = [t for t in pattern.triangles if not {i, j} <= set(t)]
+        try:
+            pattern = CreasePattern(pattern.vertices, [*faces, (left, right, j), (right, left, i)])
+        except PatternError:
+            continue
+    return pattern
+
+
+def _quadrilaterals(count: int) -> Iterator[CreasePattern]:
+    """Random triangulated quadrilaterals, two in three with a reflex corner."""
+    for seed in range(count):
+        source = random.Random(1000 + seed)
+        tip = Fraction(source.randint(1, 3)) if seed % 3 else Fraction(-4)
+        points = [
+            (Fraction(-4), Fraction(-3)),
+            (Fraction(6), Fraction(0)),
+            (Fraction(-4), Fraction(3)),
+            (-tip, Fraction(0)),
+        ]
+        faces = [(0, 1, 3), (1, 2, 3)]
+        for _ in range(1 + seed % 3):
+            a, b, c = faces.pop(source.randrange(len(faces)))
+            point = [(points[a][k] + 2 * points[b][k] + 4 * points[c][k]) / 7 for k in (0, 1)]
+            points.append((point[0], point[1]))
+            new = len(points) - 1
+            faces += [(a, b, new), (b, c, new), (c, a, new)]
+        yield _flipped(CreasePattern(points, faces), source)
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
