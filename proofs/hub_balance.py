@@ -1,0 +1,301 @@
+"""Force balance of the wheel stress at the hub (Appendix B, second half)."""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+from sympy import QQ
+from sympy.polys.fields import field
+from sympy.polys.rings import ring
+
+from exactfold import wheel_stress
+from proofs.force_balance import spoke, star
+from proofs.framework import Proof, Ruling, Script, run
+from proofs.wheel_stress import Angle, cross
+
+NAME = "hub_balance"
+TITLE = "Force balance of the wheel stress at the hub"
+PRINTED, CORRECTED = Ruling.AS_PRINTED, Ruling.CORRECTED
+
+
+def prove(change: str | None = None) -> Proof:
+    """The induction of Appendix B line by line, and its repair."""
+    hypotheses = (
+        "a hub 0 with N >= 3 spokes of lengths L_i > 0, angles alpha_{i,i+1} in (0, pi) between "
+        "adjacent ones, sum 2 pi; u_j the unit vectors of the spokes",
+    )
+    script = Script(NAME, TITLE, hypotheses, change)
+    _base_case(script)
+    _induction_formulas(script)
+    _induction_step(script)
+    _last_display(script)
+    _choice_of_spoke(script)
+    return script.proof()
+
+
+def _base_case(script: Script) -> None:
+    """Three spokes: a = alpha_12, b = alpha_23, c = alpha_31 = 2 pi - a - b."""
+    K, p, q, L1, L2, L3 = field("p q L1 L2 L3", QQ)
+    a, b = Angle.twice_arctan(p), Angle.twice_arctan(q)
+    c = -(a + b)
+    sign = script.alter("simpletrig with a difference of cotangents", 1, -1)
+    script.identity(
+        "csc a csc b = csc(a + b)(cot a + cot b)", a.csc * b.csc + c.csc * (a.cot + sign * b.cot)
+    )
+    script.identity("-csc alpha_31 = csc(alpha_12 + alpha_23)", c.csc + (a + b).csc)
+    script.state(
+        "B.11",
+        "Appendix B, Eq. (simpletrig)",
+        r"\csc a\csc b=\csc(a+b)(\cot a+\cot b)",
+        PRINTED,
+        note="wherever sin a, sin b, sin(a + b) are not 0",
+    )
+    script.state(
+        "B.12",
+        "Appendix B, after Eq. (simpletrig)",
+        r"-\csc\alpha_{3,1}=\csc(\alpha_{1,2}+\alpha_{2,3})",
+        PRINTED,
+    )
+    stress = [spoke(L3, L1, L2, c, a), spoke(L1, L2, L3, a, b), spoke(L2, L3, L1, b, c)]
+    ratio = stress[0] / b.sin
+    line1 = b.csc * (a.csc / L2 + c.csc / L3 - a.cot / L1 - c.cot / L1)
+    line2 = (
+        script.alter("sign of the L_3 term", 1, -1) * c.csc * b.csc / L3
+        + c.csc * a.csc / L1
+        - c.csc * (b.cot + a.cot) / L2
+    )
+    script.identity(
+        "first display: sigma_1/sin alpha_23 = line 1 = line 2", ratio - line1, ratio - line2
+    )
+    script.state(
+        "B.13",
+        "Appendix B, base case, first display",
+        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{L_3}+"
+        r"\frac{\csc\alpha_{3,1}\csc\alpha_{1,2}}{L_1}-"
+        r"\frac{\csc\alpha_{3,1}(\cot\alpha_{2,3}+\cot\alpha_{1,2})}{L_2}",
+        PRINTED,
+        note="its second line needs Eq. (simpletrig) twice and is sigma_2/sin(alpha_31) already; "
+        "display B.14 is the first line multiplied out and belongs between the two",
+    )
+    right = script.alter("the cotangents as printed", c, b)
+    line3 = c.csc * b.csc / L3 - b.csc * (a.cot + right.cot) / L1 + b.csc * a.csc / L2
+    script.identity("second display corrected", ratio - line3)
+    third = Angle(Fraction(-3, 5), Fraction(4, 5))  # a = alpha_12; b below; c closes up
+    other = Angle(Fraction(-4, 5), Fraction(3, 5))
+    last = -(third + other)
+    gap = (third.cot + last.cot) - (third.cot + other.cot)
+    script.counterexample(
+        "cos a = -3/5, cos b = -4/5, alpha_31 = pi/2: the cotangent sums over L_1 differ by 4/3",
+        last.sin == 1 and gap == Fraction(4, 3),
+    )
+    script.state(
+        "B.14",
+        "Appendix B, base case, after 'applying Eq. (simpletrig) twice'",
+        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{L_3}+"
+        r"\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{2,3})}{L_1}+"
+        r"\frac{\csc\alpha_{2,3}\csc\alpha_{1,2}}{L_2}",
+        CORRECTED,
+        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{L_3}+"
+        r"\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{3,1})}{L_1}+"
+        r"\frac{\csc\alpha_{2,3}\csc\alpha_{1,2}}{L_2}",
+        "index: cot alpha_31, not cot alpha_23. Example: cosines -3/5, -4/5, 0 of alpha_12, "
+        "alpha_23, alpha_31, where the coefficients of 1/L_1 differ by csc(alpha_23) 4/3",
+    )
+    common = b.csc * c.csc / L3 + c.csc * a.csc / L1 + a.csc * b.csc / L2
+    script.identity(
+        "all three ratios are csc_23 csc_31/L_3 + csc_31 csc_12/L_1 + csc_12 csc_23/L_2, a sum of "
+        "positive terms",
+        *(s / angle.sin - common for s, angle in zip(stress, (b, c, a), strict=True)),
+    )
+    script.state(
+        "B.15",
+        "Appendix B, base case, law of sines",
+        r"\sigma_1/\sin\alpha_{2,3}=\sigma_2/\sin\alpha_{3,1}=\sigma_3/\sin\alpha_{1,2}",
+        PRINTED,
+    )
+    u = [(K(1), K(0)), (a.cos, a.sin), ((a + b).cos, (a + b).sin)]
+    sines = (b.sin, c.sin, a.sin)
+    shift = script.alter("sines of the wrong angles", 0, 1)
+    closed = [sum(sines[(j + shift) % 3] * u[j][k] for j in range(3)) for k in (0, 1)]
+    script.identity("sin alpha_23 u_1 + sin alpha_31 u_2 + sin alpha_12 u_3 = 0", *closed)
+    script.state(
+        "B.16",
+        "Appendix B, base case",
+        r"\sum_{j=1}^3\sigma_j\mathbf u_j=\mathbf 0\text{; turning angles }\alpha\text{, the angle "
+        r"opposite }\sigma_1\text{ is }\pi-\alpha_{2,3}",
+        PRINTED,
+        note="with three spokes all sigma_j are positive, so the sides have lengths sigma_j. With "
+        "four or more a sigma_j can be negative, and its side is traversed backwards",
+        code="wheel_stress",
+    )
+
+
+def _induction_formulas(script: Script) -> None:
+    """Spokes i-2 .. i+1; z, a, b the angles between them; superscript 0: without spoke i."""
+    _, r, p, q, L0, L1, L2, L3 = field("r p q L0 L1 L2 L3", QQ)
+    z, a, b = Angle.twice_arctan(r), Angle.twice_arctan(p), Angle.twice_arctan(q)
+    merged = script.alter("angle after removal not merged", a + b, a)
+    change = spoke(L0, L1, L2, z, a) - spoke(L0, L1, L3, z, merged)
+    long = a.csc / L2 + z.csc / L0 - (a.cot + z.cot) / L1
+    long += -(a + b).csc / L3 - z.csc / L0 + ((a + b).cot + z.cot) / L1
+    short = a.csc / L2 - (a + b).csc / L3 - (a.cot - (a + b).cot) / L1
+    script.identity("Delta sigma_{i-1}, both forms", change - long, change - short)
+    mirrored = spoke(L2, L3, L0, b, z) - spoke(L1, L3, L0, a + b, z)  # z: angle i+1, i+2; L0: i+2
+    after = b.csc / L2 - (a + b).csc / L1 - (b.cot - (a + b).cot) / L3
+    script.identity("Delta sigma_{i+1}", mirrored - after)
+    script.state(
+        "B.17",
+        "Appendix B, induction, formulas for the lengths",
+        r"\Delta\sigma_{i-1}=\frac{\csc\alpha_{i-1,i}}{L_i}-\frac{\csc(\alpha_{i-1,i}+"
+        r"\alpha_{i,i+1})}{L_{i+1}}-\frac{\cot\alpha_{i-1,i}-\cot(\alpha_{i-1,i}+"
+        r"\alpha_{i,i+1})}{L_{i-1}}\text{, and }\Delta\sigma_{i+1}",
+        PRINTED,
+        note="both displayed forms; defined unless alpha_{i-1,i} + alpha_{i,i+1} = pi",
+    )
+    script.state(
+        "B.18",
+        "Appendix B, induction",
+        r"\text{stresses of }G_{n+1},G_{n,i}\text{ differ only at the spokes }i-1,i,i+1",
+        PRINTED,
+        note="Eq. (spokes) for spoke j contains L_{j-1}, L_j, L_{j+1} and its two angles only",
+    )
+
+
+def _induction_step(script: Script) -> None:
+    """sigma_i u_i + Delta sigma_{i-1} u_{i-1} + Delta sigma_{i+1} u_{i+1} = 0."""
+    K, p, q, L1, L2, L3 = field("p q L1 L2 L3", QQ)
+    a, b = Angle.twice_arctan(p), Angle.twice_arctan(q)
+    total = a + b
+    sigma = spoke(L1, L2, L3, a, b)
+    before = a.csc / L2 - total.csc / L3 - (a.cot - total.cot) / L1
+    after = b.csc / L2 - total.csc / L1 - (b.cot - total.cot) / L3
+    beta = Angle(K(-1), K(0)) + (-total)
+    script.identity("sin beta_i = +sin(alpha_{i-1,i} + alpha_{i,i+1})", beta.sin - total.sin)
+    sign = script.alter("the law of sines as printed", -1, 1)
+    script.identity(
+        "sigma_i/sin beta_i = -Delta sigma_{i-1}/sin alpha_{i,i+1} = "
+        "-Delta sigma_{i+1}/sin alpha_{i-1,i}",
+        sigma / beta.sin - sign * before / b.sin,
+        sigma / beta.sin - sign * after / a.sin,
+    )
+    # Vectors, with u_{i-1} = (1, 0): no law of sines and no lengths are needed.
+    closed = (
+        before + sigma * a.cos + after * total.cos,
+        sigma * a.sin + after * total.sin,
+    )
+    script.identity(
+        "sigma_i u_i + Delta sigma_{i-1} u_{i-1} + Delta sigma_{i+1} u_{i+1} = 0", *closed
+    )
+    five: list[tuple[Any, Any]] = [(1, 0), ("4/5", "3/5"), ("7/25", "24/25"), (-1, 0), (0, -1)]
+    full, less = wheel_stress(star(*five), 5), wheel_stress(star(five[0], *five[2:]), 4)
+    rise = full[(0, 5)] - less[(0, 4)]  # unit spokes: densities are stresses
+    script.counterexample(
+        "five unit spokes, cos alpha_12 = cos alpha_23 = 4/5, i = 2: sigma_i/sin beta_i = 25/36, "
+        "Delta sigma_{i-1}/sin alpha_{i,i+1} = -25/36",
+        full[(1, 5)] / Fraction(24, 25) == Fraction(25, 36)
+        and rise / Fraction(3, 5) == Fraction(-25, 36),
+    )
+    script.state(
+        "B.19",
+        "Appendix B, induction, angle of the small triangle",
+        r"\beta_i=\pi-\alpha_{i-1,i}-\alpha_{i,i+1}",
+        PRINTED,
+        note="a triangle if this is positive; for its sides and the law of sines see B.20",
+    )
+    script.state(
+        "B.20",
+        "Appendix B, induction, law of sines",
+        r"\sigma_i/\sin\beta_i=\Delta\sigma_{i-1}/\sin\alpha_{i,i+1}",
+        CORRECTED,
+        r"\sigma_i/\sin\beta_i=-\Delta\sigma_{i-1}/\sin\alpha_{i,i+1}="
+        r"-\Delta\sigma_{i+1}/\sin\alpha_{i-1,i}",
+        "the sides are sigma_i and sigma^0 - sigma = -Delta sigma, of the sign of sigma_i if "
+        "alpha_{i-1,i} + alpha_{i,i+1} < pi. Example: five unit spokes (1,0), (4/5,3/5), "
+        "(7/25,24/25), (-1,0), (0,-1), the second taken out: 25/36 against -25/36",
+    )
+
+
+def _last_display(script: Script) -> None:
+    """The chain from -csc(a + b) sigma_i to Delta sigma_{i-1}/sin alpha_{i,i+1}."""
+    _, p, q, L1, L2, L3 = field("p q L1 L2 L3", QQ)
+    a, b = Angle.twice_arctan(p), Angle.twice_arctan(q)
+    total, sigma = a + b, spoke(L1, L2, L3, a, b)
+    lines = [
+        -total.csc * (b.csc / L3 + a.csc / L1 - (b.cot + a.cot) / L2),
+        -total.csc * (b.csc / L3 + a.csc / L1) + b.csc * a.csc / L2,
+        b.csc * (-total.csc / L3 + a.csc / script.alter("third line: L_{i+1} for L_i", L2, L3))
+        - b.csc * (a.cot - total.cot) / L1,
+        (a.csc / L2 - total.csc / L3 - (a.cot - total.cot) / L1) / b.sin,
+    ]
+    sign = script.alter("first line with the printed sign", -1, 1)
+    script.identity("-sigma_i/sin beta_i = first line", sign * sigma / total.sin - lines[0])
+    script.identity("each further line equals the next", *(x - y for x, y in pairwise(lines)))
+    script.state(
+        "B.21",
+        "Appendix B, last display",
+        r"\frac{\sigma_i}{\sin\beta_i}=-\csc(\alpha_{i-1,i}+\alpha_{i,i+1})(\dots)=\dots="
+        r"\frac{\Delta\sigma_{i-1}}{\sin\alpha_{i,i+1}}",
+        CORRECTED,
+        r"-\frac{\sigma_i}{\sin\beta_i}=-\csc(\alpha_{i-1,i}+\alpha_{i,i+1})(\dots)=\dots="
+        r"\frac{\Delta\sigma_{i-1}}{\sin\alpha_{i,i+1}}",
+        "1/sin(beta_i) is +csc(alpha_{i-1,i} + alpha_{i,i+1}); the right-hand sides agree line by "
+        "line, only the left-hand side needs a sign (or beta_i = alpha_{i-1,i} + alpha_{i,i+1} "
+        "- pi). The same slip as in B.20",
+    )
+
+
+def _choice_of_spoke(script: Script) -> None:
+    """Which spoke can be taken out, and the one star where none can."""
+    straight = star((1, 0), (0, 1), (-1, 0), (0, -1)).vertices
+    script.counterexample(
+        "cross: alpha_{i-1,i} + alpha_{i,i+1} = pi for every i, so no spoke can be taken out",
+        all(cross(straight[i - 1], straight[(i + 1) % 4]) == 0 for i in range(4)),
+    )
+    _, w, x, y, z = ring("w x y z", QQ)  # angles of four spokes
+    script.identity(
+        "four spokes: the sums at opposite spokes add up to 2 pi, so one is < pi, or all are pi",
+        (w + x) + (y + z) - ((x + y) + (z + w)),
+        (w + x) - (x + y) - (w - y),
+        (x + y) - (y + z) - (x - z),
+    )
+    _, p, *L = field("p L1 L2 L3 L4", QQ)
+    a = Angle.twice_arctan(p)
+    flip = Angle(-a.cos, a.sin)  # pi - a
+    angles = (a, flip, a, script.alter("lines that do not cross straight", flip, a))
+    s = [spoke(L[j - 1], L[j], L[(j + 1) % 4], angles[j - 1], angles[j]) for j in range(4)]
+    script.identity("all sums pi: sigma_1 = sigma_3, sigma_2 = sigma_4", s[0] - s[2], s[1] - s[3])
+    _, n = ring("N", QQ)
+    script.identity(
+        "N >= 5 spokes: N pi - 4 pi = pi ((N - 5) + 1) > 0, so the mean 4 pi/N of the sums is < pi",
+        n - script.alter("sums of three angles", 4, 6) - ((n - 5) + 1),
+    )
+    script.state(
+        "B.22",
+        "Appendix B, induction: G_{n,i} by removing 'an arbitrary' spoke vertex i",
+        r"\text{for every spoke }i",
+        CORRECTED,
+        r"\text{for a spoke }i\text{ with }\alpha_{i-1,i}+\alpha_{i,i+1}<\pi",
+        "equal to pi: Eq. (spokes) has no meaning in G_{n,i}; larger: G_{n,i} has a reflex sector, "
+        "where the formulas hold but not the figure. Such a spoke exists unless N = 4 and the "
+        "spokes form two straight lines, as in the cross (1,0), (0,1), (-1,0), (0,-1), where the "
+        "induction fails for every i; there sigma_1 = sigma_3 and sigma_2 = sigma_4 directly",
+    )
+    script.state(
+        "B.23",
+        "Appendix B, force balance at the hub",
+        r"\sum_{j=1}^N\sigma_j\mathbf u_j=\mathbf 0",
+        PRINTED,
+        note="by the corrected induction, and by B.24 without induction",
+        code="wheel_stress",
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
