@@ -1,0 +1,275 @@
+"""Butterflies and the doubling step of the H1 move (Section IV).
+
+Notation of the move: w is attached to v1, v2, v3; the faces of T at v2 span the angle A, the new
+ones beta_1 (between v3 and w) and beta_2 (between w and v1), A + beta_1 + beta_2 = 2 pi; rho are
+slopes seen from v2. Only K_{v2} contains the height of w.
+
+Theorem (second order). Let delta be the distance of rho_w from the plane through v1, v2, v3, and Kc
+the curvature form at v2 when T is closed by the triangle v1 v2 v3 instead. If A is not pi,
+
+    K_{v2} = Kc - (1/2) (cot beta_1 + cot beta_2) delta^2,
+
+so delta has two real values, one (0) or none as Kc / sin(beta_1 + beta_2) is positive, 0, negative.
+  A < pi: Kc = -(1/2) sum of positive multiples of squares of all bends of T at v2: two values
+          exactly if T is folded at v2.
+  A > pi: with four boundary vertices Kc > 0 on every branch of T: always two values.
+          With five or more there may be none.
+  A = pi: K_{v2} is linear in rho_w: one value for each branch of T with rho_1 + rho_3 != 0, and one
+          more branch, T unfolded and the sheet folded along v1 v2 v3.
+"""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+import sympy
+
+from exactfold import CreasePattern, count_branches, curvature_form, definite_stress, families
+from proofs.framework import Proof, Ruling, Script, run
+from proofs.mountain_valley import sector
+
+NAME = "butterfly"
+TITLE = "Butterflies and the H1 doubling step"
+
+FAN = CreasePattern(
+    [(2, -1), (1, 2), (-1, 2), (-2, -1), (0, -2), (0, 0)],
+    [(0, 1, 5), (1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 0, 5)],
+)
+"""w = 4 attached at the reflex corner 5 of the fan 0, 1, 2, 3, which has five boundary vertices."""
+
+_DART = [(-4, -1), (0, 0), (4, -1), (0, 6), (-1, 1), (1, 2), (0, -4)]
+_INNER = [(0, 1, 4), (1, 5, 4), (1, 2, 5), (2, 3, 5), (3, 4, 5), (3, 0, 4)]
+DART = CreasePattern(_DART[:6], _INNER)
+"""A quadrilateral with the reflex corner v2 = 1 of degree 4."""
+KITE = CreasePattern(_DART, [*_INNER, (0, 6, 1), (6, 2, 1)])
+"""The dart with w = 6 attached at v1, v2, v3 = 0, 1, 2."""
+
+
+def prove(change: str | None = None) -> Proof:
+    """Monotonicity of the butterfly, and the exact hypotheses of the doubling step."""
+    script = Script(
+        NAME, TITLE, ("non-degenerate triangles; for the doubling step, second order",), change
+    )
+    _butterfly(script)
+    _doubling(script)
+    _reflex(script)
+    _straight(script)
+    return script.proof()
+
+
+def _butterfly(script: Script) -> None:
+    """d^2 as a function of the dihedral angle theta, tau = tan(theta / 2) in (0, oo)."""
+    a, b, p, q, tau = sympy.symbols("a b p q tau", positive=True)
+    sine, cosine = 2 * tau / (1 + tau**2), (1 - tau**2) / (1 + tau**2)
+    wing = sympy.Matrix([a, p, 0])
+    other = sympy.Matrix([b, q * cosine, q * sine])
+    square = (wing - other).dot(wing - other)
+    sign = script.alter("wrong sign of the cosine", -1, 1)
+    script.identity(
+        "d^2 = (a - b)^2 + p^2 + q^2 - 2 p q cos theta, with heights p, q over the shared fold",
+        square - (a - b) ** 2 - p**2 - q**2 - sign * 2 * p * q * cosine,
+    )
+    slope = sympy.factor(sympy.diff(square, tau))
+    expected = script.alter("derivative with the wrong sign", 1, -1)
+    script.certificate(
+        "d(d^2)/d tau = 8 p q tau / (1 + tau^2)^2 > 0 for tau > 0; even in theta, hence decreasing "
+        "from pi to 2 pi",
+        sympy.simplify(slope - expected * 8 * p * q * tau / (1 + tau**2) ** 2) == 0,
+    )
+    limits = (sympy.limit(square, tau, 0), sympy.limit(square, tau, sympy.oo))
+    script.identity(
+        "d_min^2 = (a - b)^2 + (p - q)^2 when folded flat, d_max^2 = (a - b)^2 + (p + q)^2 "
+        "unfolded",
+        limits[0] - (a - b) ** 2 - (p - q) ** 2,
+        limits[1] - (a - b) ** 2 - (p + q) ** 2,
+    )
+    mirrored = other.subs(tau, -tau)
+    script.identity(
+        "theta and 2 pi - theta have the same d and differ by the reflection in the plane of a "
+        "wing",
+        (wing - mirrored).dot(wing - mirrored) - square,
+        mirrored[0] - other[0],
+        mirrored[1] - other[1],
+        mirrored[2] + other[2],
+    )
+    script.state(
+        "IV.1",
+        "Section IV, definition of a butterfly",
+        r"\text{the configuration space is a circle, parametrized by the dihedral angle}",
+        Ruling.AS_PRINTED,
+        note="modulo rigid motions; self-intersection (theta = 0) allowed",
+    )
+    script.state(
+        "IV.2",
+        "Section IV",
+        r"d\text{ increases from }d_{min}\ (0)\text{ to }d_{max}\ (\pi)\text{, then decreases}",
+        Ruling.AS_PRINTED,
+        note="strictly: d^2 = const - 2 p q cos(theta)",
+    )
+    script.state(
+        "IV.3",
+        "Section IV",
+        r"d_{min}<d<d_{max}:\text{ two configurations related by reflection}",
+        Ruling.AS_PRINTED,
+    )
+
+
+def _doubling(script: Script) -> None:
+    """Complete the square in the slope of w; sum of squares when A < pi."""
+    r, s, m, t, u = sympy.symbols("rho_3 rho_1 rho_w t u")
+    whole = (t + u) / (1 - t * u)
+    sin1, sin2 = 2 * t / (1 + t**2), 2 * u / (1 + u**2)
+    cot1, cot2 = (1 - t**2) / (2 * t), (1 - u**2) / (2 * u)
+    sine = 2 * whole / (1 + whole**2)
+    delta = m - (r * sin2 + s * sin1) / sine
+    weight = script.alter("weight with the wrong sign", 1, -1) * (cot1 + cot2) / 2
+    script.identity(
+        "sector(rho_3, rho_w) + sector(rho_w, rho_1) = sector(rho_3, rho_1) - (1/2) (cot beta_1 + "
+        "cot beta_2) delta^2",
+        sector(r, m, t) + sector(m, s, u) - sector(r, s, whole) + weight * delta**2,
+    )
+    script.identity(
+        "cot beta_1 + cot beta_2 = sin(beta_1 + beta_2) / (sin beta_1 sin beta_2)",
+        cot1 + cot2 - sine / (sin1 * sin2),
+    )
+    turned = script.alter("closing sector not reversed", -1, 1)
+    script.identity(
+        "a sector of angle 2 pi - A is minus the sector of angle A: for A < pi the form Kc is the "
+        "faces of T minus the flat sector across them, and merging two sectors at a time (the "
+        "first "
+        "identity, cot x + cot y > 0 for x + y < pi) leaves minus a sum of squares of bends",
+        sector(r, s, -t) - turned * sector(r, s, t),
+    )
+    script.identity(
+        "over the single fold of a seed Kc = -(1/2) (cot a_1 + cot a_2) bend^2, so that "
+        "delta^2 = -(cot a_1 + cot a_2) / (cot beta_1 + cot beta_2) bend^2",
+        sector(r, m, t) + sector(m, s, u) + sector(r, s, -whole) + weight * delta**2,
+    )
+    h1 = families.sample_h1_sequence(3, seed=1)
+    v1, v2, v3, w = h1.moves[-1]
+    only = [v for v in h1.pattern.interior if w in curvature_form(h1.pattern, v).labels]
+    script.certificate(
+        "only K_{v2} contains the height of w (an H1 sequence; v1 and v3 are boundary vertices), "
+        "so "
+        "the Jacobian is block triangular: simple branches of T with delta != 0 stay simple",
+        only == [v2] and {v1, v3} <= set(h1.pattern.boundary),
+    )
+
+
+def _reflex(script: Script) -> None:
+    """A > pi: fine for four boundary vertices, not for five."""
+    heights = dict(zip(range(4), (0, 1, -1, 0), strict=True))
+    c, b, a = _quadratic(FAN, 5, 4, heights)
+    bend = script.alter("the folded fan replaced by a flat one", 1, 0)
+    script.counterexample(
+        "five boundary vertices: the fan folded to heights 0, 1, -1, 0 admits no height of w "
+        "(discriminant < 0), and it is folded at v2",
+        b * b - 4 * a * c < 0 and bool(heights[1] * bend),
+    )
+    closed = DART.with_notch_closed()
+    script.certificate(
+        "four boundary vertices, A > pi: closing T at v2 gives a triangulated triangle, whose "
+        "definite "
+        "stress makes m Kc = sum_v m_v K_v > 0 on every branch (docs/mathematics.md, 6; here: the "
+        "dart)",
+        closed.Ve == 3 and definite_stress(closed) is not None and DART.reflex_corner == 1,
+    )
+    before, after = count_branches(DART), count_branches(KITE)
+    factor = script.alter("no doubling at a reflex corner", 2, 1)
+    script.certificate(
+        "dart of degree 4 at its reflex corner: 4 branches; with w attached: 8, all real",
+        before.distinct == 4 and after.real == factor * before.distinct,
+    )
+    script.state(
+        "IV.4",
+        "Section IV, key property of H1 moves",
+        r"\text{faces around }v_2\text{ folded: ``always two distinct folded configurations of }T'"
+        r"\text{''}",
+        Ruling.CORRECTED,
+        r"\text{true if the angle of }T\text{ at }v_2\text{ is less than }\pi\text{, if "
+        r"}v_2\text{ has "
+        r"degree 3 in }T\text{, or (to second order) if }V_e=4\text{ and that angle is not }\pi",
+        "hub (0,0) with spokes (2,-1), (1,2), (-1,2), (-2,-1) at heights 0, 1, -1, 0 and w = "
+        "(0,-2): "
+        "|v1 v3| exceeds d_max and nothing can be attached, to second order and hence near the "
+        "unfolded state. Below pi it holds for true configurations too: the faces at v2 are a "
+        "chain of "
+        "arcs on a sphere, of length below pi, so that |v1 v3| < d_max as soon as it is bent",
+        "families.sample_h1_sequence",
+    )
+    script.state(
+        "IV.5",
+        "Section IV",
+        r"\text{``when the faces around }v_2\text{ are unfolded \dots\ we can only attach the "
+        r"butterfly "
+        r"in its unfolded state''}",
+        Ruling.AS_PRINTED,
+        note="delta = 0 is then a double root; if v1, v2, v3 are collinear the unfolded butterfly "
+        "can "
+        "still turn about that line",
+    )
+
+
+def _straight(script: Script) -> None:
+    """A = pi: one value a branch, and one new branch."""
+    r, s, m, t = sympy.symbols("rho_3 rho_1 rho_w t")
+    sine = 2 * t / (1 + t**2)
+    both = sector(r, m, t) + sector(m, s, 1 / t)
+    script.identity(
+        "beta_1 + beta_2 = pi: K_{v2} is linear in rho_w with coefficient (rho_1 + rho_3)/sin "
+        "beta_1",
+        sympy.diff(both, m) - (r + script.alter("wrong sign of rho_1", 1, -1) * s) / sine,
+    )
+    pattern = families.flat_vertex_square()
+    count = count_branches(pattern, method="groebner")
+    lost = script.alter("doubling through a straight corner", 3, 4)
+    script.counterexample(
+        "the square with a straight crease path: T (one vertex) has 2 branches, T' has 2 + 1 = 3, "
+        "of multiplicities 1, 1 and 2",
+        count.distinct == lost and sorted(b.multiplicity for b in count.branches) == [1, 1, 2],
+    )
+    script.state(
+        "IV.6",
+        "Section IV, assumption of no crosses",
+        r"\text{``these nongeneric collinearities can rigidify folds in a flat state''}",
+        Ruling.AS_PRINTED,
+        note="on one of the three branches of the flat-vertex square a whole vertex star stays "
+        "flat",
+        code="families.collinear_folds",
+    )
+    script.state(
+        "IV.7",
+        "Section IV, last argument",
+        r"\text{``for each H1 move, the number of 1D branches doubles \dots\ }2^{V_i}\text{ "
+        r"branches''}",
+        Ruling.CORRECTED,
+        r"\text{the number doubles exactly if }v_1,v_2,v_3\text{ are not collinear and no branch "
+        r"of }T"
+        r"\text{ is flat at }v_2",
+        "with multiplicity it always doubles. The absence of collinear folds is not the hypothesis "
+        "that the argument uses: crosses may be harmless (two straight creases through one "
+        "vertex: 2 "
+        "branches), and flatness at v2 must be excluded on every branch. If v1, v2, v3 are "
+        "collinear, "
+        "B branches become B + 1",
+        "count_branches",
+    )
+
+
+def _quadratic(
+    pattern: CreasePattern, hub: int, free: int, heights: dict[int, int]
+) -> tuple[Fraction, Fraction, Fraction]:
+    """Coefficients c, b, a of K_hub = c + b x + a x^2 in the height x of one vertex, hub at 0."""
+    form = curvature_form(pattern, hub)
+    known = {**{v: Fraction(x) for v, x in heights.items()}, hub: Fraction(0), free: Fraction(0)}
+    unit = {v: Fraction(v == free) for v in form.labels}
+    return form(known), 2 * form.polar(known, unit), form(unit)
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
