@@ -155,12 +155,8 @@ def test_sign_vanishes_where_the_star_is_flat():
     assert all(value(vertex_sign_functional(pattern, v), plane) == 0 for v in pattern.interior)
 
 
-def test_sign_is_that_of_a_folded_paper_cone():
-    """A true cone: fold a disk of paper with one mountain and three valleys, hub up.
-
-    Degree 4, spokes at 0, 90, 180, 270 degrees turned a little: the only equation is K = 0, and
-    on the branch where three folds share a sign the paper's vertex pops to their convex side.
-    """
+def test_degree_four_pops_to_the_side_of_its_three_like_folds():
+    """On the null cone (second order; no finite folding is built) Maekawa's count holds."""
     pattern = wheel([(5, 1), (-1, 4), (-6, -1), (2, -5)])
     functional = vertex_sign_functional(pattern, 4)
     bends = [fold_functional(pattern, (k, 4)) for k in range(4)]
