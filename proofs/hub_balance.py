@@ -186,10 +186,7 @@ def _induction_step(script: Script) -> None:
         sigma / beta.sin - sign * after / a.sin,
     )
     # Vectors, with u_{i-1} = (1, 0): no law of sines and no lengths are needed.
-    closed = (
-        before + sigma * a.cos + after * total.cos,
-        sigma * a.sin + after * total.sin,
-    )
+    closed = (before + sigma * a.cos + after * total.cos, sigma * a.sin + after * total.sin)
     script.identity(
         "sigma_i u_i + Delta sigma_{i-1} u_{i-1} + Delta sigma_{i+1} u_{i+1} = 0", *closed
     )
