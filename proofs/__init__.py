@@ -17,4 +17,5 @@ MODULES: tuple[str, ...] = (
     "kapovich_millson",
     "all_real",
     "butterfly",
+    "h1_triangulations",
 )
