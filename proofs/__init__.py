@@ -18,4 +18,5 @@ MODULES: tuple[str, ...] = (
     "all_real",
     "butterfly",
     "h1_triangulations",
+    "eigenvector",
 )

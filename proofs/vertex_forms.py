@@ -87,8 +87,7 @@ def prove(change: str | None = None) -> Proof:
 def _forms(script: Script) -> None:
     """One sector between spokes n and n+1 at a time; the forms are sums over the sectors."""
     t, s, L, M, h0, h, k = symbols("t s L M h0 h k")
-    u, v = unit(t), unit(s)
-    csc_, cot_ = csc(u, v), cot(u, v)
+    csc_, cot_ = csc(unit(t), unit(s)), cot(unit(t), unit(s))
     x, y = h - h0, k - h0
     curvature = (x / L) * (y / M) * csc_ - cot_ / 2 * ((x / L) ** 2 + (y / M) ** 2)
     spoke, next_spoke = (csc_ / M - cot_ / L) / L, (csc_ / L - cot_ / M) / M
@@ -186,8 +185,7 @@ def _null_directions(script: Script) -> None:
         "d_{n+1} = 0 (and the row of the hub is minus the sum of the others)",
         *(sign * a[i] / before + f * b[i] + sign * c[i] / after for i in range(2)),
     )
-    slope = symbols("gx gy ax ay cx cy")  # g . d_1 and g . d_N determine g unless they are parallel
-    g, a, c = slope[:2], slope[2:4], slope[4:]
+    g, a, c = (symbols("gx gy ax ay cx cy")[2 * i : 2 * i + 2] for i in range(3))
     script.identity(
         "an affine function that vanishes at the hub, d_1 and d_N is zero: its slope g satisfies "
         "c_N g = (g . d_1) J d_N - (g . d_N) J d_1, J the quarter turn, and c_N = d_N x d_1 is "
@@ -233,7 +231,7 @@ def _is_pinned_form(n: int) -> bool:
 
 def _determinant(script: Script) -> None:
     *angles, lp, lq, front = symbols("t1 tp tq tr lp lq front")
-    first, p, q, r = (unit(t) for t in angles)  # spokes 1, N, N+1, N+2
+    first, p, q, r = map(unit, angles)  # spokes 1, N, N+1, N+2
     chi = front * cross(first, p)  # front: the product of csc a_{n,n+1} / L_n^2 so far
     chi_1 = front * csc(p, q) / lp**2 * cross(first, q)
     chi_2 = front * csc(p, q) * csc(q, r) / (lp**2 * lq**2) * cross(first, r)

@@ -1,0 +1,300 @@
+"""Which way a vertex pops: the eigenvector h_-, the round cone, nappes and chambers.
+
+Section II B from the eigenvector on, and the vertex sign patterns of Section III B. K is the
+curvature form of a vertex; h_- is the eigenvector of its one positive eigenvalue, which is the one
+negative eigenvalue in the sign of Appendix C.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from fractions import Fraction
+from pathlib import Path
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+from exactfold import CreasePattern, curvature_form, definite_stress, random_square, wheel_stress
+from exactfold.exact.linalg import inertia, rank
+from exactfold.pattern.families import flat_octahedron_in_square, single_vertex
+from exactfold.rigidity.timelike import round_cone, vertex_sign_functional
+from proofs.framework import Proof, Ruling, Script, run
+from proofs.vertex_forms import cot, csc, dot, star, symbols, unit
+
+NAME = "eigenvector"
+TITLE = "The eigenvector h_-, popping up and down, and the chambers of sign patterns"
+HYPOTHESES = (
+    "flat vertices, all angles in (0, pi) with sum 2 pi, spokes of any lengths: K has inertia (1, "
+    "N-3, 3)",
+    "for chambers: a triangulated convex polygon",
+)
+SPIKY = [(1, 0), (3, 4), (-2, -1), (8, -2)]  # eigenvalues 4/5 and -31/8
+EIGENVECTOR = [25, 15, -9, -26, -5]  # its h_-, hub first
+CONVEX = [(0, -3), (2, 1), (1, 1), (-3, 1)]
+
+
+def prove(change: str | None = None) -> Proof:
+    """Statements on h_-, on the round cone, on popping and on chambers."""
+    script = Script(NAME, TITLE, HYPOTHESES, change)
+    _round_cone(script)
+    _nappes(script)
+    _curvature(script)
+    _components(script)
+    _popping(script)
+    _chambers(script)
+    return script.proof()
+
+
+def _round_cone(script: Script) -> None:
+    s, t, L, M = symbols("s t L M")
+    u, v = unit(s), unit(t)
+    half = (t - s) / (1 + s * t)  # tan(a/2), where s and t are tangents of half the directions
+    x, y = -L, -script.alter("cone up on one side, down on the other", M, -M)
+    sector = (x / L) * (y / M) * csc(u, v) - cot(u, v) / 2 * ((x / L) ** 2 + (y / M) ** 2)
+    script.identity(
+        "round cone t_0 = 0, t_j = -L_j: each sector contributes csc a - cot a = tan(a/2) to K",
+        sector - half,
+        csc(u, v) - cot(u, v) - half,
+    )
+    script.identity(
+        "(csc a - cot a)(csc a + cot a) = 1, and the two add up to 2 csc a: both are positive if "
+        "sin a > 0",
+        (csc(u, v) - cot(u, v)) * (csc(u, v) + cot(u, v)) - 1,
+    )
+    form = curvature_form(star(*SPIKY), 4)
+    script.certificate(
+        "the library's round cone has K > 0 where raising the hub has K < 0",
+        form(round_cone(star(*SPIKY), 4)) > 0 and form.matrix[0][0] == Fraction(-49, 48),
+    )
+    script.state(
+        "T.21",
+        "docs/conventions.md, vertex signs",
+        r"K_v(t)=\sum_j\tan(\alpha_{j,j+1}/2)>0\text{ for the round cone }t_j-t_v=-L_j",
+        Ruling.AS_PRINTED,
+        note="for every star with angles in (0, pi). Raising the hub alone has K = (1/2) sum_n "
+        "A_n, negative for some stars: -49/48 for spokes (1,0), (3,4), (-2,-1), (8,-2)",
+        code="round_cone",
+    )
+
+
+def _nappes(script: Script) -> None:
+    T, H, P = symbols("T H P")  # K(t), K(h), K(t, h)
+    script.identity(
+        "K(T h - P t) = T (T H - P^2) with T = K(t), P = K(t, h), H = K(h)",
+        T**2 * H - 2 * T * P * P + P**2 * T - T * (T * H - script.alter("P not squared", P**2, P)),
+    )
+    # If T > 0, K is negative semidefinite on the complement of t and zero only on affine functions,
+    # by the inertia (1, N-3, 3). So H = 0 = P only for affine h, and P does not vanish on a nappe.
+    script.certificate(
+        "inertia (1, N-3, 3), N = 3 to 8: if K(t) > 0, nothing but affine functions has K(h) = 0 "
+        "= K(t, h)",
+        all(curvature_form(single_vertex(n), n).inertia == (1, n - 3, 3) for n in range(3, 9)),
+    )
+    matrix = curvature_form(star(*SPIKY), 4).matrix
+    value = script.alter("another eigenvalue", Fraction(4, 5), Fraction(5, 4))
+    affine = [[1] * 5, [0, *(d[0] for d in SPIKY)], [0, *(d[1] for d in SPIKY)]]
+    script.certificate(
+        "K(h_-, h) = lambda h_- . h, and h_- . h = 0 for affine h (other eigenvalue): spokes "
+        "(1,0), (3,4), (-2,-1), (8,-2) have lambda = 4/5 and h_- = (25; 15, -9, -26, -5)",
+        all(_dot(row, EIGENVECTOR) == value * e for row, e in zip(matrix, EIGENVECTOR, strict=True))
+        and all(_dot(function, EIGENVECTOR) == 0 for function in affine),
+    )
+    script.state(
+        "IIB.24",
+        "Section II B, on the eigenvector",
+        r"\text{points on the two nappes are distinguished by the sign of their dot product with }"
+        r"\mathbf h_-\text{; the plane normal to it separates them}",
+        Ruling.AS_PRINTED,
+        note="h_- . h = K(h_-, h)/lambda with K(h_-) > 0. Any t with K(t) > 0 serves as well, "
+        "with K(t, h) in place of the dot product; the dot product does not change when an affine "
+        "function is added to h",
+        code="vertex_sign_functional",
+    )
+    script.state(
+        "IIIB.21",
+        "Section III B, vertex sign pattern",
+        r"\sigma_n=\mathrm{sgn}[\mathbf e_n\cdot\mathbf h]\text{; each }\mathbf e_n\text{ defines "
+        r"a hyperplane separating popped-up from popped-down configurations at }n",
+        Ruling.AS_PRINTED,
+        note="by IIB.24; sigma_n = 0 iff the star of n is flat. e_n belongs to the negative "
+        "eigenvalue in the sign of Appendix C (positive in that of Eq. (stressmatrix), see "
+        "IIB.21)",
+        code="vertex_sign_functional",
+    )
+
+
+def _dot(a: Iterable[Fraction | int], b: Iterable[int]) -> Fraction:
+    return sum((Fraction(x) * y for x, y in zip(a, b, strict=True)), Fraction(0))
+
+
+def _curvature(script: Script) -> None:
+    form = curvature_form(star(*SPIKY), 4)
+    top = script.alter("not the largest eigenvalue", Fraction(4, 5), Fraction(3, 4))
+    rest = [[top * (i == j) - form.matrix[i][j] for j in range(5)] for i in range(5)]
+    script.certificate(
+        "on unit vectors h = a h_- + y, K(h) = lambda a^2 + K(y) <= lambda: lambda I - K is "
+        "positive semidefinite, here of inertia (4, 0, 1)",
+        inertia(rest) == (4, 0, 1),
+    )
+    matrices = [form.matrix, curvature_form(star(*CONVEX), 4).matrix]
+    script.counterexample(
+        "spokes (1,0), (3,4), (-2,-1), (8,-2) and, with convex link, (0,-3), (2,1), (1,1), "
+        "(-3,1): one positive and one negative eigenvalue with sum -123/40 and -5/108, so that "
+        "|K| is larger at the other",
+        [sum(m[i][i] for i in range(5)) for m in matrices]
+        == [Fraction(-123, 40), Fraction(-5, 108)]
+        and all(inertia(m) == (1, 1, 3) for m in matrices),
+    )
+    script.state(
+        "IIB.25",
+        "Section II B, on the eigenvector",
+        r"\mathbf h_-\text{ gives a set of displacements that maximizes the change in the "
+        r"Gaussian curvature}",
+        Ruling.CORRECTED,
+        r"\mathbf h_-\text{ maximizes the Gaussian curvature }K\text{ among displacements of norm "
+        r"1, but not always }|K|",
+        note="the eigenvalue of largest magnitude can be negative: spokes (0,-3), (2,1), (1,1), "
+        "(-3,1)",
+        code="curvature_form",
+    )
+    script.state(
+        "IIB.26",
+        "Section II B, Fig. (conical)(b)",
+        r"\text{the eigendeformation of the negative eigenvalue gives the vertex positive "
+        r"Gaussian curvature}",
+        Ruling.AS_PRINTED,
+        note="negative in the sign of Appendix C, -2 K: K(h_-) = lambda |h_-|^2 > 0",
+    )
+
+
+def _components(script: Script) -> None:
+    h0, x, y, c, A = symbols("h0 x y c A")
+    rim = (x - y) ** 2 * (-1 / c) / 2
+    spoke = A * (h0 - x) ** 2 / 2
+    sign = script.alter("sign of the rim terms", 1, -1)
+    script.identity(
+        "off the diagonal K has + x_j x_{j+1}/c_j and - A_j h_0 x_j: with c_j > 0, A_j >= 0, "
+        "replacing h by (|h_0|, -|h_1|, ..., -|h_N|) does not lower K and keeps |h|",
+        rim - (sign * x * y / c - (x**2 + y**2) / (2 * c)),
+        spoke - (-A * h0 * x + A * (h0**2 + x**2) / 2),
+    )
+    square, ones = curvature_form(star((1, 0), (0, 1), (-1, 0), (0, -1)), 4), (-4, 1, 1, 1, 1)
+    # So that vector is h_- up to sign (simple eigenvalue). A zero at j would need, in row j of
+    # K h_- = lambda h_-, zeros at its rim neighbours (1/c > 0), so all round, and then at the hub.
+    script.certificate(
+        "h_- is orthogonal to constants: |hub| = sum of the neighbours' magnitudes, all of the "
+        "other sign, so each is smaller (N >= 3); e.g. four equal spokes: (-4, 1, 1, 1, 1)",
+        [_dot(row, ones) for row in square.matrix] == [5 * e for e in ones],
+    )
+    stress = wheel_stress(star(*SPIKY), 4)
+    script.counterexample(
+        "spokes (1,0), (3,4), (-2,-1), (8,-2): neighbour (-2,-1) moves by -26, the hub by 25, "
+        "neighbour (1,0) by +15; the link is reflex at (1,0)",
+        abs(EIGENVECTOR[3]) > abs(EIGENVECTOR[0])
+        and EIGENVECTOR[1] * EIGENVECTOR[0] > 0
+        and [stress[j, 4] < 0 for j in range(4)] == [True, False, False, False],
+    )
+    script.state(
+        "IIB.27",
+        "Section II B, on the eigenvector",
+        r"\text{the component of largest magnitude is the displacement at the vertex itself; the "
+        r"neighbouring vertices are moved by smaller amounts in the opposite direction}",
+        Ruling.CORRECTED,
+        r"\text{if the link polygon has no reflex corner (all spokes compressed or unstressed): "
+        r"}h_0=-\sum_jh_j\text{ with all }h_j\ne0\text{ of the sign opposite to }h_0.\text{ False "
+        r"for other links}",
+        note="spokes (1,0), (3,4), (-2,-1), (8,-2), eigenvalue 4/5, h_- = (25; 15, -9, -26, -5): "
+        "a neighbour moves more than the vertex, another one in the same direction",
+        code="curvature_form, round_cone",
+    )
+
+
+def _popping(script: Script) -> None:
+    s, t, p, q = symbols("s t p q")
+    u, v, half = unit(s), unit(t), (t - s) / (1 + s * t)
+    slope = (p, q)  # on a face rho(theta) = slope . (cos theta, sin theta)
+    integral = dot(slope, (v[1] - u[1], u[0] - v[0]))
+    x, y = dot(slope, u), dot(slope, v)
+    polar = -(x + y) / 2 * csc(u, v) + cot(u, v) / 2 * (x + y)
+    script.identity(
+        "in each sector the polar form with the round cone is -(1/2) tan(a/2) (psi_j + psi_{j+1}) "
+        "= -(1/2) int rho, rho the slope in direction theta: K(t, h) = -(1/2) int rho d theta",
+        integral - half * (x + y),
+        polar + script.alter("factor one half", 1, 2) * integral / 2,
+    )
+    # The area above the trace z = eps rho(theta) + ... on the sphere is 2 pi - eps int rho + ...
+    ring = [(5, 0, 0), (0, 3, 4), (-5, 0, 0), (0, -3, 4)]  # times 5
+    script.counterexample(
+        "four spokes at right angles, folded along a straight line: unit vectors (1,0,0), "
+        "(0,3/5,4/5), (-1,0,0), (0,-3/5,4/5) keep the angles and hold two antipodes, which lie in "
+        "no open hemisphere",
+        all(sum(a * b for a, b in zip(ring[k - 1], ring[k], strict=True)) == 0 for k in range(4))
+        and all(a == -b for a, b in zip(ring[0], ring[2], strict=True)),
+    )
+    script.state(
+        "IIB.28",
+        "Section II B, popped up and popped down",
+        r"\text{the trace of a folded origami vertex lies completely in an open hemisphere}",
+        Ruling.CORRECTED,
+        r"\text{in a closed hemisphere; in an open one unless the vertex is folded along a "
+        r"straight line only}",
+        note="the trace has length 2 pi: if it holds antipodes it consists of two great "
+        "semicircles. Then, too, one side has area less than 2 pi, and the definition of popping "
+        "is not affected. That all other closed curves of length 2 pi lie in an open hemisphere "
+        "is classical and not checked here",
+    )
+    script.state(
+        "IIB.29",
+        "Section II B, popped up and popped down",
+        r"\text{one of the nappes consists of popped up configurations and the other of popped "
+        r"down ones, so we can use dot products with }\mathbf h_-",
+        Ruling.AS_PRINTED,
+        note="near the unfolded state: for heights eps h the area above the trace is 2 pi + 2 eps "
+        "K(t, h) + O(eps^2), t the round cone, and K(t, h) is not 0 on a nappe. The printed "
+        "argument (the two types meet only in the unfolded state) needs connected nappes: for N = "
+        "4 they are two rays each",
+        code="vertex_sign_functional",
+    )
+
+
+def _is_independent(pattern: CreasePattern) -> bool:
+    rows = [vertex_sign_functional(pattern, v) for v in pattern.interior]
+    matrix = [[row.get(j, 0) for j in pattern.interior] for row in rows]
+    return rank(matrix) == pattern.Vi and definite_stress(pattern) is not None
+
+
+def _chambers(script: Script) -> None:
+    s, t, r = symbols("s t r")
+    before, after, u, v, w = (t - s) / (1 + s * t), (r - t) / (1 + t * r), unit(s), unit(t), unit(r)
+    weight = csc(u, v) - cot(u, v) + csc(v, w) - cot(v, w)
+    script.identity(
+        "K(t, h) = (1/2) sum_j m_j (h_0 - h_j), m_j = (tan(a_{j-1,j}/2) + tan(a_{j,j+1}/2))/L_j > "
+        "0: heights that are 0 on the boundary and have all K_v(t_v, h) = 0 vanish (maximum "
+        "principle)",
+        weight - before - script.alter("mean value weights", after, -after),
+    )
+    script.cases(
+        "these functionals have rank Vi on the interior heights, and sum m_v K_v, m_v > 0, is "
+        "positive definite there: heights with K_v(e_v, h) = 0, hence K_v(h) <= 0, at every v "
+        "vanish",
+        map(
+            _is_independent, [*(random_square(5, k) for k in range(3)), flat_octahedron_in_square()]
+        ),
+    )
+    script.state(
+        "IIIB.22",
+        "Section III B, chambers",
+        r"\text{the planes divide }\mathbb R^{V_i-V_t+1}\text{ into }2^{V_i-V_t}\text{ chambers, "
+        r"each the product of an orthant of }\mathbb R^{V_i-V_t}\text{ with a real line}",
+        Ruling.AS_PRINTED,
+        note="because the functionals e_v . h are independent: heights that are 0 on the "
+        "boundary, flat in the triangulated triangles, and have K_v(e_v, h) = 0 at the foldable v "
+        "have K_v(h) <= 0 everywhere, and vanish by the key lemma for convex polygons "
+        "(docs/theorem.md). The paper does not say why",
+        code="definite_stress, vertex_sign_functional",
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
