@@ -25,8 +25,7 @@ from proofs.vertex_forms import cot, csc, dot, star, symbols, unit
 NAME = "eigenvector"
 TITLE = "The eigenvector h_-, popping up and down, and the chambers of sign patterns"
 HYPOTHESES = (
-    "flat vertices, all angles in (0, pi) with sum 2 pi, spokes of any lengths: K has inertia (1, "
-    "N-3, 3)",
+    "flat vertices, angles in (0, pi) with sum 2 pi, spokes of any lengths: inertia (1, N-3, 3)",
     "for chambers: a triangulated convex polygon",
 )
 SPIKY = [(1, 0), (3, 4), (-2, -1), (8, -2)]  # eigenvalues 4/5 and -31/8

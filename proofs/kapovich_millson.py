@@ -49,10 +49,9 @@ def prove(change: str | None = None) -> Proof:
 
 def _minors(script: Script) -> None:
     *angles, length, front = symbols("t1 tp tq length front")
-    first, p, q = (unit(t) for t in angles)  # spokes 1, j, j+1
-    chi = front * cross(first, p)
+    first, p, q = map(unit, angles)  # spokes 1, j, j+1
+    chi, ratio = front * cross(first, p), cross(first, q) / cross(first, p)
     chi_next = front * csc(p, q) / length**2 * cross(first, q)
-    ratio = cross(first, q) / cross(first, p)
     script.identity(
         "chi(j+1)/chi(j) = csc a_{j,j+1} / L_j^2 . sin(a_12 + ... + a_{j,j+1}) / sin(a_12 + ... + "
         "a_{j-1,j})",
@@ -194,22 +193,22 @@ def _vanishing(script: Script) -> None:
     )
 
 
-def _germ(script: Script) -> None:
-    def samples() -> list[Spokes]:
-        source = random.Random(5)
-        found: list[Spokes] = []
-        while len(found) < 60:
-            n, reach = source.randint(3, 8), source.choice((1, 2, 9))
-            d = [(source.randint(-reach, reach), source.randint(-reach, reach)) for _ in range(n)]
-            if all(cross(d[k - 1], d[k]) for k in range(n)):
-                found.append(d)
-        return found
+def _samples() -> list[Spokes]:
+    source = random.Random(5)
+    found: list[Spokes] = []
+    while len(found) < 60:
+        n, reach = source.randint(3, 8), source.choice((1, 2, 9))
+        d = [(source.randint(-reach, reach), source.randint(-reach, reach)) for _ in range(n)]
+        found += [d] if all(cross(d[k - 1], d[k]) for k in range(n)) else []
+    return found
 
+
+def _germ(script: Script) -> None:
     shift = script.alter("signature with 2w + 1", 0, 1)
-    results = [kapovich_millson(d) for d in samples()]
+    results = [kapovich_millson(d) for d in _samples()]
     script.cases(
-        "inertia of the library's form is (f - 2w - 1, b + 2w - 1, 3); half of the stars have "
-        "steps of at most 2, and many vanishing minors",
+        "inertia of the library's form is (f - 2w - 1, b + 2w - 1, 3); in many of these stars "
+        "spokes are parallel to the first, so that minors vanish",
         (r.inertia == (r.predicted[0] - shift, r.predicted[1] + shift, 3) for r in results),
     )
     script.certificate(
@@ -234,9 +233,7 @@ def _germ(script: Script) -> None:
 
 def _lengths(d: Spokes) -> list[list[int]]:
     """Rigidity matrix of the wheel in the plane, hub first."""
-    points = [(0, 0), *d]
-    n = len(d)
-    rows = []
+    points, n, rows = [(0, 0), *d], len(d), []
     for i, j in [(0, k + 1) for k in range(n)] + [(k + 1, (k + 1) % n + 1) for k in range(n)]:
         row = [0] * (2 * n + 2)
         for axis in (0, 1):
@@ -247,6 +244,20 @@ def _lengths(d: Spokes) -> list[list[int]]:
 
 
 def _changes(script: Script) -> None:
+    f, b, w = symbols("f b w")
+    size = script.alter("size of the matrix", 1, 0) + f + b
+    script.identity(
+        "(f - 2w - 1) + (b + 2w - 1) + 3 = N + 1 with f + b = N; f = N, b = 0, w = 1: (N - 3, 1)",
+        (f - 2 * w - 1) + (b + 2 * w - 1) + 3 - size,
+    )
+    script.state(
+        "C.20",
+        "Appendix C, after Theorem 1 and in its proof",
+        r"\text{the matrix is }(n+1)\times(n+1),\ f+b=n;\text{ we showed the case "
+        r"}f=N,b=0,w=1\text{, and our sign convention agrees}",
+        Ruling.AS_PRINTED,
+        note="with the sign of Appendix C: (N - 3, 1); Eq. (compat) has the other sign (IIB.21)",
+    )
     stars = [kapovich_millson(d) for d in (PENTAGRAM, TWICE_BACK)]
     script.counterexample(
         "pentagram (f, b, w) = (5, 0, 2) and spokes (1,0), (-5,1), (-1,5), (0,-1), (-5,-2) with "
@@ -254,7 +265,6 @@ def _changes(script: Script) -> None:
         [(s.forward, s.back, s.winding, s.inertia) for s in stars]
         == [(5, 0, 2, (0, 3, 3)), (3, 2, 1, (0, 3, 3))],
     )
-    f, b, w = symbols("f b w")
     jump = script.alter("winding kept at pi", 1, 0)
     for name, change, expected in (("0", 0, -1), ("pi", jump, 1)):
         script.identity(
