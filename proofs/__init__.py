@@ -19,4 +19,6 @@ MODULES: tuple[str, ...] = (
     "butterfly",
     "h1_triangulations",
     "eigenvector",
+    "counting",
+    "discussion_counts",
 )

@@ -1,0 +1,270 @@
+"""Counts of Sections II C, III, V and Appendix D: unknowns, folds, assignments, chambers, "
+"angles."""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+import sympy
+
+from exactfold import BranchSystem, CreasePattern, count_branches, families
+from exactfold.rigidity.timelike import fold_functional
+from proofs.framework import Proof, Ruling, Script, run
+from proofs.mountain_valley import half_bend
+
+NAME = "counting"
+TITLE = "Degrees of freedom, folds, assignments and chambers"
+
+AS_PRINTED, CORRECTED, FALSE = Ruling.AS_PRINTED, Ruling.CORRECTED, Ruling.FALSE
+
+
+def prove(change: str | None = None) -> Proof:
+    """Every count that follows from Euler's formula and linear algebra."""
+    script = Script(NAME, TITLE, ("a triangulated disk with Vi, Ve vertices",), change)
+    _freedom(script)
+    _folds(script)
+    _chambers(script)
+    return script.proof()
+
+
+def _freedom(script: Script) -> None:
+    Vi, Ve = sympy.symbols("V_i V_e")
+    E, F = sympy.symbols("E F")
+    euler = sympy.solve([Vi + Ve - E + F - 1, 3 * F + Ve - 2 * E], [E, F])
+    folds = euler[E] - Ve
+    pins = script.alter("two pinned heights", 3, 2)
+    D = Ve - 3
+    script.identity(
+        "Vi + Ve heights, less 3 for planes and Vi equations: D = Ve - 3; less 3 only: D + Vi",
+        Vi + Ve - pins - Vi - D,
+        Vi + Ve - 3 - (D + Vi),
+    )
+    script.identity("Euler: 3 Vi + Ve - 3 folds", folds - (3 * Vi + Ve - 3))
+    a, b = sympy.symbols("a b")
+    script.identity(
+        "a chord cuts a disk into disks with a + b = Ve + 2 boundary vertices; the pieces share "
+        "one "
+        "edge and turn about it: (a - 3) + (b - 3) + 1 = Ve - 3, the same D",
+        (a - 3) + (b - 3) + script.alter("the chord does not turn", 1, 0) - (a + b - 2 - 3),
+    )
+    systems = [BranchSystem(p) for p in (families.waterbomb(), families.hypar(2))]
+    script.cases(
+        "the branch system has Vi quadrics in Vi + D heights",
+        (
+            len(s.quadrics) == s.pattern.Vi and len(s.variables) == s.pattern.Vi + s.pattern.D
+            for s in systems
+        ),
+    )
+    state = script.state
+    state(
+        "IIC.1",
+        "Section II C, Eq. (Dcount)",
+        r"D=V_e-3",
+        AS_PRINTED,
+        note="holds also with chords. With a convex boundary the dimension of the complex solution "
+        "set is exactly Ve - 3: for fixed boundary heights there are finitely many solutions "
+        "(definite stress, docs/mathematics.md, 6); transversality is not needed",
+        code="CreasePattern.degrees_of_freedom",
+    )
+    state(
+        "IIC.2",
+        "Section II C, after Eq. (Dcount)",
+        r"V_i+V_e-3=D+V_i\text{ nontrivial linear motions}",
+        AS_PRINTED,
+        code="BranchSystem.variables",
+    )
+    state(
+        "IIC.3",
+        "Section II C, before Eq. (Dcount) and Fig. (triangle)",
+        r"\text{all folds are incident to an internal vertex; other folds ``do not couple to any "
+        r"others''}",
+        AS_PRINTED,
+        note="a convenience: Eq. (Dcount) does not need it",
+        code="CreasePattern.chords",
+    )
+    state(
+        "IIC.4",
+        "Section II C",
+        r"\text{lines in }\mathbb R^{V_i+D}\text{ are points of }\mathbb{RP}^{V_i+D-1}",
+        AS_PRINTED,
+        code="Chart",
+    )
+    state(
+        "IIIA.1",
+        "Section III A",
+        r"V_i+1\text{ quadratic polynomials in }V_i+1\text{ heights, with }\sum_jh_j^2=1",
+        AS_PRINTED,
+        note="Vi + D = Vi + 1 for D = 1",
+    )
+    n = script.alter("one quadric too many", 1, 2)
+    script.certificate(
+        "Bezout: 2^(Vi + 1) zeros, in pairs +-h: half of them, 2^Vi, the Bezout number of the "
+        "chart",
+        all(
+            2 ** (p.Vi + n) // 2 == BranchSystem(p).chart.system.bezout_number
+            for p in (families.two_vertex(), families.hypar(1), families.h1_sequence(5))
+        ),
+    )
+    state(
+        "IIIA.2",
+        "Section III A, Bezout's theorem",
+        r"2^{V_i+1}\text{ roots; }B\text{ is half the number of real solutions; }B=2^{V_i}",
+        AS_PRINTED,
+        note="finite and all real for convex boundaries: proved elsewhere; counted with "
+        "multiplicity",
+        code="QuadraticSystem.bezout_number",
+    )
+
+
+def _folds(script: Script) -> None:
+    n = sympy.Symbol("n", positive=True)
+    square = families.hypar(2), families.two_vertex(), families.single_vertex(4)
+    more = script.alter("3 (n + 1) folds", 1, 3)
+    script.certificate(
+        "a triangulated square has 3n + 1 folds, n = Vi - Vt after emptying (Euler with Ve = 4)",
+        all(len(p.folds) == 3 * p.Vi + more for p in square),
+    )
+    emptied, _ = families.flat_octahedron_in_square().emptied()
+    script.certificate(
+        "the same for the emptied square around a flat octahedron (n = 3)",
+        len(emptied.folds) == 3 * (6 - 3) + 1,
+    )
+    exponent = script.alter("printed exponent n - 1", n, n - 1)
+    script.identity(
+        "2^n branches out of 2^(3n + 1) / 2 assignments: the share (1/4)^n; even with the printed "
+        "number of folds it would be (1/4)^(n + 1), not (1/4)^(n - 1)",
+        sympy.powsimp(2**n / (2 ** (3 * n + 1) / 2) * 4**exponent, force=True) - 1,
+        sympy.powsimp(2**n / (2 ** (3 * (n + 1)) / 2) * 4 ** (n + 1), force=True) - 1,
+    )
+    script.state(
+        "IIIA.3",
+        "Section III A, mountain and valley folds",
+        r"\text{the number of folds for a triangulated square is }3(V_i-V_t+1)",
+        CORRECTED,
+        r"3(V_i-V_t)+1",
+        "one vertex has 4 folds, not 6; agrees with Appendix D, 3Vi + 1; folds inside triangulated "
+        "triangles not counted",
+        "CreasePattern.folds",
+    )
+    script.state(
+        "IIIA.4",
+        "Section III A, mountain and valley folds",
+        r"2^{3(V_i-V_t+1)}/2\text{ mountain-valley assignments up to a global sign change}",
+        CORRECTED,
+        r"2^{3(V_i-V_t)+1}/2=2^{3(V_i-V_t)}",
+        "one vertex of degree four: 8",
+    )
+    script.state(
+        "IIIA.5",
+        "Section III A, mountain and valley folds",
+        r"\text{the fraction is at most }(1/4)^{V_i-V_t-1}",
+        CORRECTED,
+        r"\text{at most }(1/4)^{V_i-V_t}",
+        "the printed count of folds would give (1/4)^(Vi - Vt + 1); the printed exponent follows "
+        "from neither",
+    )
+    two = count_branches(families.two_vertex())
+    shares = Fraction(4, 2**7 // 2)
+    script.counterexample(
+        "two vertices: four branches with four different assignments out of 2^7 / 2, the share "
+        "(1/4)^2 itself",
+        two.distinct == 4
+        and two.repeated_assignments == 0
+        and shares == Fraction(1, 4) ** script.alter("exponent of the share", 2, 1),
+    )
+    script.state(
+        "IIIA.6",
+        "Section III A, mountain and valley folds",
+        r"\text{consistency constraints make that fraction ``certainly an overestimate''}",
+        FALSE,
+        r"\text{it is exactly }(1/4)^{V_i-V_t}\text{ whenever }2^{V_i-V_t}\text{ branches have "
+        r"different assignments}",
+        "there are constraints (a folded vertex has a bird's foot or a cross), but they do not "
+        "lower "
+        "the number of branches: equality in the two-vertex square, 4 of 64",
+        "BranchCount.repeated_assignments",
+    )
+    outcomes = [
+        (next(iter(b.vertex_signs.values())), b.assignment_text.count("M"))
+        for b in count_branches(families.single_vertex(4)).branches
+    ]
+    butterfly = CreasePattern([(0, 0), (1, 0), (0, 1), (1, -1)], [(0, 1, 2), (0, 3, 1)])
+    lifted = fold_functional(butterfly, (0, 1))
+    sign = script.alter("valleys bent downwards", 1, -1)
+    script.certificate(
+        "both wings raised is a valley, dihedral angle below pi on the upper side; a branch of a "
+        "vertex of degree 4 has three folds of one sign and pops to their side",
+        sign * lifted[2] > 0 < lifted[3] and all(o in ((1, 3), (-1, 1)) for o in outcomes),
+    )
+    script.state(
+        "I.1",
+        "Introduction",
+        r"\text{mountain and valley: dihedral angle larger or smaller than }\pi",
+        AS_PRINTED,
+        note="measured on the upper side of the sheet",
+        code="fold_functional",
+    )
+
+
+def _chambers(script: Script) -> None:
+    r, s, t = sympy.symbols("rho sigma t")
+    script.identity(
+        "K_v(round cone, h) = -(1/2) sum b_j = (1/2) sum_j w_j (h_v - h_j) with w_j = (tan(a_j/2) "
+        "+ "
+        "tan(a_(j-1)/2)) / L_j > 0: a weighted Laplacian. By the maximum principle these "
+        "functionals "
+        "are independent on the interior heights",
+        half_bend(r, s, t) + half_bend(s, r, t) - script.alter("wrong weight", 1, -1) * t * (r + s),
+    )
+    per = script.alter("one ray a chamber", 2, 1)
+    script.certificate(
+        "2^(n+1) rays, 2^n chambers, 2 rays a chamber; 2^n sign vectors, 2^(n-1) up to sign, 2 "
+        "branches each (n = 1 to 30; two vertices counted)",
+        all(2 ** (n + 1) == per * 2**n and 2**n == per * 2 ** (n - 1) for n in range(1, 31))
+        and sorted(count_branches(families.two_vertex()).sign_vectors.values()) == [2, 2],
+    )
+    script.state(
+        "IIIA.7",
+        "Section III A, after Eq. (B distinct)",
+        r"\text{the branches lie in a lower-dimensional }\mathbb R^{V_i-V_t+1}",
+        AS_PRINTED,
+        note="each of the Vt inner heights is the value of the plane through the triangle's "
+        "corners",
+        code="CreasePattern.emptied",
+    )
+    script.state(
+        "IIIB.1",
+        "Section III B",
+        r"2^{V_i-V_t}\text{ sign patterns, }2^{V_i-V_t-1}\text{ up to sign; a 4-fold vertex has "
+        r"one "
+        r"and two branches}",
+        AS_PRINTED,
+        code="BranchCount.sign_vectors",
+    )
+    script.state(
+        "IIIB.2",
+        "Section III B, chambers",
+        r"\text{the planes divide }\mathbb R^{V_i-V_t+1}\text{ into }2^{V_i-V_t}\text{ chambers, "
+        r"each "
+        r"an orthant times a line}",
+        AS_PRINTED,
+        note="if the normals are independent: always so for the functionals of the round cones, "
+        "which "
+        "have the same signs on branches; for the eigenvectors it is a hypothesis",
+        code="vertex_sign_functional",
+    )
+    script.state(
+        "IIIB.3",
+        "Section III B, chambers; Fig. (chambers)",
+        r"2^{V_i-V_t+1}\text{ rays, two in each chamber; four wedges for }V_i=2",
+        AS_PRINTED,
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))

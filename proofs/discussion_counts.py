@@ -1,0 +1,245 @@
+"""Counts of the table, the Discussion (Section V) and Appendix D."""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+import sympy
+
+from exactfold import CreasePattern, count_branches, curvature_form, families
+from exactfold.exact.linalg import inertia, nullspace, rank
+from exactfold.rigidity.timelike import fold_functional
+from proofs.framework import Proof, Ruling, Script, run
+
+NAME = "discussion_counts"
+TITLE = "Counts of the table, the Discussion and Appendix D"
+
+AS_PRINTED, CORRECTED, FALSE = Ruling.AS_PRINTED, Ruling.CORRECTED, Ruling.FALSE
+
+TABLE = {2: (100, 0, 0), 3: (5000, 0, 0), 4: (1000, 2, 0), 5: (1000, 1, 17)}
+TABLE |= {6: (1000, 1, 28), 7: (300, 0, 17), 8: (50, 0, 8)}
+"""Table (summary) by Vi: triangulations generated, with Vt > 0, with MV duplicates."""
+
+
+def prove(change: str | None = None) -> Proof:
+    """The numbers quoted from the computations, rigidified folds, dimensions of Appendix D."""
+    script = Script(NAME, TITLE, ("a triangulated disk with Vi, Ve vertices",), change)
+    _table(script)
+    _rigid_folds(script)
+    _orthogonality(script)
+    _appendix(script)
+    return script.proof()
+
+
+def _table(script: Script) -> None:
+    duplicates = [TABLE[v][2] for v in (5, 6, 7, 8)]
+    fractions = [Fraction(TABLE[v][2], TABLE[v][0]) for v in (5, 6, 7, 8)]
+    checked = script.alter("numbers instead of fractions", fractions, [*map(Fraction, duplicates)])
+    script.counterexample(
+        "MV duplicates for Vi = 5 to 8: 17, 28, 17, 8 do not increase, their fractions do",
+        sorted(checked) == checked and sorted(duplicates) != duplicates,
+    )
+    total, special = (sum(row[k] for row in TABLE.values()) for k in (0, 1))
+    script.certificate(
+        "4 of 8450 patterns have triangulated triangles, 4 of the 3350 with Vi >= 4",
+        (total, special) == (8450, 4) and sum(TABLE[v][0] for v in range(4, 9)) == 3350,
+    )
+    script.state(
+        "IIIA.8",
+        "Section III A, last paragraph",
+        r"\text{``with }V_i=5,6,7,8\text{ we found an increasing number of crease patterns''}",
+        CORRECTED,
+        r"\text{an increasing fraction: }1.7\%,\ 2.8\%,\ 5.7\%,\ 16\%",
+        "the numbers in Table (summary) are 17, 28, 17, 8; the Discussion says fraction",
+    )
+    script.state(
+        "IIIA.9",
+        "Section III A and Introduction",
+        r"\text{exceptions: 2, 1, 1 systems with }V_i=4,5,6\text{, frequency }\sim 1/1000",
+        AS_PRINTED,
+        note="4 of 3350 with Vi >= 4, where exceptions are possible; 4 of 8450 in all",
+    )
+
+
+def _rigid_folds(script: Script) -> None:
+    """D for non-triangulated origami."""
+    wheel = families.single_vertex(5)
+    form = curvature_form(wheel, 5)
+    weights = fold_functional(wheel, (0, 5))
+    basis = nullspace([[Fraction(weights.get(v, 0)) for v in form.labels]])
+    gram = [
+        [
+            form.polar(
+                dict(zip(form.labels, a, strict=True)), dict(zip(form.labels, b, strict=True))
+            )
+            for b in basis
+        ]
+        for a in basis
+    ]
+    rigid = script.alter("D = Ve - 4 - E", 3, 4)
+    script.counterexample(
+        "a vertex of degree 5 with one fold made rigid: inertia (1, 1, 3), two lines, D = 1 = 5 - "
+        "3 - 1",
+        inertia(gram) == (1, 1, 3) and wheel.Ve - rigid - 1 == 1,
+    )
+    side = 4
+    points = [(x, y) for y in range(side + 1) for x in range(side + 1)]
+    corners = [y * (side + 1) + x for y in range(side) for x in range(side)]
+    triangles = [
+        t for a in corners for t in ((a, a + 1, a + side + 2), (a, a + side + 2, a + side + 1))
+    ]
+    grid = CreasePattern(points, triangles)
+    heights = {v: Fraction(abs(x - 2)) for v, (x, _) in enumerate(points)}
+    diagonals = [(a, a + side + 2) for a in corners]
+    flat = all(
+        sum(w * heights[v] for v, w in fold_functional(grid, e).items()) == 0 for e in diagonals
+    )
+    script.counterexample(
+        "4 x 4 squares: Ve - 3 - E = 16 - 3 - 16 < 0, and yet the sheet folds along a straight "
+        "line",
+        all(curvature_form(grid, v)(heights) == 0 for v in grid.interior)
+        and flat
+        and grid.Ve - 3 - len(diagonals) < script.alter("the formula is not negative", 0, -3),
+    )
+    state = script.state
+    state(
+        "V.1",
+        "Section V, non-triangulated origami",
+        r"D=V_e-4-E",
+        CORRECTED,
+        r"D=V_e-3-E",
+        "E = 0 must give Eq. (Dcount); a vertex of degree 5 with one rigid fold has D = 1. A "
+        "count of "
+        "equations only, as V.2 shows",
+    )
+    state(
+        "V.2",
+        "Section V, non-triangulated origami",
+        r"\text{``When this formula becomes negative \dots\ we instead take }D=0\text{''}",
+        FALSE,
+        r"D\ge\max(0,V_e-3-E)\text{ is all that the count can give, near real solutions}",
+        "4 x 4 unit squares: Ve - 3 - E = -3, but heights |x - 2| fold it along a straight line",
+    )
+
+
+def _orthogonality(script: Script) -> None:
+    """Gradients orthogonal to all branches but one."""
+    branches = count_branches(families.two_vertex()).branches
+    rows = [[h for _, h in sorted(b.heights.items()) if any(h)] for b in branches]
+    triples = [[rows[i] for i in range(4) if i != k] for k in range(4)]
+    script.certificate(
+        "two vertices: any three of the four branches span R^3 (determinants of enclosures), so a "
+        "gradient orthogonal to three undesired branches is orthogonal to the fourth",
+        all(len(t[0]) == 3 and _independent(t) for t in triples),
+    )
+    least = script.alter("an obstruction already for one vertex", 2, 1)
+    script.certificate(
+        "2^V - 1 >= V + 1 exactly for V >= 2 (2^(V+1) - 2^V = 2^V >= 1: by induction)",
+        2**least - 1 >= least + 1 and 2 ** (least - 1) - 1 < least,
+    )
+    special = count_branches(families.flat_vertex_square(), method="groebner")
+    script.counterexample(
+        "the square with a flat vertex: two undesired branches do not span R^3",
+        special.distinct == script.alter("four branches there", 3, 4),
+    )
+    state = script.state
+    state(
+        "V.3",
+        "Section V",
+        r"N_F=3V_i+\mathrm{const}",
+        AS_PRINTED,
+        note="const = Ve - 3 = 1 for four boundary vertices",
+    )
+    state(
+        "V.4",
+        "Section V",
+        r"\sum_i\frac{\partial E}{\partial\theta_i}\Delta\theta_i\ge0\text{ on both rays: "
+        r"perpendicular}",
+        AS_PRINTED,
+        note="x >= 0 and -x >= 0 give x = 0",
+    )
+    state(
+        "V.5",
+        "Section V",
+        r"N_F=3V_i+\mathrm{const}\text{ and }2^{V_i}\text{ branches: orthogonality ``impossible''}",
+        CORRECTED,
+        r"\text{impossible as soon as the undesired branches span the }(V_i+1)\text{-dimensional "
+        r"space of foldings, which needs }2^{V_i}-1\ge V_i+1,\text{ i.e. }V_i\ge2",
+        "not a consequence of the two numbers alone: the square with a flat vertex has only two "
+        "undesired branches in R^3. For the two-vertex square it is impossible already",
+    )
+
+
+def _appendix(script: Script) -> None:
+    V = sympy.Symbol("V", positive=True)
+    square = script.alter("unordered pairs", 2, 1)
+    script.identity(
+        "2^(V+1) vectors, (2^(V+1))^2 = 4^(V+1) ordered pairs, each with itself included",
+        sympy.powsimp((2 ** (V + 1)) ** square / 4 ** (V + 1), force=True) - 1,
+    )
+    pairs = {v: TABLE[v][0] * 4 ** (v + 1) for v in TABLE}
+    script.certificate(
+        "angle pairs for Vi = 8: 2/3 of those for Vi = 7 and 4/5 of those for Vi = 6",
+        Fraction(pairs[8], pairs[7]) == Fraction(2, 3)
+        and Fraction(pairs[8], pairs[6]) == Fraction(4, 5),
+    )
+    outcomes = []
+    for pattern in (families.two_vertex(), families.hypar(1), families.h1_sequence(5)):
+        rows = [fold_functional(pattern, f) for f in pattern.folds]
+        size = len(pattern.vertices)
+        bends = rank([[row.get(v, 0) for v in range(size)] for row in rows])
+        outcomes.append((len(rows), bends) == (3 * pattern.Vi + 1, pattern.Vi + 1))
+    script.cases("3 Vi + 1 folds; the bends span a (Vi + 1)-dimensional space", outcomes)
+    state = script.state
+    place = "Appendix D"
+    state("D.1", place, r"3V_i+1\text{-dimensional space of dihedral angles}", AS_PRINTED)
+    state(
+        "D.2",
+        place,
+        r"\text{the branches lie in a }V_i+1\text{-dimensional linear subspace}",
+        AS_PRINTED,
+        note="heights modulo planes embed into the bends (IIA.13)",
+    )
+    state(
+        "D.3", place, r"2^{V_i+1}\text{ vectors},\ (2^{V_i+1})^2\text{ ordered pairs}", AS_PRINTED
+    )
+    state(
+        "D.4",
+        place + " and Fig. (v6)",
+        r"\text{points on the }V_i\text{-dimensional sphere; 6-dimensional for }V_i=6",
+        AS_PRINTED,
+        note="the unit sphere of R^(Vi+1)",
+    )
+    for key, figure, vertices in (("D.5", "v6", "V=6"), ("D.6", "distribution", "V=2-8")):
+        state(
+            key,
+            f"Appendix D, Fig. ({figure}) against the text",
+            r"\text{bins of size }\pi/32\text{ (caption), }\pi/128\text{ (text)}",
+            CORRECTED,
+            r"\text{one of the two; the source does not say which}",
+            f"also {vertices} is meant as a value of Vi",
+        )
+    state(
+        "D.7",
+        place,
+        r"\text{``the number of data points going into the histograms is comparable''}",
+        AS_PRINTED,
+        note="2/3 of the pairs for Vi = 7",
+    )
+
+
+def _independent(rows: list[list[tuple[Fraction, Fraction]]]) -> bool:
+    """Whether the determinant of a 3 x 3 matrix of intervals cannot vanish."""
+    middle = [[(low + high) / 2 for low, high in row] for row in rows]
+    radius = max(high - low for row in rows for low, high in row)
+    largest = 1 + max(abs(x) for row in middle for x in row)
+    return bool(abs(sympy.Matrix(middle).det()) > 18 * radius * largest**2)
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
