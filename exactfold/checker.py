@@ -362,46 +362,65 @@ def check_triangles(sheet: Sheet, evidence: Any) -> Sheet:
 
 
 class BranchSystem:
-    """K_v = 0 with three boundary vertices at height 0 and the fourth, `unit`, at height 1.
+    """K_v = 0 with three boundary vertices at height 0, in an affine chart.
 
-    `unit` is the first boundary vertex, in cyclic order from the smallest index, at which the
-    affine dependency of the four does not vanish; height 1 there is a positive boundary saddle.
+    By default the fourth boundary vertex, `unit`, has height 1: it is the first, in cyclic order
+    from the smallest index, at which the affine dependency of the four (the boundary saddle) does
+    not vanish, so that the saddle is positive. Given a functional, `unit` is the reflex corner and
+    its height is such that the functional is 1.
     """
 
-    def __init__(self, sheet: Sheet) -> None:
+    def __init__(self, sheet: Sheet, functional: dict[int, Fraction] | None) -> None:
         self.sheet, b = sheet, sheet.boundary
         corners = [sheet.points[v] for v in b]
-        self.unit = next(v for k, v in enumerate(b) if turn(*(corners[:k] + corners[k + 1 :])))
-        self.variables = sheet.interior
-        self.size = len(self.variables)
-        self.quadrics = []
-        for v in sheet.interior:
-            form = sheet.curvature(v)
-            rows = {}
-            for (i, j), w in form.items():
-                p, q = self.position(i), self.position(j)
-                if p is not None and q is not None and w:
-                    rows[p, q] = w
-            scale = lcm(*(w.denominator for w in rows.values()))
-            whole = {pq: int(w * scale) for pq, w in rows.items()}
-            common = gcd(*whole.values())
-            self.quadrics.append({pq: w // common for pq, w in whole.items()})
+        saddle = [turn(*(corners[:k] + corners[k + 1 :])) * (-1) ** k for k in range(4)]
+        first = next(k for k in range(4) if saddle[k])
+        self.saddle = {v: weight / saddle[first] for v, weight in zip(b, saddle, strict=True)}
+        self.unit = b[first]
+        if functional is not None:
+            turns = [turn(corners[k - 1], corners[k], corners[(k + 1) % 4]) for k in range(4)]
+            self.unit = b[next((k for k in range(4) if turns[k] < 0), 0)]
+            require(set(functional) <= {self.unit, *sheet.interior}, "a bad chart functional")
+        functional = functional or {self.unit: Fraction(1)}
+        lead = functional.get(self.unit)
+        require(lead, "the chart functional does not fix the height of its corner")
+        self.size = len(sheet.interior)
+        self.lifts: dict[int, dict[int, Fraction]] = {v: {} for v in b}  # heights over (x, 1)
+        self.lifts |= {v: {k: Fraction(1)} for k, v in enumerate(sheet.interior)}
+        weights = {k: -functional.get(v, Fraction(0)) for k, v in enumerate(sheet.interior)}
+        weights[self.size] = Fraction(1)
+        self.lifts[self.unit] = {k: w / Fraction(lead or 1) for k, w in weights.items() if w}
+        self.quadrics = [self._quadric(sheet.curvature(v)) for v in sheet.interior]
 
-    def position(self, vertex: int) -> int | None:
-        """Place of a vertex in (x, 1); None if its height is 0."""
-        if vertex == self.unit:
-            return self.size
-        return self.variables.index(vertex) if vertex in self.sheet.interior else None
+    def _quadric(self, form: Form) -> dict[tuple[int, int], int]:
+        """A form on (x, 1), with coprime integer coefficients."""
+        rows: Form = {}
+        for (i, j), w in form.items():
+            for p, x in self.lifts[i].items():
+                for q, y in self.lifts[j].items():
+                    rows[p, q] = rows.get((p, q), Fraction(0)) + w * x * y
+        scale = lcm(*(w.denominator for w in rows.values()))
+        whole = {pq: int(w * scale) for pq, w in rows.items() if w}
+        common = gcd(*whole.values())
+        return {pq: w // common for pq, w in whole.items()}
 
     def row(self, functional: dict[int, Fraction]) -> list[int]:
         """A linear functional of the heights as integers (c_1, ..., c_n, c_0), signs kept."""
         row = [Fraction(0)] * (self.size + 1)
         for v, weight in functional.items():
-            place = self.position(v)
-            if place is not None:
-                row[place] += weight
-        scale = lcm(*(Fraction(w).denominator for w in row))
+            for place, x in self.lifts[v].items():
+                row[place] += weight * x
+        scale = lcm(*(w.denominator for w in row))
         return [int(w * scale) for w in row]
+
+
+def read_chart(evidence: Any) -> dict[int, Fraction] | None:
+    """The functional of the chart, if the evidence names one."""
+    if evidence is None:
+        return None
+    if not isinstance(evidence, dict):
+        raise CertificateError("the chart is neither null nor a functional")
+    return {parse_integer(v): parse_rational(c) for v, c in evidence.items()}
 
 
 # --- isolated roots ------------------------------------------------------------------------------
@@ -556,7 +575,7 @@ def check_disjoint(boxes: list[Box]) -> None:
 
 def check_isolated(system: BranchSystem, evidence: Any) -> list[tuple[Root, int]]:
     """All zeros by Krawczyk and refined Bezout: a list of (root, multiplicity)."""
-    keys(evidence, "kind triangles roots", "evidence")
+    keys(evidence, "kind triangles chart roots", "evidence")
     boxes = [Box(entry, system.size) for entry in items(evidence["roots"], "roots")]
     if system.size:
         test = Krawczyk(system)
@@ -799,7 +818,7 @@ def check_finite(sheet: Sheet, multipliers: Any) -> None:
 
 def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Root, int]], int]:
     """All zeros as roots of polynomials: (real roots with multiplicities, non-real ones)."""
-    keys(evidence, "kind triangles multipliers separating classes roots", "evidence")
+    keys(evidence, "kind triangles chart multipliers separating classes roots", "evidence")
     check_finite(system.sheet, evidence["multipliers"])
     separating = [
         natural_or_negative(s) for s in items(evidence["separating"], "separating", system.size)
@@ -1019,7 +1038,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
         require(not branches, "a branch of dimension two or more is not listed")
     elif kind in ("isolated", "algebraic"):
         require(len(sheet.boundary) == 4 and sheet.interior, "the sheet has not D = 1")
-        system, nonreal = BranchSystem(emptied), 0
+        system, nonreal = BranchSystem(emptied, read_chart(evidence.get("chart"))), 0
         if kind == "isolated":
             roots = check_isolated(system, evidence)
         else:
@@ -1061,11 +1080,13 @@ def check_branches(
     emptied = system.sheet
     vertex_rows = {v: system.row(emptied.sign_of_vertex(v)) for v in emptied.interior}
     fold_rows = {f: system.row(emptied.bend(f)) for f in emptied.folds}
+    saddle = system.row(system.saddle)
     for number, ((root, multiplicity), branch) in enumerate(zip(roots, branches, strict=True)):
         keys(branch, "vertex_signs assignment multiplicity", f"branch {number}")
-        signs = {f: root.sign(row) for f, row in fold_rows.items()}
+        side = -1 if root.sign(saddle) == -1 else 1  # a branch is shown by its positive saddle
+        signs = {f: turned(root.sign(row), side) for f, row in fold_rows.items()}
         close_flat(emptied, signs)
-        at = {v: root.sign(row) for v, row in vertex_rows.items()}
+        at = {v: turned(root.sign(row), side) for v, row in vertex_rows.items()}
         up_down = [{1: "+", -1: "-", 0: "0", None: "?"}[at.get(v, 0)] for v in sheet.interior]
         letters = [{1: "V", -1: "M", 0: "F", None: "?"}[signs.get(f, 0)] for f in sheet.folds]
         for key, text in (("vertex_signs", up_down), ("assignment", letters)):
@@ -1078,6 +1099,11 @@ def check_branches(
             and branch["multiplicity"] == multiplicity << removed,
             f"branch {number}: multiplicity is {multiplicity << removed}",
         )
+
+
+def turned(sign: int | None, side: int) -> int | None:
+    """A sign seen from one side of the sheet or the other."""
+    return None if sign is None else sign * side
 
 
 def main(arguments: list[str]) -> int:

@@ -131,7 +131,7 @@ def count(
     result = replace(result, snapped=file.snapped)
     written = None
     if certificate is not None and result.status is PROVED:
-        write_certificate(certificate, certificate_of(result))
+        write_certificate(certificate_of(result), certificate)
         written = str(certificate)
     elif certificate is not None:
         print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)

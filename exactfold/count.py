@@ -11,7 +11,7 @@ from exactfold.branches.classify import Undecided, classify
 from exactfold.branches.result import BranchCount
 from exactfold.branches.roots import AlgebraicRoot, BoxRoot, Root
 from exactfold.certify.algebraic import algebraic_evidence, prove_algebraic
-from exactfold.certify.certificate import box_evidence, triangle_evidence
+from exactfold.certify.certificate import box_evidence, chart_evidence, triangle_evidence
 from exactfold.certify.isolation import Isolation, isolate
 from exactfold.certify.rigid_triangles import RigidTriangle, certify_rigid_triangles
 from exactfold.errors import NoInteriorVertexError
@@ -19,7 +19,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.groebner import groebner
 from exactfold.solve.methods import METHODS, Choice, choose, find_candidates
-from exactfold.system.branch_system import BranchSystem, Chart
+from exactfold.system.branch_system import BranchSystem, Chart, notch_chart
 from exactfold.verdict import PROVED, UNDECIDED
 
 __all__ = ["METHODS", "count_branches"]
@@ -157,7 +157,11 @@ class _Task:
             reason=reason,
             open_questions=(),
             with_multiplicity=self.total << self.pattern.Vt,
-            evidence={"triangles": triangle_evidence(self.triangles), **evidence},
+            evidence={
+                "triangles": triangle_evidence(self.triangles),
+                "chart": chart_evidence(self.chart, self.labels),
+                **evidence,
+            },
             **counts,
         )
 
@@ -169,16 +173,27 @@ def _lines(
     seed: int,
     progress: Progress | None,
 ) -> BranchCount:
-    """D = 1: branches are isolated lines, zeros of the emptied pattern's system."""
+    """D = 1: branches are isolated lines, zeros of the emptied pattern's system.
+
+    Solutions at infinity of the chart `saddle = 1` are possible for a reflex corner only; then the
+    chart of the closed notch, which misses none, is tried as well.
+    """
     emptied, labels = pattern.emptied()
-    chart = BranchSystem(emptied).chart
-    task = _Task(pattern, triangles, chart, labels, choose(method), progress)
-    size = chart.system.size
+    task = _Task(pattern, triangles, BranchSystem(emptied).chart, labels, choose(method), progress)
+    result = _in_chart(task, method, seed)
+    if result.status is PROVED or emptied.is_convex:
+        return result
+    again = _in_chart(replace(task, chart=notch_chart(emptied)), method, seed)
+    return again if again.status is PROVED else result
+
+
+def _in_chart(task: _Task, method: str, seed: int) -> BranchCount:
+    """Solve in one chart; "auto" turns to the exact engine for small systems left open."""
+    size = task.chart.system.size
     if task.choice.method == "groebner" and size:
         return _exactly(task)
-    result = _isolated(
-        task, find_candidates(chart, method, seed=seed, progress=task.stage("solving"))
-    )
+    stage = task.stage("solving")
+    result = _isolated(task, find_candidates(task.chart, method, seed=seed, progress=stage))
     if result.status is PROVED or method != "auto":
         return result
     if size > GROEBNER_LIMIT:

@@ -88,7 +88,7 @@ def test_package_is_out_of_reach_of_the_copy(tmp_path):
 
 @pytest.mark.parametrize("name", ["random", "hypar proper", "triangle", "nine folds", "nested"])
 def test_runs_alone(tmp_path, name):
-    write_certificate(tmp_path / "c.json", proof(name))
+    write_certificate(proof(name), tmp_path / "c.json")
     result = alone(tmp_path, "c.json")
     assert (result.returncode, result.stderr) == (0, "")
     assert result.stdout.startswith("VALID: ")
@@ -129,14 +129,14 @@ def test_main_refuses_other_files(tmp_path, capsys, content, code):
 
 
 def test_main_prints_the_verdict(tmp_path, capsys):
-    write_certificate(tmp_path / "c.json", proof("dart"))
+    write_certificate(proof("dart"), tmp_path / "c.json")
     assert checker.main([str(tmp_path / "c.json")]) == 0
     assert "VALID: 2 branches (2 with multiplicity, 2 real)" in capsys.readouterr().out
     assert checker.main([]) == 2
     capsys.readouterr()
     false = proof("dart")
     false["claims"]["folds"] = 5
-    write_certificate(tmp_path / "f.json", false)
+    write_certificate(false, tmp_path / "f.json")
     assert checker.main([str(tmp_path / "f.json")]) == 1
     assert capsys.readouterr().out == "INVALID: claim folds = 5, but it is 4\n"
 
@@ -448,6 +448,7 @@ def test_algebraic_evidence_for_simple_roots_is_accepted():
     evidence = {
         "kind": "algebraic",
         "triangles": [],
+        "chart": None,
         **algebraic_evidence(proved, [(b.root.root_class, b.root.index) for b in branches]),
     }
     claims = proof("dart")["claims"]

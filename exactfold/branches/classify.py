@@ -39,8 +39,9 @@ def classify(
     """Branches for proved roots of the emptied pattern's chart, sorted by vertex signs.
 
     `chart` belongs to the emptied pattern, whose vertex k is `labels[k]` of `pattern`; each root
-    comes with its multiplicity there. A sign that a box does not decide is tried on sharper boxes
-    of the same root, then by `flat_folds`; roots with an open sign are returned apart.
+    comes with its multiplicity there and is mirrored if its boundary saddle is negative. A sign
+    that a box does not decide is tried on sharper boxes of the same root, then by `flat_folds`;
+    roots with an open sign are returned apart.
     """
     emptied = chart.branch_system.pattern
     functionals = Functionals(chart)
@@ -70,6 +71,11 @@ def _decide(
     emptied: CreasePattern, chart: Chart, functionals: Functionals, root: Root
 ) -> tuple[Root, dict[int, int | None], dict[Edge, int | None]]:
     """Signs of all vertices and folds at the root, and the (sharpest) root used."""
+    for bits in _RISING:
+        if root.sign(functionals.saddle) is None:
+            root = _sharpen(chart, root, bits) or root
+    if root.sign(functionals.saddle) == -1:
+        root = root.mirrored()
     vertices = {v: root.sign(row) for v, row in functionals.vertices.items()}
     folds = {fold: root.sign(row) for fold, row in functionals.folds.items()}
     for bits in _RISING:
@@ -96,7 +102,7 @@ def _sharpen(chart: Chart, root: Root, bits: int) -> Root | None:
     if not isinstance(root, BoxRoot) or root.box.bits >= bits:
         return None
     sharper = krawczyk_at(chart.system, root.box, bits)
-    return BoxRoot(sharper) if isinstance(sharper, IsolatingBox) else None
+    return BoxRoot(sharper, root.side) if isinstance(sharper, IsolatingBox) else None
 
 
 def _height_rows(

@@ -9,7 +9,11 @@ from functools import cached_property
 
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.pattern.crease_pattern import Edge
-from exactfold.rigidity.timelike import fold_functional, vertex_sign_functional
+from exactfold.rigidity.timelike import (
+    fold_functional,
+    saddle_functional,
+    vertex_sign_functional,
+)
 from exactfold.system.branch_system import Chart
 
 Row = tuple[int, ...]
@@ -46,6 +50,12 @@ class Functionals:
             fold: integer_row(self.chart.restrict(fold_functional(pattern, fold)))
             for fold in pattern.folds
         }
+
+    @cached_property
+    def saddle(self) -> Row:
+        """The boundary saddle of a sheet with four boundary vertices."""
+        pattern = self.chart.branch_system.pattern
+        return integer_row(self.chart.restrict(saddle_functional(pattern)))
 
     @cached_property
     def heights(self) -> Mapping[int, tuple[Fraction, ...]]:

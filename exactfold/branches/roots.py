@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Protocol
 
@@ -22,12 +22,16 @@ class Root(Protocol):
     def sign(self, row: Row) -> int | None:
         """Sign of the value: 1, -1, 0 only if it is proved to vanish, None if undecided."""
 
+    def mirrored(self) -> Root:
+        """The same branch seen from below: all values change their sign."""
+
 
 @dataclass(frozen=True)
 class BoxRoot:
-    """The one zero of the system in an isolating box."""
+    """The one zero of the system in an isolating box; with side -1, its mirror image."""
 
     box: IsolatingBox
+    side: int = 1
 
     def enclose(self, row: Sequence[Fraction | int]) -> tuple[Fraction, Fraction]:
         """Bounds of the value over the whole box."""
@@ -40,6 +44,7 @@ class BoxRoot:
                 value += c * m
                 reach += c if c > 0 else -c
         reach *= box.radius
+        value *= self.side
         return (value - reach) / scale, (value + reach) / scale
 
     def sign(self, row: Row) -> int | None:
@@ -54,18 +59,23 @@ class BoxRoot:
                 reach += abs(c)
         reach *= box.radius
         if value > reach:
-            return 1
+            return self.side
         if value < -reach:
-            return -1
+            return -self.side
         return 0 if value == 0 and reach == 0 else None
+
+    def mirrored(self) -> BoxRoot:
+        """The mirror image."""
+        return replace(self, side=-self.side)
 
 
 @dataclass(frozen=True)
 class AlgebraicRoot:
-    """The zero of a root class that belongs to the `index`-th real root of its polynomial."""
+    """The zero of a root class at the `index`-th real root of p; with side -1, its mirror image."""
 
     root_class: RootClass
     index: int
+    side: int = 1
 
     def interval(self, bits: int) -> Interval:
         """Bounds of the parameter T, no wider than 2^-bits."""
@@ -78,7 +88,7 @@ class AlgebraicRoot:
         while True:
             found = self.root_class.value_on(row, self.interval(bits))
             if found is not None and (found[1] - found[0]) * (1 << 64) <= scale:
-                return found
+                return found if self.side > 0 else (-found[1], -found[0])
             bits *= 2
 
     def sign(self, row: Row) -> int | None:
@@ -89,5 +99,9 @@ class AlgebraicRoot:
         while True:
             found = self.root_class.value_on(row, self.interval(bits))
             if found is not None and (found[0] > 0 or found[1] < 0):
-                return 1 if found[0] > 0 else -1
+                return self.side if found[0] > 0 else -self.side
             bits *= 2
+
+    def mirrored(self) -> AlgebraicRoot:
+        """The mirror image."""
+        return replace(self, side=-self.side)

@@ -12,6 +12,7 @@ from exactfold.certify.rigid_triangles import RigidTriangle
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold_writing import write_text
+from exactfold.system.branch_system import BranchSystem, Chart
 
 FORMAT = "exactfold certificate"
 VERSION = 1
@@ -58,6 +59,18 @@ def triangle_evidence(triangles: Iterable[RigidTriangle]) -> list[Document]:
     ]
 
 
+def chart_evidence(chart: Chart, labels: Sequence[int]) -> Document | None:
+    """None for the chart `saddle = 1`, else the functional that is 1, by vertex.
+
+    Pinned vertices have height 0 and are left out; `labels` names the vertices in the certificate.
+    """
+    system = chart.branch_system
+    if chart == system.chart and system.pinned == BranchSystem(system.pattern).pinned:
+        return None
+    free = {labels[v]: c for v, c in chart.functional.items() if v not in system.pinned}
+    return {str(v): format_rational(c) for v, c in sorted(free.items())}
+
+
 def box_evidence(boxes: Sequence[IsolatingBox]) -> list[Document]:
     """Real isolating boxes, in the order of the claimed branches."""
     return [
@@ -70,6 +83,6 @@ def box_evidence(boxes: Sequence[IsolatingBox]) -> list[Document]:
     ]
 
 
-def write_certificate(path: str | os.PathLike[str], certificate: Document) -> None:
+def write_certificate(certificate: Document, path: str | os.PathLike[str]) -> None:
     """Write a certificate whole or not at all; raises `UnwritableFileError`."""
     write_text(path, json.dumps(certificate, separators=(",", ":")) + "\n")

@@ -23,6 +23,7 @@ _ORDER = 8
 _BLOCK = 4096
 _MAX_STEPS = 400
 _MIN_STEP = 1e-12
+_INFINITY = 1e-12
 
 
 def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
@@ -159,7 +160,10 @@ def _size(pattern: CreasePattern) -> Fraction:
 
 
 def _to_chart(chart: Chart, heights: FloatArray) -> FloatArray:
-    """The same sheets in the gauge of the chart: pinned vertices at 0, functional 1."""
+    """The same sheets in the gauge of the chart: pinned vertices at 0, functional 1.
+
+    Sheets at infinity of the chart, on which the functional vanishes, are left out.
+    """
     pattern = chart.branch_system.pattern
     size, (x0, y0) = _size(pattern), pattern.vertices[0]
     plane = np.array(
@@ -171,8 +175,9 @@ def _to_chart(chart: Chart, heights: FloatArray) -> FloatArray:
     weights = np.zeros(len(plane))
     for v, weight in chart.functional.items():
         weights[v] = float(weight)
-    level /= (level @ weights)[:, None]
-    return np.asarray(level[:, list(chart.variables)])
+    values = level @ weights
+    reached = np.abs(values) > _INFINITY * np.abs(level).max(axis=1, initial=0.0)
+    return np.asarray((level[reached] / values[reached, None])[:, list(chart.variables)])
 
 
 def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, npt.NDArray[np.bool_], int]:

@@ -11,7 +11,7 @@ from exactfold.errors import CollinearPointsError, NotApplicableError, UsageErro
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.rigidity.timelike import saddle_functional
+from exactfold.rigidity.timelike import saddle_functional, vertex_sign_functional
 from exactfold.system.quadratic import QuadraticSystem
 
 
@@ -78,6 +78,24 @@ class BranchSystem:
         functional = {v: c for v, c in saddle_functional(self.pattern).items() if c}
         eliminated = next(v for v in functional if v not in self.pinned)
         return Chart(self, functional, eliminated)
+
+
+def notch_chart(pattern: CreasePattern) -> Chart:
+    """For a quadrilateral with a reflex corner r: the chart `K_r(t, h) = 1` of the closed sheet.
+
+    With the notch closed by a triangle, K_r > 0 on every solution (docs/theorem.md, section 4), so
+    the sign functional of r vanishes on none: unlike the saddle, it leaves no branch at infinity.
+    Pinned are the other three corners. Raises `NotApplicableError` for other boundaries.
+    """
+    corner = pattern.reflex_corner
+    if corner is None or pattern.Ve != 4:
+        raise NotApplicableError(
+            "only a boundary of four vertices, one of them reflex, has a notch"
+        )
+    system = BranchSystem(pattern, [v for v in pattern.boundary if v != corner])
+    signs = vertex_sign_functional(pattern.with_notch_closed(), corner)
+    functional = {v: Fraction(c, abs(signs[corner])) for v, c in signs.items() if c}
+    return Chart(system, functional, corner)
 
 
 @dataclass(frozen=True)
