@@ -16,9 +16,12 @@ MODULES: tuple[str, ...] = (
     "mountain_valley",
     "kapovich_millson",
     "all_real",
+    "potential",
     "butterfly",
     "h1_triangulations",
     "eigenvector",
     "counting",
     "discussion_counts",
+    "branch_counts",
+    "multiplicity",
 )

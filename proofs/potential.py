@@ -1,0 +1,179 @@
+"""What makes the branch system special: a cubic potential, and paths that cannot cross."""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+from sympy import QQ
+from sympy.polys.fields import field
+
+from exactfold import BranchSystem, count_branches, curvature_form, random_square
+from exactfold.branches.roots import BoxRoot
+from exactfold.exact.linalg import inertia
+from exactfold.rigidity.timelike import round_cone
+from proofs.framework import Proof, Ruling, Script, run
+
+NAME = "potential"
+TITLE = "The cubic potential, the inertia of the Jacobian, and the popping homotopy"
+
+Vector = tuple[Any, Any]
+
+
+def prove(change: str | None = None) -> Proof:
+    """The claims behind the solvers (docs/theorem.md, section 5)."""
+    script = Script(NAME, TITLE, ("any straight-line triangulation of a disk",), change)
+    script.state(
+        "T.31",
+        "Statement of exactfold on the branch system",
+        r"\partial K_v/\partial h_w = \partial K_w/\partial h_v \text{ for interior } v, w",
+        Ruling.AS_PRINTED,
+        note="so the forms are the gradient of a cubic in the interior heights",
+        code="curvature_form",
+    )
+    script.state(
+        "T.32",
+        "Statement of exactfold on the Jacobian at a branch",
+        r"\text{inertia} = (\#\text{popped up}, \#\text{popped down}) "
+        r"\text{ where no vertex is flat}",
+        Ruling.AS_PRINTED,
+        note="tested exactly, not proved here",
+        code="BranchSystem",
+    )
+    script.state(
+        "T.33",
+        "Statement of exactfold on the popping homotopy",
+        r"(1-T)(l_v^2-k)+TK_v=0,\ e_vl_v>0: \text{ real, regular and unique for } 0\le T<1",
+        Ruling.AS_PRINTED,
+        note="docs/theorem.md, section 5",
+        code="popping",
+    )
+    _symmetry(script)
+    _lorentzian_along_the_path(script)
+    _inertia_of_jacobian(script)
+    return script.proof()
+
+
+def _corner(d: Vector, e: Vector, x: Any, y: Any, u: Any, v: Any) -> Any:
+    """Polar form, at (x, y) and (u, v), of what a face with spokes d, e adds to K."""
+    c, s = d[0] * e[1] - d[1] * e[0], d[0] * e[0] + d[1] * e[1]
+    dd, ee = d[0] ** 2 + d[1] ** 2, e[0] ** 2 + e[1] ** 2
+    return (x * v + y * u) / (2 * c) - s / (2 * c) * (x * u / dd + y * v / ee)
+
+
+def _symmetry(script: Script) -> None:
+    """K_v(e_x, e_w) = K_w(e_x, e_v) for an edge vw with faces vwa and wvb, x any of the four."""
+    _, *z = field("w1 w2 a1 a2 b1 b2", QQ)
+    at = {"v": (0 * z[0], 0 * z[0]), "w": (z[0], z[1]), "a": (z[2], z[3]), "b": (z[4], z[5])}
+    swap = script.alter("one face of the edge forgotten", 2, 1)
+
+    def polar(hub: str, first: str, second: str) -> Any:
+        other = "w" if hub == "v" else "v"
+        faces = [(other, "a"), ("b", other)] if hub == "v" else [("a", other), (other, "b")]
+        total = 0 * z[0]
+        for j, k in faces[:swap]:
+            spokes = [(at[n][0] - at[hub][0], at[n][1] - at[hub][1]) for n in (j, k)]
+            one, two = (
+                [int(name == n) - int(name == hub) for n in (j, k)] for name in (first, second)
+            )
+            total += _corner(spokes[0], spokes[1], one[0], one[1], two[0], two[1])
+        return total
+
+    for x in "vwab":
+        script.identity(
+            f"K_v(e_{x}, e_w) = K_w(e_{x}, e_v)", polar("v", x, "w") - polar("w", x, "v")
+        )
+    script.cases(
+        "the same for the package's forms on random squares",
+        (
+            curvature_form(p, v).functional(_unit(p, v, w))[x]
+            == curvature_form(p, w).functional(_unit(p, w, v))[x]
+            for p in (random_square(5, seed) for seed in range(4))
+            for v, w in p.folds
+            if v in p.interior and w in p.interior
+            for x in {v, w, *p.opposite((v, w))}
+        ),
+    )
+
+
+def _unit(pattern: Any, hub: int, vertex: int) -> dict[int, Fraction]:
+    labels = curvature_form(pattern, hub).labels
+    return {v: Fraction(int(v == vertex)) for v in labels}
+
+
+def _lorentzian_along_the_path(script: Script) -> None:
+    """K^T = (1 - T) l^2 + T K keeps one positive direction and the key lemma, for 0 < T <= 1."""
+    _, kt, kth, kh, T = field("Ktt Kth Kh T", QQ)
+    sign = script.alter("N with the wrong sign", 1, -1)
+    square = kth**2 / kt  # l(h)^2, scaled so that K = l^2 - N
+    n_of_h = square - kh
+    script.identity(
+        "(1 - T) l^2 + T K = l^2 - T N with N = l^2 - K",
+        (1 - T) * square + T * kh - (square - sign * T * n_of_h),
+    )
+    residual = kh - 2 * (kth / kt) * kth + (kth / kt) ** 2 * kt  # K(h - (K(t,h)/K(t,t)) t)
+    script.identity(
+        "N(h) = -K(h - K(t,h)/K(t,t) t): minus K on the complement of t, where K <= 0",
+        n_of_h + residual,
+    )
+    script.identity(
+        "T K = K^T - (1 - T) l^2: where K^T <= 0 and 0 < T <= 1, also K <= 0 (key lemma)",
+        T * kh - ((1 - T) * square + T * kh) + (1 - T) * square,
+    )
+    script.cases(
+        "N is positive semidefinite of nullity 4 for the package's round cones (exact inertia)",
+        (_n_inertia(p, v) for p in (random_square(5, s) for s in range(5)) for v in p.interior),
+    )
+
+
+def _n_inertia(pattern: Any, vertex: int) -> bool:
+    form = curvature_form(pattern, vertex)
+    cone = round_cone(pattern, vertex)
+    line = form.functional(cone)
+    size = form(cone)
+    matrix = [
+        [line[a] * line[b] / size - form.matrix[i][j] for j, b in enumerate(form.labels)]
+        for i, a in enumerate(form.labels)
+    ]
+    positive, negative, zero = inertia(matrix)
+    return negative == 0 and zero == 4 and positive == len(form.labels) - 4
+
+
+def _inertia_of_jacobian(script: Script) -> None:
+    """Exact inertia of the matrix K_v(m, e_w) at the rational centre m of each isolating box."""
+    swapped = script.alter("up and down exchanged", False, True)
+
+    def agree(interior: int, seed: int) -> list[bool]:
+        pattern = random_square(interior, seed)
+        chart = BranchSystem(pattern).chart
+        outcomes = []
+        for branch in count_branches(pattern).branches:
+            if not isinstance(branch.root, BoxRoot):
+                return [False]
+            box = branch.root.box
+            heights = chart.heights([Fraction(m, 1 << box.bits) for m in box.real])
+            rows = {v: curvature_form(pattern, v).functional(heights) for v in pattern.interior}
+            found = inertia(
+                [
+                    [(rows[v].get(w, 0) + rows[w].get(v, 0)) / Fraction(2) for w in rows]
+                    for v in rows
+                ]
+            )
+            signs = list(branch.vertex_signs.values())
+            expected = (signs.count(1), signs.count(-1), 0)
+            outcomes.append(found == (expected[1::-1] + (0,) if swapped else expected))
+        return outcomes
+
+    script.cases(
+        "inertia of the Jacobian = (popped up, popped down) on every branch of random squares",
+        (ok for n in (2, 3, 4) for seed in range(5) for ok in agree(n, seed)),
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
