@@ -70,18 +70,18 @@ def _symmetry(script: Script) -> None:
     """K_v(e_x, e_w) = K_w(e_x, e_v) for an edge vw with faces vwa and wvb, x any of the four."""
     _, *z = field("w1 w2 a1 a2 b1 b2", QQ)
     at = {"v": (0 * z[0], 0 * z[0]), "w": (z[0], z[1]), "a": (z[2], z[3]), "b": (z[4], z[5])}
-    swap = script.alter("one face of the edge forgotten", 2, 1)
+    lowered = script.alter("slope of the wrong spoke", 0, 1)
 
     def polar(hub: str, first: str, second: str) -> Any:
         other = "w" if hub == "v" else "v"
         faces = [(other, "a"), ("b", other)] if hub == "v" else [("a", other), (other, "b")]
         total = 0 * z[0]
-        for j, k in faces[:swap]:
+        for j, k in faces:
             spokes = [(at[n][0] - at[hub][0], at[n][1] - at[hub][1]) for n in (j, k)]
             one, two = (
                 [int(name == n) - int(name == hub) for n in (j, k)] for name in (first, second)
             )
-            total += _corner(spokes[0], spokes[1], one[0], one[1], two[0], two[1])
+            total += _corner(spokes[lowered], spokes[1 - lowered], *one, *two)
         return total
 
     for x in "vwab":
@@ -166,7 +166,7 @@ def _inertia_of_jacobian(script: Script) -> None:
             )
             signs = list(branch.vertex_signs.values())
             expected = (signs.count(1), signs.count(-1), 0)
-            outcomes.append(found == (expected[1::-1] + (0,) if swapped else expected))
+            outcomes.append(found == ((*expected[1::-1], 0) if swapped else expected))
         return outcomes
 
     script.cases(
