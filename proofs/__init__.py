@@ -17,6 +17,7 @@ MODULES: tuple[str, ...] = (
     "kapovich_millson",
     "all_real",
     "potential",
+    "certification",
     "butterfly",
     "h1_triangulations",
     "eigenvector",
