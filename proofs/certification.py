@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
@@ -68,15 +69,15 @@ def _contraction(script: Script) -> None:
     half = script.alter("Hessian doubled", 1, 2)
     forms = [z[10:16], z[16:22]]  # p u^2 + q u v + r v^2 + s u + t v + w
 
-    def value(q, at):  # type: ignore[no-untyped-def]
+    def value(q: Any, at: Any) -> Any:
         u, v = at
         return q[0] * u**2 + q[1] * u * v + q[2] * v**2 + q[3] * u + q[4] * v + q[5]
 
-    def gradient(q, at):  # type: ignore[no-untyped-def]
+    def gradient(q: Any, at: Any) -> list[Any]:
         u, v = at
         return [2 * q[0] * u + q[1] * v + q[3], q[1] * u + 2 * q[2] * v + q[4]]
 
-    def hessian(q, s, t):  # type: ignore[no-untyped-def]
+    def hessian(q: Any, s: Any, t: Any) -> Any:
         return 2 * q[0] * s[0] * t[0] + q[1] * (s[0] * t[1] + s[1] * t[0]) + 2 * q[2] * s[1] * t[1]
 
     step = [p - q for p, q in zip(x, y, strict=True)]
@@ -104,8 +105,8 @@ def _numbers(script: Script) -> None:
 
     def isolates(roots: list[tuple[Fraction, Fraction]]) -> bool:
         (a, b), (c, d) = roots
-        first = [[1, 0, -(a + c) / 2], [0, 0, 0], [-(a + c) / 2, 0, a * c]]
-        second = [[0, 0, 0], [0, 1, -(b + d) / 2], [0, -(b + d) / 2, b * d]]
+        first: list[list[Any]] = [[1, 0, -(a + c) / 2], [0, 0, 0], [-(a + c) / 2, 0, a * c]]
+        second: list[list[Any]] = [[0, 0, 0], [0, 1, -(b + d) / 2], [0, -(b + d) / 2, b * d]]
         system = QuadraticSystem.from_rational([first, second])
         point = (a + shift, d + shift)
         (box,) = krawczyk(system, [[float(a), float(d)]])
