@@ -233,6 +233,19 @@ def _straight(script: Script) -> None:
         "of multiplicities 1, 1 and 2",
         count.distinct == lost and sorted(b.multiplicity for b in count.branches) == [1, 1, 2],
     )
+    counts = [count_branches(families.h1_sequence(k, seed)) for k in (1, 2, 3) for seed in (0, 1)]
+    script.cases(
+        "random H1 sequences without collinear folds double at each of three moves",
+        (c.distinct == c.real == 2**c.pattern.Vi for c in counts),
+    )
+    script.state(
+        "IV.14",
+        "Section IV, last argument",
+        r"\text{the seed and the first butterfly: two intersecting lines, ``a letter X''}",
+        Ruling.AS_PRINTED,
+        note="v2 has degree 3 in the seed, so the doubling needs only that its fold is bent",
+        code="families.single_vertex",
+    )
     script.state(
         "IV.6",
         "Section IV, assumption of no crosses",
@@ -251,12 +264,14 @@ def _straight(script: Script) -> None:
         r"\text{the number doubles exactly if }v_1,v_2,v_3\text{ are not collinear and no branch "
         r"of }T"
         r"\text{ is flat at }v_2",
-        "with multiplicity it always doubles. The absence of collinear folds is not the hypothesis "
-        "that the argument uses: crosses may be harmless (two straight creases through one "
-        "vertex: 2 "
-        "branches), and flatness at v2 must be excluded on every branch. If v1, v2, v3 are "
-        "collinear, "
-        "B branches become B + 1",
+        "with four boundary vertices; with multiplicity it always doubles. That no folds are "
+        "collinear "
+        "is not what the argument uses: crosses may be harmless (two straight creases through one "
+        "vertex: 2 branches), and flatness at v2 must be excluded. It is excluded by itself where "
+        "A > "
+        "pi, and where A < pi and no neighbour of v2 lies inside the triangle v1 v2 v3 (cut v2 off "
+        "along v1 v3: what is left is a triangulated triangle, hence rigid). If v1, v2, v3 are "
+        "collinear, B branches become B + 1",
         "count_branches",
     )
 

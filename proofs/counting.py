@@ -45,6 +45,10 @@ def _freedom(script: Script) -> None:
         Vi + Ve - 3 - (D + Vi),
     )
     script.identity("Euler: 3 Vi + Ve - 3 folds", folds - (3 * Vi + Ve - 3))
+    script.identity(
+        "folded sheets: 3 V - 6 coordinates modulo motions less E lengths is Ve - 3 as well",
+        3 * (Vi + Ve) - script.alter("planar motions only", 6, 3) - euler[E] - D,
+    )
     a, b = sympy.symbols("a b")
     script.identity(
         "a chord cuts a disk into disks with a + b = Ve + 2 boundary vertices; the pieces share "
@@ -77,6 +81,13 @@ def _freedom(script: Script) -> None:
         r"V_i+V_e-3=D+V_i\text{ nontrivial linear motions}",
         AS_PRINTED,
         code="BranchSystem.variables",
+    )
+    state(
+        "IIC.11",
+        "Section II C, after Eq. (Dcount)",
+        r"\text{Eq. (Dcount) ``recovers the count \dots\ derived from a linear analysis''}",
+        AS_PRINTED,
+        note="3V - 6 - E = Ve - 3 with E = 3Vi + 2Ve - 3",
     )
     state(
         "IIC.3",

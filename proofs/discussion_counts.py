@@ -173,6 +173,33 @@ def _orthogonality(script: Script) -> None:
         "not a consequence of the two numbers alone: the square with a flat vertex has only two "
         "undesired branches in R^3. For the two-vertex square it is impossible already",
     )
+    theta, target, k = sympy.symbols("theta target k")
+    pull = script.alter("gradient with the wrong sign", -1, 1)
+    script.identity(
+        "the gradient of (1/2) k (theta - target)^2 at the unfolded state is -k target",
+        sympy.diff(k * (theta - target) ** 2 / 2, theta).subs(theta, 0) - pull * k * target,
+    )
+    octahedron = families.flat_octahedron_in_square()
+    script.counterexample(
+        "Vi = 6 with a flat octahedron: 8 branches, an open set of geometries; without: 64",
+        count_branches(octahedron).distinct == 2 ** (6 - octahedron.Vt) == 8
+        and octahedron.Vi == script.alter("six interior vertices", 6, 3),
+    )
+    state(
+        "V.6",
+        "Section V, first displayed formula",
+        r"E[x]=\frac12\sum_{(n,m)}k_{(n,m)}(\theta_{(n,m)}-\bar\theta_{(n,m)})^2",
+        AS_PRINTED,
+        note="a definition: a weighted squared distance, with gradient -k theta-bar when unfolded",
+    )
+    state(
+        "V.7",
+        "Section V",
+        r"\text{in generic patterns with }D=1\text{ the number of branches depends only on }V_i",
+        CORRECTED,
+        r"\text{generically only on }V_i-V_t;\text{ with multiplicity, only on }V_i",
+        "triangulated triangles persist under small changes of the vertices, so they are generic",
+    )
 
 
 def _appendix(script: Script) -> None:
