@@ -105,6 +105,17 @@ def _freedom(script: Script) -> None:
         AS_PRINTED,
         code="Chart",
     )
+    script.identity(
+        "Vi equations in RP^(Vi + D - 1) leave D - 1 dimensions", Vi + D - 1 - Vi - D + 1
+    )
+    state(
+        "IIC.12",
+        "Section II C",
+        r"\text{the components are generically }(D-1)\text{-dimensional, the branches cones over "
+        r"them}",
+        AS_PRINTED,
+        note="with a convex boundary every component has that dimension over C",
+    )
     state(
         "IIIA.1",
         "Section III A",

@@ -111,6 +111,16 @@ def _bends(script: Script) -> None:
         "K(t) = sum_j tan(a_j / 2) > 0",
         sector(-1, -1, t) - script.alter("cotangent for tangent", t, 1 / t),
     )
+    script.state(
+        "IIIB.4",
+        "Section III B",
+        r"\sigma_n=\mathrm{sgn}[\mathbf e_n\cdot\mathbf h]",
+        Ruling.AS_PRINTED,
+        note="K(e, h) is the eigenvalue times e . h. As e_n is timelike, on a null vector h that "
+        "is not flat at n the sign is that of the "
+        "nappe; it is also that of -sum b_j, and of every other timelike vector that points up",
+        code="vertex_sign_functional",
+    )
 
 
 def _inequality(script: Script) -> None:
@@ -119,7 +129,7 @@ def _inequality(script: Script) -> None:
     y = sympy.Matrix(sympy.symbols("y1:4"))
     s = script.alter("wrong sign of the spacelike part", -1, 1)
     script.identity(
-        "null vectors (1, x), (1, y) of one nappe: 2 (1 - x.y) = |x - y|^2 + (1 - |x|^2) + "
+        "(1, x), (1, y) with |x|, |y| <= 1: 2 (1 - x.y) = |x - y|^2 + (1 - |x|^2) + "
         "(1 - |y|^2), so B > 0 unless they are proportional",
         2 * (1 + s * x.dot(y)) - (x - y).dot(x - y) - (1 - x.dot(x)) - (1 - y.dot(y)),
     )
