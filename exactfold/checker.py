@@ -379,7 +379,9 @@ class BranchSystem:
         self.unit = b[first]
         if functional is not None:
             turns = [turn(corners[k - 1], corners[k], corners[(k + 1) % 4]) for k in range(4)]
-            self.unit = b[next((k for k in range(4) if turns[k] < 0), 0)]
+            reflex = [v for v, t in zip(b, turns, strict=True) if t < 0]
+            require(reflex, "a chart other than the saddle's needs a reflex corner")
+            self.unit = reflex[0]  # the other three corners span a triangle
             require(set(functional) <= {self.unit, *sheet.interior}, "a bad chart functional")
         functional = functional or {self.unit: Fraction(1)}
         lead = functional.get(self.unit)
@@ -996,6 +998,7 @@ def digits(n: int) -> str:
     return digits(high) + digits(low).rjust(half, "0")
 
 
+UPSIDE_DOWN = str.maketrans("+-MV", "-+VM")
 COUNTS = "distinct with_multiplicity real nonreal true_branches"
 
 
@@ -1082,18 +1085,23 @@ def check_branches(
     fold_rows = {f: system.row(emptied.bend(f)) for f in emptied.folds}
     saddle = system.row(system.saddle)
     for number, ((root, multiplicity), branch) in enumerate(zip(roots, branches, strict=True)):
-        keys(branch, "vertex_signs assignment multiplicity", f"branch {number}")
-        side = -1 if root.sign(saddle) == -1 else 1  # a branch is shown by its positive saddle
-        signs = {f: turned(root.sign(row), side) for f, row in fold_rows.items()}
+        keys(branch, "vertex_signs assignment multiplicity representative", f"branch {number}")
+        signs = {f: root.sign(row) for f, row in fold_rows.items()}
         close_flat(emptied, signs)
-        at = {v: turned(root.sign(row), side) for v, row in vertex_rows.items()}
-        up_down = [{1: "+", -1: "-", 0: "0", None: "?"}[at.get(v, 0)] for v in sheet.interior]
-        letters = [{1: "V", -1: "M", 0: "F", None: "?"}[signs.get(f, 0)] for f in sheet.folds]
-        for key, text in (("vertex_signs", up_down), ("assignment", letters)):
-            require(
-                "?" not in text and branch[key] == "".join(text),
-                f"branch {number}: {key} {branch[key]!r}, but it is {''.join(text)}",
-            )
+        at = {v: root.sign(row) for v, row in vertex_rows.items()}
+        up_down = "".join("-0+?"[1 + digit(at.get(v, 0))] for v in sheet.interior)
+        letters = "".join("MFV?"[1 + digit(signs.get(f, 0))] for f in sheet.folds)
+        require("?" not in up_down + letters, f"branch {number}: signs are open")
+        seen = (up_down, letters)
+        mirror = (up_down.translate(UPSIDE_DOWN), letters.translate(UPSIDE_DOWN))
+        side = root.sign(saddle)
+        allowed = {1: (seen,), -1: (mirror,)}.get(side or 0, (seen, mirror))
+        require(
+            (branch["vertex_signs"], branch["assignment"]) in allowed
+            and branch["representative"] == ("saddle" if side else "either"),
+            f"branch {number}: not {' or '.join(map(' '.join, allowed))} as shown by "
+            f"{'its positive saddle' if side else 'either side'}",
+        )
         require(
             type(branch["multiplicity"]) is int
             and branch["multiplicity"] == multiplicity << removed,
@@ -1101,9 +1109,9 @@ def check_branches(
         )
 
 
-def turned(sign: int | None, side: int) -> int | None:
-    """A sign seen from one side of the sheet or the other."""
-    return None if sign is None else sign * side
+def digit(sign: int | None) -> int:
+    """-1, 0 or 1 for a sign, 2 for an open one."""
+    return 2 if sign is None else sign
 
 
 def main(arguments: list[str]) -> int:

@@ -455,3 +455,35 @@ def test_algebraic_evidence_for_simple_roots_is_accepted():
     rest = {k: v for k, v in claims.items() if k not in ("interior", "boundary", "folds")}
     made = assemble(pattern, rest, evidence, {})
     assert checker.check(json.loads(json.dumps(made))) == claims
+
+
+def test_chart_with_collinear_pins_is_refused() -> None:
+    """Three pinned corners on a line would leave a rigid rotation, which is no branch."""
+    sheet = [("0", "2"), ("-2", "0"), ("0", "0"), ("2", "0"), ("1/2", "1")]
+    pattern = CreasePattern(sheet, [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
+    forged = certificate(count_branches(pattern))
+    forged["evidence"] = {**forged["evidence"], "chart": {"0": "1"}}
+    with pytest.raises(checker.CertificateError, match="reflex"):
+        checker.check(forged)
+
+
+ZERO_SADDLE = [(2, -2), ("2/3", 0), (2, 2), (-2, 0), (0, 0)]
+
+
+def test_branch_of_zero_saddle_may_be_shown_from_either_side() -> None:
+    pattern = CreasePattern(ZERO_SADDLE, [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
+    made = certificate(count_branches(pattern))
+    shown = [branch["representative"] for branch in made["claims"]["branches"]]
+    assert sorted(shown) == ["either", "saddle"]
+    assert checker.check(made)["distinct"] == 2
+    flip = str.maketrans("+-MV", "-+VM")
+    for index, representative in enumerate(shown):
+        mirrored = json.loads(json.dumps(made))
+        branch = mirrored["claims"]["branches"][index]
+        for key in ("vertex_signs", "assignment"):
+            branch[key] = branch[key].translate(flip)
+        if representative == "either":
+            assert checker.check(mirrored)["distinct"] == 2
+        else:
+            with pytest.raises(checker.CertificateError, match="positive saddle"):
+                checker.check(mirrored)

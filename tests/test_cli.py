@@ -30,7 +30,7 @@ COUNT_KEYS = {
     *("true_branches", "certificate", "seconds", "branches"),
 }
 EXTRA_KEYS = {"reason", "why", "open_questions", "settings"}
-BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "heights"}
+BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
 
 CORNERS = [[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0.25]]
 FACES = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]

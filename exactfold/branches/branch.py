@@ -18,13 +18,16 @@ class Branch:
 
     `vertex_signs`: interior vertex -> +1 popped up, -1 popped down, 0 proved flat. `assignment`:
     fold (i, j) -> "M" mountain, "V" valley, "F" proved flat, seen from +z. `multiplicity` is that
-    of the solution of the branch system. `heights` encloses the height of every vertex.
+    of the solution of the branch system. `representative` is "saddle", or "either" if the saddle is
+    not proved to differ from 0 (reflex boundaries only): then either side may be shown. `heights`
+    encloses the height of every vertex.
     """
 
     vertex_signs: Mapping[int, int]
     assignment: Mapping[Edge, str]
     multiplicity: int
     root: Root
+    representative: str
     height_rows: Mapping[int, tuple[Fraction, ...]]
 
     @cached_property
@@ -57,6 +60,7 @@ class Branch:
             "vertex_signs": {str(v): s for v, s in sorted(self.vertex_signs.items())},
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(self.assignment.items())},
             "multiplicity": self.multiplicity,
+            "representative": self.representative,
             "heights": {
                 str(v): [format_rational(low), format_rational(high)]
                 for v, (low, high) in sorted(self.heights.items())

@@ -29,6 +29,7 @@ def certificate(result: BranchCount) -> Document:
                 "vertex_signs": branch.sign_text,
                 "assignment": branch.assignment_text,
                 "multiplicity": branch.multiplicity,
+                "representative": branch.representative,
             }
             for branch in result.branches
         ],

@@ -62,7 +62,9 @@ def classify(
         letters |= {
             (labels[i], labels[j]): _LETTERS[s] for (i, j), s in fold_signs.items() if s is not None
         }
-        branches.append(Branch(signs, letters, multiplicity << pattern.Vt, root, height_rows))
+        shown = "saddle" if root.sign(functionals.saddle) else "either"
+        weight = multiplicity << pattern.Vt
+        branches.append(Branch(signs, letters, weight, root, shown, height_rows))
     branches.sort(key=Branch.sort_key)
     return branches, undecided
 

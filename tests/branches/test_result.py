@@ -120,7 +120,8 @@ def test_keys_of_the_json_are_fixed():
     assert set(data["pattern"]) == {
         *("interior", "boundary", "folds", "degrees_of_freedom", "sha256", "snapped"),
     }
-    assert set(data["branches"][0]) == {"vertex_signs", "assignment", "multiplicity", "heights"}
+    keys = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
+    assert set(data["branches"][0]) == keys
 
 
 def test_sign_vectors_take_opposite_ones_together():
