@@ -34,6 +34,7 @@ Form = dict[tuple[int, int], Fraction]
 Poly = list[Any]
 
 FORMAT, VERSION = "exactfold certificate", 1
+MOST_BITS, MOST_UNKNOWNS = 1 << 14, 12  # bounds on the work one file can ask for
 
 
 class CertificateError(Exception):
@@ -459,6 +460,8 @@ class Krawczyk:
             gradients.append(row)  # 2^bits times the gradient
             values.append(sum(a * b for a, b in zip(row, z, strict=True)))  # 2^(2 bits + 1) F
         for y, shift in self._preconditioners(gradients, bits):
+            if shift + bits < 0:
+                continue
             unit, k0, bound, eta = 1 << (shift + bits), 0, 0, 0
             for i, weights in enumerate(y):
                 sums = [0] * n
@@ -527,10 +530,10 @@ class Box(Root):
     def __init__(self, entry: Any, size: int) -> None:
         keys(entry, "bits radius center", "root")
         self.bits = natural(entry["bits"], "bits")
-        require(self.bits <= 1 << 20, "bits are out of range")
-        self.radius = parse_integer(text_of(entry["radius"]))
+        require(self.bits <= MOST_BITS, "bits are out of range")
+        self.radius = parse_integer(short(entry["radius"]))
         require(self.radius > 0, "the radius is not positive")
-        self.center = [parse_integer(text_of(m)) for m in items(entry["center"], "center", size)]
+        self.center = [parse_integer(short(m)) for m in items(entry["center"], "center", size)]
 
     def sign(self, row: list[int]) -> int | None:
         """1 or -1 if the functional keeps that sign on the box, 0 if it is 0, else None."""
@@ -541,6 +544,13 @@ class Box(Root):
         if abs(value) > reach:
             return 1 if value > 0 else -1
         return 0 if value == reach == 0 else None
+
+
+def short(value: Any) -> str:
+    """`value` if it is a string of bounded length."""
+    text = text_of(value)
+    require(len(text) <= MOST_BITS, "a number of a box is out of range")
+    return text
 
 
 def text_of(value: Any) -> str:
@@ -825,9 +835,15 @@ def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Roo
     separating = [
         natural_or_negative(s) for s in items(evidence["separating"], "separating", system.size)
     ]
-    classes = [
-        RootClass(system, separating, entry) for entry in items(evidence["classes"], "classes")
-    ]
+    entries = items(evidence["classes"], "classes")
+    require(system.size <= MOST_UNKNOWNS, "too many unknowns for algebraic evidence")
+    total = 0
+    for entry in entries:  # before any arithmetic, so that a small file cannot ask for much
+        keys(entry, "polynomial numerators multiplicity functionals", "class")
+        degree = len(items(entry["polynomial"], "polynomial")) - 1
+        total += degree * natural(entry["multiplicity"], "multiplicity")
+    require(total == 1 << system.size, f"multiplicities add up to {total}, not 2^{system.size}")
+    classes = [RootClass(system, separating, entry) for entry in entries]
     for k, a in enumerate(classes):
         for b in classes[:k]:
             require(are_coprime(a.p, b.p), "two classes share a root")
@@ -851,8 +867,6 @@ def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Roo
         if len(ends) < degree:
             require(len(ends) == count_real_roots(root_class.p), "a real root is missing")
         nonreal += degree - len(ends)
-    total = sum((len(c.p) - 1) * c.multiplicity for c in classes)
-    require(total == 1 << system.size, f"multiplicities add up to {total}, not 2^{system.size}")
     return roots, nonreal
 
 
@@ -1007,6 +1021,13 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
     Returns the verified claims. Passing means that the claims hold for the pattern in the file.
     """
+    try:
+        return _check(data)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
+
+
+def _check(data: dict[str, Any]) -> dict[str, Any]:
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, f"interior boundary folds degrees_of_freedom sha256 {COUNTS} branches", "claims")
     require(isinstance(evidence, dict), "the evidence is not an object")

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 import time
+import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -14,6 +16,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any, ParamSpec, TypeVar
 
+import click
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -30,6 +33,7 @@ from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
 EXIT = {PROVED: 0, REFUTED: 1, UNDECIDED: 4}
 USAGE, BAD_INPUT = 2, 3
+INTERNAL, OUTPUT_FAILED = 70, 74
 
 app = typer.Typer(
     help="Proven branch counts of triangulated origami near the unfolded state.",
@@ -45,16 +49,32 @@ R = TypeVar("R")
 
 
 def _reported(command: Callable[P, R]) -> Callable[P, R]:
-    """Turn the package's errors into one line on stderr and an exit code."""
+    """Turn the package's errors into one line on stderr and an exit code.
+
+    Output is flushed here, so that a closed pipe or a full disk has an exit code of its own.
+    """
 
     @wraps(command)
     def wrapped(*args: P.args, **kwargs: P.kwargs) -> R:
         try:
-            return command(*args, **kwargs)
+            try:
+                return command(*args, **kwargs)
+            finally:
+                sys.stdout.flush()
+        except OSError as error:
+            if not isinstance(error, BrokenPipeError):
+                print(f"exactfold: cannot write the output: {error.strerror}", file=sys.stderr)
+            sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - what is left must go nowhere
+            raise typer.Exit(OUTPUT_FAILED) from None
         except ExactfoldError as error:
             print(f"exactfold: {type(error).__name__}: {error}", file=sys.stderr)
             code = BAD_INPUT if isinstance(error, InputError) else USAGE
             raise typer.Exit(code) from None
+        except (typer.Exit, typer.Abort, click.ClickException):
+            raise
+        except Exception:  # a defect: never to be read as one of the documented codes
+            traceback.print_exc()
+            raise typer.Exit(INTERNAL) from None
 
     return wrapped
 
@@ -118,7 +138,7 @@ def count(
     ] = None,
     as_json: Json = False,
     snap: Snap = None,
-    seed: Annotated[int, typer.Option(help="Seed of the complex homotopy.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the complex homotopy.")] = 0,
     everything: Annotated[bool, typer.Option("--all", help="List every branch.")] = False,
 ) -> None:
     """Count the branches of a pattern at the unfolded state, with proof."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -245,7 +246,10 @@ def _exactly(task: _Task) -> BranchCount:
     if solution.dimension is None:
         return task.undecided("the branch system has infinitely many solutions")
     if solution.distinct == task.total:
-        return _isolated(task, solution.candidates)
+        with suppress(OverflowError):  # zeros beyond floats are proved as they are
+            result = _isolated(task, solution.candidates)
+            if result.status is PROVED:
+                return result
     proof = prove_algebraic(task.chart, solution)
     given: list[tuple[Root, int]] = [(AlgebraicRoot(c, k), m) for c, k, m in proof.roots]
     branches, open_signs = classify(task.pattern, task.chart, task.labels, given)
@@ -269,6 +273,7 @@ def _exactly(task: _Task) -> BranchCount:
         distinct=proof.distinct,
         real=len(roots),
         nonreal=proof.distinct - len(roots),
+        true_branches=PROVED if proof.distinct == len(roots) == task.total else UNDECIDED,
     )
 
 

@@ -9,6 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from exactfold.branches.result import BranchCount
+from exactfold.exact.numbers import format_rational
 from exactfold.rigidity.facts import PatternFacts
 from exactfold.verdict import PROVED, UNDECIDED
 
@@ -107,7 +108,7 @@ def info_report(facts: PatternFacts) -> Table:
         ),
         ("degrees of freedom", f"D = Ve - 3 = {pattern.degrees_of_freedom}"),
         ("boundary", "convex" if pattern.is_convex else f"reflex at {pattern.reflex_corner}"),
-        ("area", str(pattern.area)),
+        ("area", format_rational(pattern.area)),
         (
             "interior degrees",
             ", ".join(f"{n} of degree {d}" for d, n in facts.degree_counts.items()) or "none",

@@ -23,6 +23,8 @@ from exactfold.exact.univariate import (
 from exactfold.solve.candidates import Candidates, ComplexArray
 from exactfold.system.quadratic import QuadraticSystem
 
+_MOST_BITS = 1 << 10
+
 
 @dataclass(frozen=True)
 class RootClass:
@@ -161,7 +163,10 @@ class RootClass:
             precision *= 2
 
     def approx_points(self) -> ComplexArray:
-        """Floating-point coordinates of all d zeros, shape (d, n); real zeros are exactly real."""
+        """Floating-point coordinates of all d zeros, shape (d, n); real zeros are exactly real.
+
+        Raises `OverflowError` where zeros are beyond the range or the reach of floats.
+        """
         before = ctx.prec
         modulus = fmpz_poly(list(self.polynomial))
         precision = 128
@@ -174,6 +179,8 @@ class RootClass:
                 if len(found) == len(points):
                     return np.array(found, dtype=np.complex128).reshape(self.degree, -1)
                 precision *= 2
+                if precision > _MOST_BITS:
+                    raise OverflowError("zeros too close or too far off for floating point")
         finally:
             ctx.prec = before
 

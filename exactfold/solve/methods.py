@@ -53,7 +53,8 @@ def find_candidates(
     """Candidates for all zeros of the system of a chart; untrusted, whatever the method.
 
     `method` is one of `METHODS`; `seed` is used by the complex homotopy only. `progress(done,
-    total)` is called as work advances. Raises `UsageError` for an unknown method.
+    total)` is called as work advances. A pattern beyond the range of floats gives no candidates,
+    and says so in `lost`. Raises `UsageError` for an unknown method or a negative seed.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> from exactfold.system.branch_system import BranchSystem
@@ -62,6 +63,13 @@ def find_candidates(
     [4, 4, 4, 4]
     """
     chosen = choose(method).method
+    if seed < 0:
+        raise UsageError(f"the seed must not be negative: {seed}")
     if chart.system.size == 0:  # no equation: the one point there is
         return Candidates(chosen, np.zeros((1, 0), dtype=np.complex128))
-    return SOLVERS[chosen](chart, seed, progress)
+    try:
+        with np.errstate(all="ignore"):
+            return SOLVERS[chosen](chart, seed, progress)
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        nothing = np.zeros((0, chart.system.size), dtype=np.complex128)
+        return Candidates(chosen, nothing, (f"{chosen} left the range of floats: {error}",))
