@@ -62,7 +62,7 @@ def _single_vertex(script: Script) -> None:
         "branches of a vertex with N = 3, 4, 5, 6, 7, 8 folds: 0, 2, 1, 1, 1, 1",
         found == [0, script.alter("one branch for N = 4", 2, 1), 1, 1, 1, 1],
     )
-    script.certificate(
+    script.example(
         "modulo planes the form is Lorentzian on R^(N-2), its null cone in RP^(N-3) is the sphere "
         "S^(N-4): empty for N = 3, two points for N = 4, connected from N = 5 on",
         all(
@@ -116,7 +116,7 @@ def _rigid_triangles(script: Script) -> None:
         [(0, 0), (9, 0), (0, 9), *inner_points((0, 0), (9, 0), (0, 9))], OCTAHEDRON
     )
     triangles = [families.single_vertex(3), TWISTED, octahedron]
-    script.certificate(
+    script.example(
         "definite stresses of triangulated triangles (every convex boundary has one: "
         "docs/mathematics.md, 6): D = 0 and no folding to second order, hence rigid",
         all(p.Ve == 3 and p.D == 0 and definite_stress(p) is not None for p in triangles)

@@ -153,7 +153,7 @@ def _doubling(script: Script) -> None:
     h1 = families.sample_h1_sequence(3, seed=1)
     v1, v2, v3, w = h1.moves[-1]
     only = [v for v in h1.pattern.interior if w in curvature_form(h1.pattern, v).labels]
-    script.certificate(
+    script.example(
         "only K_{v2} contains the height of w (an H1 sequence; v1 and v3 are boundary vertices), "
         "so "
         "the Jacobian is block triangular: simple branches of T with delta != 0 stay simple",
@@ -172,7 +172,7 @@ def _reflex(script: Script) -> None:
         b * b - 4 * a * c < 0 and bool(heights[1] * bend),
     )
     closed = DART.with_notch_closed()
-    script.certificate(
+    script.example(
         "four boundary vertices, A > pi: closing T at v2 gives a triangulated triangle, whose "
         "definite "
         "stress makes m Kc = sum_v m_v K_v > 0 on every branch (docs/mathematics.md, 6; here: the "

@@ -124,7 +124,7 @@ def _freedom(script: Script) -> None:
         note="Vi + D = Vi + 1 for D = 1",
     )
     n = script.alter("one quadric too many", 1, 2)
-    script.certificate(
+    script.example(
         "Bezout: 2^(Vi + 1) zeros, in pairs +-h: half of them, 2^Vi, the Bezout number of the "
         "chart",
         all(
@@ -147,12 +147,12 @@ def _folds(script: Script) -> None:
     n = sympy.Symbol("n", positive=True)
     square = families.hypar(2), families.two_vertex(), families.single_vertex(4)
     more = script.alter("3 (n + 1) folds", 1, 3)
-    script.certificate(
+    script.example(
         "a triangulated square has 3n + 1 folds, n = Vi - Vt after emptying (Euler with Ve = 4)",
         all(len(p.folds) == 3 * p.Vi + more for p in square),
     )
     emptied, _ = families.flat_octahedron_in_square().emptied()
-    script.certificate(
+    script.example(
         "the same for the emptied square around a flat octahedron (n = 3)",
         len(emptied.folds) == 3 * (6 - 3) + 1,
     )
@@ -218,7 +218,7 @@ def _folds(script: Script) -> None:
     butterfly = CreasePattern([(0, 0), (1, 0), (0, 1), (1, -1)], [(0, 1, 2), (0, 3, 1)])
     lifted = fold_functional(butterfly, (0, 1))
     sign = script.alter("valleys bent downwards", 1, -1)
-    script.certificate(
+    script.example(
         "both wings raised is a valley, dihedral angle below pi on the upper side; a branch of a "
         "vertex of degree 4 has three folds of one sign and pops to their side",
         sign * lifted[2] > 0 < lifted[3] and all(o in ((1, 3), (-1, 1)) for o in outcomes),
@@ -244,7 +244,7 @@ def _chambers(script: Script) -> None:
         half_bend(r, s, t) + half_bend(s, r, t) - script.alter("wrong weight", 1, -1) * t * (r + s),
     )
     per = script.alter("one ray a chamber", 2, 1)
-    script.certificate(
+    script.example(
         "2^(n+1) rays, 2^n chambers, 2 rays a chamber; 2^n sign vectors, 2^(n-1) up to sign, 2 "
         "branches each (n = 1 to 30; two vertices counted)",
         all(2 ** (n + 1) == per * 2**n and 2**n == per * 2 ** (n - 1) for n in range(1, 31))

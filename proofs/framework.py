@@ -154,6 +154,10 @@ class Script:
         results = [bool(outcome) for outcome in outcomes]
         self.steps.append(Step(text, How.CASES, bool(results) and all(results), len(results)))
 
+    def example(self, text: str, holds: bool) -> None:
+        """One exact example of a general claim that is argued in words: tested, not proved."""
+        self.steps.append(Step(text, How.CASES, bool(holds), 1))
+
     def proof(self) -> Proof:
         """The finished proof. Raises `ValueError` if the change asked for does not exist."""
         if self.change is not None and self.change not in self.changes:

@@ -127,7 +127,7 @@ def _enumeration(script: Script) -> list[set[Triangulation]]:
                 if degrees(larger)[4 + n] <= faces
             }
         )
-    script.certificate(
+    script.example(
         "sum over interior vertices of (6 - d) plus sum over boundary vertices of (4 - d) is 6. "
         "Without chords boundary degrees are at least 3: the first sum is at least 2 (3 for a "
         "triangle), so some interior vertex has degree at most 5; a chord leaves two triangles",
