@@ -16,7 +16,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any, ParamSpec, TypeVar
 
-import click
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -70,7 +69,7 @@ def _reported(command: Callable[P, R]) -> Callable[P, R]:
             print(f"exactfold: {type(error).__name__}: {error}", file=sys.stderr)
             code = BAD_INPUT if isinstance(error, InputError) else USAGE
             raise typer.Exit(code) from None
-        except (typer.Exit, typer.Abort, click.ClickException):
+        except (typer.Exit, typer.Abort):
             raise
         except Exception:  # a defect: never to be read as one of the documented codes
             traceback.print_exc()
