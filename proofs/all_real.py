@@ -77,8 +77,8 @@ def _state(script: Script) -> None:
         "Section III B, 'exactly two branches with each such pair of sign patterns' (numerical)",
         r"\text{exactly two branches for each pair of opposite vertex sign patterns}",
         Ruling.CORRECTED,
-        r"\text{exactly two, one for each sign of the boundary saddle, if no vertex star is flat "
-        r"on any branch}",
+        r"\text{exactly two if no vertex star is flat on any branch, told apart by the sign of the "
+        r"boundary saddle (convex) or of the reflex corner in the closed sheet}",
         "docs/theorem.md, Theorem 2 (e) and section 4; the paper: 'proving ... remains elusive'",
         "BranchCount.sign_vectors",
     )
@@ -343,6 +343,9 @@ def hostile_patterns(count: int, interior: int = 7) -> Iterator[CreasePattern]:
         source = random.Random(seed)
         sides = 3 + seed % 5
         rim = [(0, 0), (60, 0), (90, 30), (70, 80), (20, 90), (-10, 50), (-8, 20)][:sides]
+        if seed % 2:
+            rim.insert(2, (75, 15))  # a boundary angle of pi
+            sides += 1
         points = [(Fraction(x), Fraction(y)) for x, y in rim]
         faces = [(0, k, k + 1) for k in range(1, sides - 1)]
         for _ in range(1 + seed % interior):
@@ -378,10 +381,10 @@ def _flipped(pattern: CreasePattern, source: random.Random) -> CreasePattern:
 
 
 def _quadrilaterals(count: int) -> Iterator[CreasePattern]:
-    """Random triangulated quadrilaterals, two in three with a reflex corner."""
+    """Random triangulated quadrilaterals: convex, reflex, and with a boundary angle of pi."""
     for seed in range(count):
         source = random.Random(1000 + seed)
-        tip = Fraction(source.randint(1, 3)) if seed % 3 else Fraction(-4)
+        tip = (Fraction(6), Fraction(1), Fraction(4), Fraction(3, 2))[seed % 4]
         points = [
             (Fraction(-4), Fraction(-3)),
             (Fraction(6), Fraction(0)),

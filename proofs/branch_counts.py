@@ -58,7 +58,7 @@ def prove(change: str | None = None) -> Proof:
 def _single_vertex(script: Script) -> None:
     """Null cones of Lorentzian forms: none, two lines, then one double cone."""
     found = [count_branches(families.single_vertex(n)).distinct for n in range(3, 9)]
-    script.certificate(
+    script.example(
         "branches of a vertex with N = 3, 4, 5, 6, 7, 8 folds: 0, 2, 1, 1, 1, 1",
         found == [0, script.alter("one branch for N = 4", 2, 1), 1, 1, 1, 1],
     )

@@ -132,13 +132,13 @@ def _orthogonality(script: Script) -> None:
     branches = count_branches(families.two_vertex()).branches
     rows = [[h for _, h in sorted(b.heights.items()) if any(h)] for b in branches]
     triples = [[rows[i] for i in range(4) if i != k] for k in range(4)]
-    script.certificate(
+    script.example(
         "two vertices: any three of the four branches span R^3 (determinants of enclosures), so a "
         "gradient orthogonal to three undesired branches is orthogonal to the fourth",
         all(len(t[0]) == 3 and _independent(t) for t in triples),
     )
     least = script.alter("an obstruction already for one vertex", 2, 1)
-    script.certificate(
+    script.example(
         "2^V - 1 >= V + 1 exactly for V >= 2 (2^(V+1) - 2^V = 2^V >= 1: by induction)",
         2**least - 1 >= least + 1 and 2 ** (least - 1) - 1 < least,
     )

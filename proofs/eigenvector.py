@@ -85,7 +85,7 @@ def _nappes(script: Script) -> None:
     )
     # If T > 0, K is negative semidefinite on the complement of t and zero only on affine functions,
     # by the inertia (1, N-3, 3). So H = 0 = P only for affine h, and P does not vanish on a nappe.
-    script.certificate(
+    script.example(
         "inertia (1, N-3, 3), N = 3 to 8: if K(t) > 0, nothing but affine functions has K(h) = 0 "
         "= K(t, h)",
         all(curvature_form(single_vertex(n), n).inertia == (1, n - 3, 3) for n in range(3, 9)),
@@ -131,7 +131,7 @@ def _curvature(script: Script) -> None:
     form = curvature_form(star(*SPIKY), 4)
     top = script.alter("not the largest eigenvalue", Fraction(4, 5), Fraction(3, 4))
     rest = [[top * (i == j) - form.matrix[i][j] for j in range(5)] for i in range(5)]
-    script.certificate(
+    script.example(
         "on unit vectors h = a h_- + y, K(h) = lambda a^2 + K(y) <= lambda: lambda I - K is "
         "positive semidefinite, here of inertia (4, 0, 1)",
         inertia(rest) == (4, 0, 1),
@@ -181,7 +181,7 @@ def _components(script: Script) -> None:
     square, ones = curvature_form(star((1, 0), (0, 1), (-1, 0), (0, -1)), 4), (-4, 1, 1, 1, 1)
     # So that vector is h_- up to sign (simple eigenvalue). A zero at j would need, in row j of
     # K h_- = lambda h_-, zeros at its rim neighbours (1/c > 0), so all round, and then at the hub.
-    script.certificate(
+    script.example(
         "h_- is orthogonal to constants: |hub| = sum of the neighbours' magnitudes, all of the "
         "other sign, so each is smaller (N >= 3); e.g. four equal spokes: (-4, 1, 1, 1, 1)",
         [_dot(row, ones) for row in square.matrix] == [5 * e for e in ones],

@@ -216,12 +216,12 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         all(outcomes),
     )
     extra = script.alter("the seed is not counted", 1, 0)
-    script.certificate(
+    script.example(
         "each move adds two triangles and one interior vertex to the two triangles of the seed: "
         "Vi + 1 butterflies",
         all(2 + 2 * n == 2 * (n + extra) for n in range(20)),
     )
-    script.certificate(
+    script.example(
         "no H1 triangulation contains a triangulated triangle (here Vi <= 4). In general: the "
         "first "
         "vertex removed from one and its inside is a corner c of degree 3 whose middle neighbour "
@@ -231,7 +231,7 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         not any(flat) and bool(flat),
     )
     sample = families.sample_h1_sequence(5, seed=2)
-    script.certificate(
+    script.example(
         "families.sample_h1_sequence makes H1 triangulations: Ve = 4, degrees of all v2 at least 4",
         sample.pattern.Ve == 4
         and sample.pattern.Vi == len(sample.moves) == 5

@@ -211,7 +211,7 @@ def _germ(script: Script) -> None:
         "spokes are parallel to the first, so that minors vanish",
         (r.inertia == (r.predicted[0] - shift, r.predicted[1] + shift, 3) for r in results),
     )
-    script.certificate(
+    script.example(
         "a spoke adds two unknowns and two lengths, independent since consecutive spokes are not "
         "parallel: the 2N lengths have rank 2N - 1, and one equation remains (pentagram: rank 9)",
         rank(_lengths(PENTAGRAM)) == 2 * len(PENTAGRAM) - 1,

@@ -142,7 +142,7 @@ def _inequality(script: Script) -> None:
     # b |y| = b y for y >= 0, and b |y| = b y + 2 b |y| for y < 0, where b <= 0
     b, w = sympy.symbols("b w", positive=True)
     up = script.alter("a valley below the line", -1, 1)
-    script.certificate(
+    script.example(
         "sum b|y| = sum b y + 2 sum_(y < 0) b |y| and sum b y = 0: with all valleys in y >= 0, "
         "2 K(g, h) = sum b |y| <= 0, while K(g, h) >= 0 if h is popped down; so h = c g",
         bool(((up * b) * w - (up * b) * (-w)).is_negative),
@@ -159,7 +159,7 @@ def _directions(script: Script) -> None:
             if not _in_half_plane(subset, size):
                 kinds = (_has_tripod(subset, size), _has_cross(subset, size))
                 fails += not any(kinds[:least])
-    script.certificate(
+    script.example(
         "a set of directions in no closed half-plane contains a tripod or a cross: all sets of at "
         "most 6 of 12 directions (minimal ones have at most 4, and every order of 4 directions "
         "and their opposites occurs among 8)",

@@ -37,20 +37,12 @@ def prove(change: str | None = None) -> Proof:
         code="curvature_form",
     )
     script.state(
-        "T.32",
-        "Statement of exactfold on the Jacobian at a branch",
-        r"\text{inertia} = (\#\text{popped up}, \#\text{popped down}) "
-        r"\text{ where no vertex is flat}",
-        Ruling.AS_PRINTED,
-        note="tested exactly, not proved here",
-        code="BranchSystem",
-    )
-    script.state(
         "T.33",
         "Statement of exactfold on the popping homotopy",
-        r"(1-T)(l_v^2-k)+TK_v=0,\ e_vl_v>0: \text{ real, regular and unique for } 0\le T<1",
+        r"\text{convex boundary: } (1-T)(l_v^2-k)+TK_v=0,\ e_vl_v>0 "
+        r"\text{ is real, regular and unique for } 0\le T<1",
         Ruling.AS_PRINTED,
-        note="docs/theorem.md, section 5",
+        note="docs/theorem.md, section 5; with a reflex corner, in the sheet with its notch closed",
         code="popping",
     )
     _symmetry(script)
@@ -145,7 +137,7 @@ def _n_inertia(pattern: Any, vertex: int) -> bool:
 
 
 def _inertia_of_jacobian(script: Script) -> None:
-    """Exact inertia of the matrix K_v(m, e_w) at the rational centre m of each isolating box."""
+    """Convex boundaries: exact inertia of K_v(m, e_w) at the rational centre m of each box."""
     swapped = script.alter("up and down exchanged", False, True)
 
     def agree(interior: int, seed: int) -> list[bool]:
@@ -170,7 +162,8 @@ def _inertia_of_jacobian(script: Script) -> None:
         return outcomes
 
     script.cases(
-        "inertia of the Jacobian = (popped up, popped down) on every branch of random squares",
+        "inertia of the Jacobian, at the centre of the box, = (popped up, popped down) on every "
+        "branch of random squares",
         (ok for n in (2, 3, 4) for seed in range(5) for ok in agree(n, seed)),
     )
 

@@ -50,7 +50,7 @@ def _equal_angles(script: Script) -> None:
     cosines = [Fraction(1, 2), Fraction(-1, 2), Fraction(-1)]  # of m pi/3, m = 1, 2, 3
     sign = script.alter("plus for minus", -1, 1)
     rows = kapovich_millson([(1, 0), (0, 1), (-1, 0), (0, -1)]).form.matrix[2:4]
-    script.certificate(
+    script.example(
         "v_0 = 0 always and v_{N-1} = 0 at theta = m pi/(N-1); m = 1, ..., N-2 gives N-2 "
         "different cosines, so these are all eigenvalues of the N-2 rows. For N = 4 and L = 1 the "
         "matrix is [[0, -1], [-1, 0]], and lambda_1 = -1, lambda_2 = 1",
@@ -99,7 +99,7 @@ def _positive_coefficients(polynomial: Any) -> bool:
 
 def _all_angles(script: Script) -> None:
     positive = script.alter("inertia of the form of Appendix C", 1, 0)
-    script.certificate(
+    script.example(
         "chi(N) c_1...c_{N-1} = d_1 x d_N = -c_N: with all c_n > 0 chi(N) is negative everywhere "
         "on a connected set (angles: a simplex; lengths: an orthant), so the one negative "
         "eigenvalue of the equal angles (C.10) remains one; library inertia of K_v for N = 3 to 9",
@@ -180,7 +180,7 @@ def _three_folds(script: Script) -> None:
 
 
 def _cone(script: Script) -> None:
-    script.certificate(
+    script.example(
         "N + 1 heights less 3 rigid motions leave N - 2; the form there is nondegenerate (chi(N) "
         "is not 0), so its null cone is a hypersurface, smooth but for 0: dimension N - 3",
         all(

@@ -109,7 +109,7 @@ def _forms(script: Script) -> None:
     )
     pattern = star(*REFLEX)
     matrix = curvature_form(pattern, 4).matrix
-    script.certificate(
+    script.example(
         "on a star with a reflex link the library has the same forms: K = (1/2) sum w (h - h')^2, "
         "and -2 K is the form of Appendix C",
         stress_form(pattern, wheel_stress(pattern, 4)).matrix
@@ -203,7 +203,7 @@ def _null_directions(script: Script) -> None:
         "not 0",
         code="curvature_form",
     )
-    script.certificate(
+    script.example(
         "with h_0 = h_1 = h_N = 0 the terms left have indices 2 to N-1, tridiagonally (N = 3 to 9)",
         all(_is_pinned_form(n) for n in range(3, 10)),
     )
@@ -262,7 +262,7 @@ def _determinant(script: Script) -> None:
         i = n + 1 + s
         return matrix[i][i] * minor(n + 1) - matrix[i - 1][i] ** 2 * minor(n)
 
-    script.certificate(
+    script.example(
         "the recurrence holds for the determinants of a six-fold star, N = 2, 3, 4",
         all(minor(n + 2) == right_side(n, shift) for n in (2, 3, 4)),
     )
@@ -270,7 +270,7 @@ def _determinant(script: Script) -> None:
         "with f_{N+2} and g_{N+1,N+2} it fails on the same star for N = 2, 3, 4",
         all(minor(n + 2) != right_side(n, 1) for n in (2, 3, 4)),
     )
-    script.certificate(
+    script.example(
         "chi(n) = (d_1 x d_n)/(c_1 ... c_{n-1}) on the same star, n = 3 to 6",
         all(minor(n) * prod(crosses[: n - 1]) == cross(d[0], d[n - 1]) for n in (3, 4, 5, 6)),
     )
