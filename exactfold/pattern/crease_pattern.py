@@ -137,6 +137,17 @@ class CreasePattern:
         """Number of edges at `vertex`."""
         return len(self.star(vertex))
 
+    @property
+    def degrees(self) -> dict[int, int]:
+        """The degree of every vertex.
+
+        >>> wheel = CreasePattern(
+        ...     [(0, 0), (3, 0), (0, 3), (1, 1)], [(0, 1, 3), (1, 2, 3), (2, 0, 3)])
+        >>> wheel.degrees
+        {0: 3, 1: 3, 2: 3, 3: 3}
+        """
+        return {v: self.degree(v) for v in range(len(self.vertices))}
+
     def opposite(self, fold: Edge) -> Edge:
         """For fold (i, j): the third vertices (left, right) of the triangles ijk and jil."""
         i, j = fold
