@@ -1,0 +1,116 @@
+"""Newton on the nappes finds the end of every popping path, each with the signs asked for."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from sheets import SQUARE, dart, mapped, mirrored, reflex_corners, rotated, scrambled
+
+from exactfold import families, random_square, read_fold
+from exactfold.data import example_path
+from exactfold.errors import NotApplicableError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.timelike import round_cone
+from exactfold.solve.nappes import (
+    Ends,
+    NappeSystem,
+    chamber_chart,
+    sign_vectors,
+    solve_each,
+    sum_of_squares,
+)
+from exactfold.solve.popping import popping
+
+PATTERNS = {
+    "random square": random_square(6, seed=3),
+    "thin triangles": scrambled(1, SQUARE, 6),
+    "reflex corner": scrambled(3, reflex_corners(3), 6),
+    "dart": dart(),
+    "flat vertex": read_fold(example_path("flat-vertex")),
+    "hypar": families.hypar(1),
+}
+
+
+def every_end(pattern: CreasePattern) -> Ends:
+    return NappeSystem(chamber_chart(pattern)).ends(sign_vectors(0, 1 << pattern.Vi, pattern.Vi))
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+def test_all_paths_end_where_popping_says(name: str) -> None:
+    pattern, _ = PATTERNS[name].emptied()
+    ends = every_end(pattern)
+    assert ends.converged.all()
+    expected = popping(chamber_chart(pattern)).points.real
+    gaps = np.abs(ends.points[:, None] - expected[None]).max(axis=2)
+    assert gaps.min(axis=0).max() < 1e-6
+    assert gaps.min(axis=1).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+def test_ends_have_zero_curvature_and_the_signs_asked_for(name: str) -> None:
+    pattern, _ = PATTERNS[name].emptied()
+    system = NappeSystem(chamber_chart(pattern))
+    signs = sign_vectors(0, 1 << pattern.Vi, pattern.Vi)
+    z = np.hstack([system.ends(signs).points, np.ones((len(signs), 1))])
+    tensor = system.chart.system.float_tensor
+    assert np.abs(np.einsum("pij,bi,bj->bp", tensor, z, z)).max() < 1e-10
+    if pattern.reflex_corner is None:
+        lines = np.array([[float(c) for c in nappe.line] for nappe in system.nappes])
+        assert ((z @ lines.T) * signs > -1e-12).all()
+
+
+def test_nappes_are_curvature_forms_written_as_a_difference_of_squares() -> None:
+    pattern = random_square(4, seed=2)
+    system = NappeSystem(chamber_chart(pattern))
+    z = [Fraction(3, 7), Fraction(-2, 5), Fraction(1, 3), Fraction(5, 2), Fraction(1)]
+    heights = system.chart.heights(z[:-1])
+    for v, nappe in zip(pattern.interior, system.nappes, strict=True):
+
+        def at(row: tuple[Fraction, ...]) -> Fraction:
+            return sum((a * b for a, b in zip(row, z, strict=True)), Fraction(0))
+
+        form, cone = curvature_form(pattern, v), round_cone(pattern, v)
+        hat = {u: Fraction(int(u == v)) for u in form.labels}
+        value = at(nappe.line) ** 2 - sum(d * at(row) ** 2 for d, row in nappe.squares)
+        assert value * form.polar(cone, hat) ** 2 == form(cone) * form(heights)
+        assert len(nappe.squares) == pattern.degree(v) - 3
+        assert all(d > 0 for d, _ in nappe.squares)
+
+
+@pytest.mark.parametrize("move", [rotated, mirrored])
+def test_motions_of_the_plane_keep_the_heights(move: object) -> None:
+    pattern = random_square(5, seed=7)
+    moved = mapped(pattern, move)
+    if move is mirrored:
+        moved = CreasePattern(moved.vertices, [t[::-1] for t in pattern.triangles])
+    # The boundary saddle may be normalised at another corner: the square's are all +-1.
+    first, second = every_end(pattern).points, every_end(moved).points
+    assert np.abs(first - second).max() < 1e-10
+
+
+def test_nearly_flat_stars_converge() -> None:
+    tiny = Fraction(1, 10**9)
+    points = [(0, 0), (1, 0), (1, 1), (0, 1), ("1/2", Fraction(1, 2) + tiny), ("7/10", "1/5")]
+    faces = [(0, 1, 5), (1, 2, 5), (2, 4, 5), (4, 0, 5), (2, 3, 4), (3, 0, 4)]
+    ends = every_end(CreasePattern(points, faces))
+    assert ends.converged.all()
+    assert len(np.unique(np.round(ends.points, 12), axis=0)) == 4
+
+
+def test_singular_matrices_spoil_only_their_own_solution() -> None:
+    matrices = np.array([np.eye(2), np.zeros((2, 2)), 2 * np.eye(2)])
+    found = solve_each(matrices, np.ones((3, 2)))
+    assert found[0].tolist() == [1, 1]
+    assert found[2].tolist() == [0.5, 0.5]
+    assert not np.isfinite(found[1]).any()
+
+
+def test_forms_with_negative_values_are_refused() -> None:
+    with pytest.raises(NotApplicableError):
+        sum_of_squares([[Fraction(0), Fraction(1)], [Fraction(1), Fraction(0)]])
+
+
+def test_other_boundaries_are_refused() -> None:
+    with pytest.raises(NotApplicableError):
+        chamber_chart(families.single_vertex(5))
