@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import random
 import sys
-from collections.abc import Iterator
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -17,21 +17,24 @@ from sympy import QQ
 from sympy.polys.fields import field
 
 from exactfold import (
+    BranchCount,
     CreasePattern,
-    QuadraticSystem,
     count_branches,
     curvature_form,
     definite_stress,
+    homotopy,
+    isolate,
+    random_square,
 )
-from exactfold.certify.isolation import isolate
-from exactfold.errors import PatternError
+from exactfold.branches.functionals import Functionals
+from exactfold.branches.roots import BoxRoot
 from exactfold.pattern.families import flat_vertex_square
-from exactfold.pattern.random_squares import random_square
 from exactfold.rigidity.definite_stress import disk_multipliers
-from exactfold.rigidity.timelike import vertex_sign_functional
-from exactfold.solve.homotopy import homotopy
+from exactfold.system.branch_system import notch_chart
 from exactfold.verdict import PROVED
+from proofs.chambers import corner_sign, solve
 from proofs.framework import Proof, Ruling, Script, run
+from proofs.patterns import DART, SPIKY, darts, hostile_patterns, quadrilaterals
 
 NAME = "all_real"
 TITLE = "All branches are real: the central theorem"
@@ -227,14 +230,10 @@ def _theorem_1_on_patterns(script: Script) -> None:
         "Key lemma: the disk multipliers give a definite stress (exact elimination)",
         (definite_stress(pattern) is not None for pattern in hostile_patterns(24)),
     )
-    spiky = CreasePattern(
-        [(4, -4), ("1/10", 0), (4, 4), (-4, 0), (0, 0)],
-        [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
-    )
     hub = {v: Fraction(int(v == 4)) for v in range(5)}
     script.counterexample(
         "convexity is needed: hub (0,0) in (4,-4), (1/10,0), (4,4), (-4,0) has K(hub) < 0",
-        curvature_form(spiky, 4)(hub) < 0 and definite_stress(spiky) is None,
+        curvature_form(SPIKY, 4)(hub) < 0 and definite_stress(SPIKY) is None,
     )
 
 
@@ -281,11 +280,42 @@ def _conclusions_on_patterns(script: Script) -> None:
     squares = [random_square(n, seed) for n in (2, 3, 4) for seed in range(4)]
     script.cases(
         "section 4: 2^Vi branches with multiplicity, all real, convex and reflex quadrilaterals",
-        (counted(pattern) for pattern in [*squares, *_quadrilaterals(12)]),
+        (counted(pattern) for pattern in [*squares, *quadrilaterals(12)]),
+    )
+    saddle_only = script.alter("the saddle as the label of a reflex sheet", False, True)
+
+    def one_each(result: BranchCount) -> bool:
+        """Each sign vector once, with saddle +1 (convex) or the reflex corner up (closed sheet)."""
+        vectors = set()
+        for branch in result.branches:
+            plain = result.pattern.is_convex or saddle_only
+            side = 1 if plain else corner_sign(result.pattern, branch) or 0
+            vectors.add(tuple(side * s for _, s in sorted(branch.vertex_signs.items())))
+        return vectors == set(product((1, -1), repeat=result.pattern.Vi))
+
+    everything = [DART, *squares, *quadrilaterals(16), *darts(40)]
+    found = [count_branches(p) for p in everything if not p.Vt]
+    generic = [r for r in found if all(0 not in b.vertex_signs.values() for b in r.branches)]
+    reflex = [r for r in generic if not r.pattern.is_convex]
+    script.cases(
+        "(e): no vertex is flat and each sign vector occurs exactly once with saddle +1: convex "
+        "sheets",
+        (one_each(r) for r in generic if r.pattern.is_convex),
     )
     script.cases(
-        "(e): two branches for each pair of opposite sign vectors where no vertex is flat",
-        (set(count_branches(p).sign_vectors.values()) == {2} for p in squares if p.Vt == 0),
+        "(e): no vertex is flat and each sign vector occurs exactly once with the reflex corner up "
+        "in the closed sheet",
+        (one_each(r) for r in reflex),
+    )
+    script.cases(
+        "the same in the chart K_r(t, h) = 1 of the closed sheet: 2^Vi boxes, all sign vectors",
+        (_one_each_in_notch_chart(r.pattern) for r in reflex),
+    )
+    both = count_branches(DART).branches
+    script.counterexample(
+        "the saddle is no label of a reflex sheet: hub (0,0) in (4,-4), (1,0), (4,4), (-4,0) has "
+        "two branches, both with saddle + and the hub down",
+        [(b.representative, b.sign_text) for b in both] == 2 * [("saddle", "-")],
     )
     result = count_branches(flat_vertex_square())
     script.counterexample(
@@ -294,111 +324,17 @@ def _conclusions_on_patterns(script: Script) -> None:
     )
     script.cases(
         "(d): for positive curvatures one real solution for each sign vector, any boundary",
-        (_one_solution_each(pattern, seed) for seed, pattern in enumerate(hostile_patterns(8, 4))),
+        (solve(p, seed).is_one_each for seed, p in enumerate(hostile_patterns(8, 4))),
     )
 
 
-def _one_solution_each(pattern: CreasePattern, seed: int) -> bool:
-    """Isolate all solutions of K_v = k_v > 0 for random k and boundary heights; compare signs."""
-    source = random.Random(seed)
-    fixed = {v: Fraction(source.randint(-5, 5)) for v in pattern.boundary}
-    position = {v: k for k, v in enumerate(pattern.interior)}
-    n = len(position)
-
-    def row(functional: dict[int, Fraction] | dict[int, int]) -> list[Fraction]:
-        line = [Fraction(0)] * (n + 1)
-        for v, c in functional.items():
-            line[position.get(v, n)] += c * fixed.get(v, Fraction(1))
-        return line
-
-    matrices = []
-    for v in pattern.interior:
-        form = curvature_form(pattern, v)
-        matrix = [[Fraction(0)] * (n + 1) for _ in range(n + 1)]
-        for a, line in zip(form.labels, form.matrix, strict=True):
-            for b, weight in zip(form.labels, line, strict=True):
-                i, j = position.get(a, n), position.get(b, n)
-                matrix[i][j] += weight * fixed.get(a, Fraction(1)) * fixed.get(b, Fraction(1))
-        matrix[n][n] -= Fraction(source.randint(1, 9), source.randint(1, 9))
-        matrices.append(matrix)
-    system = QuadraticSystem.from_rational(matrices)
-    found = isolate(system, homotopy(system))
-    rows = [row(vertex_sign_functional(pattern, v)) for v in pattern.interior]
-    signs = set()
-    for box in found.boxes:
-        values = [
-            sum(
-                (c * Fraction(m, 1 << box.bits) for c, m in zip(line[:n], box.real, strict=True)),
-                line[n],
-            )
-            for line in rows
-        ]
-        signs.add(tuple(value > 0 for value in values))
-    return found.complete is PROVED and found.real == 1 << n and len(signs) == 1 << n
-
-
-def hostile_patterns(count: int, interior: int = 7) -> Iterator[CreasePattern]:
-    """Convex patterns far from Delaunay: points put into random faces, then random edge flips."""
-    for seed in range(count):
-        source = random.Random(seed)
-        sides = 3 + seed % 5
-        rim = [(0, 0), (60, 0), (90, 30), (70, 80), (20, 90), (-10, 50), (-8, 20)][:sides]
-        if seed % 2:
-            rim.insert(2, (75, 15))  # a boundary angle of pi
-            sides += 1
-        points = [(Fraction(x), Fraction(y)) for x, y in rim]
-        faces = [(0, k, k + 1) for k in range(1, sides - 1)]
-        for _ in range(1 + seed % interior):
-            face = faces.pop(source.randrange(len(faces)))
-            weights = [source.choice((1, 1, 2, 40)) for _ in face]
-            point = [
-                sum((w * points[v][k] for w, v in zip(weights, face, strict=True)), Fraction(0))
-                / sum(weights)
-                for k in (0, 1)
-            ]
-            points.append((point[0], point[1]))
-            a, b, c = face
-            new = len(points) - 1
-            faces += [(a, b, new), (b, c, new), (c, a, new)]
-        yield _flipped(CreasePattern(points, faces), source)
-
-
-def _flipped(pattern: CreasePattern, source: random.Random) -> CreasePattern:
-    """Thirty random edge flips, those that leave a triangulation."""
-    for _ in range(30):
-        if not pattern.folds:
-            break
-        i, j = source.choice(pattern.folds)
-        left, right = pattern.opposite((i, j))
-        if (min(left, right), max(left, right)) in pattern.edges:
-            continue
-        faces = [t for t in pattern.triangles if not {i, j} <= set(t)]
-        try:
-            pattern = CreasePattern(pattern.vertices, [*faces, (left, right, j), (right, left, i)])
-        except PatternError:
-            continue
-    return pattern
-
-
-def _quadrilaterals(count: int) -> Iterator[CreasePattern]:
-    """Random triangulated quadrilaterals: convex, reflex, and with a boundary angle of pi."""
-    for seed in range(count):
-        source = random.Random(1000 + seed)
-        tip = (Fraction(6), Fraction(1), Fraction(4), Fraction(3, 2))[seed % 4]
-        points = [
-            (Fraction(-4), Fraction(-3)),
-            (Fraction(6), Fraction(0)),
-            (Fraction(-4), Fraction(3)),
-            (-tip, Fraction(0)),
-        ]
-        faces = [(0, 1, 3), (1, 2, 3)]
-        for _ in range(1 + seed % 3):
-            a, b, c = faces.pop(source.randrange(len(faces)))
-            point = [(points[a][k] + 2 * points[b][k] + 4 * points[c][k]) / 7 for k in (0, 1)]
-            points.append((point[0], point[1]))
-            new = len(points) - 1
-            faces += [(a, b, new), (b, c, new), (c, a, new)]
-        yield _flipped(CreasePattern(points, faces), source)
+def _one_each_in_notch_chart(pattern: CreasePattern) -> bool:
+    chart = notch_chart(pattern)
+    found = isolate(chart.system, homotopy(chart.system))
+    rows = Functionals(chart).vertices.values()
+    signs = {tuple(BoxRoot(box).sign(row) for row in rows) for box in found.boxes if box.is_real}
+    everything = set(product((1, -1), repeat=pattern.Vi))
+    return found.complete is PROVED and found.nonreal == 0 and signs == everything
 
 
 if __name__ == "__main__":
