@@ -19,7 +19,6 @@ from sympy.polys.fields import field
 from exactfold import (
     BranchCount,
     CreasePattern,
-    count_branches,
     curvature_form,
     definite_stress,
     homotopy,
@@ -32,7 +31,7 @@ from exactfold.pattern.families import flat_vertex_square
 from exactfold.rigidity.definite_stress import disk_multipliers
 from exactfold.system.branch_system import notch_chart
 from exactfold.verdict import PROVED
-from proofs.chambers import corner_sign, solve
+from proofs.chambers import corner_sign, counted, solve
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.patterns import DART, SPIKY, darts, hostile_patterns, quadrilaterals
 
@@ -272,15 +271,15 @@ def _conclusions_on_patterns(script: Script) -> None:
     """(a), (b), (d), (e) and section 4, by counting that knows nothing of the theorem."""
     extra = script.alter("one branch too many", 0, 1)
 
-    def counted(pattern: CreasePattern) -> bool:
-        result = count_branches(pattern)
+    def all_real(pattern: CreasePattern) -> bool:
+        result = counted(pattern)
         right = result.with_multiplicity == (1 << pattern.Vi) + extra
         return result.status is PROVED and right and result.nonreal == 0
 
     squares = [random_square(n, seed) for n in (2, 3, 4) for seed in range(4)]
     script.cases(
         "section 4: 2^Vi branches with multiplicity, all real, convex and reflex quadrilaterals",
-        (counted(pattern) for pattern in [*squares, *quadrilaterals(12)]),
+        (all_real(pattern) for pattern in [*squares, *quadrilaterals(12)]),
     )
     saddle_only = script.alter("the saddle as the label of a reflex sheet", False, True)
 
@@ -294,7 +293,7 @@ def _conclusions_on_patterns(script: Script) -> None:
         return vectors == set(product((1, -1), repeat=result.pattern.Vi))
 
     everything = [DART, *squares, *quadrilaterals(16), *darts(40)]
-    found = [count_branches(p) for p in everything if not p.Vt]
+    found = [counted(p) for p in everything if not p.Vt]
     generic = [r for r in found if all(0 not in b.vertex_signs.values() for b in r.branches)]
     reflex = [r for r in generic if not r.pattern.is_convex]
     script.cases(
@@ -311,13 +310,13 @@ def _conclusions_on_patterns(script: Script) -> None:
         "the same in the chart K_r(t, h) = 1 of the closed sheet: 2^Vi boxes, all sign vectors",
         (_one_each_in_notch_chart(r.pattern) for r in reflex),
     )
-    both = count_branches(DART).branches
+    both = counted(DART).branches
     script.counterexample(
         "the saddle is no label of a reflex sheet: hub (0,0) in (4,-4), (1,0), (4,4), (-4,0) has "
         "two branches, both with saddle + and the hub down",
         [(b.representative, b.sign_text) for b in both] == 2 * [("saddle", "-")],
     )
-    result = count_branches(flat_vertex_square())
+    result = counted(flat_vertex_square())
     script.counterexample(
         "a flat vertex star: three branches, of multiplicities 1, 1, 2, instead of four",
         sorted(b.multiplicity for b in result.branches) == [1, 1, 2],

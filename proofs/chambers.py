@@ -1,4 +1,4 @@
-"""Exact heights in every chamber: solutions of K_v = k_v > 0, one for each vector of signs."""
+"""Exact heights in every chamber: branches, and solutions of K_v = k_v > 0 for all signs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,14 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import product
 
-from exactfold import CreasePattern, QuadraticSystem, curvature_form, isolate
+from exactfold import (
+    BranchCount,
+    CreasePattern,
+    QuadraticSystem,
+    count_branches,
+    curvature_form,
+    isolate,
+)
 from exactfold.branches.branch import Branch
 from exactfold.branches.functionals import integer_row
 from exactfold.branches.roots import BoxRoot
@@ -19,6 +26,12 @@ from exactfold.solve.homotopy import homotopy
 from exactfold.verdict import PROVED, Verdict
 
 Heights = dict[int, Fraction]
+
+
+@lru_cache(maxsize=256)
+def counted(pattern: CreasePattern) -> BranchCount:
+    """The branches of a pattern, counted once: proofs are run again for each deliberate mistake."""
+    return count_branches(pattern)
 
 
 @dataclass(frozen=True)
