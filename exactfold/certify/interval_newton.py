@@ -2,53 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, floor, isfinite
+from math import ceil, floor
 from typing import Any, TypeAlias
 
-import numpy as np
 from mpmath.ctx_iv import MPIntervalContext
 from mpmath.ctx_mp import MPContext
 from mpmath.libmp import from_man_exp, to_rational
 
 from exactfold.certify.box import IsolatingBox, Uncertified
-from exactfold.errors import UsageError
+from exactfold.certify.points import REACH, Candidate, Point, Points, exact_candidates
 from exactfold.system.quadratic import QuadraticSystem
+from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 _PRECISIONS = (106, 212, 424, 848, 1696)
-_NEGLIGIBLE = Fraction(1, 10**8)
 _NEWTON_STEPS = 128
-_REACH = 64  # Newton may move a candidate by max(1, |candidate|) / _REACH
 _INFLATIONS = (1, 4, 64)
 
-Coordinate: TypeAlias = "complex | float | int | Fraction"
-Point: TypeAlias = tuple[Fraction, ...]
 Interval: TypeAlias = Any  # an mpmath interval, closed, with dyadic end points
 Float: TypeAlias = Any  # an mpmath floating-point number
 
 
 def interval_newton(
     system: QuadraticSystem,
-    points: Sequence[Sequence[Coordinate]] | np.ndarray[Any, np.dtype[Any]],
+    points: Points,
     *,
     precisions: Sequence[int] = _PRECISIONS,
+    reach: Fraction | None = REACH,
 ) -> list[IsolatingBox | Uncertified]:
     r"""An isolating box around each candidate, proved in interval arithmetic, or a reason.
 
     For a box X with dyadic centre m let N(X) = m - F'(X)^-1 F(m), the linear interval system solved
     by Gaussian elimination after multiplication with an approximate inverse. If the elimination
     succeeds and N(X) lies in the interior of X, then X holds exactly one zero; it is regular and
-    lies in N(X) (Neumaier, Interval Methods for Systems of Equations, 1990, theorem 5.1.7). Only
-    interval + - * / are used. What is returned is a cube of about twice the width of N(X) around
-    it, if that lies in X; otherwise X.
+    lies in N(X) (Neumaier, Interval Methods for Systems of Equations, 1990, theorem 5.1.7). What is
+    returned is a cube of about twice the width of N(X) around it, if that lies in X; otherwise X.
 
-    `points` has shape (m, n), floats, complex numbers or Fractions. Where imaginary parts are
+    mpmath's elementary functions are not all correctly rounded (its `iv.exp` has missed values,
+    mpmath issue 1181). The proof uses none: of mpmath it uses intervals with exactly given dyadic
+    ends, their sums, differences and products, quotients by intervals without zero and by 2, and
+    comparisons of end points. Each of these is tested against Fractions, for enclosure and for
+    width, in tests/certify/test_interval_newton.py. All else of mpmath only chooses m, r and Y.
+
+    `points` has shape (m, n); coordinates as in `exact_candidates`. Where imaginary parts are
     negligible the real system is tried first, which proves the zero real; otherwise, and if that
     fails, the 2n real equations in real and imaginary parts. Newton's method in floating point
-    chooses m, within max(1, |candidate|) / 64 of the candidate. `precisions` are bits of the
-    significand, tried in turn. No precision of mpmath's global contexts is read or changed.
+    chooses m, within `reach` max(1, |candidate|) of the candidate (None: anywhere). `precisions`
+    are bits of the significand, tried in turn. No precision of mpmath's global contexts is read or
+    changed.
 
     Raises `UsageError` if a candidate does not have n coordinates. `Uncertified` does not mean that
     there is no zero nearby: it may be multiple, the candidate too far off, the precision too low.
@@ -63,58 +66,54 @@ def interval_newton(
 
     def worker(real: bool) -> _Worker:
         if real not in workers:
-            workers[real] = _Worker(system if real else system.realification)
+            workers[real] = _Worker(system if real else system.realification, reach)
         return workers[real]
 
-    results: list[IsolatingBox | Uncertified] = []
-    for row in points:
-        shown = tuple(_approx_complex(x) for x in row)
-        if len(shown) != system.size:
-            raise UsageError(f"a candidate has {len(shown)} coordinates, not {system.size}")
-        parts = [_exact_parts(x) for x in row]
-        finite = [part for part in parts if part is not None]
-        if len(finite) < len(parts):
-            results.append(Uncertified(shown, "the candidate is not finite"))
-            continue
-        re, im = tuple(a for a, _ in finite), tuple(b for _, b in finite)
-        results.append(_certify(worker, re, im, shown, precisions))
-    return results
+    return [
+        candidate if isinstance(candidate, Uncertified) else _certify(worker, candidate, precisions)
+        for candidate in exact_candidates(points, system.size)
+    ]
+
+
+def decide_contains_one_zero(system: QuadraticSystem, box: IsolatingBox) -> Verdict:
+    """Whether a given box holds exactly one zero and a regular one, by the interval Newton test.
+
+    PROVED if N(X) lies in the interior of the box; REFUTED if some quadric has no zero in it;
+    otherwise UNDECIDED, as for a box that is too wide, even if it does hold exactly one zero. A box
+    with imaginary parts is a box of R^2n. Uses the operations that `interval_newton` names.
+
+    >>> line_pair = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
+    >>> boxes = [IsolatingBox((m,), (), r, 3) for m, r in ((11, 1), (11, 12), (20, 1))]
+    >>> [str(decide_contains_one_zero(line_pair, box)) for box in boxes]
+    ['proved', 'undecided', 'refuted']
+    """
+    if system.size == 0:
+        return PROVED
+    worker = _Worker(system if box.is_real else system.realification, None)
+    return worker.decide(_Cube((*box.real, *box.imag), box.radius, box.bits))
 
 
 def _certify(
-    worker: Any, re: Point, im: Point, shown: tuple[complex, ...], precisions: Sequence[int]
+    worker: Callable[[bool], _Worker], candidate: Candidate, precisions: Sequence[int]
 ) -> IsolatingBox | Uncertified:
-    n = len(re)
-    scale = max([Fraction(1), *map(abs, re)])
+    n = len(candidate.real)
+    if n == 0:  # no equation, no unknown: the one point there is
+        return IsolatingBox((), (), 1, 0)
     reasons = []
-    if max(map(abs, im)) <= _NEGLIGIBLE * scale:
-        found = worker(True).run(re, precisions)
+    if candidate.is_nearly_real:
+        found = worker(True).run(candidate.real, precisions)
         if isinstance(found, _Cube):
             return IsolatingBox(found.centre, (), found.radius, found.bits)
         reasons.append(found)
-    if any(im):
-        found = worker(False).run((*re, *im), precisions)
+    if any(candidate.imag):
+        found = worker(False).run((*candidate.real, *candidate.imag), precisions)
         if isinstance(found, _Cube):
-            return IsolatingBox(found.centre[:n], found.centre[n:], found.radius, found.bits)
+            box = IsolatingBox(found.centre[:n], found.centre[n:], found.radius, found.bits)
+            if not reasons or box.is_nonreal:
+                return box
+            found = "the zero was not proved real, nor not real"
         reasons.append(f"as a complex point: {found}" if reasons else found)
-    return Uncertified(shown, "; ".join(reasons))
-
-
-def _exact_parts(value: Any) -> tuple[Fraction, Fraction] | None:
-    """Real and imaginary part, exactly, or None if not finite."""
-    if isinstance(value, Fraction | int):
-        return Fraction(value), Fraction(0)
-    number = complex(value)
-    if not (isfinite(number.real) and isfinite(number.imag)):
-        return None
-    return Fraction(number.real), Fraction(number.imag)
-
-
-def _approx_complex(value: Any) -> complex:
-    try:
-        return complex(value)
-    except OverflowError:
-        return complex("inf") if value > 0 else complex("-inf")
+    return Uncertified(candidate.shown, "; ".join(reasons))
 
 
 @dataclass(frozen=True)
@@ -133,7 +132,8 @@ class _LeftError(Exception):
 class _Worker:
     """The test for one real system, in contexts of its own."""
 
-    def __init__(self, system: QuadraticSystem) -> None:
+    def __init__(self, system: QuadraticSystem, reach: Fraction | None = REACH) -> None:
+        self.reach = reach
         self.iv = MPIntervalContext()
         self.mp = MPContext()
         self.size = system.size
@@ -161,6 +161,37 @@ class _Worker:
             reason = found
         return reason
 
+    def decide(self, box: _Cube) -> Verdict:
+        """The test on a given cube, at rising precision."""
+        length = max(abs(c) + box.radius for c in box.centre).bit_length()
+        for precision in (length + 64, 2 * length + 256, 4 * length + 1024):
+            self.iv.prec = self.mp.prec = precision
+            cube = [self._dyadic(c - box.radius, c + box.radius, box.bits) for c in box.centre]
+            if any((v > 0) is True or (v < 0) is True for v in self._values(cube)):
+                return REFUTED
+            point = [self._dyadic(c, c, box.bits) for c in box.centre]
+            middle = [self.mp.ldexp(self.mp.mpf(c), -box.bits) for c in box.centre]
+            try:
+                factors, residual = self._preconditioned(middle, point)
+            except ZeroDivisionError:
+                continue
+            matrix = self._product(factors, self._jacobian(cube))
+            solution = _eliminate(matrix, [row[0] for row in residual])
+            if solution is None:
+                continue
+            image = [m - y for m, y in zip(point, solution, strict=True)]
+            if all(_inside(a, b) for a, b in zip(image, cube, strict=True)):
+                return PROVED
+        return UNDECIDED
+
+    def _preconditioned(
+        self, middle: list[Float], point: list[Interval]
+    ) -> tuple[list[list[Interval]], list[list[Interval]]]:
+        """An approximate inverse Y of F'(m) as intervals of width 0, and Y F(m)."""
+        inverse = self._approx_inverse(self._approx_derivatives(middle)[0])
+        factors = [[self.iv.make_mpf((c._mpf_, c._mpf_)) for c in row] for row in inverse]
+        return factors, self._product(factors, [[v] for v in self._values(point)])
+
     # --- floating point: chooses what to try ---
 
     def _rational(self, value: Fraction) -> Float:
@@ -169,13 +200,15 @@ class _Worker:
     def _newton(self, candidate: Point, precision: int) -> list[Float]:
         mp, n = self.mp, self.size
         x = start = [self._rational(c) for c in candidate]
-        reach = max([mp.one, *map(abs, start)]) / _REACH
+        reach = None if self.reach is None else self._rational(self.reach)
+        allowed = None if reach is None else max([mp.one, *map(abs, start)]) * reach
         for _ in range(_NEWTON_STEPS):
             jacobian, values = self._approx_derivatives(x)
             inverse = self._approx_inverse(jacobian)
             step = [mp.fdot(inverse[i], values) for i in range(n)]
             x = [a - s for a, s in zip(x, step, strict=True)]
-            if max(abs(a - b) for a, b in zip(x, start, strict=True)) > reach:
+            moved = max(abs(a - b) for a, b in zip(x, start, strict=True))
+            if allowed is not None and moved > allowed:
                 raise _LeftError("Newton's method left the candidate")
             if max(map(abs, step)) <= mp.ldexp(max(map(abs, x)), 4 - precision):
                 break
@@ -216,10 +249,8 @@ class _Worker:
         exponent = max(int(self.mp.frexp(largest)[1]), -precision) if largest else 0
         bits = max(0, precision - exponent)
         centre = [int(self.mp.nint(self.mp.ldexp(c, bits))) for c in x]
-        inverse = self._approx_inverse(self._approx_derivatives(x)[0])
-        factors = [[self.iv.make_mpf((c._mpf_, c._mpf_)) for c in row] for row in inverse]
         point = [self._dyadic(c, c, bits) for c in centre]
-        residual = self._product(factors, [[v] for v in self._values(point)])
+        factors, residual = self._preconditioned(x, point)
         shift = max(_magnitude(row[0], bits) for row in residual)
         reason = ""
         for inflation in _INFLATIONS:

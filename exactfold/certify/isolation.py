@@ -77,7 +77,9 @@ def isolate(
     total = len(candidates.points)
     for start in range(0, total, _BLOCK):
         block = candidates.points[start : start + _BLOCK]
-        for point, result in zip(block, krawczyk(system, block, precisions=_FIRST), strict=True):
+        # Whatever zero a candidate leads to is welcome.
+        results = krawczyk(system, block, precisions=_FIRST, reach=None)
+        for point, result in zip(block, results, strict=True):
             if isinstance(result, IsolatingBox):
                 boxes.append(result)
             else:
@@ -108,7 +110,7 @@ def _settle(
     """Higher precision and the second certifier for candidates that meet; stops at a failure."""
     found: list[IsolatingBox] = []
     for point in group:
-        (result,) = krawczyk(system, [point], precisions=_RISING)
+        (result,) = krawczyk(system, [point], precisions=_RISING, reach=None)
         if isinstance(result, Uncertified):
             (result,) = interval_newton(system, [point.tolist()], precisions=_INTERVAL)
         if isinstance(result, Uncertified):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
@@ -11,23 +12,33 @@ import numpy.typing as npt
 from flint import fmpq, fmpq_mat, fmpz, fmpz_mat
 
 from exactfold.certify.box import IsolatingBox, Uncertified
+from exactfold.certify.points import (
+    REACH,
+    Candidate,
+    Point,
+    Points,
+    exact_candidates,
+    is_within_reach,
+)
 from exactfold.system.quadratic import QuadraticSystem
+from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 FloatArray = npt.NDArray[np.float64]
 
 _PRECISIONS = (64, 128, 256, 512, 1024)
 _Y_BITS = 56
-_NEGLIGIBLE = 1e-8
 _NEWTON_STEPS = 12
 _WIDE = 1 << 16
+_LEFT = "Newton's steps left the candidate"
 _SLOW = "Newton's steps do not shrink quadratically: the zero is multiple or the candidate far off"
 
 
 def krawczyk(
     system: QuadraticSystem,
-    points: npt.ArrayLike,
+    points: Points,
     *,
     precisions: Sequence[int] = _PRECISIONS,
+    reach: Fraction | None = REACH,
 ) -> list[IsolatingBox | Uncertified]:
     r"""An isolating box around each candidate, proved in exact integer arithmetic, or a reason.
 
@@ -37,43 +48,68 @@ def krawczyk(
     contracts: the box holds exactly one zero, a regular one (Krawczyk 1969; statement 3 of
     docs/mathematics.md).
 
-    `points` has shape (m, n). A candidate whose imaginary parts are negligible is tried as a real
-    point, which then proves the zero real; the others are treated as points of R^2n. Floating
-    point only chooses m and Y. Precision rises through `precisions` (bits after the point).
+    `points` has shape (m, n); coordinates as in `exact_candidates`, so that rationals tell
+    clusters apart that doubles cannot. A candidate whose imaginary parts are negligible is tried
+    as a real point, which then proves the zero real; others, and nearly real ones next to a
+    non-real zero, are treated as points of R^2n. Floating point only chooses m and Y. Precision
+    rises through `precisions` (bits after the point). A box further than `reach` max(1, |point|)
+    from its candidate is refused; None takes whatever zero Newton's steps lead to.
 
-    Failure does not mean that there is no zero nearby: the zero may be multiple, the candidate
-    too far off, or the precision too low.
+    Raises `UsageError` if a candidate does not have n coordinates. `Uncertified` does not mean that
+    there is no zero nearby: the zero may be multiple, the candidate too far off, or the precision
+    too low.
 
     >>> line_pair = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
     >>> box, = krawczyk(line_pair, [[1.41421356]])
     >>> [float(bound) for bound in box.interval(0)]
     [1.4142135623730951, 1.4142135623730951]
     """
-    array = np.atleast_2d(np.asarray(points, dtype=np.complex128))
+    results = list[IsolatingBox | Uncertified | None]()
+    real, nonreal = dict[int, Candidate](), dict[int, Candidate]()
+    for index, candidate in enumerate(exact_candidates(points, system.size)):
+        results.append(candidate if isinstance(candidate, Uncertified) else None)
+        if isinstance(candidate, Candidate):
+            (real if candidate.is_nearly_real else nonreal)[index] = candidate
     if system.size == 0:  # no equation, no unknown: the one point there is
-        return [IsolatingBox((), (), 1, 0) for _ in array]
-    results: list[IsolatingBox | Uncertified | None] = [None] * len(array)
-    finite = np.isfinite(array).all(axis=1)
-    scale = np.maximum(1.0, np.abs(array).max(axis=1, initial=0.0))
-    small = np.abs(array.imag).max(axis=1, initial=0.0) <= _NEGLIGIBLE * scale
-    for index in np.flatnonzero(~finite):
-        results[index] = Uncertified(tuple(array[index].tolist()), "the candidate is not finite")
-    real, nonreal = np.flatnonzero(finite & small), np.flatnonzero(finite & ~small)
-    if real.size:
-        kernel = _Kernel(system)
-        for index, box in zip(real, kernel.run(array[real].real, precisions), strict=True):
-            results[index] = box if isinstance(box, IsolatingBox) else _named(array[index], box)
-    if nonreal.size:
-        kernel = _Kernel(system.realification)
-        both = np.hstack([array[nonreal].real, array[nonreal].imag])
-        for index, box in zip(nonreal, kernel.run(both, precisions), strict=True):
-            n = system.size
-            results[index] = (
-                IsolatingBox(box.real[:n], box.real[n:], box.radius, box.bits)
-                if isinstance(box, IsolatingBox)
-                else _named(array[index], box)
-            )
+        return [IsolatingBox((), (), 1, 0) for _ in results]
+    if real:
+        starts = [candidate.real for candidate in real.values()]
+        floats = np.array([candidate.shown for candidate in real.values()]).real
+        found = _Kernel(system).run(starts, floats, precisions, reach)
+        for (index, candidate), box in zip(real.items(), found, strict=True):
+            results[index] = _named(candidate, box)
+            if isinstance(box, str) and any(candidate.imag):
+                nonreal[index] = candidate
+    if nonreal:
+        n = system.size
+        starts = [(*candidate.real, *candidate.imag) for candidate in nonreal.values()]
+        shown = np.array([candidate.shown for candidate in nonreal.values()])
+        floats = np.hstack([shown.real, shown.imag])
+        found = _Kernel(system.realification).run(starts, floats, precisions, reach)
+        for (index, candidate), box in zip(nonreal.items(), found, strict=True):
+            if isinstance(box, IsolatingBox):
+                box = IsolatingBox(box.real[:n], box.real[n:], box.radius, box.bits)
+            if index not in real or (isinstance(box, IsolatingBox) and box.is_nonreal):
+                results[index] = _named(candidate, box)
     return [result for result in results if result is not None]
+
+
+def decide_contains_one_zero(system: QuadraticSystem, box: IsolatingBox) -> Verdict:
+    """Whether a given box holds exactly one zero and a regular one, by the test of `krawczyk`.
+
+    PROVED if the inequalities hold for its centre and radius, with Y the rounded inverse of F'(m);
+    REFUTED if some quadric has no zero in the box; otherwise UNDECIDED, as for a box that is too
+    wide, even if it does hold exactly one zero. A box with imaginary parts is a box of R^2n.
+
+    >>> line_pair = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
+    >>> boxes = [IsolatingBox((m,), (), r, 3) for m, r in ((11, 1), (11, 12), (20, 1))]
+    >>> [str(decide_contains_one_zero(line_pair, box)) for box in boxes]
+    ['proved', 'undecided', 'refuted']
+    """
+    if system.size == 0:
+        return PROVED
+    kernel = _Kernel(system if box.is_real else system.realification)
+    return kernel.decide([*box.real, *box.imag], box.radius, box.bits)
 
 
 def krawczyk_at(system: QuadraticSystem, box: IsolatingBox, bits: int) -> IsolatingBox | str:
@@ -90,8 +126,8 @@ def krawczyk_at(system: QuadraticSystem, box: IsolatingBox, bits: int) -> Isolat
     return result
 
 
-def _named(point: npt.NDArray[np.complex128], reason: str) -> Uncertified:
-    return Uncertified(tuple(point.tolist()), reason)
+def _named(candidate: Candidate, found: IsolatingBox | str) -> IsolatingBox | Uncertified:
+    return Uncertified(candidate.shown, found) if isinstance(found, str) else found
 
 
 @dataclass(frozen=True)
@@ -136,31 +172,61 @@ class _Kernel:
         matrices, _ = self.shifted
         return [sum(abs(x) for row in m[:-1] for x in row[:-1]) for m in matrices]
 
-    def run(self, points: FloatArray, precisions: Sequence[int]) -> list[IsolatingBox | str]:
-        """A box or a reason for each row of `points`."""
+    def run(
+        self,
+        points: Sequence[Point],
+        floats: FloatArray,
+        precisions: Sequence[int],
+        reach: Fraction | None,
+    ) -> list[IsolatingBox | str]:
+        """A box or a reason for each of `points`, which are given as floats, too."""
+        if not precisions:
+            return ["no precision was given" for _ in points]
         first, *rising = precisions
         results: list[IsolatingBox | str] = []
-        inverses = self._float_inverses(points)
-        for point, inverse in zip(points, inverses, strict=True):
-            start = [_dyadic(x, first) for x in point.tolist()]
+        inverses = self._float_inverses(floats)
+        for point, row, inverse in zip(points, floats.tolist(), inverses, strict=True):
             result: IsolatingBox | str = "the Jacobian is singular in double precision"
             if np.isfinite(inverse).all():
-                result = self._attempt(start, first, inverse)
+                result = self._attempt([_dyadic(x, first) for x in row], first, inverse)
             if isinstance(result, IsolatingBox) and result.radius > _WIDE:
                 sharper = self._attempt_exactly(list(result.real), first)
                 if isinstance(sharper, IsolatingBox) and sharper.is_inside(result):
                     result = sharper
+            if isinstance(result, IsolatingBox) and not is_within_reach(result, point, reach):
+                result = f"{_LEFT} at {first} bits"  # perhaps for want of precision
             for bits in rising:
-                if isinstance(result, IsolatingBox) or result == _SLOW:
+                if isinstance(result, IsolatingBox) or result in (_SLOW, _LEFT):
                     break
-                result = self._attempt_exactly([_dyadic(x, bits) for x in point.tolist()], bits)
+                result = self._attempt_exactly([_dyadic(x, bits) for x in point], bits)
+                if isinstance(result, IsolatingBox) and not is_within_reach(result, point, reach):
+                    result = _LEFT
             results.append(result)
         return results
+
+    def decide(self, m: list[int], radius: int, bits: int) -> Verdict:
+        """The test on the box of the given centre and radius, both over 2^bits."""
+        n = self.system.size
+        jacobian, values = self._evaluate(m, bits)
+        norms = [sum(abs(jacobian[p, k]) for k in range(n)) for p in range(n)]
+        for value, norm, curved in zip(values.entries(), norms, self.hessian_norms, strict=True):
+            if abs(value) > 2 * radius * norm + radius**2 * curved:
+                return REFUTED
+        rounded = self._rounded_inverse(jacobian, bits, 2 * max(bits, _Y_BITS))
+        if rounded is None:
+            return UNDECIDED
+        entries, shift = rounded
+        y = fmpz_mat(n, n, entries)
+        k0, eta, bound, unit = self._norms(jacobian, values, bits, y, entries, shift)
+        contraction = k0 + radius * bound
+        proved = contraction < unit and eta < 2 * radius * (unit - contraction)
+        return PROVED if proved else UNDECIDED
 
     def _float_inverses(self, points: FloatArray) -> FloatArray:
         n = self.system.size
         z = np.hstack([points, np.ones((len(points), 1))])
-        jacobians = np.einsum("pij,bj->bpi", self.float_stack, z)[:, :, :n]
+        with np.errstate(all="ignore"):
+            jacobians = np.einsum("pij,bj->bpi", self.float_stack, z)[:, :, :n]
         try:
             inverses = np.linalg.inv(jacobians)
         except np.linalg.LinAlgError:
@@ -196,18 +262,10 @@ class _Kernel:
         last: int | None = None
         for _ in range(_NEWTON_STEPS):
             jacobian, _values = self._evaluate(m, bits)
-            try:
-                inverse = fmpq_mat(jacobian).inv()
-            except ZeroDivisionError:
+            rounded = self._rounded_inverse(jacobian, bits, bits)
+            if rounded is None:
                 return f"the Jacobian is singular at {bits} bits"
-            # jacobian = 2^(bits) F'(m); keep about `bits` significant bits of its inverse.
-            cells = (inverse[i, j] for i in range(n) for j in range(n))
-            size = max(_magnitude(cell) for cell in cells if cell != 0)
-            q = bits + 8 - size - self.shifted[1] - bits
-            shift = q + self.shifted[1]
-            entries = [
-                _round_shift(inverse[i, j], shift + bits) for i in range(n) for j in range(n)
-            ]
+            entries, shift = rounded
             y = fmpz_mat(n, n, entries)
             before, m = m, self._newton(m, bits, y, shift)
             result = self._test(m, bits, y, entries, shift)
@@ -234,12 +292,31 @@ class _Kernel:
         down = shift + bits + 1
         return [a - int(_shift_round(s, down)) for a, s in zip(m, step, strict=True)]
 
-    def _test(
-        self, m: list[int], bits: int, y: fmpz_mat, entries: list[int], shift: int
-    ) -> IsolatingBox | str:
-        """The Krawczyk inequalities at m, Y = y / 2^shift, for the smallest radius that fits."""
+    def _rounded_inverse(
+        self, jacobian: fmpz_mat, bits: int, significant: int
+    ) -> tuple[list[int], int] | None:
+        """Entries of Y times 2^shift for jacobian = 2^bits F'(m); None if it is too singular."""
+        try:
+            cells = fmpq_mat(jacobian).inv().entries()
+        except ZeroDivisionError:
+            return None
+        size = max(_magnitude(cell) for cell in cells if cell != 0)
+        shift = significant + 8 - size - bits
+        if shift + bits < 0:
+            return None
+        return [_round_shift(cell, shift + bits) for cell in cells], shift
+
+    def _norms(
+        self,
+        jacobian: fmpz_mat,
+        values: fmpz_mat,
+        bits: int,
+        y: fmpz_mat,
+        entries: list[int],
+        shift: int,
+    ) -> tuple[int, int, int, int]:
+        """k0 and M times `unit`, and eta times 2 `unit` (both radii in units of 2^-bits)."""
         n = self.system.size
-        jacobian, values = self._evaluate(m, bits)
         unit = 1 << (shift + bits)
         product = (y * jacobian).entries()
         k0 = 0
@@ -247,14 +324,22 @@ class _Kernel:
             row = product[i * n : (i + 1) * n]
             row[i] = row[i] - unit
             k0 = max(k0, int(sum(abs(x) for x in row)))
-        if k0 >= unit:
-            return f"|I - Y F'(m)| is not below 1 at {bits} bits: the zero may be multiple"
         eta = max(abs(int(x)) for x in (y * values).entries())
         norms = self.hessian_norms
         bound = max(
             sum(abs(e) * w for e, w in zip(entries[i * n : (i + 1) * n], norms, strict=True))
             for i in range(n)
         )
+        return k0, eta, bound, unit
+
+    def _test(
+        self, m: list[int], bits: int, y: fmpz_mat, entries: list[int], shift: int
+    ) -> IsolatingBox | str:
+        """The Krawczyk inequalities at m, Y = y / 2^shift, for the smallest radius that fits."""
+        jacobian, values = self._evaluate(m, bits)
+        k0, eta, bound, unit = self._norms(jacobian, values, bits, y, entries, shift)
+        if k0 >= unit:
+            return f"|I - Y F'(m)| is not below 1 at {bits} bits: the zero may be multiple"
         radius = max(1, eta // (2 * (unit - k0)) + 1)
         for _ in range(3):
             contraction = k0 + radius * bound
@@ -272,8 +357,8 @@ def _settled(before: list[int], after: list[int]) -> bool:
     return _distance(before, after) <= 2
 
 
-def _dyadic(value: float, bits: int) -> int:
-    """The integer nearest to value * 2^bits, exactly rounded from the double."""
+def _dyadic(value: float | Fraction, bits: int) -> int:
+    """The integer nearest to value * 2^bits."""
     numerator, denominator = value.as_integer_ratio()
     return (
         _divide_round(numerator << bits, denominator)
