@@ -201,8 +201,8 @@ def _components(script: Script) -> None:
     root = _rational_root(b * b - a * c)
     slopes = [(-b + sign * root) / a for sign in (1, -1)]
     planes = [((0, 1, 0, 0), (0, 0, 1, 0), (slope, 0, 0, 1)) for slope in slopes]
-    conics = [inertia(_gram(second, plane)) for plane in planes]
-    line = inertia(_gram(second, [[0, 1, 0, 0], [0, 0, 1, 0]]))
+    conics = [inertia(gram(second, plane)) for plane in planes]
+    line = inertia(gram(second, [[0, 1, 0, 0], [0, 0, 1, 0]]))
     expected = script.alter("a definite form on the line", (1, 1, 0), (0, 2, 0))
     script.counterexample(
         "Ve = 5, one vertex of degree 4: its form splits into two planes of RP^3, each meets the "
@@ -252,9 +252,10 @@ def restricted(pattern: CreasePattern, vertex: int, free: Sequence[int]) -> list
     ]
 
 
-def _gram(
+def gram(
     matrix: list[list[Fraction]], basis: Sequence[Sequence[Fraction | int]]
 ) -> list[list[Fraction]]:
+    """The matrix of a form on the span of a basis."""
     size = range(len(matrix))
     return [
         [sum((x[i] * matrix[i][j] * y[j] for i in size for j in size), Fraction(0)) for y in basis]

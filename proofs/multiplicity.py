@@ -6,20 +6,38 @@ common (definite stress), so they are a regular sequence and A = Q[w] / (G) is a
 length 2^m. Modulo w the other forms F(y, w) are the forms F(y, 0) of the emptied pattern. If these
 have an isolated zero y0 of multiplicity k, they are a regular sequence on the closed fibre of the
 flat A-algebra A[y], hence on A[y] near y0, with a flat quotient: (y0, 0) has multiplicity 2^m k.
+
+Theorem 3 (docs/theorem.md) says more: every multiplicity is 2^|F|, F the vertices whose star is
+flat. It is compared here with Groebner bases and dual spaces, which know nothing of it.
 """
 
 from __future__ import annotations
 
 import sys
 from fractions import Fraction
+from functools import lru_cache
+from itertools import product
 from pathlib import Path
+from typing import Any
 
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
+from sympy import QQ
+from sympy.polys.fields import field
+
 from exactfold import BranchSystem, CreasePattern, QuadraticSystem, families, groebner
-from proofs.branch_counts import OCTAHEDRON, SQUARE, TWISTED, inner_points, restricted
+from exactfold.branches.functionals import Functionals
+from exactfold.certify.dual_space import dual_space, taylor_expansions, unit_rank
+from exactfold.exact.linalg import inertia, nullspace
+from exactfold.rigidity.definite_stress import disk_multipliers
+from exactfold.solve.exact_solution import ExactSolution, RootClass
+from exactfold.system.branch_system import Chart, notch_chart
+from proofs.branch_counts import OCTAHEDRON, SQUARE, TWISTED, gram, inner_points, restricted
+from proofs.chambers import jacobian
 from proofs.framework import Proof, Ruling, Script, run
+from proofs.patterns import degenerate_patterns, grid_quadrilaterals
+from proofs.potential import corner_polar
 
 NAME = "multiplicity"
 TITLE = "Multiplicities and the number of distinct branches"
@@ -30,11 +48,18 @@ HUB = (Fraction(3, 7), Fraction(5, 9))
 
 
 def prove(change: str | None = None) -> Proof:
-    """2^Vt times the multiplicity in the emptied pattern; fewer than 2^(Vi - Vt) branches."""
+    """2^Vt times the multiplicity in the emptied pattern, and 2^(number of flat vertices)."""
     script = Script(
-        NAME, TITLE, ("four boundary vertices; finitely many roots of the emptied pattern",), change
+        NAME,
+        TITLE,
+        (
+            "four boundary vertices; finitely many roots of the emptied pattern (always so: Theorem 2)",
+        ),
+        change,
     )
     _multiplicity(script)
+    _flat_star(script)
+    _theorem_3(script)
     return script.proof()
 
 
@@ -86,9 +111,8 @@ def _multiplicity(script: Script) -> None:
         "Section III A, Eq. (B distinct)",
         r"B_{distinct}=2^{V_i-V_t}",
         FALSE,
-        r"\sum_{branches}\mu=2^{V_i-V_t}\text{ with multiplicities }\mu\text{ in the emptied "
-        r"pattern; "
-        r"}B_{distinct}\le2^{V_i-V_t},\text{ equality iff all }\mu=1",
+        r"\sum_{branches}2^{|F|}=2^{V_i},\ F\text{ the vertices that are flat on the branch; "
+        r"}B_{distinct}\le2^{V_i-V_t},\text{ equality iff }|F|=V_t\text{ on every branch}",
         "square with inner vertices (1/2,1/2), (7/10,1/5), triangles 015, 125, 245, 405, 234, 304: "
         "Vt = 0 and 3 branches. A straight crease path is the usual cause",
         "BranchCount.distinct",
@@ -98,8 +122,9 @@ def _multiplicity(script: Script) -> None:
         "Section III A, before Eq. (B distinct)",
         r"\text{``the distinct roots of the quadratic equations had multiplicity }2^{V_t}\text{''}",
         CORRECTED,
-        r"2^{V_t}\mu,\ \mu\text{ the multiplicity in the emptied pattern}",
-        "as printed whenever the emptied pattern has simple roots. The square of IIIA.12 with a "
+        r"2^{|F|},\ F\text{ the vertices that are flat on the branch, }|F|\ge V_t",
+        "docs/theorem.md, Theorem 3; in other words 2^Vt times the multiplicity in the emptied "
+        "pattern; as printed where no other vertex is flat. The square of IIIA.12 with a "
         "degree-3 vertex (17/30, 1/15) in 015 has multiplicities 2, 2, 4",
         "Branch.multiplicity",
     )
@@ -109,6 +134,110 @@ def _multiplicities(pattern: CreasePattern) -> list[int]:
     """Multiplicities of all roots of the branch system of the whole pattern, in order."""
     classes = groebner(BranchSystem(pattern).chart.system).classes
     return sorted(c.multiplicity for c in classes for _ in range(c.degree))
+
+
+def _flat_star(script: Script) -> None:
+    """Where the star of v is flat in h, K_v(h, .) = 0 and K_v(h + w) = K_v(w)."""
+    _, *z = field("d1 d2 e1 e2 g1 g2 x y", QQ)
+    d, e, g, x, y = (z[0], z[1]), (z[2], z[3]), (z[4], z[5]), z[6], z[7]
+
+    def end(spoke: tuple[Any, Any], slope: Any) -> Any:
+        turned = g[1] * spoke[0] - g[0] * spoke[1]
+        return turned * slope / (2 * (spoke[0] ** 2 + spoke[1] ** 2))
+
+    sign = script.alter("the ends of a face added, not subtracted", 1, -1)
+    at_d, at_e = (g[0] * spoke[0] + g[1] * spoke[1] for spoke in (d, e))
+    script.identity(
+        "on a face where h has the gradient g the corner of K_v(h, w) is [(g.Jd) x/|d|^2 - "
+        "(g.Jd') x'/|d'|^2]/2; with one g for the whole star the sum is 0: K_v(h, .) = 0",
+        corner_polar(d, e, at_d, at_e, x, y) - end(d, x) + sign * end(e, y),
+    )
+
+
+@lru_cache(maxsize=1)
+def _solved() -> list[tuple[CreasePattern, Functionals, ExactSolution]]:
+    """Degenerate quadrilaterals, convex and reflex, in a chart that holds all their branches."""
+    found = []
+    for pattern in [*degenerate_patterns().values(), *grid_quadrilaterals(60, 4)]:
+        chart = BranchSystem(pattern).chart if pattern.is_convex else notch_chart(pattern)
+        found.append((pattern, Functionals(chart), groebner(chart.system)))
+    return found
+
+
+def _theorem_3(script: Script) -> None:
+    script.state(
+        "T.3",
+        "docs/theorem.md, Theorem 3",
+        r"\mu(h)=2^{|F|},\ F=\{v:\text{the star of }v\text{ is flat in }h\}",
+        Ruling.AS_PRINTED,
+        note="convex boundary, right-hand sides k_v >= 0; quadrilaterals with a reflex corner in "
+        "the closed sheet. So the sum of 2^|F| over all branches is 2^Vi",
+        code="Branch.multiplicity",
+    )
+    more = script.alter("one flat vertex too many", 0, 1)
+    fewer = script.alter("only vertices in triangulated triangles counted", False, True)
+    linear = script.alter("order one at flat vertices", 2, 1)
+    outcomes: dict[str, list[bool]] = {"sum": [], "groebner": [], "dual": [], "initial": []}
+    for pattern, functionals, solution in _solved():
+        total = 0
+        for root_class in solution.classes:
+            flat = {v for v, row in functionals.vertices.items() if root_class.vanishes(row)}
+            flat = flat & pattern.rigid_vertices if fewer else flat
+            expected = 2 ** (len(flat) + more)
+            total += root_class.degree * expected
+            outcomes["groebner"].append(root_class.multiplicity == expected)
+            dual = dual_space(solution.system, root_class, expected + 1)
+            outcomes["dual"].append(dual.is_complete and dual.dimension == expected)
+            gradients = [
+                {a: c for a, c in terms.items() if sum(a) == 1}
+                for terms in taylor_expansions(solution.system, root_class)
+            ]
+            order_two = {v for v, g in zip(pattern.interior, gradients, strict=True) if not g}
+            rank = unit_rank(root_class.polynomial, gradients)
+            independent = rank == pattern.Vi - len(flat) * (linear - 1)
+            outcomes["initial"].append(order_two == flat and independent)
+        outcomes["sum"].append(total == 2**pattern.Vi)
+    script.cases("the sum of 2^|F| over all branches is 2^Vi (exact zero tests)", outcomes["sum"])
+    script.cases(
+        "the multiplicity from a Groebner basis is 2^|F|, by class of roots", outcomes["groebner"]
+    )
+    script.cases("the dual space is complete, of dimension 2^|F|", outcomes["dual"])
+    script.cases(
+        "the equations of F are of order 2, the linear parts of the others independent",
+        outcomes["initial"],
+    )
+    sign = script.alter("multipliers with the wrong sign", 1, -1)
+    script.cases(
+        "at rational branches of convex sheets: sum_F m_v K_v is positive definite on N, of "
+        "dimension |F|, and the forms of F on N have one zero, of multiplicity 2^|F|",
+        (
+            _initial_forms(pattern, functionals.chart, root_class, sign)
+            for pattern, functionals, solution in _solved()
+            for root_class in solution.classes
+            if pattern.is_convex and root_class.degree == 1 and root_class.multiplicity > 1
+        ),
+    )
+
+
+def _initial_forms(pattern: CreasePattern, chart: Chart, root: RootClass, sign: int) -> bool:
+    """The proof at one branch: N = kernel of the linear forms of the vertices that are not flat."""
+    heights = chart.heights([x[0] if x else Fraction(0) for x in root.coordinates])
+    rows = jacobian(pattern, heights)
+    flat = [v for v, row in zip(pattern.interior, rows, strict=True) if not any(row)]
+    basis = nullspace(rows)
+    multipliers = disk_multipliers(pattern)
+    size = len(basis)
+    total = [[Fraction(0)] * size for _ in basis]
+    forms = []
+    for v in flat:
+        form = gram(restricted(pattern, v, pattern.interior), basis)
+        for i, j in product(range(size), repeat=2):
+            total[i][j] += sign * multipliers[v] * form[i][j]
+        forms.append([[*row, Fraction(0)] for row in form] + [[Fraction(0)] * (size + 1)])
+    if len(flat) != size or inertia(total) != (size, 0, 0):
+        return False
+    classes = groebner(QuadraticSystem.from_rational(forms)).classes
+    return [c.multiplicity for c in classes] == [2**size]
 
 
 if __name__ == "__main__":

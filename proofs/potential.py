@@ -51,7 +51,7 @@ def prove(change: str | None = None) -> Proof:
     return script.proof()
 
 
-def _corner(d: Vector, e: Vector, x: Any, y: Any, u: Any, v: Any) -> Any:
+def corner_polar(d: Vector, e: Vector, x: Any, y: Any, u: Any, v: Any) -> Any:
     """Polar form, at (x, y) and (u, v), of what a face with spokes d, e adds to K."""
     c, s = d[0] * e[1] - d[1] * e[0], d[0] * e[0] + d[1] * e[1]
     dd, ee = d[0] ** 2 + d[1] ** 2, e[0] ** 2 + e[1] ** 2
@@ -73,7 +73,7 @@ def _symmetry(script: Script) -> None:
             one, two = (
                 [int(name == n) - int(name == hub) for n in (j, k)] for name in (first, second)
             )
-            total += _corner(spokes[lowered], spokes[1 - lowered], *one, *two)
+            total += corner_polar(spokes[lowered], spokes[1 - lowered], *one, *two)
         return total
 
     for x in "vwab":
