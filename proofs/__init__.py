@@ -17,6 +17,8 @@ MODULES: tuple[str, ...] = (
     "kapovich_millson",
     "all_real",
     "potential",
+    "inertia",
+    "inertia_cases",
     "certification",
     "butterfly",
     "h1_triangulations",

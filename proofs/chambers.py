@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -12,6 +12,7 @@ from itertools import product
 from exactfold import (
     BranchCount,
     CreasePattern,
+    QuadraticForm,
     QuadraticSystem,
     count_branches,
     curvature_form,
@@ -21,11 +22,24 @@ from exactfold.branches.branch import Branch
 from exactfold.branches.functionals import integer_row
 from exactfold.branches.roots import BoxRoot
 from exactfold.errors import NotApplicableError
+from exactfold.exact.linalg import Inertia, from_fmpq, inertia, to_flint
 from exactfold.rigidity.timelike import vertex_sign_functional
 from exactfold.solve.homotopy import homotopy
 from exactfold.verdict import PROVED, Verdict
 
 Heights = dict[int, Fraction]
+
+
+@lru_cache(maxsize=512)
+def forms(pattern: CreasePattern) -> dict[int, QuadraticForm]:
+    """The curvature form of every interior vertex."""
+    return {v: curvature_form(pattern, v) for v in pattern.interior}
+
+
+@lru_cache(maxsize=512)
+def sign_functionals(pattern: CreasePattern) -> dict[int, dict[int, int]]:
+    """The vertex sign functional of every interior vertex."""
+    return {v: vertex_sign_functional(pattern, v) for v in pattern.interior}
 
 
 @lru_cache(maxsize=256)
@@ -38,14 +52,15 @@ def counted(pattern: CreasePattern) -> BranchCount:
 class Solutions:
     """What was found for the right-hand sides k_v > 0 and the boundary heights of one pattern.
 
-    `points` are the rational centres of the boxes of the real solutions, and `signs` the vertex
-    signs that hold on all of each box, None where undecided. `complete` is PROVED if there are no
-    other solutions, real or complex.
+    `points` are the rational centres of the boxes of the real solutions, no height farther than
+    `radius` from that of the solution, and `signs` the vertex signs that hold on all of each box,
+    None where undecided. `complete` is PROVED if there are no other solutions, real or complex.
     """
 
     pattern: CreasePattern
     points: tuple[Heights, ...]
     signs: tuple[tuple[int | None, ...], ...]
+    radius: Fraction
     complete: Verdict
 
     @property
@@ -70,7 +85,7 @@ def solve(pattern: CreasePattern, seed: int) -> Solutions:
     n = len(position)
     matrices, rows = [], []
     for v in pattern.interior:
-        form = curvature_form(pattern, v)
+        form = forms(pattern)[v]
         matrix = [[Fraction(0)] * (n + 1) for _ in range(n + 1)]
         for a, line in zip(form.labels, form.matrix, strict=True):
             for b, weight in zip(form.labels, line, strict=True):
@@ -79,7 +94,7 @@ def solve(pattern: CreasePattern, seed: int) -> Solutions:
         matrix[n][n] -= Fraction(source.randint(1, 9), source.randint(1, 9))
         matrices.append(matrix)
         row = [Fraction(0)] * (n + 1)
-        for u, c in vertex_sign_functional(pattern, v).items():
+        for u, c in sign_functionals(pattern)[v].items():
             row[position.get(u, n)] += c * fixed.get(u, Fraction(1))
         rows.append(integer_row(row))
     system = QuadraticSystem.from_rational(matrices)
@@ -91,13 +106,14 @@ def solve(pattern: CreasePattern, seed: int) -> Solutions:
         for box in boxes
     )
     signs = tuple(tuple(BoxRoot(box).sign(row) for row in rows) for box in boxes)
-    return Solutions(pattern, points, signs, found.complete)
+    radius = max(Fraction(box.radius, 1 << box.bits) for box in boxes)
+    return Solutions(pattern, points, signs, radius, found.complete)
 
 
 def vertex_signs(pattern: CreasePattern, heights: Mapping[int, Fraction]) -> tuple[int, ...]:
     """1 up, -1 down, 0 undefined, in the order of the interior vertices; needs all K_v >= 0."""
     values = (
-        sum((c * heights[u] for u, c in vertex_sign_functional(pattern, v).items()), Fraction(0))
+        sum((c * heights[u] for u, c in sign_functionals(pattern)[v].items()), Fraction(0))
         for v in pattern.interior
     )
     return tuple((value > 0) - (value < 0) for value in values)
@@ -112,13 +128,47 @@ def corner_sign(pattern: CreasePattern, branch: Branch) -> int | None:
     if corner is None:
         raise NotApplicableError("a convex sheet has no reflex corner")
     weighted = [
-        [c * x for x in branch.height_rows[v]]
-        for v, c in vertex_sign_functional(closed, corner).items()
+        [c * x for x in branch.height_rows[v]] for v, c in sign_functionals(closed)[corner].items()
     ]
     return branch.root.sign(integer_row([sum(column) for column in zip(*weighted, strict=True)]))
 
 
 def jacobian(pattern: CreasePattern, heights: Mapping[int, Fraction]) -> list[list[Fraction]]:
     """J(h) = (K_v(h, e_u)), v and u interior: half the Jacobian of the curvature forms at h."""
-    rows = [curvature_form(pattern, v).functional(heights) for v in pattern.interior]
+    rows = [form.functional(heights) for form in forms(pattern).values()]
     return [[row.get(u, Fraction(0)) for u in pattern.interior] for row in rows]
+
+
+def inertia_at(
+    pattern: CreasePattern, box: Mapping[int, tuple[Fraction, Fraction]], flat: Set[int]
+) -> Inertia | None:
+    """The inertia of J(h) for every h with heights between the two bounds; None if not decided.
+
+    `flat` names vertices that are known to be flat, whose rows of J are zero. Otherwise J(m) at the
+    centre m has an inverse Y, and no matrix that differs from J(m) by less than R entrywise is
+    singular if the rows of |Y| R add up to less than 1.
+    """
+    centre = {v: (low + high) / 2 for v, (low, high) in box.items()}
+    reach = {v: abs(high - low) / 2 for v, (low, high) in box.items()}
+    keep = [k for k, v in enumerate(pattern.interior) if v not in flat]
+    if not keep:
+        return 0, 0, len(pattern.interior)
+    whole = jacobian(pattern, centre)
+    matrix = [[whole[i][j] for j in keep] for i in keep]
+    radii = []
+    for i in keep:
+        form = forms(pattern)[pattern.interior[i]]
+        row = {
+            u: sum((abs(m) * reach[x] for m, x in zip(line, form.labels, strict=True)), Fraction(0))
+            for u, line in zip(form.labels, form.matrix, strict=True)
+        }
+        radii.append(sum((row.get(pattern.interior[j], Fraction(0)) for j in keep), Fraction(0)))
+    positive, negative, zero = inertia(matrix)
+    if zero:
+        return None
+    inverse = to_flint(matrix).inv().tolist()
+    rows = (
+        sum((abs(from_fmpq(y)) * r for y, r in zip(line, radii, strict=True)), Fraction(0))
+        for line in inverse
+    )
+    return (positive, negative, len(flat)) if all(row < 1 for row in rows) else None

@@ -52,9 +52,7 @@ def prove(change: str | None = None) -> Proof:
     script = Script(
         NAME,
         TITLE,
-        (
-            "four boundary vertices; finitely many roots of the emptied pattern (always so: Theorem 2)",
-        ),
+        ("four boundary vertices; finitely many roots of the emptied pattern (docs/theorem.md)",),
         change,
     )
     _multiplicity(script)

@@ -13,14 +13,13 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import BranchSystem, count_branches, curvature_form, random_square
-from exactfold.branches.roots import BoxRoot
+from exactfold import curvature_form, random_square
 from exactfold.exact.linalg import inertia
 from exactfold.rigidity.timelike import round_cone
 from proofs.framework import Proof, Ruling, Script, run
 
 NAME = "potential"
-TITLE = "The cubic potential, the inertia of the Jacobian, and the popping homotopy"
+TITLE = "The cubic potential and the popping homotopy"
 
 Vector = tuple[Any, Any]
 
@@ -47,7 +46,6 @@ def prove(change: str | None = None) -> Proof:
     )
     _symmetry(script)
     _lorentzian_along_the_path(script)
-    _inertia_of_jacobian(script)
     return script.proof()
 
 
@@ -134,38 +132,6 @@ def _n_inertia(pattern: Any, vertex: int) -> bool:
     ]
     positive, negative, zero = inertia(matrix)
     return negative == 0 and zero == 4 and positive == len(form.labels) - 4
-
-
-def _inertia_of_jacobian(script: Script) -> None:
-    """Convex boundaries: exact inertia of K_v(m, e_w) at the rational centre m of each box."""
-    swapped = script.alter("up and down exchanged", False, True)
-
-    def agree(interior: int, seed: int) -> list[bool]:
-        pattern = random_square(interior, seed)
-        chart = BranchSystem(pattern).chart
-        outcomes = []
-        for branch in count_branches(pattern).branches:
-            if not isinstance(branch.root, BoxRoot):
-                return [False]
-            box = branch.root.box
-            heights = chart.heights([Fraction(m, 1 << box.bits) for m in box.real])
-            rows = {v: curvature_form(pattern, v).functional(heights) for v in pattern.interior}
-            found = inertia(
-                [
-                    [(rows[v].get(w, 0) + rows[w].get(v, 0)) / Fraction(2) for w in rows]
-                    for v in rows
-                ]
-            )
-            signs = list(branch.vertex_signs.values())
-            expected = (signs.count(1), signs.count(-1), 0)
-            outcomes.append(found == ((*expected[1::-1], 0) if swapped else expected))
-        return outcomes
-
-    script.cases(
-        "inertia of the Jacobian, at the centre of the box, = (popped up, popped down) on every "
-        "branch of random squares",
-        (ok for n in (2, 3, 4) for seed in range(5) for ok in agree(n, seed)),
-    )
 
 
 if __name__ == "__main__":

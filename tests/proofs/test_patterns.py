@@ -53,8 +53,8 @@ def test_every_chamber_is_reached() -> None:
 def test_is_not_one_each_if_a_solution_is_missing_or_undecided() -> None:
     found = solve(next(hostile_patterns(1)), 0)
     pattern, points, signs = found.pattern, found.points, found.signs
-    assert not Solutions(pattern, points[1:], signs[1:], PROVED).is_one_each
-    assert not Solutions(pattern, points, ((None,), *signs[1:]), PROVED).is_one_each
+    assert not Solutions(pattern, points[1:], signs[1:], found.radius, PROVED).is_one_each
+    assert not Solutions(pattern, points, ((None,), *signs[1:]), found.radius, PROVED).is_one_each
 
 
 def test_corner_sign_tells_the_branches_of_a_dart_apart() -> None:

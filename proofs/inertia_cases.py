@@ -1,0 +1,182 @@
+"""The inertia of the Jacobian on hostile patterns, and popping one vertex up raises it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from functools import lru_cache
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+from exactfold import BranchCount, CreasePattern, random_square
+from exactfold.exact.linalg import Inertia, inertia_by_elimination
+from exactfold.verdict import PROVED
+from proofs.chambers import (
+    Solutions,
+    corner_sign,
+    counted,
+    inertia_at,
+    jacobian,
+    solve,
+    vertex_signs,
+)
+from proofs.framework import Proof, Ruling, Script, run
+from proofs.patterns import (
+    DART,
+    darts,
+    degenerate_patterns,
+    grid_quadrilaterals,
+    hostile_patterns,
+    quadrilaterals,
+)
+
+NAME = "inertia_cases"
+TITLE = "Theorem 4 on hostile patterns, and popping up raises a vertex"
+
+
+def prove(change: str | None = None) -> Proof:
+    """Theorem 4 and its corollary where they could fail; exact signs and eigenvalue counts."""
+    script = Script(
+        NAME,
+        TITLE,
+        ("convex boundary; a quadrilateral with a reflex corner: the sheet with its notch closed",),
+        change,
+    )
+    script.state(
+        "T.5",
+        "Statement of exactfold on two solutions whose signs differ at v alone",
+        r"\text{same boundary heights and }k\ge0:\ "
+        r"h_v\text{ is larger where }v\text{ is popped up}",
+        Ruling.AS_PRINTED,
+        note="convex boundary, no flat vertex: the sign of the chord in the proof of Theorem 4",
+        code="Branch.heights",
+    )
+    _chambers(script)
+    _branches(script)
+    _popping_raises(script)
+    return script.proof()
+
+
+@lru_cache(maxsize=1)
+def _hostile() -> list[CreasePattern]:
+    return list(hostile_patterns(13))
+
+
+@lru_cache(maxsize=1)
+def _branch_sheets() -> dict[str, list[CreasePattern]]:
+    degenerate = [*degenerate_patterns().values(), *grid_quadrilaterals(24)]
+    return {
+        "convex sheets": [*(p for p in quadrilaterals(16) if p.is_convex), *_squares()],
+        "straight creases and flat vertices": [p for p in degenerate if p.is_convex],
+        "reflex corner, up in the closed sheet": [
+            p for p in [DART, *darts(16), *degenerate] if not p.is_convex
+        ],
+    }
+
+
+def _squares() -> list[CreasePattern]:
+    return [random_square(n, seed) for n in (2, 3, 4) for seed in range(4)]
+
+
+def _chambers(script: Script) -> None:
+    """Heights with all K_v > 0: solutions for all sign vectors, and sums within a chamber."""
+    swapped = script.alter("up and down exchanged", False, True)
+
+    def agree(pattern: CreasePattern, heights: dict[int, Fraction]) -> bool:
+        signs = vertex_signs(pattern, heights)
+        expected = (signs.count(1), signs.count(-1), 0)
+        expected = (expected[1], expected[0], 0) if swapped else expected
+        return inertia_by_elimination(jacobian(pattern, heights)) == expected
+
+    def points() -> Iterator[tuple[CreasePattern, dict[int, Fraction]]]:
+        for seed, pattern in enumerate(_hostile()):
+            first = solve(pattern, seed)
+            yield from ((pattern, h) for h in first.points)
+            if pattern.Vi < 5:
+                other = solve(pattern, seed + 100)
+                for one, signs in zip(first.points, first.signs, strict=True):
+                    two = other.points[other.signs.index(signs)]
+                    yield pattern, {v: 3 * one[v] + two[v] / 7 for v in one}
+
+    script.cases(
+        "the inertia of J(h), by exact elimination, is (up, down, 0) at points of all chambers of "
+        "hostile patterns",
+        (agree(pattern, heights) for pattern, heights in points()),
+    )
+
+
+def _branches(script: Script) -> None:
+    """Certified branches: J is nonsingular on the whole box, with the inertia of its centre."""
+    closed_only = script.alter("the notch left open", True, False)
+    nonzero = script.alter("flat vertices not counted", False, True)
+
+    def expected(signs: Sequence[int]) -> Inertia:
+        return signs.count(1), signs.count(-1), 0 if nonzero else signs.count(0)
+
+    def agree(result: BranchCount) -> Iterator[bool]:
+        pattern = result.pattern
+        yield result.status is PROVED
+        for branch in result.branches:
+            sheet, side, signs = pattern, 1, dict(branch.vertex_signs)
+            if not pattern.is_convex and closed_only:
+                side = corner_sign(pattern, branch) or 0
+                sheet = pattern.with_notch_closed()
+                signs = {v: side * s for v, s in signs.items()}
+                signs |= {v: 1 for v in sheet.interior if v not in signs}
+            box = {v: (side * low, side * high) for v, (low, high) in branch.heights.items()}
+            flat = {v for v, s in signs.items() if not s}
+            yield inertia_at(sheet, box, flat) == expected(list(signs.values()))
+
+    for title, patterns in _branch_sheets().items():
+        script.cases(
+            f"inertia of J on the boxes of all branches; {title}: (up, down, flat)",
+            (ok for p in patterns for ok in agree(counted(p))),
+        )
+    found = {inertia_at(DART, b.heights, set()) for b in counted(DART).branches}
+    script.counterexample(
+        "false for the reflex sheet itself: hub (0,0) in (4,-4), (1,0), (4,4), (-4,0) is down on "
+        "both branches, J is positive on one and negative on the other",
+        found == {(1, 0, 0), (0, 1, 0)} and {b.sign_text for b in counted(DART).branches} == {"-"},
+    )
+
+
+def _popping_raises(script: Script) -> None:
+    """h_v is larger where v is up, all other signs, k >= 0 and the boundary heights being equal."""
+    down = script.alter("popping up lowers", 1, -1)
+
+    def pairs(vectors: Sequence[tuple[Any, ...]]) -> Iterator[tuple[int, int, int]]:
+        """Positions of two vectors that differ at one place, where the first is up."""
+        for one, other in product(range(len(vectors)), repeat=2):
+            places = [k for k, s in enumerate(vectors[one]) if s != vectors[other][k]]
+            if len(places) == 1 and vectors[one][places[0]] == 1:
+                yield one, other, places[0]
+
+    def of_solutions(found: Solutions) -> Iterator[bool]:
+        for one, other, k in pairs(found.signs):
+            v = found.pattern.interior[k]
+            yield down * (found.points[one][v] - found.points[other][v]) > 2 * found.radius
+
+    def of_branches(result: BranchCount) -> Iterator[bool]:
+        branches = [b for b in result.branches if 0 not in b.vertex_signs.values()]
+        order = result.pattern.interior
+        for one, other, k in pairs([tuple(b.vertex_signs[v] for v in order) for b in branches]):
+            high, low = branches[one].heights[order[k]], branches[other].heights[order[k]]
+            yield high[0] > low[1] if down > 0 else high[1] < low[0]
+
+    script.cases(
+        "popping one vertex up raises it: solutions for positive curvatures, hostile patterns",
+        (ok for seed, p in enumerate(_hostile()) for ok in of_solutions(solve(p, seed))),
+    )
+    script.cases(
+        "popping one vertex up raises it: branches of convex sheets with saddle 1",
+        (ok for pattern in _squares() for ok in of_branches(counted(pattern))),
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
