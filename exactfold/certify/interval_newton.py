@@ -19,6 +19,7 @@ from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 _PRECISIONS = (106, 212, 424, 848, 1696)
 _NEWTON_STEPS = 128
+_SLOW_STEPS = 20  # in a row, each no shorter than an eighth of the one before: a multiple zero
 _INFLATIONS = (1, 4, 64)
 
 Interval: TypeAlias = Any  # an mpmath interval, closed, with dyadic end points
@@ -202,6 +203,7 @@ class _Worker:
         x = start = [self._rational(c) for c in candidate]
         reach = None if self.reach is None else self._rational(self.reach)
         allowed = None if reach is None else max([mp.one, *map(abs, start)]) * reach
+        slow, last = 0, mp.inf
         for _ in range(_NEWTON_STEPS):
             jacobian, values = self._approx_derivatives(x)
             inverse = self._approx_inverse(jacobian)
@@ -210,7 +212,9 @@ class _Worker:
             moved = max(abs(a - b) for a, b in zip(x, start, strict=True))
             if allowed is not None and moved > allowed:
                 raise _LeftError("Newton's method left the candidate")
-            if max(map(abs, step)) <= mp.ldexp(max(map(abs, x)), 4 - precision):
+            length = max(map(abs, step))
+            slow, last = slow + 1 if 8 * length > last else 0, length
+            if slow > _SLOW_STEPS or length <= mp.ldexp(max(map(abs, x)), 4 - precision):
                 break
         return x
 
