@@ -10,7 +10,7 @@ from flint import Ordering, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpol
 from exactfold.errors import NotApplicableError, ParametrisationError, UsageError
 from exactfold.exact.univariate import from_rational_poly
 from exactfold.solve.exact_solution import ExactSolution, RootClass
-from exactfold.solve.lifting import lifted_parametrisation
+from exactfold.solve.lifting import lifted_classes
 from exactfold.solve.quotient import (
     QuotientAlgebra,
     SparsePolynomial,
@@ -32,10 +32,11 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
     that separates the zeros, factored over Q, and the rational univariate representation (Rouillier
     1999) describe the zeros. Multiplicities are exponents of the characteristic polynomial in the
     full algebra. Engine "lifting" does the same modulo a prime and lifts the result to Q; it
-    applies to systems with 2^n different zeros and n <= 7, and is much faster from n = 5 on (random
-    squares: 0.3 s at n = 5, 3 s at 6, a minute at 7, against 2 s and 150 s). "auto" takes the
-    first that applies of FLINT up to n = 4, lifting, and FLINT. Every class is verified by exact
-    substitution.
+    applies for n <= 7 to systems without zeros at infinity in which a zero with a Jacobian of
+    corank c counts 2^c times (all convex sheets), and proves these multiplicities by exact ranks
+    (`lifted_classes`). Random squares take it 0.3 s at n = 5, 4 s at 6, a minute at 7; with
+    multiple zeros it is faster. "auto" takes the first that applies of FLINT up to n = 4, lifting,
+    and FLINT. Every class is verified by exact substitution.
 
     A system with infinitely many zeros gives `dimension` None, an inconsistent one 0. Raises
     `UsageError` for an unknown engine, `NotApplicableError` if lifting was asked for and does not
@@ -50,12 +51,13 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
     if engine not in ("auto", *ENGINES):
         raise UsageError(f"unknown engine {engine!r}: choose auto, {', '.join(ENGINES)}")
     if engine == "lifting" or (engine == "auto" and system.size > _SMALL):
-        whole = lifted_parametrisation(system)
-        if whole is not None:
-            return _verified(system, system.bezout_number, tuple(whole.factors()), "lifting")
+        lifted = lifted_classes(system)
+        if lifted is not None:
+            return _verified(system, system.bezout_number, lifted, "lifting")
         if engine == "lifting":
             raise NotApplicableError(
-                "lifting needs 2^n different zeros, none at infinity: take another engine"
+                "lifting needs 2^n zeros, none at infinity, of multiplicities 2^corank: "
+                "take another engine"
             )
     chosen = "flint" if engine != "sympy" else "sympy"
     basis = _flint_basis(system) if chosen == "flint" else _sympy_basis(system)

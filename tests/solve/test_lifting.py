@@ -1,8 +1,10 @@
 """Lifting from a prime field against the Groebner basis."""
 
 import pytest
+from sheets import with_point
 
 from exactfold.errors import NotApplicableError
+from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.solve import lifting
 from exactfold.solve.groebner import groebner
@@ -75,15 +77,16 @@ def test_reducible_systems_split_into_classes():
 @pytest.mark.parametrize(
     "system",
     [
-        chart_system(FLAT_STAR),  # a double root
         QuadraticSystem((((1, 0, 0), (0, 1, 0), (0, 0, -1)), ((1, 0, 0), (0, 1, 0), (0, 0, -2)))),
         QuadraticSystem((((1, 0, 0), (0, 0, 0), (0, 0, 0)), ((0, 1, 0), (1, 0, 0), (0, 0, 0)))),
         # one zero at infinity: x y = 1 and x (x + y) = 1 have three leading directions too few
         QuadraticSystem((((0, 1, 0), (1, 0, 0), (0, 0, -2)), ((2, 1, 0), (1, 0, 0), (0, 0, -2)))),
+        # y = x^2 and y^2 = 0: multiplicity 4 where the Jacobian has corank 1
+        QuadraticSystem((((2, 0, 0), (0, 0, -1), (0, -1, 0)), ((0, 0, 0), (0, 1, 0), (0, 0, 0)))),
     ],
 )
 def test_lifting_that_does_not_apply_error(system):
-    assert lifting.lifted_parametrisation(system) is None
+    assert lifting.lifted_classes(system) is None
     with pytest.raises(NotApplicableError, match="another engine"):
         groebner(system, engine="lifting")
     assert groebner(system).engine == "flint"
@@ -91,7 +94,7 @@ def test_lifting_that_does_not_apply_error(system):
 
 def test_lifting_gives_up_at_the_precision_limit(monkeypatch):
     monkeypatch.setattr(lifting, "_precision_limit", lambda system: 1)
-    assert lifting.lifted_parametrisation(chart_system(TWO_VERTICES)) is None
+    assert lifting.lifted_classes(chart_system(TWO_VERTICES)) is None
 
 
 def test_too_little_precision_is_noticed(monkeypatch):
@@ -104,6 +107,61 @@ def test_too_little_precision_is_noticed(monkeypatch):
         return attempts[-1]
 
     monkeypatch.setattr(lifting, "_reconstructed", recorded)
-    found = lifting.lifted_parametrisation(chart_system(INNER_TRIANGLE))
+    [found] = lifting.lifted_classes(chart_system(INNER_TRIANGLE))
     assert len(attempts) > 1
-    assert found is attempts[-1]
+    assert found == attempts[-1]
+
+
+def test_an_unlucky_prime_is_replaced(monkeypatch):
+    monkeypatch.setattr(lifting, "PRIMES", (3, lifting.PRIMES[0]))
+    system = QuadraticSystem((((1, 0), (0, -3)),))  # x^2 = 3: a double zero modulo 3
+    assert [c.polynomial for c in lifting.lifted_classes(system)] == [(-3, 0, 1)]
+
+
+def test_an_unlucky_prime_proves_nothing(monkeypatch):
+    """Modulo 3 the two zeros of x^2 = 3 look like a double one; the exact corank refutes it."""
+    monkeypatch.setattr(lifting, "PRIMES", (3,))
+    assert lifting.lifted_classes(QuadraticSystem((((1, 0), (0, -3)),))) is None
+
+
+MULTIPLE = {
+    "flat star": FLAT_STAR,
+    "hypar": families.hypar(1, 0),
+    "vertex of degree three": with_point(TWO_VERTICES, 0, (1, 2, 3)),
+    "hypar and degree three": with_point(families.hypar(1, 0), 0, (1, 2, 3)),
+    "nested triangles": with_point(with_point(TWO_VERTICES, 0, (1, 2, 3)), 5, (1, 1, 1)),
+}
+
+
+@pytest.mark.parametrize("pattern", MULTIPLE.values(), ids=MULTIPLE)
+def test_multiple_zeros_agree_with_the_groebner_basis(pattern):
+    system = chart_system(pattern)
+    lifted, exact = groebner(system, engine="lifting"), groebner(system, engine="flint")
+    assert lifted.classes == exact.classes
+    assert max(c.multiplicity for c in lifted.classes) > 1
+
+
+def test_multiple_zeros_in_six_unknowns():
+    solution = groebner(chart_system(families.flat_octahedron_in_square()))
+    assert solution.engine == "lifting"
+    assert solution.dimension == 64
+    assert [(c.degree, c.multiplicity) for c in solution.classes] == [(8, 8)]
+
+
+def test_multiple_zeros_that_are_not_flat_vertices():
+    """Generic combinations of the quadrics: no row of the Jacobian is zero at the double zero."""
+    system = chart_system(families.hypar(1, 0))
+    mixture = [[1, 2, 0, 1], [0, 1, 3, 1], [1, 0, 1, 1], [2, 1, 1, -1]]
+    mixed = QuadraticSystem(
+        tuple(
+            tuple(
+                tuple(
+                    sum(w * m[i][j] for w, m in zip(row, system.matrices, strict=True))
+                    for j in range(5)
+                )
+                for i in range(5)
+            )
+            for row in mixture
+        )
+    )
+    assert groebner(mixed, engine="lifting").classes == groebner(system, engine="flint").classes
