@@ -1,18 +1,19 @@
-"""The zeros of a system modulo a prime, from linear algebra on Macaulay's matrix."""
+"""The zeros of a system modulo a prime, by linear algebra degree by degree."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations_with_replacement
+from math import comb
 
 from flint import nmod_mat, nmod_poly
 
-from exactfold.solve.quotient import Exponent, grevlex_key, sparse_quadrics
+from exactfold.solve.quotient import Exponent, grevlex_key, lowered, raised, sparse_quadrics
+from exactfold.solve.residues import transposed
 from exactfold.system.quadratic import QuadraticSystem
 
-LARGEST = 7  # beyond, the matrix of Macaulay does not fit in memory
+LARGEST = 8  # beyond, lifting takes hours
 
 
 @dataclass(frozen=True)
@@ -56,8 +57,7 @@ class ModularQuotient:
         products = {self.basis[0]: one}
         for exponent in self.basis[1:]:
             i = next(k for k, a in enumerate(exponent) if a)
-            smaller = tuple(a - (k == i) for k, a in enumerate(exponent))
-            products[exponent] = self.matrices[i] * products[smaller]
+            products[exponent] = self.matrices[i] * products[lowered(exponent, i)]
         return [products[exponent] for exponent in self.basis]
 
     @cached_property
@@ -118,13 +118,16 @@ class ModularQuotient:
 
 
 def modular_quotient(system: QuadraticSystem, prime: int) -> ModularQuotient | None:
-    """The quotient algebra modulo a prime; None unless its dimension is 2^n.
+    """The quotient algebra modulo a prime; None unless the leading forms have no common zero.
 
-    The multiples of the quadrics of degree at most n + 1 span the ideal in that degree when the
-    leading forms have no common zero (Macaulay's bound), and all monomials of degree n + 1 are then
-    leading monomials. A quotient of dimension 2^n proves more than it says of the prime: the
-    resultant of the leading forms is not zero modulo the prime, hence not zero, so that the system
-    has exactly 2^n complex zeros with multiplicity, none at infinity.
+    Without zeros at infinity the algebra has C(n, d) standard monomials of degree d. Degree by
+    degree, the relations x_i (m - N(m)) for the normal forms N(m) already known give those of the
+    border monomials x_i b of the next degree (Mourrain 1999, a new criterion for normal forms).
+    Every relation is sum a_p F_p without terms above its degree; hence, if all monomials of degree
+    n + 1 turn out to be leading, the leading forms generate them and have no common zero. This
+    proves more than it says of the prime: the resultant of the leading forms is not zero modulo
+    the prime, so it is not zero, and the system has exactly 2^n complex zeros with multiplicity,
+    none at infinity.
 
     >>> axes, circle = ((0, 1, 0), (1, 0, 0), (0, 0, 0)), ((1, 0, 0), (0, 1, 0), (0, 0, -1))
     >>> quotient = modular_quotient(QuadraticSystem((axes, circle)), 10007)
@@ -134,56 +137,100 @@ def modular_quotient(system: QuadraticSystem, prime: int) -> ModularQuotient | N
     size = system.size
     if not 0 < size <= LARGEST:
         return None
-    monomials = sorted(_monomials(size, size + 1), key=grevlex_key, reverse=True)
-    column = {a: k for k, a in enumerate(monomials)}
-    echelon = _macaulay_echelon(system, monomials, column, prime)
-    if echelon is None:
-        return None
-    pivot_row: dict[int, int] = {}
-    k = 0
-    for i in range(len(monomials) - system.bezout_number):
-        while echelon[i, k] == 0:
-            k += 1
-        pivot_row[k] = i
-    standard = [k for k in reversed(range(len(monomials))) if k not in pivot_row]
-    if any(sum(monomials[k]) > size for k in standard):
-        return None
-    matrices = []
-    for i in range(size):
-        columns = []
-        for k in standard:
-            target = column[tuple(a + (j == i) for j, a in enumerate(monomials[k]))]
-            if target in pivot_row:
-                columns.append([int(-echelon[pivot_row[target], b]) for b in standard])
-            else:
-                columns.append([int(b == target) for b in standard])
-        flat = [x for row in zip(*columns, strict=True) for x in row]
-        matrices.append(nmod_mat(len(standard), len(standard), flat, prime))
-    return ModularQuotient(tuple(monomials[k] for k in standard), tuple(matrices), prime)
+    border = _Border(size, prime)
+    for degree in range(2, size + 2):
+        if not border.extend(degree, sparse_quadrics(system)):
+            return None
+    return ModularQuotient(tuple(border.standard), tuple(border.matrices()), prime)
 
 
-def _macaulay_echelon(
-    system: QuadraticSystem, monomials: list[Exponent], column: dict[Exponent, int], prime: int
-) -> nmod_mat | None:
-    """Reduced echelon form of the multiples of degree n + 1; None unless the corank is 2^n."""
-    size = system.size
-    factors = list(_monomials(size, size - 1))
-    # x^a F_p with a_j <= 1 for j < p: as many as the rank, and of full rank for generic quadrics.
-    chosen = [(p, a) for p in range(size) for a in factors if max(a[:p], default=0) <= 1]
-    everything = [(p, a) for p in range(size) for a in factors]
-    quadrics = sparse_quadrics(system)
-    for multiples in (chosen, everything):
-        matrix = nmod_mat(len(multiples), len(monomials), prime)
-        for r, (p, factor) in enumerate(multiples):
-            for a, c in quadrics[p].items():
-                matrix[r, column[tuple(x + y for x, y in zip(a, factor, strict=True))]] = c
-        echelon, rank = matrix.rref()
-        if len(monomials) - rank == system.bezout_number:
-            return echelon
-    return None
+class _Border:
+    """Standard monomials, ascending, and normal forms of the border monomials up to a degree."""
 
+    def __init__(self, size: int, prime: int) -> None:
+        self.size, self.prime = size, prime
+        units = [tuple(int(k == i) for k in range(size)) for i in range(size)]
+        self.standard: list[Exponent] = [(0,) * size, *reversed(units)]
+        self.normal: dict[Exponent, list[int]] = {}  # coordinates on the standard monomials
+        self.last: list[Exponent] = []  # the border monomials of the highest degree
 
-def _monomials(size: int, degree: int) -> Iterator[Exponent]:
-    """All exponents of n variables with sum at most `degree`."""
-    for choice in combinations_with_replacement(range(size + 1), degree):
-        yield tuple(choice.count(k) for k in range(size))
+    def extend(self, degree: int, quadrics: Sequence[Mapping[Exponent, int]]) -> bool:
+        """Go on to the next degree; whether it has C(n, degree) standard monomials."""
+        known = self.standard
+        tops = {raised(b, i) for b in known if sum(b) == degree - 1 for i in range(self.size)}
+        columns = [*sorted(tops, key=grevlex_key, reverse=True), *known]
+        position = {b: k for k, b in enumerate(columns)}
+        if degree == 2:
+            relations = [[p.get(b, 0) % self.prime for b in columns] for p in quadrics]
+        else:
+            relations = self._relations(position)
+        flat = [x for row in relations for x in row]
+        echelon, rank = nmod_mat(len(relations), len(columns), flat, self.prime).rref()
+        if rank != len(tops) - comb(self.size, degree):
+            return False
+        rows = [[int(x) for x in row] for row in echelon.tolist()[:rank]]
+        leading = [next(k for k, x in enumerate(row) if x) for row in rows]
+        if any(k >= len(tops) for k in leading):  # a relation of lower degree
+            return False
+        added = [b for b in reversed(columns[: len(tops)]) if position[b] not in set(leading)]
+        self.standard = [*known, *added]
+        for vector in self.normal.values():
+            vector += [0] * len(added)
+        places = [position[b] for b in self.standard]
+        self.last = [columns[k] for k in leading]
+        for row, b in zip(rows, self.last, strict=True):
+            self.normal[b] = [-row[k] % self.prime for k in places]
+        return True
+
+    def matrices(self) -> list[nmod_mat]:
+        """Multiplication by each unknown on columns of coordinates, when the basis is complete."""
+        position = {b: k for k, b in enumerate(self.standard)}
+        return [
+            nmod_mat(
+                len(position), len(position), [x for r in transposed(t) for x in r], self.prime
+            )
+            for t in self._shifts(position)
+        ]
+
+    def _shifts(self, position: Mapping[Exponent, int]) -> list[list[list[int]]]:
+        """For each unknown the rows x_i b, b standard, on the given columns."""
+        tables = []
+        for i in range(self.size):
+            table = []
+            for b in self.standard:
+                row = [0] * len(position)
+                monomial = raised(b, i)
+                if monomial in position:
+                    row[position[monomial]] = 1
+                else:
+                    row[-len(self.standard) :] = self.normal[monomial]
+                table.append(row)
+            tables.append(table)
+        return tables
+
+    def _relations(self, position: Mapping[Exponent, int]) -> list[list[int]]:
+        """x_i m - x_i N(m) for the border monomials m = x_j b of the last degree."""
+        width = len(position)
+        place = {b: k for k, b in enumerate(self.standard)}
+        last = {m: k for k, m in enumerate(self.last)}
+        shifts = self._shifts(position)
+        flat = [x for m in self.last for x in self.normal[m]]
+        normal = nmod_mat(len(last), len(place), flat, self.prime)
+        images = []
+        for table in shifts:
+            matrix = nmod_mat(len(place), width, [x for row in table for x in row], self.prime)
+            images.append([[int(x) for x in row] for row in (normal * matrix).tolist()])
+        relations = []
+        for m, k in last.items():
+            for j, b in ((j, lowered(m, j)) for j in range(self.size) if m[j]):
+                if b not in place:
+                    continue
+                for i in range(self.size):
+                    inner = raised(b, i)
+                    row = shifts[j][place[inner]] if inner in place else images[j][last[inner]]
+                    relation = [
+                        (x - y) % self.prime for x, y in zip(row, images[i][k], strict=True)
+                    ]
+                    if any(relation):
+                        relations.append(relation)
+        return relations

@@ -137,7 +137,7 @@ class QuotientAlgebra:
         products = {self.basis[0]: _identity(self.dimension)}
         for exponent in self.basis[1:]:
             i = next(k for k, a in enumerate(exponent) if a)
-            products[exponent] = self.matrices[i] * products[_lowered(exponent, i)]
+            products[exponent] = self.matrices[i] * products[lowered(exponent, i)]
         return [products[exponent] for exponent in self.basis]
 
     @cached_property
@@ -177,7 +177,7 @@ def from_groebner_basis(basis: Sequence[SparsePolynomial], size: int) -> Quotien
     normal: dict[Exponent, list[fmpq]] = {}
     for b, k in position.items():
         normal[b] = [fmpq(int(j == k)) for j in range(len(standard))]
-    border = {_raised(b, i) for b in standard for i in range(size)} - set(position)
+    border = {raised(b, i) for b in standard for i in range(size)} - set(position)
     for monomial in sorted(border, key=grevlex_key):
         normal[monomial] = (
             _tail(rules[monomial], monomial, normal)
@@ -185,9 +185,7 @@ def from_groebner_basis(basis: Sequence[SparsePolynomial], size: int) -> Quotien
             else _shifted(monomial, standard, position, normal)
         )
     matrices = tuple(
-        fmpq_mat(
-            [list(row) for row in zip(*(normal[_raised(b, i)] for b in standard), strict=True)]
-        )
+        fmpq_mat([list(row) for row in zip(*(normal[raised(b, i)] for b in standard), strict=True)])
         if standard
         else fmpq_mat(0, 0)
         for i in range(size)
@@ -219,23 +217,25 @@ def _shifted(
     i, smaller = next(
         (i, m)
         for i, a in enumerate(monomial)
-        if a and (m := _lowered(monomial, i)) in normal and m not in position
+        if a and (m := lowered(monomial, i)) in normal and m not in position
     )
     result = [fmpq(0)] * len(standard)
     for b, weight in zip(standard, normal[smaller], strict=True):
         if weight:
             result = [
                 x + weight * y if y else x
-                for x, y in zip(result, normal[_raised(b, i)], strict=True)
+                for x, y in zip(result, normal[raised(b, i)], strict=True)
             ]
     return result
 
 
-def _raised(exponent: Exponent, i: int) -> Exponent:
+def raised(exponent: Exponent, i: int) -> Exponent:
+    """The exponent of x_i x^a."""
     return (*exponent[:i], exponent[i] + 1, *exponent[i + 1 :])
 
 
-def _lowered(exponent: Exponent, i: int) -> Exponent:
+def lowered(exponent: Exponent, i: int) -> Exponent:
+    """The exponent of x^a / x_i."""
     return (*exponent[:i], exponent[i] - 1, *exponent[i + 1 :])
 
 
