@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
@@ -233,13 +233,34 @@ class ExactSolution:
     checked by substitution; that none is missing rests on the Groebner basis unless
     `at_infinity` is 0, when Bezout's bound 2^n on the total gives a second argument as soon as the
     multiplicities are proved (see `dual_space`).
+
+    `krull_dimension` is the dimension of the zero set over C, -1 if it is empty, and `degree` its
+    degree: the number of zeros with multiplicity if they are finitely many, else the sum of the
+    degrees of the components of that dimension with multiplicity (see `dimension_and_degree`).
     """
 
     system: QuadraticSystem
     dimension: int | None
     classes: tuple[RootClass, ...]
     engine: str
-    settings: Mapping[str, int | str] = field(default_factory=dict)
+    settings: Mapping[str, int | str]
+    krull_dimension: int
+    degree: int
+
+    @property
+    def factor_degrees(self) -> tuple[int, ...]:
+        """Degrees of the irreducible factors of the branch polynomial over Q, ascending.
+
+        The branch polynomial is the squarefree polynomial of a linear form that separates the
+        zeros; its factors belong to the Galois orbits of the zeros, so that their degrees do not
+        depend on the form.
+        """
+        return tuple(sorted(c.degree for c in self.classes))
+
+    @property
+    def is_irreducible(self) -> bool:
+        """Whether all zeros are conjugate: the branch polynomial is irreducible over Q."""
+        return len(self.classes) == 1
 
     @property
     def at_infinity(self) -> int | None:

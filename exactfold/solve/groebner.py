@@ -10,11 +10,13 @@ from flint import Ordering, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpol
 from exactfold.errors import NotApplicableError, ParametrisationError, UsageError
 from exactfold.exact.univariate import from_rational_poly
 from exactfold.solve.exact_solution import ExactSolution, RootClass
+from exactfold.solve.hilbert import dimension_and_degree
 from exactfold.solve.lifting import lifted_classes
 from exactfold.solve.quotient import (
     QuotientAlgebra,
     SparsePolynomial,
     from_groebner_basis,
+    grevlex_key,
     separating_forms,
     sparse_quadrics,
 )
@@ -34,11 +36,12 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
     full algebra. Engine "lifting" does the same modulo a prime and lifts the result to Q; it
     applies for n <= 7 to systems without zeros at infinity in which a zero with a Jacobian of
     corank c counts 2^c times (all convex sheets), and proves these multiplicities by exact ranks
-    (`lifted_classes`). Random squares take it 0.3 s at n = 5, 4 s at 6, a minute at 7; with
+    (`lifted_classes`). Random squares take it 0.3 s at n = 5, 3 s at 6, 45 s at 7; with
     multiple zeros it is faster. "auto" takes the first that applies of FLINT up to n = 4, lifting,
     and FLINT. Every class is verified by exact substitution.
 
-    A system with infinitely many zeros gives `dimension` None, an inconsistent one 0. Raises
+    A system with infinitely many zeros gives `dimension` None, and the dimension and degree of its
+    zero set as `krull_dimension` and `degree`; an inconsistent one has `dimension` 0. Raises
     `UsageError` for an unknown engine, `NotApplicableError` if lifting was asked for and does not
     apply, `ParametrisationError` if a check fails (an internal error).
 
@@ -47,6 +50,9 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
     >>> solution = groebner(QuadraticSystem.from_rational([circle, axes]))
     >>> solution.dimension, [(c.polynomial, c.multiplicity) for c in solution.classes]
     (4, [((-8, 0, 1), 1), ((-2, 0, 1), 1)])
+    >>> lines = groebner(QuadraticSystem.from_rational([axes, axes]))
+    >>> lines.dimension, lines.krull_dimension, lines.degree
+    (None, 1, 2)
     """
     if engine not in ("auto", *ENGINES):
         raise UsageError(f"unknown engine {engine!r}: choose auto, {', '.join(ENGINES)}")
@@ -60,11 +66,27 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
                 "take another engine"
             )
     chosen = "flint" if engine != "sympy" else "sympy"
-    basis = _flint_basis(system) if chosen == "flint" else _sympy_basis(system)
+    basis = _BASES[chosen](system)
     algebra = from_groebner_basis(basis, system.size)
     if algebra is None:
-        return ExactSolution(system, None, (), chosen, {"engine": chosen})
+        leading = [max(p, key=grevlex_key) for p in basis]
+        krull, degree = dimension_and_degree(leading, system.size)
+        return ExactSolution(system, None, (), chosen, {"engine": chosen}, krull, degree)
     return _verified(system, algebra.dimension, _root_classes(algebra), chosen)
+
+
+def quotient_algebra(system: QuadraticSystem, *, engine: str = "flint") -> QuotientAlgebra | None:
+    """The quotient algebra Q[x]/I of a system, from its Groebner basis; None if it is infinite.
+
+    `engine` is "flint" or "sympy". Raises `UsageError` for another one.
+
+    >>> axes, circle = ((0, 1, 0), (1, 0, 0), (0, 0, 0)), ((1, 0, 0), (0, 1, 0), (0, 0, -2))
+    >>> quotient_algebra(QuadraticSystem((axes, circle))).dimension
+    4
+    """
+    if engine not in _BASES:
+        raise UsageError(f"unknown engine {engine!r}: choose {', '.join(_BASES)}")
+    return from_groebner_basis(_BASES[engine](system), system.size)
 
 
 def _verified(
@@ -74,7 +96,8 @@ def _verified(
         raise ParametrisationError("the multiplicities do not add up to the quotient dimension")
     for root_class in classes:
         root_class.verify(system)
-    return ExactSolution(system, dimension, classes, engine, {"engine": engine})
+    krull = 0 if dimension else -1
+    return ExactSolution(system, dimension, classes, engine, {"engine": engine}, krull, dimension)
 
 
 def _flint_basis(system: QuadraticSystem) -> list[SparsePolynomial]:
@@ -96,6 +119,9 @@ def _sympy_basis(system: QuadraticSystem) -> list[SparsePolynomial]:
         return []
     basis = sympy.groebner(quadrics, *symbols, order="grevlex", domain=sympy.QQ)
     return [{m: fmpq(int(c.p), int(c.q)) for m, c in p.terms()} for p in basis.polys]
+
+
+_BASES = {"flint": _flint_basis, "sympy": _sympy_basis}
 
 
 def _root_classes(algebra: QuotientAlgebra) -> tuple[RootClass, ...]:

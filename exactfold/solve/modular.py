@@ -13,7 +13,7 @@ from exactfold.solve.quotient import Exponent, grevlex_key, lowered, raised, spa
 from exactfold.solve.residues import transposed
 from exactfold.system.quadratic import QuadraticSystem
 
-LARGEST = 8  # beyond, lifting takes hours
+LARGEST = 7  # with 8 unknowns, lifting takes more than ten minutes
 
 
 @dataclass(frozen=True)
