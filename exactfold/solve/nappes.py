@@ -165,7 +165,13 @@ class NappeSystem:
         >>> found.points.shape, found.converged.all()
         ((2, 1), np.True_)
         """
-        e = self.full_signs(signs)
+        x, converged, steps = self.unknowns(self.full_signs(signs))
+        with np.errstate(all="ignore"):
+            points = self._to_chart(x)
+        return Ends(points, converged & np.isfinite(points).all(axis=1), steps)
+
+    def unknowns(self, e: FloatArray) -> tuple[FloatArray, BoolArray, int]:
+        """The same before scaling to the chart, for signs of all unknowns."""
         n = e.shape[1]
         lines = self._lines
         rest = np.linalg.solve(lines[:, :n], -lines[:, n])
@@ -182,8 +188,7 @@ class NappeSystem:
                 live = live[~done & ~stuck]
                 if not live.size:
                     break
-            points = self._to_chart(x)
-        return Ends(points, converged & np.isfinite(points).all(axis=1), steps)
+        return x, converged, steps
 
     def _values(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """g, the products A h and the norms |A_v h|."""

@@ -12,6 +12,7 @@ from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
+from exactfold.solve.nappe_refinement import refined_end
 from exactfold.solve.nappes import (
     Ends,
     NappeSystem,
@@ -114,3 +115,29 @@ def test_forms_with_negative_values_are_refused() -> None:
 def test_other_boundaries_are_refused() -> None:
     with pytest.raises(NotApplicableError):
         chamber_chart(families.single_vertex(5))
+
+
+@pytest.mark.parametrize("name", ["random square", "reflex corner", "flat vertex"])
+def test_refined_ends_agree_with_doubles_and_between_precisions(name: str) -> None:
+    system = NappeSystem(chamber_chart(PATTERNS[name].emptied()[0]))
+    size = system.chart.system.size
+    for signs in sign_vectors(0, 3, size):
+        (point,) = system.ends(signs[None]).points
+        coarse = refined_end(system, [int(e) for e in signs], 100)
+        fine = refined_end(system, [int(e) for e in signs], 300)
+        assert coarse is not None
+        assert fine is not None
+        for x, a, b in zip(point, coarse.point, fine.point, strict=True):
+            assert abs(x - a / 2**100) < 1e-9
+            assert abs((a << 200) - b) < 1 << 220
+        flat = (5,) if name == "flat vertex" and signs[0] > 0 else ()
+        assert coarse.flat == fine.flat == flat
+
+
+def test_refinement_satisfies_the_quadrics_to_its_precision() -> None:
+    system = NappeSystem(chamber_chart(random_square(5, seed=4)))
+    end = refined_end(system, [1, -1, 1, 1, -1], 400)
+    assert end is not None
+    values = system.chart.system.values_at([Fraction(m, 1 << 400) for m in end.point])
+    scales = [max(abs(c) for row in s for c in row) for s in system.chart.system.matrices]
+    assert all(abs(v) < c * Fraction(1, 1 << 380) for v, c in zip(values, scales, strict=True))
