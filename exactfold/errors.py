@@ -91,6 +91,10 @@ class CertificateFormatError(InputError):
     """The file is not a certificate of a known format and version."""
 
 
+class ForeignJournalError(InputError):
+    """A file to be resumed belongs to another pattern or version, or is no compact certificate."""
+
+
 # --- patterns ------------------------------------------------------------------------------------
 
 

@@ -45,7 +45,7 @@ def classify(
     """
     emptied = chart.branch_system.pattern
     functionals = Functionals(chart)
-    height_rows = _height_rows(pattern, functionals, labels)
+    height_rows = vertex_height_rows(pattern, functionals, labels)
     branches, undecided = [], []
     for given, multiplicity in roots:
         root, vertex_signs, fold_signs = _decide(emptied, chart, functionals, given)
@@ -107,10 +107,10 @@ def _sharpen(chart: Chart, root: Root, bits: int) -> Root | None:
     return BoxRoot(sharper, root.side) if isinstance(sharper, IsolatingBox) else None
 
 
-def _height_rows(
+def vertex_height_rows(
     pattern: CreasePattern, functionals: Functionals, labels: Sequence[int]
 ) -> dict[int, tuple[Fraction, ...]]:
-    """Height of every vertex of `pattern`: rigid ones lie in the plane of their 3-cycle."""
+    """Heights as rows on (x, 1): rigid vertices lie in the plane of their 3-cycle."""
     rows = {labels[v]: row for v, row in functionals.heights.items()}
     for cycle, inside in pattern.triangulated_triangles:
         for v in inside:

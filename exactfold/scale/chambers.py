@@ -1,0 +1,202 @@
+"""One block of sign vectors at a time: solve, prove, classify (docs/mathematics.md, 4 and 12)."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from exactfold.branches.functionals import Functionals
+from exactfold.certify.certificate import Document, chart_evidence, triangle_evidence
+from exactfold.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
+from exactfold.certify.rigid_triangles import RigidTriangle, certify_rigid_triangles
+from exactfold.errors import NotApplicableError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.scale.settle import ExactRoot, settle
+from exactfold.solve.nappes import NappeSystem, chamber_chart, sign_vectors
+from exactfold.system.branch_system import Chart
+
+BLOCK = 1024
+"""Sign vectors in a block, and the most that an interruption loses."""
+
+_BITS = 40
+_WIDEST = 52
+_CHUNK = 512
+
+
+@dataclass(frozen=True)
+class ProvedBlock:
+    """Block `index`: row j is sign vector number index * count + j (`sign_vectors`).
+
+    A row is proved by its float box, with `valleys` telling the folds of the emptied pattern that
+    are valleys, the others being mountains; or by an entry of `exact`; or it is open, with a
+    reason. `seconds` is processor time by stage; `steps` counts Newton steps.
+    """
+
+    index: int
+    boxes: FloatBoxes
+    valleys: npt.NDArray[np.bool_]
+    exact: Mapping[int, ExactRoot]
+    open: Mapping[int, str]
+    steps: int = 0
+    seconds: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Chambers:
+    """A pattern with D = 1 whose 2^n branches are proved chamber by chamber, n = Vi - Vt > 0.
+
+    In the chart of `chamber_chart` zeros with different vertex signs are different, so a proved
+    zero with the signs asked for in each of the 2^n chambers is the proof that these are all.
+    """
+
+    pattern: CreasePattern
+    triangles: tuple[RigidTriangle, ...]
+    emptied: CreasePattern
+    labels: tuple[int, ...]
+    chart: Chart
+
+    @classmethod
+    def of(cls, pattern: CreasePattern) -> Chambers:
+        """Raises `NotApplicableError` unless D = 1 and some vertex is foldable.
+
+        >>> from exactfold.pattern.random_squares import random_square
+        >>> chambers = Chambers.of(random_square(3, seed=0))
+        >>> block = chambers.prove(0)
+        >>> block.boxes.proved.all(), len(block.open)
+        (np.True_, 0)
+        """
+        emptied, labels = pattern.emptied()
+        chart = chamber_chart(emptied)
+        triangles = certify_rigid_triangles(pattern)
+        if triangles is None:
+            raise NotApplicableError("no definite stress was found for a triangulated triangle")
+        if not emptied.interior:
+            raise NotApplicableError("no vertex of the pattern is foldable")
+        return cls(pattern, triangles, emptied, labels, chart)
+
+    @property
+    def size(self) -> int:
+        """n, the number of foldable vertices."""
+        return self.emptied.Vi
+
+    @property
+    def block_size(self) -> int:
+        """Sign vectors in a block."""
+        return min(BLOCK, 1 << self.size)
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks."""
+        return (1 << self.size) // self.block_size
+
+    @cached_property
+    def functionals(self) -> Functionals:
+        """The exact sign functionals."""
+        return Functionals(self.chart)
+
+    @cached_property
+    def _nappes(self) -> NappeSystem:
+        return NappeSystem(self.chart)
+
+    @cached_property
+    def _flat_before(self) -> set[tuple[int, ...]]:
+        return set()
+
+    @cached_property
+    def _test(self) -> FloatKrawczyk:
+        return FloatKrawczyk(self.chart.system)
+
+    @cached_property
+    def _vertices(self) -> FloatSigns:
+        return FloatSigns(tuple(self.functionals.vertices.values()))
+
+    @cached_property
+    def _folds(self) -> FloatSigns:
+        return FloatSigns(tuple(self.functionals.folds.values()))
+
+    def evidence(self) -> Document:
+        """The evidence in the header of a compact certificate."""
+        return {
+            "kind": "chambers",
+            "triangles": triangle_evidence(self.triangles),
+            "chart": chart_evidence(self.chart, self.labels),
+            "block": self.block_size,
+        }
+
+    def claims(self) -> Document:
+        """What a certificate without open roots proves."""
+        return {
+            "interior": self.pattern.Vi,
+            "boundary": self.pattern.Ve,
+            "folds": len(self.pattern.folds),
+            "degrees_of_freedom": self.pattern.degrees_of_freedom,
+            "sha256": self.pattern.sha256,
+            "distinct": 1 << self.size,
+            "with_multiplicity": 1 << self.pattern.Vi,
+            "real": 1 << self.size,
+            "nonreal": 0,
+            "true_branches": "proved",
+        }
+
+    def prove(self, index: int) -> ProvedBlock:
+        """Solve and prove the sign vectors of block `index`."""
+        count = self.block_size
+        parts = [
+            self._chunk(index * count + start, min(_CHUNK, count - start))
+            for start in range(0, count, _CHUNK)
+        ]
+        exact: dict[int, ExactRoot] = {}
+        unproved: dict[int, str] = {}
+        for k, part in enumerate(parts):
+            exact |= {k * _CHUNK + j: root for j, root in part.exact.items()}
+            unproved |= {k * _CHUNK + j: reason for j, reason in part.open.items()}
+        return ProvedBlock(
+            index,
+            FloatBoxes(
+                _BITS,
+                np.concatenate([part.boxes.centers for part in parts]),
+                np.concatenate([part.boxes.exponents for part in parts]),
+            ),
+            np.concatenate([part.valleys for part in parts]),
+            exact,
+            unproved,
+            sum(part.steps for part in parts),
+            {key: sum(part.seconds[key] for part in parts) for key in parts[0].seconds},
+        )
+
+    def _chunk(self, first: int, count: int) -> ProvedBlock:
+        times = [time.process_time()]
+        signs = sign_vectors(first, count, self.size)
+        ends = self._nappes.ends(signs)
+        times.append(time.process_time())
+        boxes = self._test.isolate(ends.points, _BITS)
+        vertices, folds = self._vertices.on(boxes), self._folds.on(boxes)
+        good = boxes.proved & (vertices == signs).all(axis=1) & (folds != 0).all(axis=1)
+        good &= boxes.exponents <= _WIDEST
+        times.append(time.process_time())
+        exact: dict[int, ExactRoot] = {}
+        unproved: dict[int, str] = {}
+        for j in np.flatnonzero(~good).tolist():
+            e = [int(sign) for sign in signs[j]]
+            found = settle(
+                self._nappes, self.functionals, e, ends.points[j], self.labels, self._flat_before
+            )
+            if isinstance(found, ExactRoot):
+                exact[j] = found
+            else:
+                unproved[j] = found
+        times.append(time.process_time())
+        boxes = FloatBoxes(
+            boxes.bits,
+            np.where(good[:, None], boxes.centers, 0),
+            np.where(good, boxes.exponents, UNPROVED),
+        )
+        names = ("solve", "certify", "settle")
+        spent = {name: b - a for name, a, b in zip(names, times, times[1:], strict=False)}
+        valleys = (folds > 0) & good[:, None]
+        return ProvedBlock(-1, boxes, valleys, exact, unproved, ends.steps, spent)

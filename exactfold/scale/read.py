@@ -1,0 +1,130 @@
+"""Branches out of compact certificates, or straight from the prover for small patterns."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+
+from exactfold import checker, compact_checker
+from exactfold.branches.branch import Branch
+from exactfold.branches.classify import vertex_height_rows
+from exactfold.branches.roots import BoxRoot, Root
+from exactfold.certify.box import IsolatingBox
+from exactfold.errors import CertificateFormatError, UnreadableFileError
+from exactfold.exact.numbers import as_rational
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.scale.chambers import Chambers, ProvedBlock
+from exactfold.scale.stream import OpenRoot, sign_text
+
+Progress = Callable[[int, int], None]
+
+_LETTERS = {"M": "V", "V": "M", "F": "F"}
+
+
+def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
+    """The branches of a compact certificate in the order of the file, one block in memory.
+
+    Reading verifies digests, not claims: that is `check_compact`. Raises `CertificateFormatError`
+    for a file of another kind or an altered one, `UnreadableFileError`; `checker.CertificateError`
+    where a block is malformed or a root open.
+    """
+    try:
+        with open(path, "rb") as stream:
+            found = compact_checker.lines(stream)
+            header = compact_checker.read_header(next(found, "{}"))
+            known = compact_checker.Chambers(header)
+            vertices = [(as_rational(x), as_rational(y)) for x, y in header["pattern"]["vertices"]]
+            chambers = Chambers.of(CreasePattern(vertices, header["pattern"]["triangles"]))
+            maker = _Maker(chambers)
+            for number in range(known.blocks):
+                text = next(found, None)
+                if text is None:
+                    raise checker.FormatError(f"only {number} of {known.blocks} blocks are there")
+                block = known.decode(text, number)
+                for j in range(known.block):
+                    if j in block.exact:
+                        root, letters = block.exact[j]
+                        box = IsolatingBox(tuple(root.center), (), root.radius, root.bits)
+                    else:
+                        center = tuple(block.center(j, known.size))
+                        box = IsolatingBox(center, (), 1 << block.radii[j], block.bits)
+                        letters = known.letters(block, j)
+                    yield maker.branch(block.first + j, box, letters)
+    except checker.FormatError as error:
+        raise CertificateFormatError(f"{path}: {error}") from None
+    except OSError as error:
+        raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
+
+
+def branches_in_memory(
+    pattern: CreasePattern, *, progress: Progress | None = None
+) -> tuple[list[Branch], list[OpenRoot]]:
+    """All proved branches, sorted, and the sign vectors without one; both in memory.
+
+    If none is open, the branches are all there are, each a simple zero: 2^n in number. Raises
+    `NotApplicableError` like `count_streaming`, which is the function for large patterns.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> branches, open_roots = branches_in_memory(single_vertex(4))
+    >>> [branch.sign_text for branch in branches], open_roots
+    (['-', '+'], [])
+    """
+    chambers = Chambers.of(pattern)
+    maker = _Maker(chambers)
+    branches: list[Branch] = []
+    unproved: list[OpenRoot] = []
+    for index in range(chambers.blocks):
+        block = chambers.prove(index)
+        branches += maker.branches(block)
+        first = index * chambers.block_size
+        unproved += [OpenRoot(sign_text(chambers, first + j), r) for j, r in block.open.items()]
+        if progress is not None:
+            progress(first + chambers.block_size, 1 << chambers.size)
+    branches.sort(key=Branch.sort_key)
+    return branches, unproved
+
+
+class _Maker:
+    """Branches of one pattern from boxes, numbers and letters."""
+
+    def __init__(self, chambers: Chambers) -> None:
+        self.chambers = chambers
+        self.rows = vertex_height_rows(chambers.pattern, chambers.functionals, chambers.labels)
+        self.vertices = [chambers.labels[v] for v in chambers.emptied.interior]
+        self.folds = [
+            (chambers.labels[i], chambers.labels[j]) for i, j in sorted(chambers.emptied.folds)
+        ]
+        self.rigid = dict.fromkeys(chambers.pattern.interior, 0)
+        self.flat = dict.fromkeys(chambers.pattern.folds, "F")
+
+    def branch(self, number: int, box: IsolatingBox, letters: str) -> Branch:
+        """The branch, seen from the side of its positive saddle."""
+        root: Root = BoxRoot(box)
+        side = root.sign(self.chambers.functionals.saddle)
+        signs = [-1 if number >> k & 1 else 1 for k in range(self.chambers.size)]
+        if side == -1:
+            root, signs = root.mirrored(), [-s for s in signs]
+            letters = "".join(_LETTERS[letter] for letter in letters)
+        return Branch(
+            self.rigid | dict(zip(self.vertices, signs, strict=True)),
+            self.flat | dict(zip(self.folds, letters, strict=True)),
+            1 << self.chambers.pattern.Vt,
+            root,
+            "saddle" if side else "either",
+            self.rows,
+        )
+
+    def branches(self, block: ProvedBlock) -> Iterator[Branch]:
+        """All proved branches of a block."""
+        first = block.index * self.chambers.block_size
+        boxes = block.boxes
+        centers, exponents = boxes.centers.tolist(), boxes.exponents.tolist()
+        proved, valleys = boxes.proved.tolist(), block.valleys.tolist()
+        for j, center in enumerate(centers):
+            if proved[j]:
+                box = IsolatingBox(tuple(center), (), 1 << exponents[j], boxes.bits)
+                letters = "".join("V" if valley else "M" for valley in valleys[j])
+                yield self.branch(first + j, box, letters)
+            elif j in block.exact:
+                root = block.exact[j]
+                yield self.branch(first + j, root.box, root.assignment)

@@ -1,0 +1,198 @@
+"""All branches of a pattern, proved block by block and streamed to a compact certificate."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import ExitStack
+from dataclasses import dataclass
+from multiprocessing import get_context
+
+from exactfold import compact_checker
+from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
+from exactfold.scale.chambers import Chambers, ProvedBlock
+from exactfold.scale.check import FastChecker
+from exactfold.scale.journal import Journal
+from exactfold.scale.lines import block_line, claims_line, header_line
+from exactfold.scale.threads import one_thread_each
+from exactfold.verdict import PROVED, UNDECIDED, Verdict
+
+Progress = Callable[[int, int], None]
+
+_AHEAD = 2
+"""Blocks under way or waiting for each worker: this bounds memory."""
+
+
+@dataclass(frozen=True)
+class OpenRoot:
+    """A sign vector whose branch was not proved, as text over the foldable vertices, and why."""
+
+    signs: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class StreamedCount:
+    """What a run of `count_streaming` proved.
+
+    `status` is PROVED if `path` holds a complete certificate: 2^n branches, all real and simple,
+    no others. Otherwise UNDECIDED, and `open_roots` names the sign vectors without a proved branch,
+    whose number is `unproved`; the other blocks of the file are proved nevertheless. `exact` counts
+    roots that needed integers, `resumed` the blocks taken over from an earlier run (verified
+    again). `seconds` is processor time by stage, of all workers, and `elapsed` by the clock.
+    """
+
+    pattern: CreasePattern
+    path: str
+    status: Verdict
+    reason: str
+    distinct: int | None
+    with_multiplicity: int | None
+    open_roots: tuple[OpenRoot, ...]
+    unproved: int
+    exact: int
+    blocks: int
+    resumed: int
+    steps: int
+    seconds: Mapping[str, float]
+    elapsed: float
+
+
+def count_streaming(
+    pattern: CreasePattern,
+    path: str | os.PathLike[str],
+    *,
+    workers: int = 1,
+    resume: bool = False,
+    progress: Progress | None = None,
+) -> StreamedCount:
+    """Prove all branches of a pattern with four boundary vertices, streaming them to `path`.
+
+    Each of the 2^n sign vectors leads to one candidate (`NappeSystem`); a box around it with one
+    zero whose signs are those asked for (`FloatKrawczyk`, `FloatSigns`, or exactly) makes the zeros
+    pairwise different, and by refined Bezout complete (docs/mathematics.md, 4 and 12). Memory does
+    not grow with 2^n: a block of 1024 roots, and two waiting for each worker.
+
+    `workers` processes share the blocks; a script that asks for several needs the usual
+    `if __name__ == "__main__"`. With `resume`, a file left by an interrupted run is verified and
+    continued; otherwise it is replaced. `progress(done, total)` counts sign vectors.
+
+    Raises `NotApplicableError` unless D = 1 and some vertex is foldable, `ForeignJournalError`,
+    `UnwritableFileError`. An interruption leaves a file that can be resumed.
+
+    >>> import os, tempfile
+    >>> from exactfold.pattern.random_squares import random_square
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     result = count_streaming(random_square(4, seed=0), os.path.join(folder, "c.txt"))
+    >>> result.status, result.distinct, result.unproved
+    (<Verdict.PROVED: 'proved'>, 16, 0)
+    """
+    start = time.perf_counter()
+    chambers = Chambers.of(pattern)
+    header = header_line(chambers)
+    tally = _Tally()
+    if resume:
+        known = FastChecker(compact_checker.Chambers(compact_checker.read_header(header)))
+        journal = Journal.resumed(path, header, known.refusal)
+    else:
+        journal = Journal(path, header)
+    resumed = journal.blocks
+    total = 1 << chambers.size
+    try:
+        for block, line in _blocks(chambers, resumed, workers):
+            tally.add(chambers, block)
+            journal.append(line)
+            if progress is not None:
+                progress(journal.blocks * chambers.block_size, total)
+        if not tally.unproved:
+            journal.finish(claims_line(chambers))
+    finally:
+        journal.close()
+    proved = journal.complete
+    return StreamedCount(
+        pattern,
+        journal.path,
+        PROVED if proved else UNDECIDED,
+        f"{total} solutions isolated; by refined Bezout there are no others"
+        if proved
+        else f"{total - tally.unproved} of {total} solutions isolated",
+        total if proved else None,
+        1 << pattern.Vi if proved else None,
+        tuple(tally.open_roots),
+        tally.unproved,
+        tally.exact,
+        chambers.blocks,
+        resumed,
+        tally.steps,
+        dict(tally.seconds),
+        time.perf_counter() - start,
+    )
+
+
+class _Tally:
+    """Sums over blocks; of open roots the first ones are kept."""
+
+    most_open = 1000
+
+    def __init__(self) -> None:
+        self.open_roots: list[OpenRoot] = []
+        self.unproved = self.exact = self.steps = 0
+        self.seconds: Counter[str] = Counter()
+
+    def add(self, chambers: Chambers, block: ProvedBlock) -> None:
+        """Count one block."""
+        self.exact += len(block.exact)
+        self.unproved += len(block.open)
+        self.steps += block.steps
+        self.seconds.update(block.seconds)
+        for j, reason in block.open.items():
+            if len(self.open_roots) < self.most_open:
+                number = block.index * chambers.block_size + j
+                self.open_roots.append(OpenRoot(sign_text(chambers, number), reason))
+
+
+def sign_text(chambers: Chambers, number: int) -> str:
+    """The sign vector of a number, as text over the foldable vertices."""
+    return "".join("+-"[number >> k & 1] for k in range(chambers.size))
+
+
+def _blocks(chambers: Chambers, first: int, workers: int) -> Iterator[tuple[ProvedBlock, str]]:
+    """The blocks from number `first` on with their lines, in order."""
+    left = range(first, chambers.blocks)
+    workers = min(workers, len(left))
+    if workers < 2:
+        for index in left:
+            block = chambers.prove(index)
+            yield block, block_line(block)
+        return
+    pattern = chambers.pattern
+    with one_thread_each(workers), ExitStack() as stack:
+        pool = ProcessPoolExecutor(
+            workers, get_context("spawn"), _start_worker, (pattern.vertices, pattern.triangles)
+        )
+        stack.callback(pool.shutdown, cancel_futures=True)
+        waiting: deque[Future[tuple[ProvedBlock, str]]] = deque()
+        for index in left:
+            waiting.append(pool.submit(_prove, index))
+            if len(waiting) > _AHEAD * workers:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+
+
+_chambers: Chambers | None = None  # of a worker process
+
+
+def _start_worker(vertices: Sequence[Point], triangles: Sequence[Triangle]) -> None:
+    global _chambers
+    _chambers = Chambers.of(CreasePattern(vertices, triangles))
+
+
+def _prove(index: int) -> tuple[ProvedBlock, str]:
+    if _chambers is None:
+        raise RuntimeError("the worker was not started")
+    block = _chambers.prove(index)
+    return block, block_line(block)

@@ -1,0 +1,219 @@
+"""All branches streamed to a compact certificate: right, resumable, and never lost silently."""
+
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sheets import SQUARE, dart, nested_triangles, reflex_corners, scrambled
+
+from exactfold import Branch, count_branches, families, random_square, read_fold
+from exactfold.data import example_path
+from exactfold.errors import ForeignJournalError, NotApplicableError, UnwritableFileError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.scale import chambers as chambers_module
+from exactfold.scale.chambers import Chambers
+from exactfold.scale.check import CertificateError, check_compact
+from exactfold.scale.read import branches_in_memory, read_branches
+from exactfold.scale.stream import count_streaming
+from exactfold.verdict import PROVED, UNDECIDED
+
+
+def gap(tiny: Fraction) -> CreasePattern:
+    """Vertex 5 is flat on two branches that coincide at tiny = 0."""
+    points = [(0, 0), (1, 0), (1, 1), (0, 1), ("1/2", Fraction(1, 2) + tiny), ("7/10", "1/5")]
+    faces = [(0, 1, 5), (1, 2, 5), (2, 4, 5), (4, 0, 5), (2, 3, 4), (3, 0, 4)]
+    return CreasePattern(points, faces)
+
+
+PATTERNS = {
+    "random square": random_square(5, seed=3),
+    "thin triangles": scrambled(1, SQUARE, 6),
+    "reflex corner": scrambled(0, reflex_corners(0), 5),
+    "reflex, triangulated triangle": scrambled(2, reflex_corners(2), 6),
+    "dart": dart(),
+    "nested triangles": nested_triangles(),
+    "hypar": families.hypar(1),
+    "gap 1e-6": gap(Fraction(1, 10**6)),
+    "gap 1e-30": gap(Fraction(1, 10**30)),
+}
+
+
+@pytest.fixture(autouse=True)
+def _small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(chambers_module, "BLOCK", 8)
+
+
+def described(branch: Branch) -> tuple[str, str, int, str]:
+    return branch.sign_text, branch.assignment_text, branch.multiplicity, branch.representative
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+def test_branches_agree_with_the_other_pipeline(name: str, tmp_path: Path) -> None:
+    """Popping paths, exact Krawczyk and sorting by boxes find the same branches."""
+    pattern = PATTERNS[name]
+    result = count_streaming(pattern, tmp_path / "c.txt")
+    other = count_branches(pattern)
+    assert result.status is other.status is PROVED
+    assert (result.distinct, result.with_multiplicity) == (other.distinct, other.with_multiplicity)
+    assert result.unproved == 0
+
+    found = list(read_branches(tmp_path / "c.txt"))
+    if any(b.representative == "either" for b in other.branches):
+        assert len(found) == len(other.branches)
+    else:
+        assert sorted(map(described, found)) == sorted(map(described, other.branches))
+    memory, unproved = branches_in_memory(pattern)
+    assert not unproved
+    assert [described(b) for b in memory] == [
+        described(b) for b in sorted(found, key=lambda b: b.sort_key())
+    ]
+    for fast in (True, False):
+        claims = check_compact(tmp_path / "c.txt", fast=fast)
+        assert claims["distinct"] == other.distinct
+        assert claims["with_multiplicity"] == other.with_multiplicity
+        assert claims["sha256"] == pattern.sha256
+
+
+def test_heights_agree_with_the_other_pipeline(tmp_path: Path) -> None:
+    pattern = random_square(4, seed=9)
+    count_streaming(pattern, tmp_path / "c.txt")
+    for mine, other in zip(
+        sorted(read_branches(tmp_path / "c.txt"), key=lambda b: b.sort_key()),
+        count_branches(pattern).branches,
+        strict=True,
+    ):
+        for v, (low, high) in mine.heights.items():
+            a, b = other.heights[v]
+            assert low <= b
+            assert a <= high
+            assert high - low < Fraction(1, 10**6)
+
+
+def test_multiple_roots_are_handed_on_by_name(tmp_path: Path) -> None:
+    result = count_streaming(gap(Fraction(0)), tmp_path / "c.txt")
+    assert result.status is UNDECIDED
+    assert result.distinct is None
+    assert [root.signs for root in result.open_roots] == ["++", "+-"]
+    assert all("vertex 5 flat" in root.reason for root in result.open_roots)
+    assert result.unproved == 2
+    for fast in (True, False):
+        with pytest.raises(CertificateError, match="root 0 is open"):
+            check_compact(tmp_path / "c.txt", fast=fast)
+    memory, unproved = branches_in_memory(gap(Fraction(0)))
+    assert len(memory) == len(unproved) == 2
+
+
+def test_paths_that_solver_loses_are_settled_or_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A solver that returns nonsense costs time, never a branch."""
+    chambers = Chambers.of(random_square(3, seed=1))
+    ends = chambers._nappes.ends
+
+    def spoiled(signs: np.ndarray) -> object:
+        found = ends(signs)
+        found.points[0] = np.nan
+        found.points[1] = found.points[2]  # the branch of another chamber
+        found.points[3] += 0.4
+        return found
+
+    monkeypatch.setattr(type(chambers._nappes), "ends", lambda _, signs: spoiled(signs))
+    block = chambers.prove(0)
+    assert sorted(block.exact) == [0, 1, 3]
+    assert not block.open
+    assert block.boxes.proved.sum() == 5
+
+
+def test_interrupted_runs_continue_to_the_same_file(tmp_path: Path) -> None:
+    pattern, whole, path = random_square(5, seed=1), tmp_path / "whole.txt", tmp_path / "c.txt"
+    count_streaming(pattern, whole)
+
+    def stop(done: int, total: int) -> None:
+        if done == 16:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        count_streaming(pattern, path, progress=stop)
+    result = count_streaming(pattern, path, resume=True)
+    assert (result.status, result.resumed, result.blocks) == (PROVED, 2, 4)
+    assert path.read_bytes() == whole.read_bytes()
+    again = count_streaming(pattern, path, resume=True)
+    assert (again.status, again.resumed) == (PROVED, 4)
+    assert path.read_bytes() == whole.read_bytes()
+
+
+def test_a_file_cut_anywhere_is_continued_to_the_same_file(tmp_path: Path) -> None:
+    pattern, whole, path = random_square(4, seed=1), tmp_path / "whole.txt", tmp_path / "c.txt"
+    count_streaming(pattern, whole)
+    data = whole.read_bytes()
+    for cut in [0, 1, 40, *range(100, len(data), 97), len(data) - 1]:
+        path.write_bytes(data[:cut])
+        assert count_streaming(pattern, path, resume=True).status is PROVED
+        assert path.read_bytes() == data
+    path.unlink()
+    assert count_streaming(pattern, path, resume=True).resumed == 0
+    assert path.read_bytes() == data
+
+
+def test_only_files_of_the_same_pattern_are_continued(tmp_path: Path) -> None:
+    path = tmp_path / "c.txt"
+    count_streaming(random_square(3, seed=1), path)
+    before = path.read_bytes()
+    with pytest.raises(ForeignJournalError, match="another pattern"):
+        count_streaming(random_square(3, seed=2), path, resume=True)
+    assert path.read_bytes() == before
+    path.write_text("my notes\n")
+    with pytest.raises(ForeignJournalError, match="not a compact certificate"):
+        count_streaming(random_square(3, seed=2), path, resume=True)
+    assert path.read_text() == "my notes\n"
+
+
+def test_unwritable_files_and_other_patterns_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(UnwritableFileError):
+        count_streaming(random_square(3, seed=1), tmp_path / "none" / "c.txt")
+    with pytest.raises(UnwritableFileError):
+        count_streaming(random_square(3, seed=1), tmp_path, resume=True)
+    for sheet in (families.single_vertex(5), families.single_vertex(3)):
+        with pytest.raises(NotApplicableError):
+            Chambers.of(sheet)
+
+
+def test_several_workers_write_the_same_file(tmp_path: Path) -> None:
+    """In a process of its own, as workers are started anew."""
+    script = (
+        "import sys\n"
+        "from exactfold import random_square\n"
+        "from exactfold.scale.check import check_compact\n"
+        "from exactfold.scale.stream import count_streaming\n"
+        "if __name__ == '__main__':\n"
+        "    pattern, seen = random_square(11, seed=1), []\n"
+        "    one, two = sys.argv[1:]\n"
+        "    count_streaming(pattern, one)\n"
+        "    report = lambda *numbers: seen.append(numbers)\n"
+        "    result = count_streaming(pattern, two, workers=2, progress=report)\n"
+        "    assert open(one, 'rb').read() == open(two, 'rb').read()\n"
+        "    assert seen == [(1024, 2048), (2048, 2048)], seen\n"
+        "    print(result.status, check_compact(two, workers=2)['distinct'])\n"
+    )
+    names = [str(tmp_path / name) for name in ("one.txt", "two.txt")]
+    file = tmp_path / "run.py"
+    file.write_text(script)
+    run = subprocess.run(
+        [sys.executable, str(file), *names], capture_output=True, text=True, check=False
+    )
+    assert run.stdout.strip() == "proved 2048", run.stderr
+
+
+def test_a_flat_fold_and_a_wide_block_are_written(tmp_path: Path) -> None:
+    """A fold that is proved flat (a cross) has no bit: such roots are listed exactly."""
+    result = count_streaming(read_fold(example_path("flat-octahedron")), tmp_path / "c.txt")
+    assert result.status is PROVED
+    cross = CreasePattern(
+        [(2, 0), (0, 3), (-2, 0), (0, -1), (0, 0)],
+        [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+    )
+    crossed = count_streaming(cross, tmp_path / "cross.txt")
+    assert (crossed.status, crossed.exact) == (PROVED, 2)
+    assert all("F" in b.assignment_text for b in read_branches(tmp_path / "cross.txt"))
+    assert check_compact(tmp_path / "cross.txt")["distinct"] == 2
