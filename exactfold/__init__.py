@@ -23,6 +23,8 @@ from exactfold.data import EXAMPLES, example_path
 from exactfold.errors import ExactfoldError, InputError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.exact.numbers import as_rational
+from exactfold.ondemand.find import BranchFinder, find_branch, find_branches, neighbours
+from exactfold.ondemand.result import SignedBranch
 from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.delaunay import delaunay
@@ -57,6 +59,7 @@ __all__ = [
     "UNDECIDED",
     "Branch",
     "BranchCount",
+    "BranchFinder",
     "BranchSystem",
     "Chart",
     "CreasePattern",
@@ -65,6 +68,7 @@ __all__ = [
     "InputError",
     "QuadraticForm",
     "QuadraticSystem",
+    "SignedBranch",
     "Verdict",
     "as_rational",
     "certificate",
@@ -75,6 +79,8 @@ __all__ = [
     "delaunay",
     "example_path",
     "families",
+    "find_branch",
+    "find_branches",
     "find_candidates",
     "groebner",
     "homotopy",
@@ -82,6 +88,7 @@ __all__ = [
     "isolate",
     "krawczyk",
     "load_fold",
+    "neighbours",
     "pattern_facts",
     "popping",
     "random_square",

@@ -23,7 +23,15 @@ from exactfold import checker, report
 from exactfold.branches.claims import certificate as certificate_of
 from exactfold.certify.certificate import write_certificate
 from exactfold.count import METHODS, count_branches
-from exactfold.errors import ExactfoldError, InputError
+from exactfold.errors import (
+    CertificateFormatError,
+    ExactfoldError,
+    InputError,
+    UnreadableFileError,
+    UsageError,
+)
+from exactfold.ondemand.find import BranchFinder
+from exactfold.ondemand.result import SignedBranch
 from exactfold.pattern.fold import load_fold
 from exactfold.pattern.fold_writing import fold_text, write_text
 from exactfold.pattern.random_squares import sample_random_square
@@ -79,7 +87,10 @@ def _reported(command: Callable[P, R]) -> Callable[P, R]:
 
 
 class _Bar:
-    """Progress on stderr, shown once the work has taken a second; silent off a terminal."""
+    """Progress on stderr, shown once the work has taken a second; silent off a terminal.
+
+    A total of 0 means that it is not known.
+    """
 
     def __init__(self) -> None:
         self.console = report.console(stderr=True)
@@ -104,8 +115,8 @@ class _Bar:
         if stage != self.stage:
             if self.task is not None:
                 self.progress.remove_task(self.task)
-            self.stage, self.task = stage, self.progress.add_task(stage, total=total)
-        self.progress.update(self.task, completed=done, total=total)
+            self.stage, self.task = stage, self.progress.add_task(stage, total=total or None)
+        self.progress.update(self.task, completed=done, total=total or None)
 
     def close(self) -> None:
         if self.progress is not None:
@@ -184,9 +195,90 @@ def check(
     raise typer.Exit(0 if claims is not None else 1)
 
 
-def _load_certificate(path: Path) -> Any:
-    from exactfold.errors import CertificateFormatError, UnreadableFileError
+def _indices(option: str, text: str) -> list[int]:
+    try:
+        return [int(part) for part in text.split(",") if part.strip()]
+    except ValueError:
+        raise UsageError(f"{option} takes vertex indices such as 5,7, not {text!r}") from None
 
+
+def _lines(path: Path) -> list[str]:
+    try:
+        lines = path.read_text(encoding="utf-8").split("\n")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UnreadableFileError(f"cannot read {path}: {error}") from None
+    return [line.strip() for line in lines if line.strip()]
+
+
+@app.command()
+@_reported
+def branch(
+    pattern: Pattern,
+    signs: Annotated[
+        str | None,
+        typer.Option(
+            metavar="+-...", help="Vertex signs in the order of the interior vertices; @FILE reads."
+        ),
+    ] = None,
+    up: Annotated[
+        str | None,
+        typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
+    ] = None,
+    batch: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Instead: one sign vector a line.")
+    ] = None,
+    pops: Annotated[
+        str | None,
+        typer.Option(
+            "--neighbours",
+            metavar="5,7|all",
+            help="The branches reached by popping each of these vertices through, one at a time.",
+        ),
+    ] = None,
+    as_json: Json = False,
+    snap: Snap = None,
+) -> None:
+    """Find and prove the one branch with given vertex signs, without enumerating the others.
+
+    Signs are those of the side with boundary saddle +1 (with a reflex corner: on which the corner
+    pops up); the other side has all of them reversed. With --json, one object a line.
+    """
+    if (signs is not None) + (up is not None) + (batch is not None) != 1:
+        raise UsageError("give one of --signs, --up and --batch")
+    if pops is not None and batch is not None:
+        raise UsageError("--neighbours goes with --signs or --up")
+    finder = BranchFinder(load_fold(pattern, snap).pattern)
+    bar = _Bar()
+    found: list[tuple[str, SignedBranch]] = []
+    try:
+        if batch is not None:
+            for line, text in enumerate(_lines(batch), 1):
+                result = finder.find(finder.signs(text, None), progress=bar)
+                found.append((f"line {line}", result))
+        else:
+            if signs is not None and signs.startswith("@"):
+                signs = "".join(_lines(Path(signs[1:])))
+            given = finder.signs(signs, None if up is None else _indices("--up", up))
+            if pops is None:
+                found.append(("", finder.find(given, progress=bar)))
+            else:
+                chosen = None if pops == "all" else _indices("--neighbours", pops)
+                reached = finder.neighbours(given, chosen, progress=bar)
+                found += [(f"pop {v}", result) for v, result in reached.items()]
+    finally:
+        bar.close()
+    if as_json:
+        for _, result in found:
+            print(json.dumps(result.to_dict()))
+    elif len(found) == 1:
+        report.show(report.branch_report(found[0][1]))
+    else:
+        report.show(report.branches_report(found))
+    proved = all(result.status is PROVED for _, result in found)
+    raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
+
+
+def _load_certificate(path: Path) -> Any:
     try:
         return checker.load(path.read_text(encoding="utf-8"))
     except OSError as error:

@@ -10,6 +10,7 @@ from rich.text import Text
 
 from exactfold.branches.result import BranchCount
 from exactfold.exact.numbers import format_rational
+from exactfold.ondemand.result import SignedBranch
 from exactfold.rigidity.facts import PatternFacts
 from exactfold.verdict import PROVED, UNDECIDED
 
@@ -95,6 +96,41 @@ def _branch_table(result: BranchCount, everything: bool) -> list[Any]:
 
 def _more(count: int) -> list[Text]:
     return [Text(f"... and {count} more (--all shows them)")] if count > 0 else []
+
+
+def branch_report(result: SignedBranch) -> Group:
+    """What `exactfold branch` prints for one branch."""
+    pattern = result.pattern
+    rows = [
+        ("pattern", f"{pattern.Vi} interior and {pattern.Ve} boundary vertices"),
+        ("status", f"{str(result.status).upper()} ({result.reason})"),
+        ("vertex signs", _cut(result.sign_text)),
+    ]
+    if result.radius is not None:
+        rows.append(("mountain-valley", _cut(result.assignment_text)))
+        undecided = len(result.undecided_folds)
+        decided = f"{len(result.assignment) - undecided} of {len(result.assignment)} folds"
+        rows.append(("letters decided", decided))
+        rows.append(("heights", f"each within {float(result.radius):.2g} (--json lists them)"))
+    rows.append(("method", f"{result.steps} Newton steps, {result.seconds:.2f} s"))
+    return Group(_facts_table(rows))
+
+
+def branches_report(found: list[tuple[str, SignedBranch]]) -> Group:
+    """The table that `exactfold branch` prints for a batch or for neighbours."""
+    table = Table(box=None, pad_edge=False)
+    table.add_column("")
+    table.add_column("status")
+    table.add_column("vertex signs", overflow="fold")
+    table.add_column("mountain-valley", overflow="fold")
+    for name, result in found:
+        row = (name, str(result.status), _cut(result.sign_text), _cut(result.assignment_text))
+        table.add_row(*row)
+    return Group(table)
+
+
+def _cut(text: str, most: int = 160) -> str:
+    return text if len(text) <= most else f"{text[:most]}... ({len(text)}; --json has all)"
 
 
 def info_report(facts: PatternFacts) -> Table:

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
-
-import networkx as nx
+from typing import TYPE_CHECKING
 
 from exactfold.exact.numbers import (
     RationalLike,
@@ -20,6 +19,9 @@ from exactfold.exact.numbers import (
 )
 from exactfold.pattern import validate
 from exactfold.pattern.triangulated_triangles import find_triangulated_triangles
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 Point = tuple[Fraction, Fraction]
 Edge = tuple[int, int]
@@ -148,6 +150,10 @@ class CreasePattern:
         """
         return {v: self.degree(v) for v in range(len(self.vertices))}
 
+    def left(self, i: int, j: int) -> int:
+        """The third vertex of the triangle to the left of the directed edge from i to j."""
+        return self._next[i][j]
+
     def opposite(self, fold: Edge) -> Edge:
         """For fold (i, j): the third vertices (left, right) of the triangles ijk and jil."""
         i, j = fold
@@ -156,6 +162,8 @@ class CreasePattern:
     @cached_property
     def graph(self) -> nx.Graph:
         """The edges as a NetworkX graph, with `pos` on nodes and `fold` (bool) on edges."""
+        import networkx as nx  # here, as loading it takes longer than reading a pattern
+
         graph = nx.Graph()
         graph.add_nodes_from((v, {"pos": p}) for v, p in enumerate(self.vertices))
         graph.add_edges_from(self.folds, fold=True)

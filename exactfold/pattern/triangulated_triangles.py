@@ -15,8 +15,9 @@ def find_triangulated_triangles(
 ) -> tuple[tuple[Triangle, tuple[int, ...]], ...]:
     """The maximal 3-cycles with vertices inside, each with the sorted vertices inside it.
 
-    Every 3-cycle of the graph is tested, for each edge through the common neighbours of its ends;
-    a vertex lies inside if it is strictly within the straight-sided triangle (exact orientations).
+    Every 3-cycle of the graph is tested, for each edge through the common neighbours of its ends.
+    The vertices inside are those of the faces reached from its sides without crossing them: work
+    proportional to what is inside, not to the pattern.
     """
     points, _ = pattern.integer_vertices
     neighbours = {v: set(pattern.star(v)) for v in range(len(points))}
@@ -30,15 +31,33 @@ def find_triangulated_triangles(
             cycle = (i, j, k) if turn > 0 else (i, k, j)
             if turn == 0 or cycle in faces:
                 continue
-            a, b, c = (points[v] for v in cycle)
-            inside = frozenset(
-                v
-                for v in pattern.interior
-                if orientation(a, b, points[v]) > 0
-                and orientation(b, c, points[v]) > 0
-                and orientation(c, a, points[v]) > 0
-            )
+            inside = _inside(pattern, cycle)
             if inside:
                 found.append((cycle, inside))
-    maximal = [(t, s) for t, s in found if not any(s < other for _, other in found)]
+    holders: dict[int, list[frozenset[int]]] = {}
+    for _, inside in found:
+        for v in inside:
+            holders.setdefault(v, []).append(inside)
+    maximal = [(t, s) for t, s in found if not any(s < other for other in holders[min(s)])]
     return tuple(sorted((t, tuple(sorted(s))) for t, s in maximal))
+
+
+def _inside(pattern: CreasePattern, cycle: Triangle) -> frozenset[int]:
+    """The vertices within a counter-clockwise 3-cycle of edges that is not a face.
+
+    The sheet is a disk, so that all of the cycle's inside is covered by faces; the first lies left
+    of a side, and no edge has a vertex in its middle.
+    """
+    a, b, c = cycle
+    seen = {(a, b), (b, c), (c, a)}  # half-edges whose left face has been or will be visited
+    stack = list(seen)
+    vertices: set[int] = set()
+    while stack:
+        i, j = stack.pop()
+        k = pattern.left(i, j)
+        vertices.add(k)
+        for half in ((k, j), (i, k)):  # the same sides seen from the faces beyond them
+            if half not in seen and half[::-1] not in seen:
+                seen.add(half)
+                stack.append(half)
+    return frozenset(vertices - set(cycle))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import sympy
 from flint import Ordering, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
 from exactfold.errors import NotApplicableError, ParametrisationError, UsageError
@@ -111,6 +110,8 @@ def _flint_basis(system: QuadraticSystem) -> list[SparsePolynomial]:
 
 
 def _sympy_basis(system: QuadraticSystem) -> list[SparsePolynomial]:
+    import sympy  # here, as loading it takes longer than most commands
+
     symbols = sympy.symbols(f"x0:{system.size}")
     quadrics = [
         sympy.Poly(terms, *symbols, domain=sympy.QQ) for terms in sparse_quadrics(system) if terms

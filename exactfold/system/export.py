@@ -15,13 +15,15 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from fractions import Fraction
-
-import sympy
+from typing import TYPE_CHECKING
 
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import format_integer, over_common_denominator
 from exactfold.system.branch_system import BranchSystem, Chart
 from exactfold.system.quadratic import QuadraticSystem
+
+if TYPE_CHECKING:
+    import sympy
 
 Term = tuple[int, tuple[int, ...]]
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*\Z", re.ASCII)
@@ -116,6 +118,8 @@ def to_sympy(
     >>> to_sympy(_EXAMPLE)
     ([x0**2 + x1**2 - 1, 2*x0*x1], (x0, x1))
     """
+    import sympy  # here, as loading it takes longer than most commands
+
     variables, polynomials = _polynomials(system, names)
     symbols = tuple(sympy.Symbol(name) for name in variables)
     expressions = [

@@ -1,0 +1,97 @@
+"""`exactfold branch`: what it prints, its exit codes, its errors."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from exactfold.cli import app
+from exactfold.data import example_path
+from exactfold.ondemand.find import find_branch
+from exactfold.pattern.fold import read_fold
+
+TWO = example_path("two-vertex")
+KEYS = {
+    *("pattern", "status", "reason", "vertex_signs", "undecided_vertices", "assignment"),
+    *("saddle", "centres", "radius", "squared_distance", "steps", "seconds"),
+}
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["branch", *map(str, arguments)])
+
+
+@pytest.mark.parametrize("given", [("--signs", "-+"), ("--up", "5"), ("--up", " 5,")])
+def test_one_branch(given: tuple[str, str]) -> None:
+    result = run(TWO, *given)
+    assert result.exit_code == 0
+    assert "PROVED" in result.stdout
+    assert "VVMMVVM" in result.stdout
+
+
+def test_json_is_the_result() -> None:
+    result = run(TWO, "--signs", "-+", "--json")
+    data = json.loads(result.stdout)
+    assert set(data) == KEYS
+    expected = find_branch(read_fold(TWO), "-+").to_dict()
+    for key in KEYS - {"seconds"}:
+        assert data[key] == expected[key]
+
+
+def test_a_flat_vertex_is_exit_code_four() -> None:
+    result = run(example_path("flat-vertex"), "--signs", "++")
+    assert result.exit_code == 4
+    assert "UNDECIDED" in result.stdout
+    assert "flat to within" in result.stdout
+
+
+def test_signs_from_a_file_and_a_batch(tmp_path) -> None:
+    path = tmp_path / "signs.txt"
+    path.write_text("-+\n\n++\n")
+    table = run(TWO, "--batch", path)
+    assert table.exit_code == 0
+    assert "VVMMVVM" in table.stdout
+    assert "MVMMMVM" in table.stdout
+    lines = run(TWO, "--batch", path, "--json").stdout.splitlines()
+    assert [json.loads(line)["vertex_signs"] for line in lines] == [
+        {"4": -1, "5": 1},
+        {"4": 1, "5": 1},
+    ]
+    path.write_text("-\n+\n")
+    assert "VVMMVVM" in run(TWO, "--signs", f"@{path}").stdout
+
+
+@pytest.mark.parametrize(("pops", "letters"), [("all", 2), ("5", 1), ("5,4", 2)])
+def test_neighbours(pops: str, letters: int) -> None:
+    result = run(TWO, "--up", "4", "--neighbours", pops, "--json")
+    assert result.exit_code == 0
+    found = [json.loads(line)["vertex_signs"] for line in result.stdout.splitlines()]
+    assert len(found) == letters
+    assert all(signs in ({"4": -1, "5": -1}, {"4": 1, "5": 1}) for signs in found)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((), "give one of"),
+        (("--signs", "++", "--up", "4"), "give one of"),
+        (("--signs", "+"), "1 signs for 2 vertices"),
+        (("--signs", "+?"), "'?' is not a vertex sign"),
+        (("--up", "0"), "vertex 0 is not an interior vertex"),
+        (("--up", "x"), "not 'x'"),
+        (("--up", "4", "--neighbours", "y"), "not 'y'"),
+        (("--batch", "none.txt", "--neighbours", "all"), "goes with"),
+    ],
+)
+def test_wrong_usage_is_exit_code_two(arguments: tuple[str, ...], message: str) -> None:
+    result = run(TWO, *arguments)
+    assert result.exit_code == 2
+    assert message in result.stderr
+
+
+def test_a_file_of_signs_that_is_not_there() -> None:
+    result = run(TWO, "--signs", "@none.txt")
+    assert result.exit_code == 3
+    assert "UnreadableFileError: cannot read none.txt" in result.stderr
