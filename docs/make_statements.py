@@ -14,6 +14,7 @@ from proofs.__main__ import load
 from proofs.framework import How, Proof, Ruling, Statement
 
 SECTIONS = {
+    "I": "Introduction",
     "II": "Section II A: the model",
     "IIA": "Section II A: the model",
     "IIB": "Section II B: wheel stresses, curvature, single vertices",

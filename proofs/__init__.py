@@ -21,10 +21,13 @@ MODULES: tuple[str, ...] = (
     "inertia_cases",
     "certification",
     "butterfly",
+    "h1_doubling",
     "h1_triangulations",
     "eigenvector",
+    "vertex_signs",
     "counting",
     "discussion_counts",
+    "random_squares",
     "branch_counts",
     "multiplicity",
 )

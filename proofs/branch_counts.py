@@ -71,7 +71,7 @@ def _single_vertex(script: Script) -> None:
         ),
     )
     conical = families.single_vertex(5)
-    script.certificate(
+    script.example(
         "five folds: Vi = 1, D = 2, three free heights",
         (conical.Vi, conical.D, len(BranchSystem(conical).variables)) == (1, 2, 3),
     )
@@ -80,7 +80,8 @@ def _single_vertex(script: Script) -> None:
         "Section II C, last paragraph",
         r"\text{``single-vertex origami structures have a single branch''}",
         CORRECTED,
-        r"\text{no branch for }N=3,\text{ two for }N=4,\text{ one for }N\ge5",
+        r"\text{with five or more folds; there is no branch for }N=3,\text{ and there are two for }"
+        r"N=4",
         "Section III B says itself that a 4-fold vertex has two branches",
         "count_branches",
     )
@@ -99,7 +100,7 @@ def _single_vertex(script: Script) -> None:
         note="the form of a vertex with N = 3 is definite modulo planes",
     )
     schematic = count_branches(families.two_vertex())
-    script.certificate("two vertices: 2^2 branches", schematic.distinct == 4)
+    script.example("two vertices: 2^2 branches", schematic.distinct == 4)
     script.state(
         "I.2",
         "Introduction, Fig. (schematic)",
@@ -146,17 +147,18 @@ def _rigid_triangles(script: Script) -> None:
         r"\text{triangulated triangles are equivalent to ``planar projections (Schlegel diagrams) "
         r"of "
         r"triangulations of spheres''}",
-        CORRECTED,
-        r"\text{planar projections of triangulated spheres; Schlegel diagrams up to combinatorial "
-        r"type (Steinitz), as drawings only if regular}",
-        "corners (0,0), (4,0), (0,4), inner (1,1), (2,1), (1,2), diagonals 04, 15, 23",
+        AS_PRINTED,
+        note="as planar projections of triangulated spheres, which is all that is used; Schlegel "
+        "diagrams in the strict sense up to combinatorial type (Steinitz), as drawings only if "
+        "regular: corners (0,0), (4,0), (0,4), inner (1,1), (2,1), (1,2), diagonals 04, 15, 23 "
+        "have no convex lifting",
     )
     chord = CreasePattern(
         [*SQUARE, *inner_points((0, 0), (1, 1), (0, 1))],
         [(0, 1, 2), *(tuple((0, 2, 3, 4, 5, 6)[k] for k in t) for t in OCTAHEDRON)],
     )
     count = count_branches(chord)
-    script.certificate(
+    script.example(
         "Fig. (triangle): a square with its diagonal and three vertices of degree four on one "
         "side of "
         "it: one branch, of multiplicity 8, in which the three are flat",
@@ -218,11 +220,11 @@ def _components(script: Script) -> None:
         r"with "
         r"multiplicity) in }\mathbb{RP}^{V_i+D-1}\text{''}",
         CORRECTED,
-        r"\text{the number of irreducible components, as in Section II A}",
-        "the same for D = 1. For D >= 2 components may meet away from the unfolded state: boundary "
-        "(6,0), (5,-5), (-4,-4), (-6,4), (-6,6), inner (0,0) of degree 4 and (1,2) of degree 5 "
-        "have two "
-        "cones that share two lines, in which the vertex of degree 4 is flat",
+        r"\text{irreducible components, as in Section II A}",
+        "two definitions of a branch that agree for D = 1. For D >= 2 components may meet away "
+        "from the unfolded state: boundary (6,0), (5,-5), (-4,-4), (-6,4), (-6,6), inner (0,0) of "
+        "degree 4 and (1,2) of degree 5 have two cones that share two lines, in which the vertex "
+        "of degree 4 is flat",
     )
 
 

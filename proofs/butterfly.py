@@ -16,6 +16,7 @@ so delta has two real values, one (0) or none as Kc / sin(beta_1 + beta_2) is po
           With five or more there may be none.
   A = pi: K_{v2} is linear in rho_w: one value for each branch of T with rho_1 + rho_3 != 0, and one
           more branch, T unfolded and the sheet folded along v1 v2 v3.
+What follows for the number of branches is in `h1_doubling`.
 """
 
 from __future__ import annotations
@@ -58,7 +59,6 @@ def prove(change: str | None = None) -> Proof:
     _butterfly(script)
     _doubling(script)
     _reflex(script)
-    _straight(script)
     return script.proof()
 
 
@@ -181,7 +181,7 @@ def _reflex(script: Script) -> None:
     )
     before, after = count_branches(DART), count_branches(KITE)
     factor = script.alter("no doubling at a reflex corner", 2, 1)
-    script.certificate(
+    script.example(
         "dart of degree 4 at its reflex corner: 4 branches; with w attached: 8, all real",
         before.distinct == 4 and after.real == factor * before.distinct,
     )
@@ -191,9 +191,9 @@ def _reflex(script: Script) -> None:
         r"\text{faces around }v_2\text{ folded: ``always two distinct folded configurations of }T'"
         r"\text{''}",
         Ruling.CORRECTED,
-        r"\text{true if the angle of }T\text{ at }v_2\text{ is less than }\pi\text{, if "
-        r"}v_2\text{ has "
-        r"degree 3 in }T\text{, or (to second order) if }V_e=4\text{ and that angle is not }\pi",
+        r"\text{near the unfolded state true if the angle of }T\text{ at }v_2\text{ is less than "
+        r"}\pi\text{, if }v_2\text{ has degree 3 in }T\text{, or (to second order) if }V_e=4\text{ "
+        r"and that angle is not }\pi",
         "hub (0,0) with spokes (2,-1), (1,2), (-1,2), (-2,-1) at heights 0, 1, -1, 0 and w = "
         "(0,-2): "
         "|v1 v3| exceeds d_max and nothing can be attached, to second order and hence near the "
@@ -212,67 +212,6 @@ def _reflex(script: Script) -> None:
         note="delta = 0 is then a double root; if v1, v2, v3 are collinear the unfolded butterfly "
         "can "
         "still turn about that line",
-    )
-
-
-def _straight(script: Script) -> None:
-    """A = pi: one value a branch, and one new branch."""
-    r, s, m, t = sympy.symbols("rho_3 rho_1 rho_w t")
-    sine = 2 * t / (1 + t**2)
-    both = sector(r, m, t) + sector(m, s, 1 / t)
-    script.identity(
-        "beta_1 + beta_2 = pi: K_{v2} is linear in rho_w with coefficient (rho_1 + rho_3)/sin "
-        "beta_1",
-        sympy.diff(both, m) - (r + script.alter("wrong sign of rho_1", 1, -1) * s) / sine,
-    )
-    pattern = families.flat_vertex_square()
-    count = count_branches(pattern, method="groebner")
-    lost = script.alter("doubling through a straight corner", 3, 4)
-    script.counterexample(
-        "the square with a straight crease path: T (one vertex) has 2 branches, T' has 2 + 1 = 3, "
-        "of multiplicities 1, 1 and 2",
-        count.distinct == lost and sorted(b.multiplicity for b in count.branches) == [1, 1, 2],
-    )
-    counts = [count_branches(families.h1_sequence(k, seed)) for k in (1, 2, 3) for seed in (0, 1)]
-    script.cases(
-        "random H1 sequences without collinear folds double at each of three moves",
-        (c.distinct == c.real == 2**c.pattern.Vi for c in counts),
-    )
-    script.state(
-        "IV.14",
-        "Section IV, last argument",
-        r"\text{the seed and the first butterfly: two intersecting lines, ``a letter X''}",
-        Ruling.AS_PRINTED,
-        note="v2 has degree 3 in the seed, so the doubling needs only that its fold is bent",
-        code="families.single_vertex",
-    )
-    script.state(
-        "IV.6",
-        "Section IV, assumption of no crosses",
-        r"\text{``these nongeneric collinearities can rigidify folds in a flat state''}",
-        Ruling.AS_PRINTED,
-        note="on one of the three branches of the flat-vertex square a whole vertex star stays "
-        "flat",
-        code="families.collinear_folds",
-    )
-    script.state(
-        "IV.7",
-        "Section IV, last argument",
-        r"\text{``for each H1 move, the number of 1D branches doubles \dots\ }2^{V_i}\text{ "
-        r"branches''}",
-        Ruling.CORRECTED,
-        r"\text{the number doubles exactly if }v_1,v_2,v_3\text{ are not collinear and no branch "
-        r"of }T"
-        r"\text{ is flat at }v_2",
-        "with four boundary vertices; with multiplicity it always doubles. That no folds are "
-        "collinear "
-        "is not what the argument uses: crosses may be harmless (two straight creases through one "
-        "vertex: 2 branches), and flatness at v2 must be excluded. It is excluded by itself where "
-        "A > "
-        "pi, and where A < pi and no neighbour of v2 lies inside the triangle v1 v2 v3 (cut v2 off "
-        "along v1 v3: what is left is a triangulated triangle, hence rigid). If v1, v2, v3 are "
-        "collinear, B branches become B + 1",
-        "count_branches",
     )
 
 

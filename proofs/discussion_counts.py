@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import random
 import sys
+from collections.abc import Mapping
 from fractions import Fraction
+from math import factorial
 from pathlib import Path
 
 if not __package__:  # run as a file
@@ -11,16 +14,25 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, count_branches, curvature_form, families
-from exactfold.exact.linalg import inertia, nullspace, rank
+from exactfold import (
+    CreasePattern,
+    QuadraticForm,
+    count_branches,
+    curvature_form,
+    families,
+    random_square,
+)
+from exactfold.exact.linalg import from_fmpq, inertia, nullspace, rank, to_flint
 from exactfold.rigidity.timelike import fold_functional
 from proofs.framework import Proof, Ruling, Script, run
+from proofs.vertex_forms import star
 
 NAME = "discussion_counts"
 TITLE = "Counts of the table, the Discussion and Appendix D"
 
 AS_PRINTED, CORRECTED, FALSE = Ruling.AS_PRINTED, Ruling.CORRECTED, Ruling.FALSE
 
+WIDE = star((1, 0), (0, 1), (-2, -1), (-1, -2), (1, -1))
 TABLE = {2: (100, 0, 0), 3: (5000, 0, 0), 4: (1000, 2, 0), 5: (1000, 1, 17)}
 TABLE |= {6: (1000, 1, 28), 7: (300, 0, 17), 8: (50, 0, 8)}
 """Table (summary) by Vi: triangulations generated, with Vt > 0, with MV duplicates."""
@@ -69,23 +81,19 @@ def _table(script: Script) -> None:
 def _rigid_folds(script: Script) -> None:
     """D for non-triangulated origami."""
     wheel = families.single_vertex(5)
-    form = curvature_form(wheel, 5)
-    weights = fold_functional(wheel, (0, 5))
-    basis = nullspace([[Fraction(weights.get(v, 0)) for v in form.labels]])
-    gram = [
-        [
-            form.polar(
-                dict(zip(form.labels, a, strict=True)), dict(zip(form.labels, b, strict=True))
-            )
-            for b in basis
-        ]
-        for a in basis
-    ]
+    gram = _restricted(curvature_form(wheel, 5), fold_functional(wheel, (0, 5)))
     rigid = script.alter("D = Ve - 4 - E", 3, 4)
     script.counterexample(
         "a vertex of degree 5 with one fold made rigid: inertia (1, 1, 3), two lines, D = 1 = 5 - "
         "3 - 1",
         inertia(gram) == (1, 1, 3) and wheel.Ve - rigid - 1 == 1,
+    )
+    wide = curvature_form(WIDE, 5), fold_functional(WIDE, (1, 5))
+    script.counterexample(
+        "spokes (1,0), (0,1), (-2,-1), (-1,-2), (1,-1), the fold (0,1) between angles of sum > pi "
+        "made rigid: inertia (0, 2, 3), so D = 0 and not 1",
+        inertia(_restricted(*wide))
+        == script.alter("a wide rigid face folds", (0, 2, 3), (1, 1, 3)),
     )
     side = 4
     points = [(x, y) for y in range(side + 1) for x in range(side + 1)]
@@ -113,18 +121,27 @@ def _rigid_folds(script: Script) -> None:
         r"D=V_e-4-E",
         CORRECTED,
         r"D=V_e-3-E",
-        "E = 0 must give Eq. (Dcount); a vertex of degree 5 with one rigid fold has D = 1. A "
-        "count of "
-        "equations only, as V.2 shows",
+        "E = 0 must give Eq. (Dcount); a vertex of degree 5 with one rigid fold has D = 1. Like "
+        "Eq. (Dcount) a count of equations: D can be larger (V.2), and smaller, if a rigid fold "
+        "lies between angles of sum > pi: spokes (1,0), (0,1), (-2,-1), (-1,-2), (1,-1), fold "
+        "(0,1), D = 0",
     )
     state(
         "V.2",
         "Section V, non-triangulated origami",
         r"\text{``When this formula becomes negative \dots\ we instead take }D=0\text{''}",
         FALSE,
-        r"D\ge\max(0,V_e-3-E)\text{ is all that the count can give, near real solutions}",
-        "4 x 4 unit squares: Ve - 3 - E = -3, but heights |x - 2| fold it along a straight line",
+        r"D\text{ can be positive when the formula is negative}",
+        "4 x 4 unit squares: Ve - 3 - E = -3 (as printed: -4), but heights |x - 2| fold it along a "
+        "straight line, and D >= 1",
     )
+
+
+def _restricted(form: QuadraticForm, weights: Mapping[int, int | Fraction]) -> list[list[Fraction]]:
+    """The Gram matrix of a form where a functional vanishes."""
+    kernel = nullspace([[Fraction(weights.get(v, 0)) for v in form.labels]])
+    basis = [dict(zip(form.labels, row, strict=True)) for row in kernel]
+    return [[form.polar(a, b) for b in basis] for a in basis]
 
 
 def _orthogonality(script: Script) -> None:
@@ -136,6 +153,12 @@ def _orthogonality(script: Script) -> None:
         "two vertices: any three of the four branches span R^3 (determinants of enclosures), so a "
         "gradient orthogonal to three undesired branches is orthogonal to the fourth",
         all(len(t[0]) == 3 and _independent(t) for t in triples),
+    )
+    spans = script.alter("no two spanning sets", 2, 3)
+    script.cases(
+        "random squares with Vi = 3, 4, 5: two disjoint sets of Vi + 1 branches are independent, "
+        "so all branches but any one span the space of foldings",
+        (_spanning_sets(random_square(n, seed)) >= spans for n in (3, 4, 5) for seed in range(4)),
     )
     least = script.alter("an obstruction already for one vertex", 2, 1)
     script.example(
@@ -167,11 +190,11 @@ def _orthogonality(script: Script) -> None:
         "V.5",
         "Section V",
         r"N_F=3V_i+\mathrm{const}\text{ and }2^{V_i}\text{ branches: orthogonality ``impossible''}",
-        CORRECTED,
-        r"\text{impossible as soon as the undesired branches span the }(V_i+1)\text{-dimensional "
-        r"space of foldings, which needs }2^{V_i}-1\ge V_i+1,\text{ i.e. }V_i\ge2",
-        "not a consequence of the two numbers alone: the square with a flat vertex has only two "
-        "undesired branches in R^3. For the two-vertex square it is impossible already",
+        AS_PRINTED,
+        note="for generic patterns, from Vi = 2 on, because the undesired branches then span the "
+        "(Vi + 1)-dimensional space of foldings (tested, not proved). The two numbers alone do not "
+        "show it: many vectors can lie in a hyperplane. A special geometry where it is possible: "
+        "the square with a flat vertex has two undesired branches in R^3",
     )
     theta, target, k = sympy.symbols("theta target k")
     pull = script.alter("gradient with the wrong sign", -1, 1)
@@ -196,9 +219,10 @@ def _orthogonality(script: Script) -> None:
         "V.7",
         "Section V",
         r"\text{in generic patterns with }D=1\text{ the number of branches depends only on }V_i",
-        CORRECTED,
-        r"\text{generically only on }V_i-V_t;\text{ with multiplicity, only on }V_i",
-        "triangulated triangles persist under small changes of the vertices, so they are generic",
+        AS_PRINTED,
+        note="with multiplicity, as in the definition of B. The number of distinct branches "
+        "depends on Vi - Vt, and triangulated triangles persist under small changes of the "
+        "vertices",
     )
 
 
@@ -242,15 +266,29 @@ def _appendix(script: Script) -> None:
         AS_PRINTED,
         note="the unit sphere of R^(Vi+1)",
     )
-    for key, figure, vertices in (("D.5", "v6", "V=6"), ("D.6", "distribution", "V=2-8")):
-        state(
-            key,
-            f"Appendix D, Fig. ({figure}) against the text",
-            r"\text{bins of size }\pi/32\text{ (caption), }\pi/128\text{ (text)}",
-            CORRECTED,
-            r"\text{one of the two; the source does not say which}",
-            f"also {vertices} is meant as a value of Vi",
-        )
+    state(
+        "D.5",
+        "Appendix D, Figs. (v6) and (distribution) against the text",
+        r"\text{bins of size }\pi/32\text{ (both captions), }\pi/128\text{ (text, twice)}",
+        CORRECTED,
+        r"\text{one of the two; the source does not say which}",
+        "nothing depends on it. V=6 in the text and V=2 -- 8 in a caption are values of Vi",
+    )
+    a, b, norms = sympy.symbols("a b norms", positive=True)
+    turned = script.alter("angle with the other end not turned", -1, 1)
+    script.identity(
+        "cos of the angle with the other end of a branch is minus the cosine: theta and pi - theta",
+        turned * (a * b / norms) + a * b / norms,
+    )
+    state(
+        "D.6",
+        place,
+        r"\text{``for each angle }\theta\text{, we also include the angle }\pi-\theta\text{''; }"
+        r"0\text{ and }\pi\text{ of each branch with itself}",
+        AS_PRINTED,
+        note="all four pairs of ends; a share 2^(-Vi) of the ordered pairs is of a branch with "
+        "itself",
+    )
     state(
         "D.7",
         place,
@@ -261,11 +299,28 @@ def _appendix(script: Script) -> None:
 
 
 def _independent(rows: list[list[tuple[Fraction, Fraction]]]) -> bool:
-    """Whether the determinant of a 3 x 3 matrix of intervals cannot vanish."""
+    """Whether the determinant of a square matrix of intervals cannot vanish.
+
+    It differs from that of the midpoints by at most n! n r M^(n-1), r the radius, M a bound.
+    """
+    size = len(rows)
     middle = [[(low + high) / 2 for low, high in row] for row in rows]
     radius = max(high - low for row in rows for low, high in row)
     largest = 1 + max(abs(x) for row in middle for x in row)
-    return bool(abs(sympy.Matrix(middle).det()) > 18 * radius * largest**2)
+    error = factorial(size) * size * radius * largest ** (size - 1)
+    return bool(abs(from_fmpq(to_flint(middle).det())) > error)
+
+
+def _spanning_sets(pattern: CreasePattern) -> int:
+    """How many disjoint spanning sets of branches a greedy search finds (at most two)."""
+    branches = count_branches(pattern).branches
+    rows = [[h for _, h in sorted(b.heights.items()) if any(h)] for b in branches]
+    source, size = random.Random(1), pattern.Vi + 1
+    for _ in range(50):
+        source.shuffle(rows)
+        if _independent(rows[:size]) and _independent(rows[size : 2 * size]):
+            return 2
+    return 0
 
 
 if __name__ == "__main__":

@@ -1,8 +1,7 @@
-"""Which way a vertex pops: the eigenvector h_-, the round cone, nappes and chambers.
+"""The eigenvector h_- of a vertex, the round cone, and the two nappes (Section II B).
 
-Section II B from the eigenvector on, and the vertex sign patterns of Section III B. K is the
-curvature form of a vertex; h_- is the eigenvector of its one positive eigenvalue, which is the one
-negative eigenvalue in the sign of Appendix C.
+K is the curvature form of a vertex; h_- is the eigenvector of its one positive eigenvalue, which is
+the one negative eigenvalue in the sign of Appendix C. What it says of popping is in `vertex_signs`.
 """
 
 from __future__ import annotations
@@ -15,18 +14,17 @@ from pathlib import Path
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from exactfold import CreasePattern, curvature_form, definite_stress, random_square, wheel_stress
-from exactfold.exact.linalg import inertia, rank
-from exactfold.pattern.families import flat_octahedron_in_square, single_vertex
-from exactfold.rigidity.timelike import round_cone, vertex_sign_functional
+from exactfold import curvature_form, wheel_stress
+from exactfold.exact.linalg import inertia
+from exactfold.pattern.families import single_vertex
+from exactfold.rigidity.timelike import round_cone
 from proofs.framework import Proof, Ruling, Script, run
-from proofs.vertex_forms import cot, csc, dot, star, symbols, unit
+from proofs.vertex_forms import cot, csc, star, symbols, unit
 
 NAME = "eigenvector"
-TITLE = "The eigenvector h_-, popping up and down, and the chambers of sign patterns"
+TITLE = "The eigenvector h_- and the two nappes of a vertex"
 HYPOTHESES = (
     "flat vertices, angles in (0, pi) with sum 2 pi, spokes of any lengths: inertia (1, N-3, 3)",
-    "for chambers: a triangulated convex polygon",
 )
 SPIKY = [(1, 0), (3, 4), (-2, -1), (8, -2)]  # eigenvalues 4/5 and -31/8
 EIGENVECTOR = [25, 15, -9, -26, -5]  # its h_-, hub first
@@ -34,14 +32,12 @@ CONVEX = [(0, -3), (2, 1), (1, 1), (-3, 1)]
 
 
 def prove(change: str | None = None) -> Proof:
-    """Statements on h_-, on the round cone, on popping and on chambers."""
+    """Statements on h_-, on the round cone and on the nappes."""
     script = Script(NAME, TITLE, HYPOTHESES, change)
     _round_cone(script)
     _nappes(script)
     _curvature(script)
     _components(script)
-    _popping(script)
-    _chambers(script)
     return script.proof()
 
 
@@ -62,7 +58,7 @@ def _round_cone(script: Script) -> None:
         (csc(u, v) - cot(u, v)) * (csc(u, v) + cot(u, v)) - 1,
     )
     form = curvature_form(star(*SPIKY), 4)
-    script.certificate(
+    script.example(
         "the library's round cone has K > 0 where raising the hub has K < 0",
         form(round_cone(star(*SPIKY), 4)) > 0 and form.matrix[0][0] == Fraction(-49, 48),
     )
@@ -93,7 +89,7 @@ def _nappes(script: Script) -> None:
     matrix = curvature_form(star(*SPIKY), 4).matrix
     value = script.alter("another eigenvalue", Fraction(4, 5), Fraction(5, 4))
     affine = [[1] * 5, [0, *(d[0] for d in SPIKY)], [0, *(d[1] for d in SPIKY)]]
-    script.certificate(
+    script.example(
         "K(h_-, h) = lambda h_- . h, and h_- . h = 0 for affine h (other eigenvalue): spokes "
         "(1,0), (3,4), (-2,-1), (8,-2) have lambda = 4/5 and h_- = (25; 15, -9, -26, -5)",
         all(_dot(row, EIGENVECTOR) == value * e for row, e in zip(matrix, EIGENVECTOR, strict=True))
@@ -111,14 +107,14 @@ def _nappes(script: Script) -> None:
         code="vertex_sign_functional",
     )
     script.state(
-        "IIIB.21",
+        "IIIB.4",
         "Section III B, vertex sign pattern",
         r"\sigma_n=\mathrm{sgn}[\mathbf e_n\cdot\mathbf h]\text{; each }\mathbf e_n\text{ defines "
         r"a hyperplane separating popped-up from popped-down configurations at }n",
         Ruling.AS_PRINTED,
-        note="by IIB.24; sigma_n = 0 iff the star of n is flat. e_n belongs to the negative "
-        "eigenvalue in the sign of Appendix C (positive in that of Eq. (stressmatrix), see "
-        "IIB.21)",
+        note="by IIB.24; sigma_n = 0 iff the star of n is flat. On branches every other timelike "
+        "vector that points up gives the same sign. e_n belongs to the negative eigenvalue in the "
+        "sign of Appendix C (positive in that of Eq. (wheelstress), see IIB.21)",
         code="vertex_sign_functional",
     )
 
@@ -150,11 +146,9 @@ def _curvature(script: Script) -> None:
         "Section II B, on the eigenvector",
         r"\mathbf h_-\text{ gives a set of displacements that maximizes the change in the "
         r"Gaussian curvature}",
-        Ruling.CORRECTED,
-        r"\mathbf h_-\text{ maximizes the Gaussian curvature }K\text{ among displacements of norm "
-        r"1, but not always }|K|",
-        note="the eigenvalue of largest magnitude can be negative: spokes (0,-3), (2,1), (1,1), "
-        "(-3,1)",
+        Ruling.AS_PRINTED,
+        note="K among displacements of norm 1. Not always |K|: the eigenvalue of largest magnitude "
+        "can be negative, as for spokes (0,-3), (2,1), (1,1), (-3,1)",
         code="curvature_form",
     )
     script.state(
@@ -206,92 +200,6 @@ def _components(script: Script) -> None:
         note="spokes (1,0), (3,4), (-2,-1), (8,-2), eigenvalue 4/5, h_- = (25; 15, -9, -26, -5): "
         "a neighbour moves more than the vertex, another one in the same direction",
         code="curvature_form, round_cone",
-    )
-
-
-def _popping(script: Script) -> None:
-    s, t, p, q = symbols("s t p q")
-    u, v, half = unit(s), unit(t), (t - s) / (1 + s * t)
-    slope = (p, q)  # on a face rho(theta) = slope . (cos theta, sin theta)
-    integral = dot(slope, (v[1] - u[1], u[0] - v[0]))
-    x, y = dot(slope, u), dot(slope, v)
-    polar = -(x + y) / 2 * csc(u, v) + cot(u, v) / 2 * (x + y)
-    script.identity(
-        "in each sector the polar form with the round cone is -(1/2) tan(a/2) (psi_j + psi_{j+1}) "
-        "= -(1/2) int rho, rho the slope in direction theta: K(t, h) = -(1/2) int rho d theta",
-        integral - half * (x + y),
-        polar + script.alter("factor one half", 1, 2) * integral / 2,
-    )
-    # The area above the trace z = eps rho(theta) + ... on the sphere is 2 pi - eps int rho + ...
-    ring = [(5, 0, 0), (0, 3, 4), (-5, 0, 0), (0, -3, 4)]  # times 5
-    script.counterexample(
-        "four spokes at right angles, folded along a straight line: unit vectors (1,0,0), "
-        "(0,3/5,4/5), (-1,0,0), (0,-3/5,4/5) keep the angles and hold two antipodes, which lie in "
-        "no open hemisphere",
-        all(sum(a * b for a, b in zip(ring[k - 1], ring[k], strict=True)) == 0 for k in range(4))
-        and all(a == -b for a, b in zip(ring[0], ring[2], strict=True)),
-    )
-    script.state(
-        "IIB.28",
-        "Section II B, popped up and popped down",
-        r"\text{the trace of a folded origami vertex lies completely in an open hemisphere}",
-        Ruling.CORRECTED,
-        r"\text{in a closed hemisphere; in an open one unless the vertex is folded along a "
-        r"straight line only}",
-        note="the trace has length 2 pi: if it holds antipodes it consists of two great "
-        "semicircles. Then, too, one side has area less than 2 pi, and the definition of popping "
-        "is not affected. That all other closed curves of length 2 pi lie in an open hemisphere "
-        "is classical and not checked here",
-    )
-    script.state(
-        "IIB.29",
-        "Section II B, popped up and popped down",
-        r"\text{one of the nappes consists of popped up configurations and the other of popped "
-        r"down ones, so we can use dot products with }\mathbf h_-",
-        Ruling.AS_PRINTED,
-        note="near the unfolded state: for heights eps h the area above the trace is 2 pi + 2 eps "
-        "K(t, h) + O(eps^2), t the round cone, and K(t, h) is not 0 on a nappe. The printed "
-        "argument (the two types meet only in the unfolded state) needs connected nappes: for N = "
-        "4 they are two rays each",
-        code="vertex_sign_functional",
-    )
-
-
-def _is_independent(pattern: CreasePattern) -> bool:
-    rows = [vertex_sign_functional(pattern, v) for v in pattern.interior]
-    matrix = [[row.get(j, 0) for j in pattern.interior] for row in rows]
-    return rank(matrix) == pattern.Vi and definite_stress(pattern) is not None
-
-
-def _chambers(script: Script) -> None:
-    s, t, r = symbols("s t r")
-    before, after, u, v, w = (t - s) / (1 + s * t), (r - t) / (1 + t * r), unit(s), unit(t), unit(r)
-    weight = csc(u, v) - cot(u, v) + csc(v, w) - cot(v, w)
-    script.identity(
-        "K(t, h) = (1/2) sum_j m_j (h_0 - h_j), m_j = (tan(a_{j-1,j}/2) + tan(a_{j,j+1}/2))/L_j > "
-        "0: heights that are 0 on the boundary and have all K_v(t_v, h) = 0 vanish (maximum "
-        "principle)",
-        weight - before - script.alter("mean value weights", after, -after),
-    )
-    script.cases(
-        "these functionals have rank Vi on the interior heights, and sum m_v K_v, m_v > 0, is "
-        "positive definite there: heights with K_v(e_v, h) = 0, hence K_v(h) <= 0, at every v "
-        "vanish",
-        map(
-            _is_independent, [*(random_square(5, k) for k in range(3)), flat_octahedron_in_square()]
-        ),
-    )
-    script.state(
-        "IIIB.22",
-        "Section III B, chambers",
-        r"\text{the planes divide }\mathbb R^{V_i-V_t+1}\text{ into }2^{V_i-V_t}\text{ chambers, "
-        r"each the product of an orthant of }\mathbb R^{V_i-V_t}\text{ with a real line}",
-        Ruling.AS_PRINTED,
-        note="because the functionals e_v . h are independent: heights that are 0 on the "
-        "boundary, flat in the triangulated triangles, and have K_v(e_v, h) = 0 at the foldable v "
-        "have K_v(h) <= 0 everywhere, and vanish by the key lemma for convex polygons "
-        "(docs/theorem.md). The paper does not say why",
-        code="definite_stress, vertex_sign_functional",
     )
 
 

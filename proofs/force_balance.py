@@ -38,7 +38,6 @@ def prove(change: str | None = None) -> Proof:
     hypotheses = (
         "a hub 0 with N >= 3 spokes of lengths L_i > 0, angles alpha_{i,i+1} in (0, pi) between "
         "adjacent ones, sum 2 pi; eta_{i,i+1}, eta_{i-1,i} are the angles at spoke vertex i",
-        "B.24: any closed sequence of spokes d_j with all cross products c_j != 0",
         "the last part (B.24): any closed sequence of spokes with cross products c_j != 0",
     )
     script = Script(NAME, TITLE, hypotheses, change)
@@ -184,7 +183,7 @@ def _crossed_ladders(script: Script) -> None:
         note="for signed lengths, hence also for an obtuse angle; at a right angle 1/A or 1/B is 0",
     )
     obtuse = Angle(Fraction(-3, 5), Fraction(4, 5))
-    script.counterexample(
+    script.example(
         "alpha with cosine -3/5, L_i = 1: B = L_i tan alpha = -4/3 is no side length",
         1 / obtuse.cot == Fraction(-4, 3),
     )
@@ -193,9 +192,9 @@ def _crossed_ladders(script: Script) -> None:
         "Appendix B, A and B as sides of right triangles",
         r"A=L_i\tan\eta_{i-1,i},\ B=L_i\tan\alpha_{i-1,i}\text{ are side lengths of right "
         r"triangles with leg }L_i",
-        CORRECTED,
-        r"A\text{ and }B\text{ are signed: negative for an obtuse angle, infinite for a right one}",
-        "as printed only if both angles are acute; the cancellation B.8 holds always",
+        PRINTED,
+        note="as in the figure, for acute angles; A and B are signed, negative for an obtuse angle "
+        "and infinite for a right one. With these signs the cancellation B.8 holds always",
     )
 
 

@@ -190,10 +190,10 @@ def _small(script: Script, levels: list[set[Triangulation]]) -> None:
     script.state(
         "IV.11",
         "Section IV, fractions",
-        r"\text{``starting from 0\% at }V_i=3\text{'' without a boundary vertex of degree 3}",
+        r"\text{at }V_i=3\text{: 0\% ``had no degree-3 vertices at the boundary'', and the "
+        r"fraction of H1 triangulations is 1}",
         Ruling.AS_PRINTED,
-        note="and the fraction of H1 triangulations is 1 at Vi = 3; the other percentages are data "
-        "of random samples",
+        note="follows from IV.10; the other percentages are IV.15 and IV.16",
     )
 
 
@@ -209,11 +209,11 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
             if is_h1(t):
                 flat.append(_has_triangulated_triangle(t))
                 outcomes.append(len(t) == 2 * (n + 1))
-    script.certificate(
+    script.cases(
         "every reverse H1 move on these deletes one boundary vertex and puts one interior vertex "
-        "in "
-        "its place, so Ve = 4 throughout; 2 Vi + 2 triangles",
-        all(outcomes),
+        "in its place, so Ve = 4 throughout; 2 Vi + 2 triangles (in general: w leaves the boundary "
+        "cycle v1 w v3, and v2, which was not on it, takes its place)",
+        outcomes,
     )
     extra = script.alter("the seed is not counted", 1, 0)
     script.example(
@@ -258,9 +258,9 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         "IV.12",
         "Section IV",
         r"\text{``can be decomposed into a sequence of }V_i\text{ butterflies''}",
-        Ruling.CORRECTED,
-        r"V_i+1\text{ butterflies, the seed included: }2V_i+2\text{ triangles}",
-        "the figure's own example with Vi = 4 has five, (1) to (4) and the seed (5)",
+        Ruling.AS_PRINTED,
+        note="besides the seed, as in the figure: (1) to (4) and the seed (5) for Vi = 4; 2 Vi + 2 "
+        "triangles in all",
     )
     script.state(
         "IV.13",

@@ -77,7 +77,9 @@ def _base_case(script: Script) -> None:
     script.state(
         "B.13",
         "Appendix B, base case, first display",
-        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{L_3}+"
+        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\csc\alpha_{2,3}\Big(\frac{\csc\alpha_{1,2}}{L_2}+"
+        r"\frac{\csc\alpha_{3,1}}{L_3}-\frac{\cot\alpha_{1,2}}{L_1}-\frac{\cot\alpha_{3,1}}{L_1}"
+        r"\Big)=\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{L_3}+"
         r"\frac{\csc\alpha_{3,1}\csc\alpha_{1,2}}{L_1}-"
         r"\frac{\csc\alpha_{3,1}(\cot\alpha_{2,3}+\cot\alpha_{1,2})}{L_2}",
         PRINTED,
@@ -146,10 +148,22 @@ def _induction_formulas(script: Script) -> None:
     long = a.csc / L2 + z.csc / L0 - (a.cot + z.cot) / L1
     long += -(a + b).csc / L3 - z.csc / L0 + ((a + b).cot + z.cot) / L1
     short = a.csc / L2 - (a + b).csc / L3 - (a.cot - (a + b).cot) / L1
-    script.identity("Delta sigma_{i-1}, both forms", change - long, change - short)
+    script.identity("Delta sigma_{i-1} = sigma_{i-1} - sigma^0_{i-1}, unsimplified", change - long)
+    script.identity("its terms with alpha_{i-2,i-1} cancel", long - short)
     mirrored = spoke(L2, L3, L0, b, z) - spoke(L1, L3, L0, a + b, z)  # z: angle i+1, i+2; L0: i+2
     after = b.csc / L2 - (a + b).csc / L1 - (b.cot - (a + b).cot) / L3
     script.identity("Delta sigma_{i+1}", mirrored - after)
+    gone = r"\frac{\csc\alpha_{i-2,i-1}}{L_{i-2}}"
+    script.state(
+        "B.25",
+        "Appendix B, induction, Delta sigma_{i-1} before simplification",
+        r"\Delta\sigma_{i-1}=\frac{\csc\alpha_{i-1,i}}{L_i}+" + gone + r"-\frac{\cot"
+        r"\alpha_{i-1,i}+\cot\alpha_{i-2,i-1}}{L_{i-1}}-\frac{\csc(\alpha_{i-1,i}+"
+        r"\alpha_{i,i+1})}{L_{i+1}}-" + gone + r"+\frac{\cot(\alpha_{i-1,i}+\alpha_{i,i+1})+"
+        r"\cot\alpha_{i-2,i-1}}{L_{i-1}}",
+        PRINTED,
+        note="with Delta sigma_{i-1} = sigma_{i-1} - sigma^0_{i-1} and Eq. (spokes) for sigma_i",
+    )
     script.state(
         "B.17",
         "Appendix B, induction, formulas for the lengths",
@@ -157,7 +171,7 @@ def _induction_formulas(script: Script) -> None:
         r"\alpha_{i,i+1})}{L_{i+1}}-\frac{\cot\alpha_{i-1,i}-\cot(\alpha_{i-1,i}+"
         r"\alpha_{i,i+1})}{L_{i-1}}\text{, and }\Delta\sigma_{i+1}",
         PRINTED,
-        note="both displayed forms; defined unless alpha_{i-1,i} + alpha_{i,i+1} = pi",
+        note="defined unless alpha_{i-1,i} + alpha_{i,i+1} = pi",
     )
     script.state(
         "B.18",
@@ -208,12 +222,14 @@ def _induction_step(script: Script) -> None:
     )
     script.state(
         "B.20",
-        "Appendix B, induction, law of sines",
+        "Appendix B, induction, law of sines, and first line of the last display",
         r"\sigma_i/\sin\beta_i=\Delta\sigma_{i-1}/\sin\alpha_{i,i+1}",
         CORRECTED,
         r"\sigma_i/\sin\beta_i=-\Delta\sigma_{i-1}/\sin\alpha_{i,i+1}="
         r"-\Delta\sigma_{i+1}/\sin\alpha_{i-1,i}",
-        "the sides are sigma_i and sigma^0 - sigma = -Delta sigma, of the sign of sigma_i if "
+        "sin(beta_i) is +sin(alpha_{i-1,i} + alpha_{i,i+1}); in the last display only the leftmost "
+        "side needs the sign. (Or beta_i = alpha_{i-1,i} + alpha_{i,i+1} - pi, which mends both.) "
+        "The sides are sigma_i and sigma^0 - sigma = -Delta sigma, of the sign of sigma_i if "
         "alpha_{i-1,i} + alpha_{i,i+1} < pi. Example: five unit spokes (1,0), (4/5,3/5), "
         "(7/25,24/25), (-1,0), (0,-1), the second taken out: 25/36 against -25/36",
     )
@@ -237,14 +253,12 @@ def _last_display(script: Script) -> None:
     script.state(
         "B.21",
         "Appendix B, last display",
-        r"\frac{\sigma_i}{\sin\beta_i}=-\csc(\alpha_{i-1,i}+\alpha_{i,i+1})(\dots)=\dots="
-        r"\frac{\Delta\sigma_{i-1}}{\sin\alpha_{i,i+1}}",
-        CORRECTED,
-        r"-\frac{\sigma_i}{\sin\beta_i}=-\csc(\alpha_{i-1,i}+\alpha_{i,i+1})(\dots)=\dots="
-        r"\frac{\Delta\sigma_{i-1}}{\sin\alpha_{i,i+1}}",
-        "1/sin(beta_i) is +csc(alpha_{i-1,i} + alpha_{i,i+1}); the right-hand sides agree line by "
-        "line, only the left-hand side needs a sign (or beta_i = alpha_{i-1,i} + alpha_{i,i+1} "
-        "- pi). The same slip as in B.20",
+        r"-\csc(\alpha_{i-1,i}+\alpha_{i,i+1})\left(\frac{\csc\alpha_{i,i+1}}{L_{i+1}}+"
+        r"\frac{\csc\alpha_{i-1,i}}{L_{i-1}}-\frac{\cot\alpha_{i,i+1}+\cot\alpha_{i-1,i}}{L_i}"
+        r"\right)=\dots=\frac{\Delta\sigma_{i-1}}{\sin\alpha_{i,i+1}}",
+        PRINTED,
+        note="as far as the four right-hand sides go, which are equal; the left-hand side needs "
+        "the sign of B.20",
     )
 
 
@@ -279,10 +293,11 @@ def _choice_of_spoke(script: Script) -> None:
         r"\text{for every spoke }i",
         CORRECTED,
         r"\text{for a spoke }i\text{ with }\alpha_{i-1,i}+\alpha_{i,i+1}<\pi",
-        "equal to pi: Eq. (spokes) has no meaning in G_{n,i}; larger: G_{n,i} has a reflex sector, "
-        "where the formulas hold but not the figure. Such a spoke exists unless N = 4 and the "
-        "spokes form two straight lines, as in the cross (1,0), (0,1), (-1,0), (0,-1), where the "
-        "induction fails for every i; there sigma_1 = sigma_3 and sigma_2 = sigma_4 directly",
+        "equal to pi: Eq. (spokes) has no meaning in G_{n,i}; larger: G_{n,i} has a reflex "
+        "sector, where the formulas hold, but neither the figure nor 'angles in (0, pi)'. Such a "
+        "spoke exists unless N = 4 and the spokes form two straight lines, as in the cross (1,0), "
+        "(0,1), (-1,0), (0,-1), where the induction fails for every i; there sigma_1 = sigma_3 "
+        "and sigma_2 = sigma_4 directly",
     )
     script.state(
         "B.23",

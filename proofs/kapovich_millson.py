@@ -183,13 +183,19 @@ def _vanishing(script: Script) -> None:
     script.state(
         "C.16",
         "Appendix C, end of the proof of Theorem KM",
-        r"\text{the angle sum in }\chi(N)\text{ is }2\pi-\alpha_{N,1}\text{; perturb to avoid "
-        r"vanishing minors}",
+        r"\text{``the angle sum in }\chi(N)\text{ is equal to }2\pi-\alpha_{N,1}\text{''}",
         Ruling.CORRECTED,
-        r"\text{the angle sum in }\chi(N)\text{ is }2\pi w-\alpha_{N,1}",
-        note="the perturbation exists: turn the spokes d_n, 2 < n < N, that are parallel to d_1. "
-        "It can be avoided: two minors in sequence never vanish, and C.7 gives opposite signs "
-        "around one that does",
+        r"2\pi w-\alpha_{N,1}",
+        note="the theorem is about any winding w; the sine of the sum is the same",
+    )
+    script.state(
+        "C.21",
+        "Appendix C, end of the proof of Theorem KM",
+        r"\text{where a }\Delta_j\text{ vanishes, ``we can perturb the angles'' without changing }"
+        r"f,b,w\text{ and the signature}",
+        Ruling.AS_PRINTED,
+        note="turn the spokes d_n, 2 < n < N, that are parallel to d_1. It can be avoided: two "
+        "minors in sequence never vanish, and C.7 gives opposite signs around one that does",
     )
 
 
@@ -286,11 +292,10 @@ def _changes(script: Script) -> None:
         "C.19",
         "Appendix C, after Theorem 1",
         r"\text{the signature changes when any of }f,b,w\text{ change}",
-        Ruling.CORRECTED,
-        r"\text{the signature determines, and is determined by, }f-2w\text{ and }b+2w;\text{ it "
-        r"changes by }(\mp1,\pm1)\text{ each time one angle passes a multiple of }\pi",
-        note="(f, b, w) and (f - 2, b + 2, w - 1) have the same signature: the pentagram (5, 0, "
-        "2) and spokes (1,0), (-5,1), (-1,5), (0,-1), (-5,-2) with (3, 2, 1), both (0, 3)",
+        Ruling.AS_PRINTED,
+        note="each time one angle passes a multiple of pi, by (-1, 1) or (1, -1). Two changes can "
+        "cancel: (f, b, w) and (f - 2, b + 2, w - 1) have the same signature, as the pentagram "
+        "(5, 0, 2) and spokes (1,0), (-5,1), (-1,5), (0,-1), (-5,-2) with (3, 2, 1), both (0, 3)",
         code="kapovich_millson",
     )
 

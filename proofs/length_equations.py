@@ -187,13 +187,16 @@ def _stresses(script: Script) -> None:
     script.cases("2 C u = -(h_n - h_m)^2 / L is solvable exactly if all K_v(h) = 0", outcomes)
     script.state(
         "IIA.6",
-        "Section II A, Eq. (isometry): rows of C",
-        r"\text{rows indexed by the unique folds }(n,m)",
+        "Section II A, from Eq. (isometry) to Eq. (compat)",
+        r"\text{``rows indexed by the unique folds'', ``one component per fold'', ``the sum is "
+        r"taken over all folds in the network''}",
         Ruling.CORRECTED,
-        r"\text{rows indexed by all edges }(n,m)\text{, boundary edges included}",
-        "folds were defined as interior edges; with those rows alone the four spokes of a single "
-        "vertex carry no self stress",
-        "rigidity_matrix",
+        r"\text{edges in place of folds, three times: boundary edges count as well}",
+        "folds were defined as the edges in the interior of the disk; with their rows alone the "
+        "four spokes of a single vertex carry no self stress. Cross (1,0), (0,1), (-1,0), (0,-1) "
+        "about the origin with heights 1, 0, -1, 1, hub 0: the terms of the boundary edges in "
+        "Eq. (compat) are not zero",
+        "rigidity_matrix, stress_form",
     )
     script.state(
         "IIA.7",
@@ -204,12 +207,10 @@ def _stresses(script: Script) -> None:
     script.state(
         "IIA.8",
         "Section II A, Eq. (compat)",
-        r"\sum_{(n,m)}\frac{\sigma_{(n,m)}}{|U_n-U_m|}(h_n-h_m)^2=0,\text{ the sum over all folds}",
-        Ruling.CORRECTED,
-        r"\text{the same sum over all edges; }\bm\sigma\text{ has one component per edge}",
-        "cross (1,0), (0,1), (-1,0), (0,-1) about the origin with heights 1, 0, -1, 1, hub 0: the "
-        "terms of the boundary edges are not zero",
-        "stress_form",
+        r"\sum_{(n,m)}\frac{\sigma_{(n,m)}}{|U_n-U_m|}(h_n-h_m)^2=0",
+        Ruling.AS_PRINTED,
+        note="with boundary edges among the folds (IIA.6)",
+        code="stress_form",
     )
     script.state(
         "IIA.9",

@@ -111,16 +111,6 @@ def _bends(script: Script) -> None:
         "K(t) = sum_j tan(a_j / 2) > 0",
         sector(-1, -1, t) - script.alter("cotangent for tangent", t, 1 / t),
     )
-    script.state(
-        "IIIB.4",
-        "Section III B",
-        r"\sigma_n=\mathrm{sgn}[\mathbf e_n\cdot\mathbf h]",
-        Ruling.AS_PRINTED,
-        note="K(e, h) is the eigenvalue times e . h. As e_n is timelike, on a null vector h that "
-        "is not flat at n the sign is that of the "
-        "nappe; it is also that of -sum b_j, and of every other timelike vector that points up",
-        code="vertex_sign_functional",
-    )
 
 
 def _inequality(script: Script) -> None:
@@ -165,15 +155,14 @@ def _directions(script: Script) -> None:
         "and their opposites occurs among 8)",
         fails == 0,
     )
-    both = min(
-        len(p) + len(q)
-        for p in ((0, 4, 8), (0, 3, 6, 9))
-        for q in ((1, 5, 9), (1, 4, 7, 10))
-        if not _in_half_plane(p, size) and not _in_half_plane(q, size)
-    )
-    script.certificate(
-        "valleys and mountains in no closed half-plane are at least 3 + 3 folds",
-        both == script.alter("degree five suffices", 6, 5),
+    a, b, c, d = sympy.symbols("a b c d")
+    side = script.alter("half-plane bounded by another line", 1, -1)
+    script.identity(
+        "two directions e, e' lie in the closed half-plane bounded by the line of e on the side of "
+        "e' (Je . e = 0, Je . e' of either sign): valleys and mountains in no closed half-plane "
+        "are at least 3 + 3 folds",
+        -b * a + side * a * b,
+        (-b * c + a * d) - sympy.Matrix([[a, b], [c, d]]).det(),
     )
 
 

@@ -42,6 +42,22 @@ def _extension(script: Script) -> None:
         "(|X|^2 - L^2) / t^2 = 2 U.u + h^2 + t^2 |u|^2, analytic in (t, u, h)",
         (X.dot(X) + t**2 * h**2 - U.dot(U)) / t**2 - 2 * U.dot(u) - h**2 - t**power * u.dot(u),
     )
+    s = sympy.Symbol("s")
+    bound = script.alter("in-plane displacements of first order", 2, 1)
+    script.identity(
+        "configurations that tend to the flat one have |u| <= 2c s^2 with s = |h| (IIA.4); in "
+        "units h = s h', u = s^2 u' the lengths read 2 U.u' + h'^2 + s^2 |u'|^2 = 0 with |h'| = 1 "
+        "and u' bounded, so that a limit point is a folded second-order solution",
+        ((U + s**2 * u).dot(U + s**2 * u) + (s * h) ** 2 - U.dot(U)) / s**bound
+        - (2 * U.dot(u) + h**2 + s**2 * u.dot(u)),
+    )
+    script.state(
+        "IIA.15",
+        "Section II A, last paragraph",
+        r"\text{``second-order rigidity implies rigidity''}",
+        Ruling.AS_PRINTED,
+        note="for the unfolded state; rigid: no other configurations, modulo motions, nearby",
+    )
     w, hi, hj = sympy.symbols("w h_i h_j")
     two = script.alter("derivative without its factor", 2, 1)
     script.identity(
@@ -106,10 +122,10 @@ def _energy(script: Script) -> None:
         "IIA.12",
         "Section II A, last paragraph",
         r"\text{``can only change the stretching energy to at most sixth-order''}",
-        Ruling.CORRECTED,
-        r"E=\sum(|X_n-X_m|-L)^2=t^8\sum\frac{|u_n-u_m|^4}{4L^2}+\mathcal O(t^{10})",
-        "eighth order along X = U + t^2 u + t h z. As a bound O(t^6) the printed claim is true and "
-        "attained only if arbitrary terms of third order are added; heights alone give order 4",
+        Ruling.AS_PRINTED,
+        note="as a bound O(t^6), which is attained only if arbitrary terms of third order are "
+        "added. Along X = U + t^2 u + t h z the energy is of eighth order, t^8 sum |u_n - u_m|^4 / "
+        "(4 L^2); heights without in-plane displacements give order 4",
     )
 
 

@@ -13,12 +13,13 @@ from typing import Any
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from exactfold import curvature_form, rigidity_matrix
+from exactfold import curvature_form, rigidity_matrix, wheel_stress
 from exactfold.exact.linalg import rank
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity.kapovich_millson import kapovich_millson
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.vertex_forms import cross, dot, symbols, unit
+from proofs.wheel_stress import free_wheel
 
 NAME = "vertex_eigenvalues"
 TITLE = "Eigenvalues of the form of one vertex, and its null cone"
@@ -33,6 +34,7 @@ def prove(change: str | None = None) -> Proof:
     script = Script(NAME, TITLE, HYPOTHESES, change)
     _equal_angles(script)
     _all_angles(script)
+    _signature(script)
     _three_folds(script)
     _cone(script)
     return script.proof()
@@ -62,11 +64,10 @@ def _equal_angles(script: Script) -> None:
         "Appendix C, eigenvalues of the Toeplitz matrix",
         r"\lambda_m=f+2|g|\cos\frac{m\pi}{N-1},\quad m=1,\dots,N-1",
         Ruling.CORRECTED,
-        r"\lambda_m=f-2|g|\cos\frac{m\pi}{N-1},\quad m=1,\dots,N-2",
+        r"\text{the same for }m=1,\dots,N-2",
         note="the matrix has N-2 rows; m = N-1 gives f - 2|g|, no eigenvalue (N = 4, L = 1: -2 "
-        "besides 1 and -1). Either sign gives the same set, with m replaced by N-1-m, but the "
-        "minus sign (g < 0) is that of Eq. (equalangleeigs), to which 'Thus' leads, and the one "
-        "with lambda_1 < 0",
+        "besides 1 and -1). The sign of the cosine is a matter of numbering: with the minus sign "
+        "of Eq. (equalangleeigs), to which 'Thus' leads, m is replaced by N-1-m",
     )
     script.state(
         "C.9",
@@ -119,6 +120,7 @@ def _all_angles(script: Script) -> None:
         "'primarily increase' the rim is heuristic",
         code="curvature_form, QuadraticForm.inertia",
     )
+    _matrix(script)
     matrix_inertia = curvature_form(single_vertex(5), 5).inertia
     script.counterexample(
         "with Eqs. (compat), (wheelstress) as printed a five-fold star has inertia (1, 2, 3): two "
@@ -130,12 +132,69 @@ def _all_angles(script: Script) -> None:
         "Section II B, after Eq. (stressmatrix)",
         r"Q_{nm}\text{ has }N-2\text{ nonzero eigenvalues, exactly one of which is negative}",
         Ruling.CORRECTED,
-        r"\text{exactly one of which is positive, }N-3\text{ negative (with the signs of Eqs. "
-        r"(compat), (wheelstress)); in the sign of Appendix C, which is }-2K_v\text{, exactly one "
-        r"is negative}",
-        note="Q = 2 K_v. The number N-2 and the size N+1 hold; five equal angles: inertia (1, 2, "
-        "3)",
+        r"\text{exactly one of which is positive}",
+        note="with the signs of Eqs. (compat), (wheelstress): Q = 2 K_v; five equal angles: "
+        "inertia (1, 2, 3). As printed if Q belongs to the negative of that stress, as in "
+        "Appendix C (-2 K_v) and in all that follows. The number N-2 and the size N+1 hold",
         code="curvature_form",
+    )
+
+
+def _matrix(script: Script) -> None:
+    """Q_nm of Eq. (stressmatrix) from the stress densities w = sigma/|U_n - U_m|."""
+    w, h, k = symbols("w h k")
+    sign = script.alter("off-diagonal entries with the sign of the diagonal", -1, 1)
+    script.identity(
+        "each edge adds w to Q_nn and Q_mm and -w to Q_nm and Q_mn: w (h_n - h_m)^2",
+        w * (h - k) ** 2 - (w * h**2 + w * k**2 + 2 * sign * w * h * k),
+    )
+    differences = []
+    for n in (3, 4):
+        wheel = free_wheel(n)
+        stress, form = wheel_stress(wheel, n), curvature_form(wheel, n)
+        for i, a in enumerate(form.labels):
+            for j, b in enumerate(form.labels):
+                entry = -stress.get((min(a, b), max(a, b)), 0)
+                if a == b:
+                    entry = sum(d for edge, d in stress.items() if a in edge)
+                differences.append(entry - 2 * form.matrix[i][j])
+    script.identity(
+        "over the field of all spokes, N = 3, 4: with the wheel stress this Q is 2 K_v",
+        *differences,
+    )
+    script.state(
+        "IIB.20",
+        "Section II B, Eq. (stressmatrix)",
+        r"\sum_{n,m}Q_{nm}h_nh_m=0,\ Q\text{ symmetric, the quadratic form of Eq. (compat)}",
+        Ruling.AS_PRINTED,
+        note="Q_nm = -sigma_(n,m)/|U_n - U_m| for n != m, and the rows add up to 0",
+        code="stress_form",
+    )
+
+
+def _signature(script: Script) -> None:
+    """Jacobi's rule for tridiagonal matrices, by completing squares from the first variable on."""
+    p, f, g, x, y, before = symbols("p f g x y before")  # p: pivot of x, Delta_{j-1} / Delta_{j-2}
+    square = p * (x + g * y / p) ** 2
+    sign = script.alter("pivot with the wrong sign", -1, 1)
+    script.identity(
+        "p x^2 + 2 g x y + f y^2 = p (x + g y/p)^2 + (f - g^2/p) y^2: the new pivot is f - g^2/p",
+        p * x**2 + 2 * g * x * y + f * y**2 - square - (f + sign * g**2 / p) * y**2,
+    )
+    # Delta_{j-1} = p Delta_{j-2}; the continuant Delta_j = f Delta_{j-1} - g^2 Delta_{j-2}
+    script.identity(
+        "and the next minor is the product of the pivots: Delta_j / Delta_{j-1} = f - g^2/p",
+        (f * p * before - g**2 * before) / (p * before) - (f - g**2 / p),
+    )
+    script.state(
+        "C.22",
+        "Appendix C, proof of Theorem KM",
+        r"\text{if no }\Delta_j\text{ vanishes, }N_-\text{ is the number of sign changes of "
+        r"}\Delta_0=1,\Delta_1,\dots,\Delta_k",
+        Ruling.AS_PRINTED,
+        note="proved for tridiagonal matrices, all that is needed: the form is a sum of squares "
+        "with the factors Delta_j / Delta_{j-1}",
+        code="QuadraticForm.inertia",
     )
 
 
@@ -159,7 +218,7 @@ def _three_folds(script: Script) -> None:
     )
     pattern = single_vertex(3)
     lengths = rank(rigidity_matrix(pattern))  # first-order changes do not see the heights
-    script.counterexample(
+    script.example(
         "N = 3: the star has one height motion that is no rigid motion, and its lengths are kept "
         "to first order, so it is not infinitesimally rigid in the usual (first-order) sense",
         3 * len(pattern.vertices) - lengths - 6 == 1,
@@ -169,12 +228,9 @@ def _three_folds(script: Script) -> None:
         "Appendix C, after Eq. (equalangleeigs)",
         r"\text{the vertex is infinitesimally rigid when all eigenvalues have the same sign "
         r"(as happens when }N=3)",
-        Ruling.CORRECTED,
-        r"\text{the vertex is rigid to second order, hence rigid, iff all nonzero eigenvalues "
-        r"have the same sign, which for angles in }(0,\pi)\text{ is }N=3;\text{ to first order it "
-        r"has }N-2\ge1\text{ motions}",
-        note="infinitesimal rigidity means that there are no first-order motions; Section II A "
-        "calls every displacement of the heights a first-order motion",
+        Ruling.AS_PRINTED,
+        note="infinitesimally rigid to second order, hence rigid; with angles in (0, pi) exactly "
+        "for N = 3. In the usual sense (no first-order motions) no vertex is: it has N - 2 of them",
         code="count_branches",
     )
 

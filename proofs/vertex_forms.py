@@ -153,24 +153,29 @@ def _stress_signs(script: Script) -> None:
         "hub (0,0), spokes (4,0), (1,1), (0,4), (-1,-1): A_2 = -1/2, the other three A_n > 0",
         stress[1, 4] == Fraction(-1, 2) and all(stress[j, 4] > 0 for j in (0, 2, 3)),
     )
-    script.certificate(
+    script.example(
         "its rim densities in the sign of Eq. (wheelstress) are -1/c_n < 0",
         all(stress[edge] < 0 for edge in ((0, 1), (1, 2), (2, 3), (0, 3))),
     )
     script.state(
         "C.3",
         "Appendix C, first paragraph",
-        r"\text{this form [Eq. (constraint)] is the energy of the wheel self stress as pre-stress; "
-        r"it places the spokes under compression and the outer edges under tension}",
+        r"\text{this form ``has the interpretation as the energy if the wheel self stress is "
+        r"applied as a pre-stress''; it places ``the outer edges under tension''}",
+        Ruling.AS_PRINTED,
+        note="``with our sign convention'', which counts compression as positive: the rim stresses "
+        "of Eqs. (constraint), (wheelstress) are -csc a < 0. The energy (1/2) sum_e w_e (h_n - "
+        "h_m)^2, w_e > 0 for tension, is then the form as Appendix C goes on to write it, -2 K_v",
+        code="wheel_stress",
+    )
+    script.state(
+        "C.23",
+        "Appendix C, first paragraph",
+        r"\text{this pre-stress ``places the spokes under compression''}",
         Ruling.CORRECTED,
-        r"\text{With the energy }\tfrac12\sum_e\omega_e(h_n-h_m)^2,\ \omega_e>0\text{ for "
-        r"tension: }\omega=-\sigma/L\text{ (form of Appendix C, not Eq. (constraint)): the rim is "
-        r"under tension, and spoke }n\text{ under compression iff the link polygon is strictly "
-        r"convex at }n\text{, unstressed iff it is straight there, under tension iff it is reflex "
-        r"there}",
-        note="Eq. (constraint) and (wheelstress) have rim stresses -csc a < 0, that is "
-        "compression unless compression is counted positive. Spoke under tension: hub (0,0), "
-        "spokes (4,0), (1,1), (0,4), (-1,-1), at (1,1)",
+        r"\text{spoke }n\text{ is under compression iff the link polygon is strictly convex at }n"
+        r"\text{, unstressed iff it is straight there, under tension iff it is reflex there}",
+        note="under tension: hub (0,0), spokes (4,0), (1,1), (0,4), (-1,-1), at (1,1)",
         code="wheel_stress",
     )
 
