@@ -55,7 +55,7 @@ def _equal_angles(script: Script) -> None:
     script.example(
         "v_0 = 0 always and v_{N-1} = 0 at theta = m pi/(N-1); m = 1, ..., N-2 gives N-2 "
         "different cosines, so these are all eigenvalues of the N-2 rows. For N = 4 and L = 1 the "
-        "matrix is [[0, -1], [-1, 0]], and lambda_1 = -1, lambda_2 = 1",
+        "matrix is [[0, -1], [-1, 0]], and lambda_1 = -1, lambda_2 = 1 (numbered with minus signs)",
         [list(row[2:4]) for row in rows] == [[0, -1], [-1, 0]]
         and [sign * 2 * c for c in cosines[: 2 + last]] == [-1, 1],
     )
