@@ -25,7 +25,7 @@ Vector = tuple[Any, Any]
 
 
 def prove(change: str | None = None) -> Proof:
-    """The claims behind the solvers (docs/theorem.md, section 5)."""
+    """The claims behind the solvers (docs/theorem.md, section 7)."""
     script = Script(NAME, TITLE, ("any straight-line triangulation of a disk",), change)
     script.state(
         "T.31",
@@ -41,7 +41,7 @@ def prove(change: str | None = None) -> Proof:
         r"\text{convex boundary: } (1-T)(l_v^2-k)+TK_v=0,\ e_vl_v>0 "
         r"\text{ is real, regular and unique for } 0\le T<1",
         Ruling.AS_PRINTED,
-        note="docs/theorem.md, section 5; with a reflex corner, in the sheet with its notch closed",
+        note="docs/theorem.md, section 7; with a reflex corner, in the sheet with its notch closed",
         code="popping",
     )
     _symmetry(script)
