@@ -8,8 +8,9 @@ its own, and verifies every claim. Exit code 0: every claim holds. 1: some claim
 
   isolated       2^n disjoint boxes, each with exactly one zero by Krawczyk's test in integers:
                  by refined Bezout these are all zeros of n quadrics in P^n, all real and simple;
-  algebraic      zeros as roots of squarefree polynomials, multiplicities bounded below by dual
-                 spaces; the sum reaches 2^n, so the bounds are exact and nothing is missing;
+  algebraic      zeros as roots of squarefree polynomials, or in boxes; a zero at which f of the
+                 quadrics have order 2 has multiplicity 2^f or more, and the sum reaches 2^n, so
+                 that the bounds are exact and nothing is missing;
   rigid          a positive definite stress: the sheet cannot fold;
   single vertex  the inertia (1, N - 3, 3) of one curvature form, N >= 5: one double cone.
 
@@ -33,8 +34,8 @@ Edge = tuple[int, int]
 Form = dict[tuple[int, int], Fraction]
 Poly = list[Any]
 
-FORMAT, VERSION = "exactfold certificate", 1
-MOST_BITS, MOST_UNKNOWNS = 1 << 14, 12  # bounds on the work one file can ask for
+FORMAT, VERSION = "exactfold certificate", 2
+MOST_BITS = 1 << 14  # a bound on the work one file can ask for
 
 
 class CertificateError(Exception):
@@ -690,8 +691,8 @@ class RootClass:
     """Zeros x_i = w_i(t) / p'(t) of the branch system, one for each root t of p."""
 
     def __init__(self, system: BranchSystem, separating: list[int], entry: Any) -> None:
-        keys(entry, "polynomial numerators multiplicity functionals", "class")
-        self.system, n = system, system.size
+        keys(entry, "polynomial numerators flat", "class")
+        n = system.size
         self.p = [parse_integer(text_of(c)) for c in items(entry["polynomial"], "polynomial")]
         require(len(self.p) > 1 and self.p[-1], "a class polynomial is constant")
         self.slope = derivative(self.p)
@@ -700,18 +701,25 @@ class RootClass:
             [parse_rational(c) for c in items(w, "numerator")]
             for w in items(entry["numerators"], "numerators", n)
         ]
-        self.multiplicity = natural(entry["multiplicity"], "multiplicity")
+        flat = set(items(entry["flat"], "flat vertices"))
+        require(
+            len(flat) == len(entry["flat"]) and flat <= set(system.sheet.interior),
+            "the flat vertices are no inner vertices, or appear twice",
+        )
         z = [*self.w, self.slope]
-        self.gradients = []
-        for quadric in system.quadrics:
-            row: list[Poly] = [[] for _ in z]
+        for v, quadric in zip(system.sheet.interior, system.quadrics, strict=True):
+            gradient: list[Poly] = [[] for _ in z]
             for (i, j), c in quadric.items():
-                row[i] = plus(row[i], scaled(z[j], c))
-            self.gradients.append(row)
+                gradient[i] = plus(gradient[i], scaled(z[j], c))
             total: Poly = []
-            for a, b in zip(row, z, strict=True):
+            for a, b in zip(gradient, z, strict=True):
                 total = plus(total, times(a, b))
             require(not remainder(total, self.p), "the parametrisation misses a quadric")
+            require(
+                v not in flat or not any(remainder(g, self.p) for g in gradient[:n]),
+                f"the quadric of vertex {v} has order 1",
+            )
+        self.multiplicity = 1 << len(flat)  # at least: the product of the orders of the quadrics
         form: Poly = []
         for s, w in zip(separating, self.w, strict=True):
             form = plus(form, scaled(w, s))
@@ -719,57 +727,6 @@ class RootClass:
             not remainder(plus(form, scaled([0, *self.slope], -1)), self.p),
             "the separating form is not the root of its polynomial",
         )
-        self._check_functionals(items(entry["functionals"], "functionals", self.multiplicity))
-
-    def _check_functionals(self, functionals: list[Any]) -> None:
-        """A space of differential functionals that annihilates the ideal at every root.
-
-        Given as {exponent: polynomial in t}, for sum c_a d^a / a!. Each has a pivot exponent with
-        coefficient 1 where the others have 0, so they are independent at every root; the space is
-        closed under lowering an exponent; each kills every quadric. Then it kills the ideal
-        (Leibniz), and the local ring has at least their number of dimensions (Macaulay).
-        """
-        n, space, pivots = self.system.size, [], []
-        for functional in functionals:
-            keys(functional, "pivot terms", "functional")
-            terms = {}
-            for term in items(functional["terms"], "terms"):
-                exponent, coefficient = items(term, "term", 2)
-                exponent = tuple(natural(e, "exponent") for e in items(exponent, "exponent", n))
-                require(exponent not in terms, "an exponent appears twice")
-                terms[exponent] = remainder(
-                    [parse_rational(c) for c in items(coefficient, "coefficient")], self.p
-                )
-            space.append(terms)
-            pivots.append(
-                tuple(natural(e, "pivot") for e in items(functional["pivot"], "pivot", n))
-            )
-        for k, pivot in enumerate(pivots):
-            for m, terms in enumerate(space):
-                require(terms.get(pivot, []) == ([1] if k == m else []), "the pivots are not")
-        for terms in space:
-            for i in range(n):
-                rest = {}
-                for a, c in terms.items():
-                    if a[i]:
-                        rest[(*a[:i], a[i] - 1, *a[i + 1 :])] = c
-                for pivot, basis in zip(pivots, space, strict=True):
-                    weight = rest.get(pivot, [])
-                    for a, c in basis.items() if weight else ():
-                        less = plus(rest.get(a, []), scaled(times(weight, c), -1))
-                        rest[a] = remainder(less, self.p)
-                require(not any(trim(c) for c in rest.values()), "the functionals are not closed")
-            for quadric, gradient in zip(self.system.quadrics, self.gradients, strict=True):
-                total: Poly = []  # p' times the value, F itself being 0
-                for a, c in terms.items():
-                    support = [i for i in range(n) for _ in range(a[i])] if sum(a) < 3 else []
-                    if len(support) == 1:
-                        total = plus(total, times(c, gradient[support[0]]))
-                    elif len(support) == 2:
-                        i, j = support
-                        half = Fraction(quadric.get((i, j), 0)) / (2 if i == j else 1)
-                        total = plus(total, times(c, scaled(self.slope, half)))
-                require(not remainder(total, self.p), "a functional does not kill a quadric")
 
 
 class AlgebraicRoot(Root):
@@ -829,27 +786,39 @@ def check_finite(sheet: Sheet, multipliers: Any) -> None:
 
 
 def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Root, int]], int]:
-    """All zeros as roots of polynomials: (real roots with multiplicities, non-real ones)."""
+    """All zeros, in classes or boxes: (real roots with multiplicities, number of the others).
+
+    That no zero is both in a class and in a box is left to `check_branches`.
+    """
     keys(evidence, "kind triangles chart multipliers separating classes roots", "evidence")
     check_finite(system.sheet, evidence["multipliers"])
-    separating = [
-        natural_or_negative(s) for s in items(evidence["separating"], "separating", system.size)
-    ]
+    separating = [natural_or_negative(s) for s in items(evidence["separating"], "separating")]
     entries = items(evidence["classes"], "classes")
-    require(system.size <= MOST_UNKNOWNS, "too many unknowns for algebraic evidence")
-    total = 0
+    listed = items(evidence["roots"], "roots")
+    boxes = [Box(entry, system.size) for entry in listed if "class" not in entry]
+    total = len(boxes)
     for entry in entries:  # before any arithmetic, so that a small file cannot ask for much
-        keys(entry, "polynomial numerators multiplicity functionals", "class")
+        keys(entry, "polynomial numerators flat", "class")
         degree = len(items(entry["polynomial"], "polynomial")) - 1
-        total += degree * natural(entry["multiplicity"], "multiplicity")
+        total += degree << min(len(items(entry["flat"], "flat vertices")), system.size)
     require(total == 1 << system.size, f"multiplicities add up to {total}, not 2^{system.size}")
+    require(not entries or len(separating) == system.size, "the separating form has a wrong length")
     classes = [RootClass(system, separating, entry) for entry in entries]
     for k, a in enumerate(classes):
         for b in classes[:k]:
             require(are_coprime(a.p, b.p), "two classes share a root")
+    if boxes:
+        test = Krawczyk(system)
+        for box in boxes:
+            test.check(box.center, box.radius, box.bits)
+        check_disjoint(boxes)
+    remaining = iter(boxes)
     roots: list[tuple[Root, int]] = []
     intervals: list[list[tuple[Fraction, Fraction]]] = [[] for _ in classes]
-    for entry in items(evidence["roots"], "roots"):
+    for entry in listed:
+        if "class" not in entry:
+            roots.append((next(remaining), 1))
+            continue
         keys(entry, "class interval", "root")
         index = natural(entry["class"], "class")
         require(index < len(classes), "no such class")
@@ -1100,7 +1069,11 @@ def check_branches(
     branches: list[Any],
     removed: int,
 ) -> None:
-    """Vertex signs, mountain-valley assignment and multiplicity of every branch."""
+    """Vertex signs, mountain-valley assignment and multiplicity of every branch.
+
+    Also that these signs tell the zeros in boxes from those of classes.
+    """
+    letters_of: dict[type[Root], set[tuple[str, str]]] = {Box: set(), AlgebraicRoot: set()}
     emptied = system.sheet
     vertex_rows = {v: system.row(emptied.sign_of_vertex(v)) for v in emptied.interior}
     fold_rows = {f: system.row(emptied.bend(f)) for f in emptied.folds}
@@ -1114,6 +1087,7 @@ def check_branches(
         letters = "".join("MFV?"[1 + digit(signs.get(f, 0))] for f in sheet.folds)
         require("?" not in up_down + letters, f"branch {number}: signs are open")
         seen = (up_down, letters)
+        letters_of[type(root)].add(seen)
         mirror = (up_down.translate(UPSIDE_DOWN), letters.translate(UPSIDE_DOWN))
         side = root.sign(saddle)
         allowed = {1: (seen,), -1: (mirror,)}.get(side or 0, (seen, mirror))
@@ -1128,6 +1102,7 @@ def check_branches(
             and branch["multiplicity"] == multiplicity << removed,
             f"branch {number}: multiplicity is {multiplicity << removed}",
         )
+    require(letters_of[Box].isdisjoint(letters_of[AlgebraicRoot]), "a root may be counted twice")
 
 
 def digit(sign: int | None) -> int:

@@ -441,7 +441,7 @@ def test_algebraic_evidence_for_simple_roots_is_accepted():
     """The engine of multiple roots proves simple ones as well; both kinds claim the same."""
     pattern = dart()
     chart = BranchSystem(pattern).chart
-    proved = prove_algebraic(chart, groebner(chart.system))
+    proved = prove_algebraic(chart, groebner(chart.system).classes)
     roots = [(AlgebraicRoot(c, k), m) for c, k, m in proved.roots]
     branches, undecided = classify(pattern, chart, range(5), roots)
     assert undecided == []
@@ -449,7 +449,9 @@ def test_algebraic_evidence_for_simple_roots_is_accepted():
         "kind": "algebraic",
         "triangles": [],
         "chart": None,
-        **algebraic_evidence(proved, [(b.root.root_class, b.root.index) for b in branches]),
+        **algebraic_evidence(
+            proved, [(b.root.root_class, b.root.index) for b in branches], range(5)
+        ),
     }
     claims = proof("dart")["claims"]
     rest = {k: v for k, v in claims.items() if k not in ("interior", "boundary", "folds")}

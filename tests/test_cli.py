@@ -226,7 +226,7 @@ def test_truncated_certificate_is_bad_input(tmp_path, certificate, keep):
     ("change", "culprit"),
     [
         ({"format": "other"}, "format"),
-        ({"version": 2}, "version 2"),
+        ({"version": 3}, "version 3"),
         ({"version": True}, "version True"),
         ({"extra": 1}, "keys"),
         ({"pattern": 0.5}, "floats"),

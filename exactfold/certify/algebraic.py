@@ -2,104 +2,115 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from exactfold.certify.dual_space import DualSpace, dual_space
-from exactfold.certify.multiplicity import check_dual_space
+from exactfold.certify.box import IsolatingBox
+from exactfold.certify.certificate import box_entry
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.rigidity.definite_stress import definite_stress
-from exactfold.solve.exact_solution import ExactSolution, RootClass
+from exactfold.solve.exact_solution import RootClass
+from exactfold.solve.strata import flat_equations
 from exactfold.system.branch_system import Chart
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 
 @dataclass(frozen=True)
 class AlgebraicProof:
-    """Root classes with dual spaces, and multipliers of a definite stress of the closed sheet.
+    """Root classes with the vertices flat there, boxes, and multipliers of a definite stress.
 
     The stress leaves no zero on a hyperplane of P^n (docs/mathematics.md, 8), so there are
-    finitely many zeros and their multiplicities add up to 2^n. Dual spaces bound the multiplicities
-    from below; where the bounds add up to 2^n they are exact and no zero is missing.
+    finitely many zeros and their multiplicities add up to 2^n. The multiplicity of an isolated
+    zero is at least the product of the orders of the equations, hence at least 2^f where f
+    vertices are flat; where these bounds and the boxes, each with one regular zero, add up
+    to 2^n, they are exact and no zero is missing.
     """
 
-    classes: tuple[tuple[RootClass, DualSpace], ...]
+    classes: tuple[tuple[RootClass, tuple[int, ...]], ...]
+    boxes: tuple[IsolatingBox, ...]
     multipliers: tuple[Fraction, ...]
     complete: Verdict
     reason: str
 
     @property
     def roots(self) -> list[tuple[RootClass, int, int]]:
-        """(class, index among its real roots, multiplicity) of every real zero."""
+        """(class, index among its real roots, multiplicity) of the real zeros outside the boxes."""
         return [
-            (root_class, index, dual.dimension)
-            for root_class, dual in self.classes
+            (root_class, index, 1 << len(flat))
+            for root_class, flat in self.classes
             for index in range(len(root_class.real_roots(8)))
         ]
 
     @property
     def distinct(self) -> int:
         """Number of different zeros, real or not."""
-        return sum(root_class.degree for root_class, _ in self.classes)
+        return sum(root_class.degree for root_class, _ in self.classes) + len(self.boxes)
 
 
-def prove_algebraic(chart: Chart, solution: ExactSolution) -> AlgebraicProof:
-    """Prove what the exact solver found for the system of a chart.
+def prove_algebraic(
+    chart: Chart, classes: Sequence[RootClass], boxes: Sequence[IsolatingBox] = ()
+) -> AlgebraicProof:
+    """Prove that these classes and boxes are all zeros of the system of a chart.
 
-    `complete` is UNDECIDED, with a reason, if a stress or a sum of multiplicities is missing; that
-    does not mean that roots are missing. Raises `DualSpaceError` if a root fails its check.
+    The classes need different irreducible polynomials in one separating form; the boxes must be
+    disjoint and must not hold a zero of a class, which is left to the caller. `complete` is
+    UNDECIDED, with a reason, if a stress or a part of the sum of multiplicities is missing; that
+    does not mean that roots are missing. Raises `ParametrisationError` if a root fails its check.
     """
     closed = chart.branch_system.pattern.with_notch_closed()
     stress = definite_stress(closed)
-    classes = []
-    for root_class in solution.classes:
-        dual = dual_space(chart.system, root_class, root_class.multiplicity)
-        check_dual_space(chart.system, root_class, dual)
-        classes.append((root_class, dual))
-    total = sum(c.degree * dual.dimension for c, dual in classes)
-    multipliers = () if stress is None else tuple(stress[v] for v in closed.interior)
+    proved = []
+    for root_class in classes:
+        root_class.verify(chart.system)
+        proved.append((root_class, flat_equations(chart, root_class)))
+    total = sum(c.degree << len(flat) for c, flat in proved) + len(boxes)
     if stress is None:
         verdict, reason = UNDECIDED, "no definite stress was found: finiteness is not proved"
+    elif len({c.separating for c in classes}) > 1 or len({c.polynomial for c in classes}) < len(
+        classes
+    ):
+        verdict, reason = UNDECIDED, "two classes may share a root"
     elif total != chart.system.bezout_number:
         verdict = UNDECIDED
         reason = f"proved multiplicities add up to {total}, not {chart.system.bezout_number}"
     else:
-        verdict, reason = PROVED, "multiplicities by dual spaces add up to the Bezout number"
-    return AlgebraicProof(tuple(classes), multipliers, verdict, reason)
+        verdict, reason = PROVED, "multiplicities by flat vertices add up to the Bezout number"
+    multipliers = () if stress is None else tuple(stress[v] for v in closed.interior)
+    return AlgebraicProof(tuple(proved), tuple(boxes), multipliers, verdict, reason)
 
 
 def algebraic_evidence(
-    proof: AlgebraicProof, roots: list[tuple[RootClass, int]], bits: int = 64
+    proof: AlgebraicProof,
+    roots: Sequence[IsolatingBox | tuple[RootClass, int]],
+    labels: Sequence[int],
+    bits: int = 64,
 ) -> dict[str, Any]:
-    """The proof as certificate evidence, with the real roots in the order of the branches."""
+    """The proof as certificate evidence, with the real roots in the order of the branches.
+
+    A root is a box or (class, index among its real roots); `labels` names the vertices in the
+    certificate.
+    """
     position = {id(root_class): k for k, (root_class, _) in enumerate(proof.classes)}
     return {
         "multipliers": [format_rational(m) for m in proof.multipliers],
-        "separating": list(proof.classes[0][0].separating),
+        "separating": list(proof.classes[0][0].separating) if proof.classes else [],
         "classes": [
             {
                 "polynomial": [format_integer(c) for c in root_class.polynomial],
                 "numerators": [[format_rational(c) for c in w] for w in root_class.numerators],
-                "multiplicity": dual.dimension,
-                "functionals": [
-                    {
-                        "pivot": list(pivot),
-                        "terms": [
-                            [list(a), [format_rational(c) for c in coefficient]]
-                            for a, coefficient in sorted(functional.items())
-                        ],
-                    }
-                    for functional, pivot in zip(dual.functionals, dual.pivots, strict=True)
-                ],
+                "flat": [labels[v] for v in flat],
             }
-            for root_class, dual in proof.classes
+            for root_class, flat in proof.classes
         ],
         "roots": [
-            {
-                "class": position[id(root_class)],
-                "interval": [format_rational(x) for x in root_class.real_roots(bits)[index]],
+            box_entry(root)
+            if isinstance(root, IsolatingBox)
+            else {
+                "class": position[id(root[0])],
+                "interval": [format_rational(x) for x in root[0].real_roots(bits)[root[1]]],
             }
-            for root_class, index in roots
+            for root in roots
         ],
     }

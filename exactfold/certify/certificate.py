@@ -15,7 +15,7 @@ from exactfold.pattern.fold_writing import write_text
 from exactfold.system.branch_system import BranchSystem, Chart
 
 FORMAT = "exactfold certificate"
-VERSION = 1
+VERSION = 2
 
 Document = dict[str, Any]
 
@@ -71,16 +71,13 @@ def chart_evidence(chart: Chart, labels: Sequence[int]) -> Document | None:
     return {str(v): format_rational(c) for v, c in sorted(free.items())}
 
 
-def box_evidence(boxes: Sequence[IsolatingBox]) -> list[Document]:
-    """Real isolating boxes, in the order of the claimed branches."""
-    return [
-        {
-            "bits": box.bits,
-            "radius": format_integer(box.radius),
-            "center": [format_integer(m) for m in box.real],
-        }
-        for box in boxes
-    ]
+def box_entry(box: IsolatingBox) -> Document:
+    """A real isolating box."""
+    return {
+        "bits": box.bits,
+        "radius": format_integer(box.radius),
+        "center": [format_integer(m) for m in box.real],
+    }
 
 
 def write_certificate(certificate: Document, path: str | os.PathLike[str]) -> None:

@@ -9,7 +9,7 @@ from functools import cached_property
 from math import gcd
 
 import numpy as np
-from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 
 from exactfold.errors import ParametrisationError
 from exactfold.exact.numbers import over_common_denominator
@@ -94,6 +94,34 @@ class RootClass:
             polynomial = tuple(int(c) for c in modulus.coeffs())
             classes.append(RootClass(polynomial, numerators, self.multiplicity, self.separating))
         return sorted(classes, key=lambda c: (c.degree, c.polynomial))
+
+    def with_parameter(self, form: Sequence[int]) -> RootClass | None:
+        """The same zeros by t = sum form_i x_i; None if two of them agree in that form.
+
+        >>> pair = RootClass.from_coordinates((-2, 0, 1), [(Fraction(0), Fraction(1))], 1, (1,))
+        >>> pair.with_parameter((3,)).polynomial
+        (-18, 0, 1)
+        """
+        modulus = fmpq_poly(list(self.polynomial))
+        points = [to_rational_poly(g) for g in self.coordinates]
+        parameter = sum((c * g for c, g in zip(form, points, strict=True)), fmpq_poly())
+        powers = [fmpq_poly([1])]
+        for _ in range(self.degree):
+            powers.append(powers[-1] * parameter % modulus)
+        size = range(self.degree)
+        krylov = fmpq_mat([[powers[k][i] for k in size] for i in size])
+        if krylov.rank() < self.degree:
+            return None
+        targets = [powers[-1], *points]
+        solved = krylov.solve(fmpq_mat([[f[i] for f in targets] for i in size])).tolist()
+        columns = [
+            [Fraction(int(row[k].p), int(row[k].q)) for row in solved] for k in range(len(targets))
+        ]
+        integers, _ = over_common_denominator([*(-c for c in columns[0]), Fraction(1)])
+        content = gcd(*integers)
+        return RootClass.from_coordinates(
+            [c // content for c in integers], columns[1:], self.multiplicity, form
+        )
 
     @property
     def degree(self) -> int:

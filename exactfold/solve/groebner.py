@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpoly_vec
@@ -88,6 +89,21 @@ def quotient_algebra(system: QuadraticSystem, *, engine: str = "flint") -> Quoti
     return from_groebner_basis(_BASES[engine](system), system.size)
 
 
+def classes_of_ideal(
+    polynomials: Sequence[SparsePolynomial], size: int
+) -> tuple[RootClass, ...] | None:
+    """The zeros in `size` unknowns of any number of polynomials; None if there are infinitely many.
+
+    Multiplicities are those of the ideal. Not verified by substitution: the caller does that.
+
+    >>> circle, line = {(2, 0): 1, (0, 2): 1, (0, 0): -2}, {(1, 0): 1, (0, 1): -1}
+    >>> [c.polynomial for c in classes_of_ideal([circle, line, {(2, 0): 1, (0, 0): -1}], 2)]
+    [(-1, 1), (1, 1)]
+    """
+    algebra = from_groebner_basis(_flint_reduced(polynomials, size), size)
+    return None if algebra is None else _root_classes(algebra)
+
+
 def _verified(
     system: QuadraticSystem, dimension: int, classes: tuple[RootClass, ...], engine: str
 ) -> ExactSolution:
@@ -100,12 +116,16 @@ def _verified(
 
 
 def _flint_basis(system: QuadraticSystem) -> list[SparsePolynomial]:
-    names = [f"x{k}" for k in range(system.size)]
-    context = fmpz_mpoly_ctx.get(names, Ordering.degrevlex)
-    quadrics = [context.from_dict(terms) for terms in sparse_quadrics(system) if terms]
-    if not quadrics:
+    return _flint_reduced(sparse_quadrics(system), system.size)
+
+
+def _flint_reduced(polynomials: Sequence[SparsePolynomial], size: int) -> list[SparsePolynomial]:
+    """The reduced grevlex basis of polynomials with integer coefficients."""
+    context = fmpz_mpoly_ctx.get([f"x{k}" for k in range(size)], Ordering.degrevlex)
+    given = [context.from_dict(dict(terms)) for terms in polynomials if terms]
+    if not given:
         return []
-    basis = fmpz_mpoly_vec(quadrics, context).buchberger_naive().autoreduction()
+    basis = fmpz_mpoly_vec(given, context).buchberger_naive().autoreduction()
     return [{m: fmpq(c) for m, c in p.to_dict().items()} for p in basis if not p.is_zero()]
 
 

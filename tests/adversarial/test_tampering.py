@@ -195,15 +195,16 @@ def test_kind_of_evidence_cannot_be_exchanged():
             assert verdict(replaced(document(name), ("evidence", "kind"), other)) is None
 
 
-def test_multiplicity_cannot_be_moved_between_classes():
+def test_flat_vertices_cannot_be_invented_or_left_out():
     original = document("flat vertex")
     classes = original["evidence"]["classes"]
-    assert sorted(entry["multiplicity"] for entry in classes)[-1] == 2
+    assert sorted(len(entry["flat"]) for entry in classes)[-1] == 1
+    interior = [4, 5]
     for k, entry in enumerate(classes):
-        for m in range(4):
-            if m != entry["multiplicity"]:
-                path = ("evidence", "classes", k, "multiplicity")
-                assert verdict(replaced(original, path, m)) is None
+        for flat in ([], *([v] for v in interior), interior, [4, 4], [0], [9], ["4"], None, {}):
+            if flat != entry["flat"]:
+                path = ("evidence", "classes", k, "flat")
+                assert verdict(replaced(original, path, flat)) is None
 
 
 # --- changed patterns with the digest brought into line -----------------------------------------
@@ -261,7 +262,7 @@ def test_repeated_keys_are_refused():
     for old, new in (
         ('"distinct": 2', '"distinct": 3, "distinct": 2'),
         ('"kind": "isolated"', '"kind": "rigid", "kind": "isolated"'),
-        ('"version": 1', '"version": 1, "version": 1'),
+        ('"version": 2', '"version": 2, "version": 2'),
     ):
         assert old in text
         with pytest.raises(checker.FormatError, match="twice"):
@@ -271,7 +272,7 @@ def test_repeated_keys_are_refused():
 @pytest.mark.parametrize("number", ["1.0", "2e0", "NaN", "Infinity", "-Infinity", "1E400"])
 def test_floats_are_refused_everywhere(number):
     text = json.dumps(document("one vertex"))
-    for old in ('"distinct": 2', '"version": 1', '"multiplicity": 1', '"bits": 64'):
+    for old in ('"distinct": 2', '"version": 2', '"multiplicity": 1', '"bits": 64'):
         assert old in text
         with pytest.raises(checker.FormatError, match="no floats"):
             checker.load(text.replace(old, old.split(":")[0] + ": " + number))
@@ -293,7 +294,7 @@ def test_deep_nesting_inside_a_certificate_is_no_crash():
 def test_integers_too_long_to_print_are_no_crash():
     original = document("rigid vertex")
     text = json.dumps(original)
-    for old in ('"distinct": 4', '"version": 1', '"inside": [6', '"multiplicity": 2', "[[0, 1, 4"):
+    for old in ('"distinct": 4', '"version": 2', '"inside": [6', '"multiplicity": 2', "[[0, 1, 4"):
         assert old in text, old
         with pytest.raises(checker.FormatError, match="too long"):
             checker.load(text.replace(old, re.sub(r"\d+$", "9" * 5000, old)))
