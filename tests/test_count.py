@@ -656,6 +656,7 @@ def test_undecided_where_the_engine_finds_a_curve_of_solutions(monkeypatch):
 
 def test_undecided_where_signs_stay_open(monkeypatch):
     monkeypatch.setattr(classify.BoxRoot, "sign", lambda self, row: None)
+    monkeypatch.setattr(module, "recognise", lambda system, boxes: None)
     result = count_branches(two_vertex(), method="popping")
     assert result.status is UNDECIDED
     assert "all 4 solutions isolated, but signs are undecided on 4" in result.reason
