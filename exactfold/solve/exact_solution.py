@@ -6,12 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import gcd
+from math import gcd, lcm
 
 import numpy as np
 from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 
 from exactfold.errors import ParametrisationError
+from exactfold.exact.divisibility import are_multiples, is_squarefree
+from exactfold.exact.factor_degrees import irreducibility_primes
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.exact.univariate import (
     Interval,
@@ -83,6 +85,8 @@ class RootClass:
 
         With q = p r, q' = p' r modulo p: w_i is divided by r modulo p.
         """
+        if irreducibility_primes(self.polynomial) is not None:
+            return [self]
         whole = fmpq_poly(list(self.polynomial))
         classes = []
         for factor, _ in fmpz_poly(list(self.polynomial)).factor()[1]:
@@ -230,21 +234,35 @@ class RootClass:
         Also checks that t is the stated linear form of the coordinates, so that different roots t
         belong to different zeros. Raises `ParametrisationError` if anything fails.
         """
-        modulus = fmpq_poly(list(self.polynomial))
-        slope = modulus.derivative()
-        if modulus.gcd(slope).degree() > 0 or modulus.degree() < 1:
+        modulus = fmpz_poly(list(self.polynomial))
+        if modulus.degree() < 1 or not is_squarefree(modulus):
             raise ParametrisationError("the polynomial of a root class is not squarefree")
-        lifted = [to_rational_poly(w) for w in self.numerators] + [slope]
-        for p, matrix in enumerate(system.matrices):
-            value = fmpq_poly()
-            for left, row in zip(lifted, matrix, strict=True):
-                value += left * sum(
-                    (x * s for x, s in zip(lifted, row, strict=True) if s), fmpq_poly()
-                )
-            if value % modulus != 0:
-                raise ParametrisationError(f"quadric {p} does not vanish on the root class")
-        form = sum((x * c for x, c in zip(lifted, self.separating, strict=False)), fmpq_poly())
-        if (form - fmpq_poly([0, 1]) * slope) % modulus != 0:
+        # Over one denominator: substitution and division are then over Z.
+        scale = lcm(*(c.denominator for w in self.numerators for c in w))
+        slope = modulus.derivative() * scale
+        lifted = [
+            *(
+                fmpz_poly([c.numerator * (scale // c.denominator) for c in w])
+                for w in self.numerators
+            ),
+            slope,
+        ]
+        values = [fmpz_poly() for _ in system.matrices]
+        for i, left in enumerate(lifted):
+            for j, right in enumerate(lifted[: i + 1]):
+                weights = [m[i][j] * (1 + (i != j)) for m in system.matrices]
+                if any(weights):
+                    product = left * right
+                    values = [
+                        v + product * c if c else v for v, c in zip(values, weights, strict=True)
+                    ]
+        form = sum((x * c for x, c in zip(lifted, self.separating, strict=False)), fmpz_poly())
+        *fine, agrees = are_multiples([*values, form - fmpz_poly([0, 1]) * slope], modulus)
+        if not all(fine):
+            raise ParametrisationError(
+                f"quadric {fine.index(False)} does not vanish on the root class"
+            )
+        if not agrees:
             raise ParametrisationError("the parameter is not the stated form of the coordinates")
 
 

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from exactfold import BranchSystem, certificate, checker, count_branches, isolate, random_square
+from exactfold.solve.from_roots import parametrisation_from_roots
 from exactfold.solve.homotopy import homotopy
 from exactfold.solve.popping import popping
 
@@ -40,3 +41,11 @@ def test_checker(benchmark: Any, interior: int) -> None:
     text = json.dumps(certificate(count_branches(random_square(interior, seed=1))))
     claims = benchmark(lambda: checker.check(checker.load(text)))
     assert claims["distinct"] == 1 << interior
+
+
+@pytest.mark.parametrize("interior", SIZES)
+def test_parametrisation_from_roots(benchmark: Any, interior: int) -> None:
+    chart = BranchSystem(random_square(interior, seed=1)).chart
+    rounds = {"rounds": 1 if interior == 8 else 3, "iterations": 1}
+    found = benchmark.pedantic(parametrisation_from_roots, (chart.system, popping(chart)), **rounds)
+    assert found.degree == 1 << interior

@@ -1,0 +1,115 @@
+"""Degrees of the irreducible factors over Q, and the Galois group, from factorisations modulo p.
+
+If p does not divide the leading coefficient of f and f is squarefree modulo p, the degrees of its
+factors modulo p are the cycle lengths of an element of the Galois group on the roots (Dedekind;
+Frobenius). What a few primes prove can be replayed from those primes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import islice
+
+from flint import fmpz, fmpz_poly, nmod_poly
+
+_FROM = 1000
+_TRIED = 48
+
+
+def modular_degrees(polynomial: Sequence[int], prime: int) -> tuple[int, ...] | None:
+    """Degrees, ascending, of the irreducible factors modulo a prime; None if it is unsuitable.
+
+    Suitable primes do not divide the leading coefficient and keep the polynomial squarefree.
+
+    >>> [modular_degrees((-2, 0, 1), p) for p in (7, 5, 2)]
+    [(1, 1), (2,), None]
+    """
+    reduced = nmod_poly(list(polynomial), prime)
+    if reduced.degree() != len(polynomial) - 1:
+        return None
+    factors = reduced.factor()[1]
+    if any(exponent > 1 for _, exponent in factors):
+        return None
+    return tuple(sorted(int(factor.degree()) for factor, _ in factors))
+
+
+def irreducibility_primes(polynomial: Sequence[int], tried: int = _TRIED) -> tuple[int, ...] | None:
+    """Primes whose `modular_degrees` together prove a polynomial irreducible over Q.
+
+    The degree of a factor over Q is a sum of some of the degrees modulo every suitable prime; if 0
+    and d are the only such numbers, there is no proper factor. None if the first `tried` primes
+    above 1000 prove nothing: the polynomial may be irreducible all the same.
+
+    >>> irreducibility_primes((-2, 0, 1)), irreducibility_primes((1, 0, 0, 0, 1))  # T^4 + 1
+    ((1013,), None)
+    """
+    degree = len(polynomial) - 1
+    possible = (2 << degree) - 1  # bit k: a factor of degree k is not excluded
+    used = []
+    for prime, degrees in _patterns(polynomial, tried):
+        sums = 1
+        for k in degrees:
+            sums |= sums << k
+        if possible & ~sums:
+            possible &= sums
+            used.append(prime)
+        if possible == 1 | 1 << degree:
+            return tuple(used)
+    return None
+
+
+def factor_degrees(polynomial: Sequence[int]) -> tuple[int, ...]:
+    """Degrees, ascending, of the irreducible factors over Q of a squarefree polynomial, exactly.
+
+    By `irreducibility_primes`; only if these prove nothing by factoring over Z, which may be slow.
+
+    >>> factor_degrees((-2, 0, 1)), factor_degrees((1, 0, 0, 0, 1)), factor_degrees((-1, 0, 0, 1))
+    ((2,), (4,), (1, 2))
+    """
+    if irreducibility_primes(polynomial) is not None:
+        return (len(polynomial) - 1,)
+    factors = fmpz_poly(list(polynomial)).factor()[1]
+    return tuple(sorted(int(factor.degree()) for factor, _ in factors))
+
+
+def symmetric_group_primes(
+    polynomial: Sequence[int], tried: int = _TRIED
+) -> tuple[int, ...] | None:
+    """Primes that prove the Galois group of a polynomial to be the symmetric group S_d.
+
+    Besides irreducibility: a factor modulo p of prime degree l, d/2 < l < d - 2, gives an l-cycle,
+    which makes a transitive group primitive and then, by Jordan's theorem (Wielandt, Finite
+    Permutation Groups, theorem 13.9), one that contains the alternating group; and some odd
+    permutation. For d >= 5 the roots then are not expressible by radicals. None if the primes
+    tried prove nothing, as for every d < 8.
+
+    >>> symmetric_group_primes((-1, -1, 0, 0, 0, 0, 0, 0, 1))  # T^8 - T - 1
+    (1009, 1013, 1021)
+    >>> symmetric_group_primes((2, 0, 0, 0, 0, 0, 0, 0, 1)) is None
+    True
+    """
+    first = irreducibility_primes(polynomial, tried)
+    if first is None:
+        return None
+    degree = len(polynomial) - 1
+    cycle = odd = None
+    for prime, degrees in _patterns(polynomial, tried):
+        if cycle is None and any(degree < 2 * k < 2 * degree - 4 and _is_prime(k) for k in degrees):
+            cycle = prime
+        if odd is None and sum(k - 1 for k in degrees) % 2:
+            odd = prime
+        if cycle is not None and odd is not None:
+            return tuple(sorted({*first, cycle, odd}))
+    return None
+
+
+def _patterns(polynomial: Sequence[int], tried: int) -> Iterator[tuple[int, tuple[int, ...]]]:
+    """Suitable primes among the first above 1000, and the degrees modulo them."""
+    for prime in islice((p for p in range(_FROM, _FROM * tried) if _is_prime(p)), tried):
+        degrees = modular_degrees(polynomial, prime)
+        if degrees is not None:
+            yield prime, degrees
+
+
+def _is_prime(value: int) -> bool:
+    return bool(fmpz(value).is_prime())
