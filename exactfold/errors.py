@@ -181,5 +181,13 @@ class ParametrisationError(ExactfoldError):
     """A parametrisation does not satisfy its system: an error of the solver, not of the input."""
 
 
+class MsolveMissingError(ExactfoldError):
+    """msolve, an optional part, is not installed."""
+
+
+class MsolveFailedError(ExactfoldError):
+    """msolve crashed, took too long, or gave an answer that is not understood or not true."""
+
+
 class DualSpaceError(ExactfoldError):
     """A dual space does not prove what it claims; the message says which condition fails."""

@@ -19,14 +19,14 @@ from flint import nmod_poly
 from exactfold.errors import ParametrisationError
 from exactfold.solve.deflation import Deflation
 from exactfold.solve.exact_solution import RootClass
-from exactfold.solve.modular import ModularClass, modular_quotient
+from exactfold.solve.modular import PRIMES, ModularClass, modular_quotient
 from exactfold.solve.multiplicities import with_proved_multiplicities
 from exactfold.solve.quotient import separating_forms
 from exactfold.solve.residues import ResidueRing, Vector
 from exactfold.system.quadratic import QuadraticSystem
 
-PRIMES = (2305843009213693951, 2305843009213693921)  # the two largest below 2^61
 _FORMS_TRIED = 12
+_LARGEST = 7  # with 8 unknowns, lifting takes more than ten minutes
 
 
 def lifted_classes(system: QuadraticSystem) -> tuple[RootClass, ...] | None:
@@ -42,7 +42,7 @@ def lifted_classes(system: QuadraticSystem) -> tuple[RootClass, ...] | None:
     >>> [(c.degree, c.multiplicity) for c in lifted_classes(QuadraticSystem((line_pair, circle)))]
     [(1, 2), (1, 2)]
     """
-    for prime in PRIMES:
+    for prime in PRIMES if system.size <= _LARGEST else ():
         found = _from_prime(system, prime)
         if found is not None:
             return found

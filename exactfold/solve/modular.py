@@ -13,7 +13,7 @@ from exactfold.solve.quotient import Exponent, grevlex_key, lowered, raised, spa
 from exactfold.solve.residues import transposed
 from exactfold.system.quadratic import QuadraticSystem
 
-LARGEST = 7  # with 8 unknowns, lifting takes more than ten minutes
+PRIMES = (2305843009213693951, 2305843009213693921)  # the two largest below 2^61
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ def modular_quotient(system: QuadraticSystem, prime: int) -> ModularQuotient | N
     (((0, 0), (0, 1), (1, 0), (0, 2)), 4)
     """
     size = system.size
-    if not 0 < size <= LARGEST:
+    if not size:
         return None
     border = _Border(size, prime)
     for degree in range(2, size + 2):

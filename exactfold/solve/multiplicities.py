@@ -10,6 +10,8 @@ from flint import fmpq_poly
 from exactfold.exact.algebraic import NumberField
 from exactfold.exact.univariate import to_rational_poly
 from exactfold.solve.exact_solution import RootClass
+from exactfold.solve.modular import PRIMES
+from exactfold.solve.residues import ResidueRing
 from exactfold.system.quadratic import QuadraticSystem
 
 
@@ -25,8 +27,27 @@ def jacobian_corank(system: QuadraticSystem, root_class: RootClass) -> int:
     1
     """
     rows = [row for row in _jacobian(system, root_class) if any(x != 0 for x in row)]
+    if len(rows) == system.size and _is_regular(root_class, rows):
+        return 0
     _, pivots = NumberField(root_class.polynomial).echelon(rows)
     return system.size - len(pivots)
+
+
+def _is_regular(root_class: RootClass, rows: Sequence[Sequence[fmpq_poly]]) -> bool:
+    """Whether the matrix is invertible modulo p and a prime; then it is so modulo p."""
+    lead = root_class.polynomial[-1]
+    if lead % PRIMES[0] == 0 or any(int(x.denom()) % PRIMES[0] == 0 for row in rows for x in row):
+        return False
+    unit = pow(lead, -1, PRIMES[0])
+    ring = ResidueRing.over(PRIMES[0], [c * unit % PRIMES[0] for c in root_class.polynomial])
+    matrix = [
+        [
+            ring.element([int(c) for c in x.numer().coeffs()]) * pow(int(x.denom()), -1, PRIMES[0])
+            for x in row
+        ]
+        for row in rows
+    ]
+    return ring.inverse(matrix) is not None
 
 
 def _zero_rows(system: QuadraticSystem, root_class: RootClass) -> int:
@@ -50,24 +71,18 @@ def _jacobian(system: QuadraticSystem, root_class: RootClass) -> list[list[fmpq_
 def with_proved_multiplicities(
     system: QuadraticSystem, classes: Sequence[RootClass]
 ) -> tuple[RootClass, ...] | None:
-    """The classes with their stated multiplicities, proved exact and complete; None if unproved.
+    """The classes with multiplicities proved exact, and proved to be all; None if unproved.
 
-    For a system with isolated zeros only. Where the Jacobian has corank c, c of the equations have
-    order at least 2 in local coordinates of the others' common zeros, so that the multiplicity is
-    at least 2^c. By refined Bezout all multiplicities add up to at most 2^n: where the bounds reach
-    it they are exact, and no zero is missing. For the branches of a convex sheet they do
-    (multiplicity 2^(number of flat vertices)). None says that some multiplicity is not 2^corank or
-    that zeros are missing or at infinity, not which of these.
+    For classes of zeros by irreducible polynomials, of a system with isolated zeros only. Where the
+    Jacobian has corank c, c of the equations have order at least 2 in local coordinates of the
+    others' common zeros, so that the multiplicity is at least 2^c. By refined Bezout all
+    multiplicities add up to at most 2^n: where the bounds reach it they are exact, and no zero is
+    missing. For the branches of a convex sheet they do (multiplicity 2^(number of flat vertices)).
+    None says that some multiplicity is not 2^corank or that zeros are missing or at infinity, not
+    which of these.
     """
-    proved = []
-    for root_class in classes:
-        corank = root_class.multiplicity.bit_length() - 1
-        if root_class.multiplicity != 1 << corank:
-            return None
-        if corank > 0 and _zero_rows(system, root_class) != corank:
-            corank = jacobian_corank(system, root_class)
-        proved.append(replace(root_class, multiplicity=1 << corank))
-    total = sum(c.degree * c.multiplicity for c in proved)
-    if total != system.bezout_number:
-        return None
-    return tuple(sorted(proved, key=lambda c: (c.degree, c.polynomial)))
+    for corank in (lambda *_: 0, _zero_rows, jacobian_corank):
+        proved = [replace(c, multiplicity=1 << corank(system, c)) for c in classes]
+        if sum(c.degree * c.multiplicity for c in proved) == system.bezout_number:
+            return tuple(sorted(proved, key=lambda c: (c.degree, c.polynomial)))
+    return None
