@@ -8,6 +8,7 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import Any, TypeAlias
 
+from flint import arb, arb_mat, ctx
 from mpmath.ctx_iv import MPIntervalContext
 from mpmath.ctx_mp import MPContext
 from mpmath.libmp import from_man_exp, to_rational
@@ -45,7 +46,8 @@ def interval_newton(
     mpmath issue 1181). The proof uses none: of mpmath it uses intervals with exactly given dyadic
     ends, their sums, differences and products, quotients by intervals without zero and by 2, and
     comparisons of end points. Each of these is tested against Fractions, for enclosure and for
-    width, in tests/certify/test_interval_newton.py. All else of mpmath only chooses m, r and Y.
+    width, in tests/certify/test_interval_newton.py. All else of mpmath, and FLINT's inverse, only
+    choose m, r and Y.
 
     `points` has shape (m, n); coordinates as in `exact_candidates`. Where imaginary parts are
     negligible the real system is tried first, which proves the zero real; otherwise, and if that
@@ -139,6 +141,10 @@ class _Worker:
         self.mp = MPContext()
         self.size = system.size
         self.exact = system.matrices
+        self.floats = [
+            [[self.mp.make_mpf(from_man_exp(s, 0)) for s in row] for row in matrix]
+            for matrix in system.matrices
+        ]
         self.intervals = [
             [[self._dyadic(s, s, 0) for s in row] for row in matrix] for matrix in system.matrices
         ]
@@ -220,26 +226,21 @@ class _Worker:
 
     def _approx_derivatives(self, x: list[Float]) -> tuple[list[list[Float]], list[Float]]:
         z = [*x, self.mp.one]
-        rows = [[self.mp.fdot(row, z) for row in matrix] for matrix in self.exact]
+        rows = [[self.mp.fdot(row, z) for row in matrix] for matrix in self.floats]
         return [row[:-1] for row in rows], [self.mp.fdot(row, z) / 2 for row in rows]
 
     def _approx_inverse(self, matrix: list[list[Float]]) -> list[list[Float]]:
-        """Gauss-Jordan with partial pivoting; `ZeroDivisionError` if a pivot vanishes."""
-        n, mp = self.size, self.mp
-        work = [
-            [*row, *(mp.one if i == j else mp.zero for j in range(n))]
-            for i, row in enumerate(matrix)
-        ]
-        for k in range(n):
-            pivot = max(range(k, n), key=lambda i: abs(work[i][k]))
-            work[k], work[pivot] = work[pivot], work[k]
-            lead = work[k][k]
-            work[k] = [a / lead for a in work[k]]
-            for i in range(n):
-                factor = work[i][k]
-                if i != k and factor:
-                    work[i] = [a - factor * b for a, b in zip(work[i], work[k], strict=True)]
-        return [row[n:] for row in work]
+        """The inverse by FLINT, without its radii; `ZeroDivisionError` if it may be singular."""
+        entries = []
+        for row in matrix:
+            for value in row:
+                sign, mantissa, exponent, _ = value._mpf_
+                entries.append(arb((-int(mantissa) if sign else int(mantissa), int(exponent))))
+        n = self.size
+        with ctx.workprec(self.mp.prec):
+            middles = [x.mid().man_exp() for x in arb_mat(n, n, entries).inv().entries()]
+        values = [self.mp.make_mpf(from_man_exp(int(m), int(e))) for m, e in middles]
+        return [values[k * n : (k + 1) * n] for k in range(n)]
 
     # --- interval arithmetic: proves ---
 

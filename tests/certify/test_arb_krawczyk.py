@@ -62,6 +62,7 @@ def test_balls_hold_what_they_are_made_of(value: Number, place: int) -> None:
 
 @pytest.mark.parametrize("operation", [operator.add, operator.sub, operator.mul])
 @pytest.mark.parametrize("precision", [2, 53, 106])
+@settings(max_examples=50)
 @given(a=numbers, b=numbers, place=places, other=places)
 def test_basic_arithmetic_encloses_and_is_narrow(
     operation: Any, precision: int, a: Number, b: Number, place: int, other: int

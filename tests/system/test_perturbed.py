@@ -67,9 +67,7 @@ def test_wrong_arguments() -> None:
         perturbed(system, 0.1, seed=0)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(
-    ("interior", "seed"), [(2, 0), (2, 1), (2, 2), (3, 0), (3, 1), (3, 2), (4, 0)]
-)
+@pytest.mark.parametrize(("interior", "seed"), [(2, 0), (2, 1), (2, 2), (3, 0), (3, 1), (3, 2)])
 def test_real_and_nonreal_zeros_by_boxes_and_by_the_exact_engine(interior: int, seed: int) -> None:
     """Two independent ways: boxes of homotopy ends, and Sturm's count on a Groebner basis."""
     system = perturbed(system_of(random_square(interior, seed)), "1/2", seed)
@@ -96,14 +94,14 @@ def test_nonreal_zeros_come_in_conjugate_pairs() -> None:
 
 
 def test_patterns_have_real_zeros_only_and_perturbed_ones_have_not() -> None:
-    """The control: over twelve systems of three quadrics, none and more than a quarter."""
+    """The control: over eight systems of three quadrics, none and more than a quarter."""
     experiment = runpy.run_path(str(DOCS / "control_experiment.py"))["experiment"]
-    honest, control = experiment(3, "0", 12), experiment(3, "1/2", 12)
-    assert (honest.undecided, honest.nonreal, honest.even) == (0, 0, 12)
-    assert (honest.zeros, control.zeros, control.undecided) == (96, 96, 0)
+    honest, control = experiment(3, "0", 8), experiment(3, "1/2", 8)
+    assert (honest.undecided, honest.nonreal, honest.even) == (0, 0, 8)
+    assert (honest.zeros, control.zeros, control.undecided) == (64, 64, 0)
     assert control.nonreal * 4 > control.zeros
-    assert control.some >= 6
-    assert control.even <= 6
+    assert control.some >= 4
+    assert control.even <= 4
 
 
 def test_the_page_shows_what_the_script_prints() -> None:
