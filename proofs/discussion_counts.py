@@ -6,6 +6,7 @@ import random
 import sys
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import cache
 from math import factorial
 from pathlib import Path
 
@@ -158,7 +159,7 @@ def _orthogonality(script: Script) -> None:
     script.cases(
         "random squares with Vi = 3, 4, 5: two disjoint sets of Vi + 1 branches are independent, "
         "so all branches but any one span the space of foldings",
-        (_spanning_sets(random_square(n, seed)) >= spans for n in (3, 4, 5) for seed in range(4)),
+        (_spanning_sets(n, seed) >= spans for n in (3, 4, 5) for seed in range(4)),
     )
     least = script.alter("an obstruction already for one vertex", 2, 1)
     script.example(
@@ -289,6 +290,25 @@ def _appendix(script: Script) -> None:
         note="all four pairs of ends; a share 2^(-Vi) of the ordered pairs is of a branch with "
         "itself",
     )
+    angle, n = sympy.symbols("theta n", positive=True)
+    density = sympy.sin(angle) ** (n - 1)
+    power = script.alter("sphere of another dimension", n, n + 1)
+    script.identity(
+        "two random points on S^n: the angle has density sin^(n-1), and (sin^n cos)' = sin^(n-1) "
+        "(n cos^2 - sin^2), so that E cos^2 = 1/(n + 1): it tends to pi/2",
+        sympy.simplify(
+            sympy.diff(sympy.sin(angle) ** power * sympy.cos(angle), angle) / density
+            - (n * sympy.cos(angle) ** 2 - sympy.sin(angle) ** 2)
+        ),
+    )
+    state(
+        "D.8",
+        place,
+        r"\text{``for random points on a sphere, the angle distribution approaches a Gaussian with "
+        r"variance going to zero''}",
+        AS_PRINTED,
+        note="the variance is proved here, the Gaussian is cited (Ref. caifanjiang)",
+    )
     state(
         "D.7",
         place,
@@ -311,8 +331,10 @@ def _independent(rows: list[list[tuple[Fraction, Fraction]]]) -> bool:
     return bool(abs(from_fmpq(to_flint(middle).det())) > error)
 
 
-def _spanning_sets(pattern: CreasePattern) -> int:
-    """How many disjoint spanning sets of branches a greedy search finds (at most two)."""
+@cache
+def _spanning_sets(interior: int, seed: int) -> int:
+    """How many disjoint spanning sets of branches of a random square a search finds: 2 or 0."""
+    pattern = random_square(interior, seed)
     branches = count_branches(pattern).branches
     rows = [[h for _, h in sorted(b.heights.items()) if any(h)] for b in branches]
     source, size = random.Random(1), pattern.Vi + 1
