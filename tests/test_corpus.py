@@ -56,6 +56,8 @@ from exactfold.pattern.families import (
 from exactfold.solve import groebner as engine
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.exact_solution import ExactSolution
+from exactfold.solve.hermite import hermite_counts
+from exactfold.solve.msolve import find_msolve, msolve_classes
 from exactfold.solve.quotient import QuotientAlgebra, from_groebner_basis
 from exactfold.system.branch_system import BranchSystem, notch_chart
 from exactfold.system.quadratic import QuadraticSystem
@@ -221,10 +223,14 @@ def test_certifiers_accept_simple_zeros_and_refuse_multiple_ones(
     check_boxes(name, [result for result in results if isinstance(result, IsolatingBox)])
 
 
-def trace_form(system: QuadraticSystem) -> list[list[Fraction]]:
-    """Hermite's form (a, b) -> Tr(ab) on the quotient algebra, on its monomial basis."""
+def algebra_of(system: QuadraticSystem) -> QuotientAlgebra:
     algebra = from_groebner_basis(engine._flint_basis(system), system.size)
     assert isinstance(algebra, QuotientAlgebra)
+    return algebra
+
+
+def trace_form(algebra: QuotientAlgebra) -> list[list[Fraction]]:
+    """Hermite's form (a, b) -> Tr(ab) from the definition: full matrices of all products."""
     matrices = []
     for exponent in algebra.basis:
         matrix = fmpq_mat(
@@ -246,11 +252,32 @@ def trace_form(system: QuadraticSystem) -> list[list[Fraction]]:
 @pytest.mark.parametrize("name", FEW)
 def test_hermite_form_counts_the_real_zeros(name: str) -> None:
     """Rank: different zeros; signature: real ones (Basu, Pollack, Roy, theorem 4.102)."""
-    positive, negative, zero = inertia(trace_form(chart_of(name).system))
+    algebra = algebra_of(chart_of(name).system)
+    positive, negative, zero = inertia(trace_form(algebra))
     exact = exact_of(name)
+    assert hermite_counts(algebra) == (positive + negative, positive - negative)
     assert positive + negative == exact.distinct
     assert positive - negative == len(roots_of(name))
     assert zero == (exact.dimension or 0) - exact.distinct
+
+
+@pytest.mark.skipif(find_msolve() is None, reason="msolve is not installed")
+@solvable
+def test_msolve_finds_the_same_zeros(name: str) -> None:
+    """Its parametrisation is verified by substitution; the zeros are compared one by one."""
+    classes = msolve_classes(chart_of(name).system)
+    assert sum(c.degree for c in classes) == exact_of(name).distinct
+    points = [point for c in classes for point in c.real_points(BITS)]
+    assert len(points) == len(roots_of(name))
+    for root in roots_of(name):
+        meets = [
+            all(
+                a <= high and low <= b
+                for (low, high), (a, b) in zip(root.bounds, point, strict=True)
+            )
+            for point in points
+        ]
+        assert sum(meets) == 1
 
 
 @every
