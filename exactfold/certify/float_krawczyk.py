@@ -44,7 +44,7 @@ _TINY = 2.0**-500
 _MOST_Z, _MOST_Y, _MOST_BITS, _MOST_UNKNOWNS = 2.0**100, 2.0**300, 900, 1024
 _INTEGERS = 2.0**52
 _CONTRACTION, _SHARE = 0.75, 8.0
-_CHUNK = 512
+_CHUNK = 256
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ BLOCK = 1024
 
 _BITS = 40
 _WIDEST = 52
-_CHUNK = 512
+_CHUNK = 256
 
 
 @dataclass(frozen=True)
