@@ -295,13 +295,14 @@ def check(
     workers: int = 1,
     start: Any = start_worker,
     work: Any = check_line,
+    least: int = 1,
 ) -> dict[str, Any]:
     """Verify every claim of a file; returns the claims.
 
     Raises `checker.CertificateError` if one is not supported, `checker.FormatError` if the file is
     no compact certificate, `OSError`. With several workers, blocks are checked in that many
-    processes, at most two blocks waiting for each. `start` and `work` may be replaced by functions
-    that do the same.
+    processes, at most two blocks waiting for each, unless there are fewer than `least` for each.
+    `start` and `work` may be replaced by functions that do the same.
     """
     with ExitStack() as stack:
         found = lines(stack.enter_context(open(path, "rb")))
@@ -314,7 +315,7 @@ def check(
         except MALFORMED as error:
             raise checker.CertificateError(f"malformed: {type(error).__name__}") from error
         pool = None
-        if workers > 1:
+        if workers > 1 and chambers.blocks >= least * workers:
             context = get_context("spawn")
             pool = ProcessPoolExecutor(workers, context, start, (first,))
             stack.callback(pool.shutdown, cancel_futures=True)

@@ -191,3 +191,10 @@ class MsolveFailedError(ExactfoldError):
 
 class DualSpaceError(ExactfoldError):
     """A dual space does not prove what it claims; the message says which condition fails."""
+
+
+# --- processes -----------------------------------------------------------------------------------
+
+
+class WorkerDiedError(ExactfoldError):
+    """A worker process was killed or ran out of memory; nothing that was written is lost."""

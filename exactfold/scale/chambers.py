@@ -59,10 +59,13 @@ class Chambers:
     emptied: CreasePattern
     labels: tuple[int, ...]
     chart: Chart
+    block_size: int
 
     @classmethod
-    def of(cls, pattern: CreasePattern) -> Chambers:
-        """Raises `NotApplicableError` unless D = 1 and some vertex is foldable.
+    def of(cls, pattern: CreasePattern, block_size: int | None = None) -> Chambers:
+        """Blocks of `block_size` sign vectors, a power of two, 1024 by default.
+
+        Raises `NotApplicableError` unless D = 1 and some vertex is foldable.
 
         >>> from exactfold.pattern.random_squares import random_square
         >>> chambers = Chambers.of(random_square(3, seed=0))
@@ -77,17 +80,13 @@ class Chambers:
             raise NotApplicableError("no definite stress was found for a triangulated triangle")
         if not emptied.interior:
             raise NotApplicableError("no vertex of the pattern is foldable")
-        return cls(pattern, triangles, emptied, labels, chart)
+        size = min(block_size or BLOCK, 1 << emptied.Vi)
+        return cls(pattern, triangles, emptied, labels, chart, size)
 
     @property
     def size(self) -> int:
         """n, the number of foldable vertices."""
         return self.emptied.Vi
-
-    @property
-    def block_size(self) -> int:
-        """Sign vectors in a block."""
-        return min(BLOCK, 1 << self.size)
 
     @property
     def blocks(self) -> int:

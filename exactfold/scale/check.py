@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from concurrent.futures import BrokenExecutor
 
 import numpy as np
 import numpy.typing as npt
 
 from exactfold import checker, compact_checker
 from exactfold.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
-from exactfold.errors import CertificateFormatError, UnreadableFileError
+from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.scale.threads import one_thread_each
 from exactfold.solve.nappes import sign_vectors
 from exactfold.system.quadratic import QuadraticSystem
 
 CertificateError = checker.CertificateError
+
+LEAST = 16
+"""Blocks for each worker that make starting processes worth while."""
 
 
 def check_compact(
@@ -30,18 +34,20 @@ def check_compact(
     for them needs the usual `if __name__ == "__main__"`.
 
     Raises `checker.CertificateError` if a claim is not supported, `CertificateFormatError` if the
-    file is no compact certificate or was altered, `UnreadableFileError`.
+    file is no compact certificate or was altered, `UnreadableFileError`, `WorkerDiedError`.
     """
-    start, work = (
-        (start_fast_worker, check_line_fast)
+    start, work, least = (
+        (start_fast_worker, check_line_fast, LEAST)
         if fast
-        else (compact_checker.start_worker, compact_checker.check_line)
+        else (compact_checker.start_worker, compact_checker.check_line, 1)
     )
     try:
         with one_thread_each(workers):
-            return compact_checker.check(os.fspath(path), workers, start, work)
+            return compact_checker.check(os.fspath(path), workers, start, work, least)
     except checker.FormatError as error:
         raise CertificateFormatError(f"{path}: {error}") from None
+    except BrokenExecutor:
+        raise WorkerDiedError("a worker process died; nothing is known of the file") from None
     except OSError as error:
         raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
 

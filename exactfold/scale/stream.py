@@ -6,12 +6,13 @@ import os
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
 from multiprocessing import get_context
 
 from exactfold import compact_checker
+from exactfold.errors import WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 from exactfold.scale.chambers import Chambers, ProvedBlock
 from exactfold.scale.check import FastChecker
@@ -24,6 +25,9 @@ Progress = Callable[[int, int], None]
 
 _AHEAD = 2
 """Blocks under way or waiting for each worker: this bounds memory."""
+
+LEAST = 8
+"""Blocks for each worker that make starting processes worth while."""
 
 
 @dataclass(frozen=True)
@@ -76,12 +80,13 @@ def count_streaming(
     pairwise different, and by refined Bezout complete (docs/mathematics.md, 4 and 12). Memory does
     not grow with 2^n: a block of 1024 roots, and two waiting for each worker.
 
-    `workers` processes share the blocks; a script that asks for several needs the usual
-    `if __name__ == "__main__"`. With `resume`, a file left by an interrupted run is verified and
-    continued; otherwise it is replaced. `progress(done, total)` counts sign vectors.
+    Up to `workers` processes share the blocks, fewer if there is little to do; a script that asks
+    for several needs the usual `if __name__ == "__main__"`. With `resume`, a file left by an
+    interrupted run is verified and continued; otherwise it is replaced. `progress(done, total)`
+    counts sign vectors.
 
     Raises `NotApplicableError` unless D = 1 and some vertex is foldable, `ForeignJournalError`,
-    `UnwritableFileError`. An interruption leaves a file that can be resumed.
+    `UnwritableFileError`, `WorkerDiedError`. An interruption leaves a file that can be resumed.
 
     >>> import os, tempfile
     >>> from exactfold.pattern.random_squares import random_square
@@ -162,7 +167,7 @@ def sign_text(chambers: Chambers, number: int) -> str:
 def _blocks(chambers: Chambers, first: int, workers: int) -> Iterator[tuple[ProvedBlock, str]]:
     """The blocks from number `first` on with their lines, in order."""
     left = range(first, chambers.blocks)
-    workers = min(workers, len(left))
+    workers = min(workers, len(left) // LEAST)
     if workers < 2:
         for index in left:
             block = chambers.prove(index)
@@ -171,24 +176,34 @@ def _blocks(chambers: Chambers, first: int, workers: int) -> Iterator[tuple[Prov
     pattern = chambers.pattern
     with one_thread_each(workers), ExitStack() as stack:
         pool = ProcessPoolExecutor(
-            workers, get_context("spawn"), _start_worker, (pattern.vertices, pattern.triangles)
+            workers,
+            get_context("spawn"),
+            _start_worker,
+            (pattern.vertices, pattern.triangles, chambers.block_size),
         )
         stack.callback(pool.shutdown, cancel_futures=True)
         waiting: deque[Future[tuple[ProvedBlock, str]]] = deque()
-        for index in left:
-            waiting.append(pool.submit(_prove, index))
-            if len(waiting) > _AHEAD * workers:
+        try:
+            for index in left:
+                waiting.append(pool.submit(_prove, index))
+                if len(waiting) > _AHEAD * workers:
+                    yield waiting.popleft().result()
+            while waiting:
                 yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
+        except BrokenExecutor:
+            raise WorkerDiedError(
+                "a worker process died; the blocks written so far can be resumed"
+            ) from None
 
 
 _chambers: Chambers | None = None  # of a worker process
 
 
-def _start_worker(vertices: Sequence[Point], triangles: Sequence[Triangle]) -> None:
+def _start_worker(
+    vertices: Sequence[Point], triangles: Sequence[Triangle], block_size: int
+) -> None:
     global _chambers
-    _chambers = Chambers.of(CreasePattern(vertices, triangles))
+    _chambers = Chambers.of(CreasePattern(vertices, triangles), block_size)
 
 
 def _prove(index: int) -> tuple[ProvedBlock, str]:

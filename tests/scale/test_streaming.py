@@ -179,30 +179,44 @@ def test_unwritable_files_and_other_patterns_are_refused(tmp_path: Path) -> None
             Chambers.of(sheet)
 
 
-def test_several_workers_write_the_same_file(tmp_path: Path) -> None:
+WORKERS = """
+import multiprocessing, sys
+from exactfold import random_square
+from exactfold.errors import WorkerDiedError
+from exactfold.scale import chambers, check, stream
+
+def seen(done, total):
+    dones.append(done)
+
+def kill(done, total):
+    for process in multiprocessing.active_children():
+        process.kill()
+
+if __name__ == "__main__":
+    check.LEAST, stream.LEAST, chambers.BLOCK = 1, 1, 16
+    pattern, dones = random_square(8, seed=1), []
+    one, two, three = sys.argv[1:]
+    stream.count_streaming(pattern, one)
+    stream.count_streaming(pattern, two, workers=2, progress=seen)
+    try:
+        stream.count_streaming(pattern, three, workers=2, progress=kill)
+    except WorkerDiedError:
+        print("died")
+    result = stream.count_streaming(pattern, three, resume=True)
+    print(result.resumed < 16, dones == list(range(16, 257, 16)))
+    print(check.check_compact(two, workers=2)["distinct"])
+"""
+
+
+def test_workers_write_the_same_file_and_may_be_killed(tmp_path: Path) -> None:
     """In a process of its own, as workers are started anew."""
-    script = (
-        "import sys\n"
-        "from exactfold import random_square\n"
-        "from exactfold.scale.check import check_compact\n"
-        "from exactfold.scale.stream import count_streaming\n"
-        "if __name__ == '__main__':\n"
-        "    pattern, seen = random_square(11, seed=1), []\n"
-        "    one, two = sys.argv[1:]\n"
-        "    count_streaming(pattern, one)\n"
-        "    report = lambda *numbers: seen.append(numbers)\n"
-        "    result = count_streaming(pattern, two, workers=2, progress=report)\n"
-        "    assert open(one, 'rb').read() == open(two, 'rb').read()\n"
-        "    assert seen == [(1024, 2048), (2048, 2048)], seen\n"
-        "    print(result.status, check_compact(two, workers=2)['distinct'])\n"
-    )
-    names = [str(tmp_path / name) for name in ("one.txt", "two.txt")]
-    file = tmp_path / "run.py"
-    file.write_text(script)
-    run = subprocess.run(
-        [sys.executable, str(file), *names], capture_output=True, text=True, check=False
-    )
-    assert run.stdout.strip() == "proved 2048", run.stderr
+    script = tmp_path / "run.py"
+    script.write_text(WORKERS)
+    files = [tmp_path / name for name in ("one.txt", "two.txt", "three.txt")]
+    command = [sys.executable, str(script), *map(str, files)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.stdout.split() == ["died", "True", "True", "256"], run.stderr
+    assert len({file.read_bytes() for file in files}) == 1
 
 
 def test_a_flat_fold_and_a_wide_block_are_written(tmp_path: Path) -> None:
