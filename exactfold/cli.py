@@ -295,13 +295,20 @@ def random_(
     denominator: Annotated[
         int, typer.Option(min=2, metavar="D", help="Coordinates are multiples of 1/D.")
     ] = 1024,
+    redraw: Annotated[
+        bool,
+        typer.Option(
+            help="Draw points of degree 3 anew, not the whole sample: for hundreds of points."
+        ),
+    ] = False,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE.fold", help="Default: stdout.")
     ] = None,
 ) -> None:
     """Sample the paper's random squares: a Delaunay triangulation of random points."""
-    sample = sample_random_square(interior, seed, denominator)
+    sample = sample_random_square(interior, seed, denominator, redraw=redraw)
     title = f"random square, {interior} interior vertices, seed {seed}, denominator {denominator}"
+    title += ", points redrawn" if redraw else ""
     text = fold_text(sample.pattern, title=title)
     if output is None:
         sys.stdout.write(text)

@@ -57,9 +57,10 @@ class CreasePattern:
         triangles: Iterable[Sequence[int]],
     ) -> None:
         points = validate.points(vertices, as_rational)
-        triples = validate.oriented_triangles(points, validate.triples(triangles, len(points)))
-        validate.incidence(len(points), triples)
+        given = validate.triples(triangles, len(points))
         object.__setattr__(self, "vertices", points)
+        triples = validate.oriented_triangles(self.integer_vertices[0], given)
+        validate.incidence(len(points), triples)
         object.__setattr__(self, "triangles", triples)
         validate.disk(self._next, triples)
         validate.embedding(self.integer_vertices[0], self.boundary, self._next)

@@ -34,7 +34,12 @@ def random_square(interior: int, seed: int, denominator: int = 1024) -> CreasePa
 
 
 def sample_random_square(
-    interior: int, seed: int, denominator: int = 1024, *, max_attempts: int = 10_000
+    interior: int,
+    seed: int,
+    denominator: int = 1024,
+    *,
+    max_attempts: int = 10_000,
+    redraw: bool = False,
 ) -> RandomSquare:
     """Sample the ensemble of the paper (section "Numerical computations") on a rational grid.
 
@@ -44,6 +49,11 @@ def sample_random_square(
     second never happens: a disk through two opposite corners holds a third or the whole square.)
     Vertices 0 to 3 are the corners (0,0), (1,0), (1,1), (0,1), the points follow in the order
     drawn. The result depends on the arguments only: integers from `random.Random(seed)`.
+
+    About one vertex in ninety has degree 3, so that of a few hundred points hardly a sample passes.
+    With `redraw`, the points of degree 3 are drawn anew, not the sample, until there are none. The
+    points are then no longer independent: this is not the ensemble of the paper, but close to it,
+    and the only way to large patterns with exactly `interior` vertices.
 
     Raises `UsageError` for arguments that allow no sample, `NotApplicableError` if `max_attempts`
     samples were rejected.
@@ -63,10 +73,15 @@ def sample_random_square(
             f"fewer than {interior}: take a larger denominator"
         )
     source = random.Random(seed)
+    points: list[Point] = []
     for attempt in range(1, max_attempts + 1):
-        pattern = delaunay([*CORNERS, *_points(source, interior, denominator)])
-        if not pattern.chords and all(pattern.degree(v) > 3 for v in pattern.interior):
+        points = _points(source, interior, denominator, points if redraw else [])
+        pattern = delaunay([*CORNERS, *points])
+        low = [v for v in pattern.interior if pattern.degree(v) == 3]
+        if not low and not pattern.chords:
             return RandomSquare(pattern, seed, denominator, attempt)
+        gone = {pattern.vertices[v] for v in low}
+        points = [point for point in points if point not in gone]
     raise NotApplicableError(
         f"all {max_attempts} samples with {interior} interior points on the grid of 1/{denominator}"
         " had a vertex of degree 3 or an edge between opposite corners: "
@@ -74,8 +89,8 @@ def sample_random_square(
     )
 
 
-def _points(source: random.Random, count: int, denominator: int) -> list[Point]:
-    drawn: dict[Point, None] = {}  # insertion order; a point drawn again is skipped
+def _points(source: random.Random, count: int, denominator: int, kept: list[Point]) -> list[Point]:
+    drawn: dict[Point, None] = dict.fromkeys(kept)  # a point drawn again is skipped
     while len(drawn) < count:
         x, y = source.randrange(1, denominator), source.randrange(1, denominator)
         drawn[Fraction(x, denominator), Fraction(y, denominator)] = None

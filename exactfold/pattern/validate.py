@@ -105,14 +105,13 @@ def triples(triangles: Iterable[Sequence[int]], count: int) -> list[Triangle]:
 
 
 def oriented_triangles(
-    vertices: Sequence[Point], triangles: Sequence[Triangle]
+    vertices: Sequence[IntPoint], triangles: Sequence[Triangle]
 ) -> tuple[Triangle, ...]:
     """All triangles counter-clockwise, each rotated to start at its smallest index."""
     clockwise: list[int] = []
     counter: list[int] = []
     for face, (a, b, c) in enumerate(triangles):
-        (ax, ay), (bx, by), (cx, cy) = vertices[a], vertices[b], vertices[c]
-        area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+        area = orientation(vertices[a], vertices[b], vertices[c])
         if area == 0:
             raise DegenerateFaceError(
                 f"face {face} ({a}, {b}, {c}) has zero area", vertices=(a, b, c), faces=[face]

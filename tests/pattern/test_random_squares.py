@@ -64,3 +64,21 @@ def test_impossible_ensemble_ends():
 def test_usage_error(arguments, message):
     with pytest.raises(UsageError, match=message):
         random_square(*arguments)
+
+
+def test_large_squares_with_points_of_degree_three_drawn_anew():
+    sample = sample_random_square(300, 5, 4096, redraw=True)
+    pattern = sample.pattern
+    assert sample.attempts > 1
+    assert pattern.Vi == 300
+    assert min(pattern.degree(v) for v in pattern.interior) == 4
+    assert set(delaunay(pattern.vertices).triangles) == set(pattern.triangles)
+    assert sample_random_square(300, 5, 4096, redraw=True) == sample
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_redrawing_changes_nothing_where_the_first_sample_passes(seed):
+    plain = sample_random_square(3, seed)
+    redrawn = sample_random_square(3, seed, redraw=True)
+    assert (plain.pattern == redrawn.pattern) or plain.attempts > 1
+    assert (plain.attempts == 1) == (redrawn.attempts == 1)
