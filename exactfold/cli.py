@@ -19,7 +19,7 @@ from typing import Annotated, Any, ParamSpec, TypeVar
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from exactfold import checker, report
+from exactfold import branch_checker, checker, report
 from exactfold.branches.claims import certificate as certificate_of
 from exactfold.certify.certificate import write_certificate
 from exactfold.count import METHODS, count_branches
@@ -30,6 +30,7 @@ from exactfold.errors import (
     UnreadableFileError,
     UsageError,
 )
+from exactfold.ondemand.evidence import branch_certificate
 from exactfold.ondemand.find import BranchFinder
 from exactfold.ondemand.result import SignedBranch
 from exactfold.pattern.fold import load_fold
@@ -175,23 +176,25 @@ def count(
 @app.command()
 @_reported
 def check(
-    certificate: Annotated[Path, typer.Argument(help="A certificate written by `count`.")],
+    certificate: Annotated[
+        Path, typer.Argument(help="A certificate written by `count` or `branch`.")
+    ],
     as_json: Json = False,
 ) -> None:
     """Verify every claim of a certificate with code that trusts nothing."""
-    data = _load_certificate(certificate)
+    data, judge = _load_certificate(certificate)
     try:
-        claims: dict[str, Any] | None = checker.check(data)
+        claims: dict[str, Any] | None = judge.check(data)
         reason = "every claim holds"
     except checker.CertificateError as error:
         claims, reason = None, str(error)
     if as_json:
-        short = {k: v for k, v in (claims or {}).items() if k != "branches"}
+        short = {k: v for k, v in (claims or {}).items() if k not in _LONG}
         print(json.dumps({"valid": claims is not None, "reason": reason, "claims": short}))
     elif claims is None:
         print(f"INVALID: {reason}")
     else:
-        print(checker.summary(claims))
+        print(judge.summary(claims))
     raise typer.Exit(0 if claims is not None else 1)
 
 
@@ -235,6 +238,9 @@ def branch(
             help="The branches reached by popping each of these vertices through, one at a time.",
         ),
     ] = None,
+    certificate: Annotated[
+        Path | None, typer.Option(metavar="OUT.json", help="Of one branch: write a certificate.")
+    ] = None,
     as_json: Json = False,
     snap: Snap = None,
 ) -> None:
@@ -247,6 +253,8 @@ def branch(
         raise UsageError("give one of --signs, --up and --batch")
     if pops is not None and batch is not None:
         raise UsageError("--neighbours goes with --signs or --up")
+    if certificate is not None and (pops is not None or batch is not None):
+        raise UsageError("--certificate goes with a single branch")
     finder = BranchFinder(load_fold(pattern, snap).pattern)
     bar = _Bar()
     found: list[tuple[str, SignedBranch]] = []
@@ -267,6 +275,11 @@ def branch(
                 found += [(f"pop {v}", result) for v, result in reached.items()]
     finally:
         bar.close()
+    if certificate is not None:
+        if found[0][1].status is PROVED:
+            write_certificate(branch_certificate(found[0][1]), certificate)
+        else:
+            print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
     if as_json:
         for _, result in found:
             print(json.dumps(result.to_dict()))
@@ -278,9 +291,18 @@ def branch(
     raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
 
 
-def _load_certificate(path: Path) -> Any:
+_LONG = ("branches", "vertex_signs", "assignment")
+"""Claims that grow with the pattern, left out of `check --json`."""
+
+
+def _load_certificate(path: Path) -> tuple[Any, Any]:
+    """The certificate and the module that checks its kind."""
     try:
-        return checker.load(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        try:
+            return branch_checker.load(text), branch_checker
+        except checker.FormatError:
+            return checker.load(text), checker
     except OSError as error:
         raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
     except (checker.FormatError, UnicodeDecodeError) as error:

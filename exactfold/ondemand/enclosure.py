@@ -132,21 +132,21 @@ def _nappes(sheet: Sheet, bends: BigArray) -> dict[int, int]:
 def _squared_distance(sheet: Sheet, found: Curvatures, denominator: int) -> Fraction:
     """sum_v m_v (sqrt K_v - sqrt k_v)^2 from above, with (sqrt K - sqrt k)^2 <= (K - k)^2 / k."""
     points = sheet.pattern.integer_vertices[0]
-    x, y = ((min(p[a] for p in points) + max(p[a] for p in points)) // 2 for a in (0, 1))
+    x, y = (min(p[a] for p in points) + max(p[a] for p in points) for a in (0, 1))
 
-    def squared(v: int) -> int:
-        return (points[v][0] - x) ** 2 + (points[v][1] - y) ** 2
+    def squared(v: int) -> int:  # four times the squared distance from the middle (x / 2, y / 2)
+        return (2 * points[v][0] - x) ** 2 + (2 * points[v][1] - y) ** 2
 
     radius = max(squared(b) for b in sheet.pattern.boundary)
     unit = 2 * denominator**2 << found.bits
     total = sum((radius - squared(v)) * found.high[v] for v in sheet.poppable)
-    distance = Fraction(total, unit)
+    distance = Fraction(total, 4 * unit)
     if sheet.corner is not None:
         target = Fraction(1, sheet.size**2)
         off = max(
             abs(Fraction(bound[sheet.corner], unit) - target) for bound in (found.low, found.high)
         )
-        distance += (radius - squared(sheet.corner)) * off**2 / target
+        distance += Fraction(radius - squared(sheet.corner), 4) * off**2 / target
     return distance
 
 

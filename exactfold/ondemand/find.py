@@ -171,6 +171,10 @@ class BranchFinder:
             raise UsageError(f"vertex {missing[0]} has no sign")
         return {v: given[v] for v in names}
 
+    @property
+    def _gauge(self) -> str:
+        return "saddle" if self.rim is None else "rim"
+
     @cached_property
     def _names(self) -> frozenset[int]:
         return frozenset(self.poppable)
@@ -300,6 +304,7 @@ class BranchFinder:
             centres=self._all_heights(centres),
             radius=radius,
             squared_distance=squared,
+            gauge=self._gauge,
             saddle=self._saddle(centres, radius),
             steps=steps,
             seconds=seconds,
@@ -318,6 +323,7 @@ class BranchFinder:
             centres={},
             radius=None,
             squared_distance=None,
+            gauge=self._gauge,
             saddle=0,
             steps=steps,
             seconds=seconds,

@@ -31,7 +31,8 @@ class SignedBranch:
     at 0, the corner popped up in the closed sheet with K = 1 there, lengths in units of the larger
     side of the bounding box (docs/branch.md). `saddle` is the proved sign of the boundary saddle, 0
     if not proved or if there are more than four boundary vertices. Opposite heights are the other
-    half of the branch, with all signs and letters reversed.
+    half of the branch, with all signs and letters reversed. `gauge` is "saddle", also with a reflex
+    corner, or "rim".
 
     `squared_distance` bounds the integral of |grad(h - centres)|^2 over the sheet.
     """
@@ -45,6 +46,7 @@ class SignedBranch:
     centres: Mapping[int, Fraction]
     radius: Fraction | None
     squared_distance: Fraction | None
+    gauge: str
     saddle: int
     steps: int
     seconds: float
@@ -89,6 +91,7 @@ class SignedBranch:
             "vertex_signs": {str(v): s for v, s in sorted(self.vertex_signs.items())},
             "undecided_vertices": list(self.undecided_vertices),
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(self.assignment.items())},
+            "gauge": self.gauge,
             "saddle": self.saddle,
             "centres": {str(v): format_rational(c) for v, c in sorted(self.centres.items())},
             "radius": None if self.radius is None else format_rational(self.radius),

@@ -15,7 +15,7 @@ from exactfold.pattern.fold import read_fold
 TWO = example_path("two-vertex")
 KEYS = {
     *("pattern", "status", "reason", "vertex_signs", "undecided_vertices", "assignment"),
-    *("saddle", "centres", "radius", "squared_distance", "steps", "seconds"),
+    *("gauge", "saddle", "centres", "radius", "squared_distance", "steps", "seconds"),
 }
 
 

@@ -1,0 +1,280 @@
+"""The stand-alone checker of single branches: what it accepts, and that it refuses the rest."""
+
+from __future__ import annotations
+
+import copy
+import json
+import random
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sheets import HEXAGON, SQUARE, dart, nested_triangles, reflex_corners, scrambled
+from typer.testing import CliRunner
+
+import exactfold
+from exactfold import branch_checker, find_branch, random_square, read_fold
+from exactfold.checker import CertificateError, FormatError
+from exactfold.cli import app
+from exactfold.data import example_path
+from exactfold.errors import UsageError
+from exactfold.ondemand.evidence import branch_certificate
+
+Document = dict[str, Any]
+PATTERNS = {
+    "random": random_square(6, seed=3),
+    "dart": dart(),
+    "reflex": scrambled(3, reflex_corners(3), 3),
+    "nested triangles": nested_triangles(),
+    "thin triangles": scrambled(1, SQUARE, 12),
+}
+
+
+def certificate(name: str, seed: int = 0) -> Document:
+    pattern = PATTERNS[name]
+    source = random.Random(seed)
+    signs = [source.choice((1, -1)) for _ in range(pattern.Vi - pattern.Vt)]
+    return branch_certificate(find_branch(pattern, signs))
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+@pytest.mark.parametrize("seed", range(3))
+def test_proofs_are_accepted(name: str, seed: int) -> None:
+    document = certificate(name, seed)
+    read = branch_checker.load(json.dumps(document))
+    claims = branch_checker.check(read)
+    assert claims["sha256"] == PATTERNS[name].sha256
+    assert claims["vertex_signs"] == document["claims"]["vertex_signs"]
+
+
+def test_a_given_rim_is_accepted() -> None:
+    pattern = scrambled(5, HEXAGON, 3)
+    rim = {v: Fraction(v * v + 1, 3) for v in pattern.boundary}
+    claims = branch_checker.check(branch_certificate(find_branch(pattern, "+-+", rim=rim)))
+    assert claims["gauge"] == "rim"
+    assert branch_checker.summary(claims).startswith("VALID: exactly one branch")
+
+
+def shifted(text: str, by: int) -> str:
+    return str(int(text) + by)
+
+
+def move_vertex(c: Document) -> None:
+    unit = int(c["evidence"]["denominator"])
+    c["evidence"]["heights"][6] = shifted(c["evidence"]["heights"][6], unit // 50)
+
+
+def tilt_rim(c: Document) -> None:
+    # Another rim with the opposite saddle: the other side of some branch.
+    c["evidence"]["heights"] = [str(-int(h)) for h in c["evidence"]["heights"]]
+
+
+def flip_letter(c: Document) -> None:
+    text = c["claims"]["assignment"]
+    c["claims"]["assignment"] = ("V" if text[0] == "M" else "M") + text[1:]
+
+
+def flat_letter(c: Document) -> None:
+    c["claims"]["assignment"] = "F" + c["claims"]["assignment"][1:]
+
+
+def flip_sign(c: Document) -> None:
+    c["claims"]["vertex_signs"][2] *= -1
+
+
+def zero_sign(c: Document) -> None:
+    c["claims"]["vertex_signs"][2] = 0
+
+
+def smaller_distance(c: Document) -> None:
+    text = c["claims"]["squared_distance"]
+    top, bottom = text.split("/")
+    c["claims"]["squared_distance"] = f"{top}/{int(bottom) * 2}"
+
+
+def rough_heights(c: Document) -> None:
+    c["evidence"]["heights"] = [str(int(h) >> 60) for h in c["evidence"]["heights"]]
+    c["evidence"]["denominator"] = str(int(c["evidence"]["denominator"]) >> 60)
+
+
+def move_corner(c: Document) -> None:
+    c["pattern"]["vertices"][2] = ["1/2", "1/2"]
+
+
+def no_face(c: Document) -> None:
+    c["pattern"]["triangles"].pop()
+
+
+def other_gauge(c: Document) -> None:
+    c["claims"]["gauge"] = "none"
+
+
+def fewer_signs(c: Document) -> None:
+    c["claims"]["vertex_signs"].pop()
+
+
+def fewer_letters(c: Document) -> None:
+    c["claims"]["assignment"] = c["claims"]["assignment"][1:]
+
+
+def no_height(c: Document) -> None:
+    c["evidence"]["heights"][5] = None
+
+
+def no_denominator(c: Document) -> None:
+    c["evidence"]["denominator"] = "0"
+
+
+def remove_vertex(c: Document) -> None:
+    c["evidence"]["emptied"] = [{"corners": [0, 1, 2], "inside": [5]}]
+
+
+def extra_key(c: Document) -> None:
+    c["claims"]["more"] = 1
+
+
+TAMPERING = [
+    move_vertex,
+    tilt_rim,
+    flip_letter,
+    flat_letter,
+    flip_sign,
+    zero_sign,
+    smaller_distance,
+    rough_heights,
+    move_corner,
+    no_face,
+    other_gauge,
+    fewer_signs,
+    fewer_letters,
+    no_height,
+    no_denominator,
+    remove_vertex,
+    extra_key,
+]
+
+
+@pytest.mark.parametrize("tamper", TAMPERING, ids=lambda t: t.__name__)
+def test_altered_certificates_are_refused(tamper: Callable[[Document], None]) -> None:
+    document = certificate("random")
+    altered = copy.deepcopy(document)
+    tamper(altered)
+    assert altered != document
+    with pytest.raises(CertificateError):
+        branch_checker.check(altered)
+
+
+def test_a_letter_may_be_left_open() -> None:
+    document = certificate("random")
+    document["claims"]["assignment"] = "U" * len(document["claims"]["assignment"])
+    branch_checker.check(document)
+
+
+def test_a_reflex_corner_that_pops_down_is_refused() -> None:
+    document = certificate("reflex")
+    document["evidence"]["heights"] = [
+        None if h is None else str(-int(h)) for h in document["evidence"]["heights"]
+    ]
+    document["claims"]["vertex_signs"] = [-s for s in document["claims"]["vertex_signs"]]
+    swap = str.maketrans("MV", "VM")
+    document["claims"]["assignment"] = document["claims"]["assignment"].translate(swap)
+    with pytest.raises(CertificateError, match="corner does not pop up"):
+        branch_checker.check(document)
+
+
+def test_a_boundary_that_is_not_convex_needs_its_notch_closed() -> None:
+    document = certificate("dart")
+    document["claims"]["gauge"] = "rim"
+    with pytest.raises(CertificateError, match="not convex"):
+        branch_checker.check(document)
+
+
+def test_vertices_of_triangulated_triangles_must_be_the_ones_inside() -> None:
+    document = certificate("nested triangles")
+    entry = document["evidence"]["emptied"][0]
+    entry["inside"] = entry["inside"][1:]
+    with pytest.raises(CertificateError):
+        branch_checker.check(document)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "[]", "{}", '{"format": "exactfold branch"}', '{"format": 1.5}', '{"a": NaN}', "[" * 9999],
+)
+def test_other_files_are_no_certificates(text: str) -> None:
+    with pytest.raises(FormatError):
+        branch_checker.load(text)
+
+
+def test_versions_and_keys_are_checked() -> None:
+    document = certificate("dart")
+    for wrong in ({**document, "version": 2}, {**document, "more": 1}):
+        with pytest.raises(FormatError):
+            branch_checker.load(json.dumps(wrong))
+
+
+def test_nothing_undecided_gets_a_certificate() -> None:
+    flat = find_branch(read_fold(example_path("flat-vertex")), "++")
+    with pytest.raises(UsageError, match="not proved"):
+        branch_certificate(flat)
+
+
+def test_commands_write_and_check(tmp_path: Path) -> None:
+    path = tmp_path / "c.json"
+    two = example_path("two-vertex")
+    runner = CliRunner()
+    done = runner.invoke(app, ["branch", str(two), "--signs", "+-", "--certificate", str(path)])
+    assert done.exit_code == 0
+    checked = runner.invoke(app, ["check", str(path)])
+    assert checked.exit_code == 0
+    assert "exactly one branch has the vertex signs +-" in checked.stdout
+    short = json.loads(runner.invoke(app, ["check", str(path), "--json"]).stdout)
+    assert short["valid"]
+    assert set(short["claims"]) == {"sha256", "interior", "gauge", "squared_distance"}
+    document = json.loads(path.read_text())
+    flip_letter(document)
+    path.write_text(json.dumps(document))
+    refused = runner.invoke(app, ["check", str(path)])
+    assert refused.exit_code == 1
+    assert "INVALID" in refused.stdout
+
+
+def test_undecided_and_several_branches_write_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "c.json"
+    flat = str(example_path("flat-vertex"))
+    runner = CliRunner()
+    done = runner.invoke(app, ["branch", flat, "--signs", "++", "--certificate", str(path)])
+    assert done.exit_code == 4
+    assert "no certificate was written" in done.stderr
+    several = ["branch", flat, "--up", "4", "--neighbours", "all", "--certificate", str(path)]
+    assert runner.invoke(app, several).exit_code == 2
+    assert not path.exists()
+
+
+def test_it_runs_alone_beside_the_other_checker(tmp_path: Path) -> None:
+    folder = Path(exactfold.__file__).parent
+    for name in ("checker.py", "branch_checker.py"):
+        shutil.copy(folder / name, tmp_path / name)
+    document = certificate("random")
+    (tmp_path / "good.json").write_text(json.dumps(document))
+    flip_sign(document)
+    (tmp_path / "bad.json").write_text(json.dumps(document))
+    (tmp_path / "none.json").write_text("{}")
+    for name, code in (("good", 0), ("bad", 1), ("none", 3)):
+        command = [sys.executable, "-I", "-c", _ALONE, str(tmp_path), f"{name}.json"]
+        run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert run.returncode == code, run.stderr
+
+
+_ALONE = """
+import runpy, sys
+folder, file = sys.argv[1:]
+sys.path.insert(0, folder)
+sys.argv = ["branch_checker.py", file]
+runpy.run_path(folder + "/branch_checker.py", run_name="__main__")
+"""
