@@ -78,7 +78,7 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
         leading = [max(p, key=grevlex_key) for p in basis]
         krull, degree = dimension_and_degree(leading, system.size)
         return ExactSolution(system, None, (), chosen, {"engine": chosen}, krull, degree)
-    return _verified(system, algebra.dimension, _root_classes(algebra), chosen)
+    return _verified(system, algebra.dimension, root_classes(algebra), chosen)
 
 
 def quotient_algebra(system: QuadraticSystem, *, engine: str = "flint") -> QuotientAlgebra | None:
@@ -107,7 +107,7 @@ def classes_of_ideal(
     [(-1, 1), (1, 1)]
     """
     algebra = from_groebner_basis(_flint_reduced(polynomials, size), size)
-    return None if algebra is None else _root_classes(algebra)
+    return None if algebra is None else root_classes(algebra)
 
 
 def _verified(
@@ -151,7 +151,8 @@ def _sympy_basis(system: QuadraticSystem) -> list[SparsePolynomial]:
 _BASES = {"flint": _flint_basis, "sympy": _sympy_basis}
 
 
-def _root_classes(algebra: QuotientAlgebra) -> tuple[RootClass, ...]:
+def root_classes(algebra: QuotientAlgebra) -> tuple[RootClass, ...]:
+    """The zeros of a quotient algebra in classes of conjugates, with exact multiplicities."""
     if algebra.dimension == 0:
         return ()
     reduced = algebra.reduced
