@@ -1,8 +1,8 @@
 """Exact solution of a system with 2^n simple zeros from approximations of all of them.
 
 Newton's method gives the zeros to any length, products over them the rational univariate
-representation as real numbers, and continued fractions its rational coefficients. All of that is a
-proposal; exact substitution proves it (docs/mathematics.md, 13).
+representation as real numbers, and lattice reduction the common denominator of its coefficients.
+All of that is a proposal; exact substitution proves it (docs/mathematics.md, 13).
 """
 
 from __future__ import annotations
@@ -51,7 +51,8 @@ def parametrisation_from_roots(
     at infinity, whatever the approximations were worth.
 
     None if there are not 2^n different points, if Newton's method does not converge at each, or if
-    none of the first few forms separates them. That says nothing about the zeros.
+    none of the first few forms separates them. That says nothing about the zeros. Random squares
+    take about 0.2 s at n = 6, 1 s at 7, 5 s at 8 and 35 s at 9.
 
     >>> import numpy as np
     >>> system = QuadraticSystem((((1, 0), (0, -2)),))
