@@ -51,6 +51,14 @@ class Deflation:
     the kernel of J have no common zero but 0 (multiplicity 2^c), dG is invertible: a common kernel
     vector w lies in the kernel of J and L F''(w, R) = 0, so all forms vanish at w.
     With c = 0, G is F. (The deflation of Leykin, Verschelde and Zhao 2006, without new unknowns.)
+
+    The double zero of x^2 = 0, whose Jacobian is (2 x), is a simple one of a multiple of it:
+
+    >>> equations = Deflation.of(QuadraticSystem((((1, 0), (0, 0)),)), 1)
+    >>> ring = ResidueRing.over(101, [0, 1])
+    >>> residues, slopes = equations.evaluate(ring, [ring.element([])], [])
+    >>> residues, ring.inverse(slopes) is None
+    ([0], False)
     """
 
     system: QuadraticSystem  # in the coordinates y, equations mixed
