@@ -1,6 +1,8 @@
 """Lifting from a prime field against the Groebner basis."""
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from sheets import with_point
 
 from exactfold.errors import NotApplicableError
@@ -165,3 +167,35 @@ def test_multiple_zeros_that_are_not_flat_vertices():
         )
     )
     assert groebner(mixed, engine="lifting").classes == groebner(system, engine="flint").classes
+
+
+entries = st.integers(-2, 2)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.lists(entries, min_size=6, max_size=6), min_size=2, max_size=2))
+def test_random_conics_with_multiple_zeros(rows):
+    """Where lifting claims multiplicities, the characteristic polynomials over Q agree."""
+    matrices = [[[2 * a, b, d], [b, 2 * c, e], [d, e, 2 * f]] for a, b, c, d, e, f in rows]
+    system = QuadraticSystem.from_rational(matrices)
+    lifted, exact = lifting.lifted_classes(system), groebner(system, engine="flint")
+    if lifted is not None:
+        assert lifted == exact.classes
+    elif exact.dimension == 4:  # no zero at infinity: then only a multiplicity is in the way
+        assert any(c.multiplicity > 1 for c in exact.classes)
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.permutations(range(4)), st.integers(1, 9))
+def test_reordering_and_scaling_the_unknowns_keeps_the_profile(order, scale):
+    system = chart_system(families.hypar(1, 0))
+    weights = [scale, 1, 1, 1, 1]
+    places = [*order, 4]
+    turned = QuadraticSystem(
+        tuple(
+            tuple(tuple(m[i][j] * weights[i] * weights[j] for j in places) for i in places)
+            for m in system.matrices
+        )
+    )
+    profile = sorted((c.degree, c.multiplicity) for c in lifting.lifted_classes(turned))
+    assert profile == [(1, 1), (1, 1), (1, 4), (2, 1), (2, 1), (3, 1), (3, 1)]
