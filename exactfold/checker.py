@@ -8,7 +8,8 @@ its own, and verifies every claim. Exit code 0: every claim holds. 1: some claim
 
   isolated       2^n disjoint boxes, each with exactly one zero by Krawczyk's test in integers:
                  by refined Bezout these are all zeros of n quadrics in P^n, all real and simple;
-  algebraic      zeros as roots of squarefree polynomials, or in boxes; a zero at which f of the
+  algebraic      zeros as roots of squarefree polynomials, in boxes, or in boxes on the sheets
+                 that are flat at given vertices; a zero at which f of the
                  quadrics have order 2 has multiplicity 2^f or more, and the sum reaches 2^n, so
                  that the bounds are exact and nothing is missing;
   rigid          a positive definite stress: the sheet cannot fold;
@@ -433,7 +434,7 @@ def read_chart(evidence: Any) -> dict[int, Fraction] | None:
 class Krawczyk:
     """Krawczyk's test for the quadrics F_p(x) = (1/2) z^T S_p z, z = (x, 1), in integers."""
 
-    def __init__(self, system: BranchSystem) -> None:
+    def __init__(self, system: BranchSystem | FlatSheets) -> None:
         self.n = system.size
         self.quadrics = system.quadrics
         top = max(abs(w) for q in self.quadrics for w in q.values()).bit_length()
@@ -518,7 +519,9 @@ def inverse(matrix: list[list[Any]]) -> list[list[Any]]:
 
 
 class Root:
-    """A proved real zero."""
+    """A proved real zero; zeros of different kinds must be told apart by their signs."""
+
+    kind: object = None
 
     def sign(self, row: list[int]) -> int | None:
         """Sign of the functional (c_1, ..., c_n, c_0); 0 if proved to vanish, None if open."""
@@ -530,6 +533,7 @@ class Box(Root):
 
     def __init__(self, entry: Any, size: int) -> None:
         keys(entry, "bits radius center", "root")
+        self.kind = "box"
         self.bits = natural(entry["bits"], "bits")
         require(self.bits <= MOST_BITS, "bits are out of range")
         self.radius = parse_integer(short(entry["radius"]))
@@ -687,6 +691,96 @@ def count_real_roots(p: Poly) -> int:
     return int(before - after)
 
 
+class FlatSheets:
+    """The sheets that are flat at given vertices, x = A (y, 1), and the quadrics on them.
+
+    The y are the unknowns x that are not pivots of "fold flat". Of the quadrics a basis of their
+    span is kept, which must have as many elements as there are unknowns y.
+    """
+
+    def __init__(self, system: BranchSystem, flat: list[Any]) -> None:
+        sheet, n = system.sheet, system.size
+        require(flat and all(type(v) is int for v in flat), "flat vertices are no vertices")
+        require(
+            flat == sorted(set(flat)) and set(flat) <= set(sheet.interior),
+            "the flat vertices are not sorted inner vertices",
+        )
+        folds = [fold for fold in sheet.folds if set(fold) & set(flat)]
+        lines = echelon([[Fraction(c) for c in system.row(sheet.bend(f))] for f in folds])
+        require(n not in lines, "no sheet is flat at the flat vertices")
+        free = [k for k in range(n) if k not in lines]
+        self.system, self.size, self.multiplicity = system, len(free), 1 << len(flat)
+        self.lifts = [
+            [-lines[i][k] for k in (*free, n)]
+            if i in lines
+            else [Fraction(int(k == i)) for k in (*free, n)]
+            for i in range(n)
+        ]
+        self.lifts.append([Fraction(int(k == n)) for k in (*free, n)])
+        places = [(i, j) for i in range(self.size + 1) for j in range(i + 1)]
+        span = echelon([self._restricted(quadric, places) for quadric in system.quadrics])
+        require(len(span) == self.size > 0, "quadrics and unknowns on flat sheets differ in number")
+        self.quadrics: list[dict[tuple[int, int], int]] = []
+        for line in span.values():
+            scale = lcm(*(c.denominator for c in line))
+            quadric = {ij: int(c * scale) for ij, c in zip(places, line, strict=True) if c}
+            # c x_i x_j as c/2 each of (i, j) and (j, i), over integers
+            both = {(i, j): c * (1 + (i == j)) for (i, j), c in quadric.items()}
+            self.quadrics.append(both | {(j, i): c for (i, j), c in both.items()})
+
+    def _restricted(
+        self, quadric: dict[tuple[int, int], int], places: list[tuple[int, int]]
+    ) -> list[Fraction]:
+        """Coefficients of y_i y_j, i >= j."""
+        total = dict.fromkeys(places, Fraction(0))
+        for (p, q), c in quadric.items():
+            for i, x in enumerate(self.lifts[p]):
+                for j, y in enumerate(self.lifts[q]) if x else ():
+                    if y:
+                        total[max(i, j), min(i, j)] += c * x * y
+        return list(total.values())
+
+    def row(self, row: list[int]) -> list[int]:
+        """A functional on these sheets, signs kept."""
+        total = [Fraction(0)] * (self.size + 1)
+        for c, line in zip(row, self.lifts, strict=True):
+            if c:
+                total = [a + c * b for a, b in zip(total, line, strict=True)]
+        scale = lcm(*(c.denominator for c in total))
+        return [int(c * scale) for c in total]
+
+
+class FlatBox(Root):
+    """A box that holds one real zero of the quadrics on flat sheets."""
+
+    def __init__(self, entry: Any, sheets: FlatSheets) -> None:
+        self.sheets = sheets
+        self.kind = tuple(entry["flat"])
+        self.box = Box({k: v for k, v in entry.items() if k != "flat"}, sheets.size)
+
+    def sign(self, row: list[int]) -> int | None:
+        """1 or -1 if the functional keeps that sign on the box, 0 if it is 0 there, else None."""
+        return self.box.sign(self.sheets.row(row))
+
+
+def echelon(rows: list[list[Fraction]]) -> dict[int, list[Fraction]]:
+    """Reduced echelon form: nonzero rows by pivot column."""
+    lines: dict[int, list[Fraction]] = {}
+    for row in rows:
+        for k, line in lines.items():
+            if row[k]:
+                row = [a - row[k] * b for a, b in zip(row, line, strict=True)]
+        pivot = next((k for k, c in enumerate(row) if c), None)
+        if pivot is None:
+            continue
+        row = [c / row[pivot] for c in row]
+        for k, line in lines.items():
+            if line[pivot]:
+                lines[k] = [a - line[pivot] * b for a, b in zip(line, row, strict=True)]
+        lines[pivot] = row
+    return lines
+
+
 class RootClass:
     """Zeros x_i = w_i(t) / p'(t) of the branch system, one for each root t of p."""
 
@@ -731,6 +825,8 @@ class RootClass:
 
 class AlgebraicRoot(Root):
     """One real root of a class, in an interval on whose ends its polynomial changes sign."""
+
+    kind = "class"
 
     def __init__(self, root_class: RootClass, low: Fraction, high: Fraction) -> None:
         self.root_class, self.low, self.high = root_class, low, high
@@ -788,15 +884,19 @@ def check_finite(sheet: Sheet, multipliers: Any) -> None:
 def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Root, int]], int]:
     """All zeros, in classes or boxes: (real roots with multiplicities, number of the others).
 
-    That no zero is both in a class and in a box is left to `check_branches`.
+    That no zero is listed in two ways is left to `check_branches`.
     """
     keys(evidence, "kind triangles chart multipliers separating classes roots", "evidence")
     check_finite(system.sheet, evidence["multipliers"])
     separating = [natural_or_negative(s) for s in items(evidence["separating"], "separating")]
     entries = items(evidence["classes"], "classes")
     listed = items(evidence["roots"], "roots")
-    boxes = [Box(entry, system.size) for entry in listed if "class" not in entry]
-    total = len(boxes)
+    require(all(isinstance(entry, dict) for entry in listed), "a root is not an object")
+    flat_sets = [
+        tuple(items(entry["flat"], "flat vertices")) for entry in listed if "flat" in entry
+    ]
+    in_boxes = sum("flat" not in entry and "class" not in entry for entry in listed)
+    total = in_boxes + sum(1 << min(len(flat), system.size) for flat in flat_sets)
     for entry in entries:  # before any arithmetic, so that a small file cannot ask for much
         keys(entry, "polynomial numerators flat", "class")
         degree = len(items(entry["polynomial"], "polynomial")) - 1
@@ -807,24 +907,33 @@ def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Roo
     for k, a in enumerate(classes):
         for b in classes[:k]:
             require(are_coprime(a.p, b.p), "two classes share a root")
-    if boxes:
-        test = Krawczyk(system)
-        for box in boxes:
-            test.check(box.center, box.radius, box.bits)
-        check_disjoint(boxes)
-    remaining = iter(boxes)
+    sheets = {flat: FlatSheets(system, list(flat)) for flat in dict.fromkeys(flat_sets)}
     roots: list[tuple[Root, int]] = []
+    boxes: dict[object, list[Box]] = {}
     intervals: list[list[tuple[Fraction, Fraction]]] = [[] for _ in classes]
     for entry in listed:
-        if "class" not in entry:
-            roots.append((next(remaining), 1))
-            continue
-        keys(entry, "class interval", "root")
-        index = natural(entry["class"], "class")
-        require(index < len(classes), "no such class")
-        low, high = (parse_rational(x) for x in items(entry["interval"], "interval", 2))
-        intervals[index].append((low, high))
-        roots.append((AlgebraicRoot(classes[index], low, high), classes[index].multiplicity))
+        if "flat" in entry:
+            flat_box = FlatBox(entry, sheets[tuple(entry["flat"])])
+            boxes.setdefault(flat_box.kind, []).append(flat_box.box)
+            roots.append((flat_box, flat_box.sheets.multiplicity))
+        elif "class" in entry:
+            keys(entry, "class interval", "root")
+            index = natural(entry["class"], "class")
+            require(index < len(classes), "no such class")
+            low, high = (parse_rational(x) for x in items(entry["interval"], "interval", 2))
+            intervals[index].append((low, high))
+            roots.append((AlgebraicRoot(classes[index], low, high), classes[index].multiplicity))
+        else:
+            box = Box(entry, system.size)
+            boxes.setdefault(box.kind, []).append(box)
+            roots.append((box, 1))
+    for kind, group in boxes.items():
+        test = Krawczyk(
+            system if kind == "box" else next(s for f, s in sheets.items() if f == kind)
+        )
+        for box in group:
+            test.check(box.center, box.radius, box.bits)
+        check_disjoint(group)
     nonreal = 0
     for root_class, ends in zip(classes, intervals, strict=True):
         ends.sort()
@@ -1071,9 +1180,9 @@ def check_branches(
 ) -> None:
     """Vertex signs, mountain-valley assignment and multiplicity of every branch.
 
-    Also that these signs tell the zeros in boxes from those of classes.
+    Also that these signs tell zeros listed in different ways apart.
     """
-    letters_of: dict[type[Root], set[tuple[str, str]]] = {Box: set(), AlgebraicRoot: set()}
+    kinds: dict[tuple[str, str], object] = {}
     emptied = system.sheet
     vertex_rows = {v: system.row(emptied.sign_of_vertex(v)) for v in emptied.interior}
     fold_rows = {f: system.row(emptied.bend(f)) for f in emptied.folds}
@@ -1087,7 +1196,7 @@ def check_branches(
         letters = "".join("MFV?"[1 + digit(signs.get(f, 0))] for f in sheet.folds)
         require("?" not in up_down + letters, f"branch {number}: signs are open")
         seen = (up_down, letters)
-        letters_of[type(root)].add(seen)
+        require(kinds.setdefault(seen, root.kind) == root.kind, "a root may be counted twice")
         mirror = (up_down.translate(UPSIDE_DOWN), letters.translate(UPSIDE_DOWN))
         side = root.sign(saddle)
         allowed = {1: (seen,), -1: (mirror,)}.get(side or 0, (seen, mirror))
@@ -1102,7 +1211,6 @@ def check_branches(
             and branch["multiplicity"] == multiplicity << removed,
             f"branch {number}: multiplicity is {multiplicity << removed}",
         )
-    require(letters_of[Box].isdisjoint(letters_of[AlgebraicRoot]), "a root may be counted twice")
 
 
 def digit(sign: int | None) -> int:

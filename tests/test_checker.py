@@ -27,7 +27,7 @@ from sheets import (
 from exactfold import PROVED, certificate, checker, count_branches, random_square
 from exactfold.branches.classify import classify
 from exactfold.branches.roots import AlgebraicRoot
-from exactfold.certify.algebraic import algebraic_evidence, prove_algebraic
+from exactfold.certify.algebraic import algebraic_evidence, class_entry, prove_algebraic
 from exactfold.certify.certificate import document as assemble
 from exactfold.certify.certificate import write_certificate
 from exactfold.errors import NotApplicableError
@@ -445,13 +445,12 @@ def test_algebraic_evidence_for_simple_roots_is_accepted():
     roots = [(AlgebraicRoot(c, k), m) for c, k, m in proved.roots]
     branches, undecided = classify(pattern, chart, range(5), roots)
     assert undecided == []
+    entries = [class_entry(proved, b.root.root_class, b.root.index) for b in branches]
     evidence = {
         "kind": "algebraic",
         "triangles": [],
         "chart": None,
-        **algebraic_evidence(
-            proved, [(b.root.root_class, b.root.index) for b in branches], range(5)
-        ),
+        **algebraic_evidence(proved, entries, range(5)),
     }
     claims = proof("dart")["claims"]
     rest = {k: v for k, v in claims.items() if k not in ("interior", "boundary", "folds")}

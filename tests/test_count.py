@@ -1,6 +1,7 @@
 """Proven counts: every family and example, every method, and brute force for few vertices."""
 
 import dataclasses
+import json
 import random
 from collections import Counter
 from fractions import Fraction
@@ -31,13 +32,15 @@ from exactfold import (
     PROVED,
     UNDECIDED,
     CreasePattern,
+    checker,
     count_branches,
     example_path,
     random_square,
     read_fold,
 )
 from exactfold import count as module
-from exactfold.branches import classify
+from exactfold.branches import attempt, classify, multiple_roots
+from exactfold.branches.claims import certificate
 from exactfold.certify import algebraic, rigid_triangles
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.pattern.families import FAMILIES, h1_sequence, hypar, single_vertex, two_vertex
@@ -157,7 +160,7 @@ def test_paths_that_meet_are_settled_by_flat_vertices():
 
 @pytest.mark.parametrize("method", ["popping", "homotopy"])
 def test_multiple_roots_are_undecided_without_the_exact_engine(monkeypatch, method):
-    monkeypatch.setattr(module, "flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr(attempt, "flat_vertices", lambda chart, points: iter(()))
     result = count_branches(FAMILIES["flat-vertex"](), method=method)
     assert result.status is UNDECIDED
     assert result.distinct is result.with_multiplicity is result.real is None
@@ -167,7 +170,7 @@ def test_multiple_roots_are_undecided_without_the_exact_engine(monkeypatch, meth
 
 def test_multiple_roots_of_a_large_pattern_are_undecided(monkeypatch):
     monkeypatch.setattr(module, "GROEBNER_LIMIT", 1)
-    monkeypatch.setattr(module, "flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr(attempt, "flat_vertices", lambda chart, points: iter(()))
     result = count_branches(FAMILIES["flat-vertex"]())
     assert result.status is UNDECIDED
     assert "the exact engine is tried up to 1 unknowns, here are 2" in result.reason
@@ -183,6 +186,28 @@ def test_flat_vertices_and_the_exact_engine_agree():
             b.to_dict()["vertex_signs"] for b in exact.branches
         ]
         assert [b.multiplicity for b in paths.branches] == [b.multiplicity for b in exact.branches]
+
+
+def test_flat_vertices_by_boxes_and_by_exact_classes_agree(monkeypatch):
+    pattern = hypar(2, twist=0)
+    exact = count_branches(pattern)
+    monkeypatch.setattr(multiple_roots, "GROEBNER_LIMIT", 0)
+    boxes = count_branches(pattern)
+    assert counts(exact) == counts(boxes) == (205, 256, 205, 0)
+    assert Counter(b.multiplicity for b in exact.branches) == {1: 192, 4: 12, 16: 1}
+    assert [(b.sign_text, b.assignment_text, b.multiplicity) for b in exact.branches] == [
+        (b.sign_text, b.assignment_text, b.multiplicity) for b in boxes.branches
+    ]
+    for result in (exact, boxes):
+        document = json.loads(json.dumps(certificate(result)))
+        checker.check(document)
+    roots = document["evidence"]["roots"]
+    place = next(k for k, root in enumerate(roots) if "flat" in root)
+    for flat in ([], [9], [11, 9], [9, 11, 11], [0, 9], [5, 7, 9, 11], ["9", 11], None):
+        if flat != roots[place]["flat"]:
+            roots[place]["flat"] = flat
+            with pytest.raises(checker.CertificateError):
+                checker.check(document)
 
 
 def test_hypar_with_a_straight_diagonal():
@@ -645,9 +670,9 @@ def test_undecided_where_a_multiplicity_is_too_small(monkeypatch):
 
 
 def test_undecided_where_the_engine_finds_a_curve_of_solutions(monkeypatch):
-    real = module.groebner
+    real = attempt.groebner
     monkeypatch.setattr(
-        module, "groebner", lambda system: dataclasses.replace(real(system), dimension=None)
+        attempt, "groebner", lambda system: dataclasses.replace(real(system), dimension=None)
     )
     result = count_branches(two_vertex(), method="groebner")
     assert result.status is UNDECIDED
@@ -656,7 +681,7 @@ def test_undecided_where_the_engine_finds_a_curve_of_solutions(monkeypatch):
 
 def test_undecided_where_signs_stay_open(monkeypatch):
     monkeypatch.setattr(classify.BoxRoot, "sign", lambda self, row: None)
-    monkeypatch.setattr(module, "recognise", lambda system, boxes: None)
+    monkeypatch.setattr(multiple_roots, "recognise", lambda system, boxes: None)
     result = count_branches(two_vertex(), method="popping")
     assert result.status is UNDECIDED
     assert "all 4 solutions isolated, but signs are undecided on 4" in result.reason

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeVar
 
 from exactfold.branches.branch import Branch
 from exactfold.branches.flat_folds import flat_folds
 from exactfold.branches.functionals import Functionals, Row
-from exactfold.branches.roots import BoxRoot, Root
+from exactfold.branches.roots import BoxRoot, FlatBoxRoot, Root
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.krawczyk import krawczyk_at
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -101,10 +101,13 @@ def _fill(signs: dict[K, int | None], rows: Mapping[K, Row], root: Root) -> None
 
 
 def _sharpen(chart: Chart, root: Root, bits: int) -> Root | None:
-    if not isinstance(root, BoxRoot) or root.box.bits >= bits:
+    if not isinstance(root, BoxRoot | FlatBoxRoot) or root.box.bits >= bits:
         return None
-    sharper = krawczyk_at(chart.system, root.box, bits)
-    return BoxRoot(sharper, root.side) if isinstance(sharper, IsolatingBox) else None
+    system = chart.system if isinstance(root, BoxRoot) else root.sheets.system
+    if system is None:
+        return None
+    sharper = krawczyk_at(system, root.box, bits)
+    return replace(root, box=sharper) if isinstance(sharper, IsolatingBox) else None
 
 
 def vertex_height_rows(

@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Protocol
 
-from exactfold.branches.functionals import Row
+from exactfold.branches.functionals import Row, integer_row
 from exactfold.certify.box import IsolatingBox
 from exactfold.exact.univariate import Interval
 from exactfold.solve.exact_solution import RootClass
+from exactfold.solve.strata import FlatSheets
 
 
 class Root(Protocol):
@@ -65,6 +66,30 @@ class BoxRoot:
         return 0 if value == 0 and reach == 0 else None
 
     def mirrored(self) -> BoxRoot:
+        """The mirror image."""
+        return replace(self, side=-self.side)
+
+
+@dataclass(frozen=True)
+class FlatBoxRoot:
+    """The one zero, in an isolating box, of the quadrics on the sheets that are flat somewhere.
+
+    The box lies in the unknowns of `sheets`; with side -1, its mirror image.
+    """
+
+    sheets: FlatSheets
+    box: IsolatingBox
+    side: int = 1
+
+    def enclose(self, row: Sequence[Fraction | int]) -> tuple[Fraction, Fraction]:
+        """Bounds of the value over the whole box."""
+        return BoxRoot(self.box, self.side).enclose(self.sheets.restrict(row))
+
+    def sign(self, row: Row) -> int | None:
+        """Sign over the whole box: 0 if the functional vanishes on these sheets."""
+        return BoxRoot(self.box, self.side).sign(integer_row(self.sheets.restrict(row)))
+
+    def mirrored(self) -> FlatBoxRoot:
         """The mirror image."""
         return replace(self, side=-self.side)
 

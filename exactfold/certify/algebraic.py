@@ -12,9 +12,12 @@ from exactfold.certify.certificate import box_entry
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.solve.exact_solution import RootClass
-from exactfold.solve.strata import flat_equations
+from exactfold.solve.strata import FlatSheets, flat_equations
 from exactfold.system.branch_system import Chart
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
+
+FlatBox = tuple[FlatSheets, IsolatingBox]
+"""A box in the unknowns of the sheets that are flat at given vertices."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +33,7 @@ class AlgebraicProof:
 
     classes: tuple[tuple[RootClass, tuple[int, ...]], ...]
     boxes: tuple[IsolatingBox, ...]
+    flat_boxes: tuple[FlatBox, ...]
     multipliers: tuple[Fraction, ...]
     complete: Verdict
     reason: str
@@ -46,18 +50,23 @@ class AlgebraicProof:
     @property
     def distinct(self) -> int:
         """Number of different zeros, real or not."""
-        return sum(root_class.degree for root_class, _ in self.classes) + len(self.boxes)
+        boxes = len(self.boxes) + len(self.flat_boxes)
+        return sum(root_class.degree for root_class, _ in self.classes) + boxes
 
 
 def prove_algebraic(
-    chart: Chart, classes: Sequence[RootClass], boxes: Sequence[IsolatingBox] = ()
+    chart: Chart,
+    classes: Sequence[RootClass],
+    boxes: Sequence[IsolatingBox] = (),
+    flat_boxes: Sequence[FlatBox] = (),
 ) -> AlgebraicProof:
     """Prove that these classes and boxes are all zeros of the system of a chart.
 
     The classes need different irreducible polynomials in one separating form; the boxes must be
-    disjoint and must not hold a zero of a class, which is left to the caller. `complete` is
-    UNDECIDED, with a reason, if a stress or a part of the sum of multiplicities is missing; that
-    does not mean that roots are missing. Raises `ParametrisationError` if a root fails its check.
+    disjoint within each kind, and no zero may be in two kinds, which is left to the caller.
+    `complete` is UNDECIDED, with a reason, if a stress or a part of the sum of multiplicities is
+    missing; that does not mean that roots are missing. Raises `ParametrisationError` if a root
+    fails its check.
     """
     closed = chart.branch_system.pattern.with_notch_closed()
     stress = definite_stress(closed)
@@ -66,6 +75,7 @@ def prove_algebraic(
         root_class.verify(chart.system)
         proved.append((root_class, flat_equations(chart, root_class)))
     total = sum(c.degree << len(flat) for c, flat in proved) + len(boxes)
+    total += sum(1 << len(sheets.vertices) for sheets, _ in flat_boxes)
     if stress is None:
         verdict, reason = UNDECIDED, "no definite stress was found: finiteness is not proved"
     elif len({c.separating for c in classes}) > 1 or len({c.polynomial for c in classes}) < len(
@@ -78,21 +88,18 @@ def prove_algebraic(
     else:
         verdict, reason = PROVED, "multiplicities by flat vertices add up to the Bezout number"
     multipliers = () if stress is None else tuple(stress[v] for v in closed.interior)
-    return AlgebraicProof(tuple(proved), tuple(boxes), multipliers, verdict, reason)
+    return AlgebraicProof(
+        tuple(proved), tuple(boxes), tuple(flat_boxes), multipliers, verdict, reason
+    )
 
 
 def algebraic_evidence(
-    proof: AlgebraicProof,
-    roots: Sequence[IsolatingBox | tuple[RootClass, int]],
-    labels: Sequence[int],
-    bits: int = 64,
+    proof: AlgebraicProof, roots: Sequence[dict[str, Any]], labels: Sequence[int]
 ) -> dict[str, Any]:
-    """The proof as certificate evidence, with the real roots in the order of the branches.
+    """The proof as certificate evidence; `roots` holds an entry for each branch, in their order.
 
-    A root is a box or (class, index among its real roots); `labels` names the vertices in the
-    certificate.
+    `labels` names the vertices in the certificate.
     """
-    position = {id(root_class): k for k, (root_class, _) in enumerate(proof.classes)}
     return {
         "multipliers": [format_rational(m) for m in proof.multipliers],
         "separating": list(proof.classes[0][0].separating) if proof.classes else [],
@@ -104,13 +111,19 @@ def algebraic_evidence(
             }
             for root_class, flat in proof.classes
         ],
-        "roots": [
-            box_entry(root)
-            if isinstance(root, IsolatingBox)
-            else {
-                "class": position[id(root[0])],
-                "interval": [format_rational(x) for x in root[0].real_roots(bits)[root[1]]],
-            }
-            for root in roots
-        ],
+        "roots": list(roots),
     }
+
+
+def flat_box_entry(sheets: FlatSheets, box: IsolatingBox, labels: Sequence[int]) -> dict[str, Any]:
+    """A root in a box on flat sheets."""
+    return {"flat": sorted(labels[v] for v in sheets.vertices), **box_entry(box)}
+
+
+def class_entry(
+    proof: AlgebraicProof, root_class: RootClass, index: int, bits: int = 64
+) -> dict[str, Any]:
+    """The `index`-th real root of a class of the proof."""
+    number = next(k for k, (c, _) in enumerate(proof.classes) if c is root_class)
+    interval = root_class.real_roots(bits)[index]
+    return {"class": number, "interval": [format_rational(x) for x in interval]}
