@@ -90,7 +90,8 @@ def enclose(
         return failed
     distance = _squared_distance(sheet, found, denominator)
     letters = _letters(sheet, found.bends, distance * denominator**2)
-    decided = {int(v) for e, s in enumerate(letters) if s for v in sheet.folds.corners[e, :2]}
+    ends = sheet.folds.corners[np.array(letters, dtype=bool), :2]
+    decided = set(ends.ravel().tolist())
     loose = tuple(v for v in sheet.poppable if v not in decided)
     return Enclosure(heights, denominator, signs, distance, letters, loose)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -195,20 +196,22 @@ class BranchFinder:
     ) -> SignedBranch:
         """The branch with the signs that `signs` returned."""
         begin = time.perf_counter()
-        steps, best, reason = 0, None, ""
+        steps = 0
+        reason = "no heights with curvature above the target everywhere were found"
         try:
-            end = self.propose(signs, start, progress)
-            if end.failure and start is not None:
-                end = self.propose(signs, None, progress)
-            steps, reason = end.steps, end.failure
-            if np.isfinite(end.x).all():
-                best = self._prove(signs, end.x, progress)
+            with np.errstate(all="ignore"):  # what leaves the range of floats is no proposal
+                end = self.propose(signs, start, progress)
+                if end.failure and start is not None:
+                    end = self.propose(signs, None, progress)
+                steps, reason = end.steps, end.failure or reason
+                best = None
+                if np.isfinite(end.x).all():
+                    best = self._prove(signs, end.x, progress)
+            if best is not None:
+                return self._result(signs, best, steps, time.perf_counter() - begin)
         except OverflowError:
             reason = "a length or a form is beyond the range of floats"
-        if best is None:
-            reason = reason or "no heights with curvature above the target everywhere were found"
-            return self._undecided(signs, reason, steps, time.perf_counter() - begin)
-        return self._result(signs, best, steps, time.perf_counter() - begin)
+        return self._undecided(signs, reason, steps, time.perf_counter() - begin)
 
     def neighbours(
         self,
@@ -222,13 +225,15 @@ class BranchFinder:
         for v in chosen:
             if v not in self._names:
                 raise UsageError(self.cannot_pop(v))
-        base = self.propose(signs, None, progress)
+        first = None  # the branch with `signs` as a start, if it is found
+        with suppress(OverflowError), np.errstate(all="ignore"):
+            base = self.propose(signs, None, progress)
+            first = None if base.failure else base.x
         found = {}
         for k, v in enumerate(chosen):
             if progress is not None:
                 progress("neighbours", k, len(chosen))
-            start = None if base.failure else base.x
-            found[v] = self.find({**signs, v: -signs[v]}, start=start)
+            found[v] = self.find({**signs, v: -signs[v]}, start=first)
         return found
 
     # --- the proof -------------------------------------------------------------------------------

@@ -256,6 +256,22 @@ def test_undecided_and_several_branches_write_nothing(tmp_path: Path) -> None:
     assert not path.exists()
 
 
+def test_main_prints_the_verdict(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "c.json"
+    document = certificate("thin triangles")
+    path.write_text(json.dumps(document))
+    assert branch_checker.main([str(path)]) == 0
+    assert capsys.readouterr().out.startswith("VALID")
+    flip_sign(document)
+    path.write_text(json.dumps(document))
+    assert branch_checker.main([str(path)]) == 1
+    assert capsys.readouterr().out.startswith("INVALID")
+    path.write_text('{"format": "exactfold branch", "version": 1.0}')
+    assert branch_checker.main([str(path)]) == 3
+    assert branch_checker.main([str(tmp_path / "none")]) == 3
+    assert branch_checker.main([]) == 2
+
+
 def test_it_runs_alone_beside_the_other_checker(tmp_path: Path) -> None:
     folder = Path(exactfold.__file__).parent
     for name in ("checker.py", "branch_checker.py"):

@@ -176,6 +176,34 @@ def test_symmetries(kind: str) -> None:
         assert back == dict(plain.assignment)
 
 
+@pytest.mark.parametrize("power", [8, 140])
+def test_an_affine_map_changes_nothing(power: int) -> None:
+    # The curvature forms are those of the gradients' polygons: all scale by the determinant.
+    pattern = random_square(6, seed=3)
+    moved = mapped(pattern, lambda p: (p[0] * 10**power + p[1], p[1]))
+    for signs in ("+-+-+-", "++++++"):
+        plain, other = find_branch(pattern, signs), find_branch(moved, signs)
+        assert plain.status is other.status is PROVED
+        assert plain.assignment == other.assignment
+        for v, (low, high) in other.heights.items():
+            assert plain.heights[v][0] <= high
+            assert low <= plain.heights[v][1]
+
+
+@pytest.mark.parametrize("power", [200, 400])
+def test_what_is_beyond_floats_is_undecided(power: int) -> None:
+    pattern = mapped(random_square(3, seed=0), lambda p: (p[0] * 10**power, p[1]))
+    found = find_branch(pattern, "+-+")
+    assert found.status is UNDECIDED
+    assert found.reason
+    assert found.heights == {}
+    assert set(found.assignment_text) == {"U"}
+    assert found.undecided_vertices == pattern.interior
+    assert found.to_dict()["radius"] is None
+    reached = neighbours(pattern, "+-+", [4])
+    assert reached[4].status is UNDECIDED
+
+
 # --- more boundary vertices ----------------------------------------------------------------------
 
 
