@@ -28,7 +28,7 @@ class Coordinates:
         lower, upper = _identity(size), _identity(size)
         for i in range(size):
             for j in range(i):
-                lower[i][j], upper[j][i] = source.randint(-2, 2), source.randint(-2, 2)
+                lower[i][j], upper[j][i] = source.randint(-9, 9), source.randint(-9, 9)
         matrix = _times(lower, upper)
         inverse = fmpz_mat(matrix).inv(integer=True).tolist()
         return cls(matrix, [[int(x) for x in row] for row in inverse])
@@ -68,14 +68,17 @@ class Deflation:
 
     @classmethod
     def of(cls, system: QuadraticSystem, corank: int, seed: int = 1) -> Deflation:
-        """The equations for zeros of the given corank, with pseudo-random small coefficients."""
+        """The equations for zeros of the given corank, with pseudo-random small coefficients.
+
+        For some seeds the coefficients may be too special for dG to be invertible: try another.
+        """
         if corank == 0:
             return cls(system, Coordinates.same(system.size), 0, ())
         source = random.Random(seed)
         coordinates = Coordinates.generic(system.size, seed)
         mixture = Coordinates.generic(system.size, seed + 1).matrix
         weights = tuple(
-            tuple(tuple(source.randint(-9, 9) for _ in range(corank)) for _ in range(corank))
+            tuple(tuple(source.randint(-99, 99) for _ in range(corank)) for _ in range(corank))
             for _ in range(corank)
         )
         return cls(_transformed(system, coordinates, mixture), coordinates, corank, weights)

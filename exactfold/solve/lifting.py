@@ -26,6 +26,7 @@ from exactfold.solve.residues import ResidueRing, Vector
 from exactfold.system.quadratic import QuadraticSystem
 
 _FORMS_TRIED = 12
+_SEEDS_TRIED = 8
 _LARGEST = 7  # with 8 unknowns, lifting takes more than ten minutes
 
 
@@ -80,12 +81,16 @@ def _lift(
     corank = start.multiplicity.bit_length() - 1
     if start.multiplicity != 1 << corank:
         return None
-    equations = Deflation.of(system, corank)
     ring = ResidueRing.over(prime, _integers(start.modulus))
-    v = equations.pulled_back(ring, [ring.element(_integers(x)) for x in start.values])
-    block = ring.inverse(equations.block(ring, v))
-    inverse = None if block is None else ring.inverse(equations.evaluate(ring, v, block)[1])
-    if block is None or inverse is None:
+    values = [ring.element(_integers(x)) for x in start.values]
+    for seed in range(_SEEDS_TRIED if corank else 1):
+        equations = Deflation.of(system, corank, seed)
+        v = equations.pulled_back(ring, values)
+        block = ring.inverse(equations.block(ring, v))
+        inverse = None if block is None else ring.inverse(equations.evaluate(ring, v, block)[1])
+        if block is not None and inverse is not None:
+            break
+    else:
         return None
     power = prime
     while power.bit_length() <= _precision_limit(system):
