@@ -60,18 +60,19 @@ class FloatBoxes:
 
     @property
     def proved(self) -> BoolArray:
-        """Which rows are proved."""
-        return np.asarray(self.exponents != UNPROVED)
+        """Which rows are proved; never one whose centre is not exactly a double."""
+        exact = (np.abs(self.centers) < int(_INTEGERS)).all(axis=1)
+        return np.asarray((self.exponents != UNPROVED) & exact)
 
     @property
     def points(self) -> FloatArray:
         """The centres as doubles, exactly (they have at most 52 bits)."""
-        return np.asarray(self.centers * 2.0**-self.bits)
+        return np.asarray(np.ldexp(self.centers.astype(np.float64), -self.bits))
 
     @property
     def radii(self) -> FloatArray:
         """The radii as doubles, exactly."""
-        return np.asarray(np.exp2(self.exponents - float(self.bits)), dtype=np.float64)
+        return np.asarray(np.ldexp(1.0, (self.exponents - self.bits).astype(np.intc)))
 
 
 @dataclass(frozen=True)
@@ -110,14 +111,14 @@ class FloatKrawczyk:
         Radii are powers of two with room to spare, so that another Y proves the boxes as well.
         """
         with np.errstate(all="ignore"):
-            scaled = np.rint(points * 2.0**bits)
+            scaled = np.rint(np.ldexp(points, bits))
             fits = np.asarray((np.abs(scaled) < _INTEGERS).all(axis=1))  # false for NaN
             centers = np.where(fits[:, None], scaled, 0.0).astype(np.int64)
-            eta, k0, bound = self._bounds(np.asarray(centers * 2.0**-bits, dtype=np.float64))
+            eta, k0, bound = self._bounds(np.asarray(np.ldexp(centers.astype(np.float64), -bits)))
             usable = fits & (eta < 2.0**60)
-            least = _SHARE * np.where(usable, eta, 1.0) * 2.0**bits
+            least = np.ldexp(_SHARE * np.where(usable, eta, 1.0), bits)
             exponents = np.maximum(np.frexp(least)[1], 0).astype(np.int64)
-            radii = np.exp2(exponents - float(bits))
+            radii = np.ldexp(1.0, (exponents - bits).astype(np.intc))
             passed = usable & ((k0 + radii * bound) * _UP <= _CONTRACTION)
         return FloatBoxes(bits, centers, np.where(passed, exponents, UNPROVED))
 
@@ -127,8 +128,7 @@ class FloatKrawczyk:
             eta, k0, bound = self._bounds(boxes.points)
             contraction = (k0 + boxes.radii * bound) * _UP
             holds = eta * _UP < boxes.radii * (1.0 - contraction)
-        fits = (np.abs(boxes.centers) < int(_INTEGERS)).all(axis=1)
-        return np.asarray(boxes.proved & fits & (contraction < 1.0) & holds)
+        return np.asarray(boxes.proved & (contraction < 1.0) & holds)
 
     def _bounds(self, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Upper bounds of eta, k0 and M for every point; NaN or infinite where there are none."""

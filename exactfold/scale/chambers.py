@@ -16,7 +16,7 @@ from exactfold.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk
 from exactfold.certify.rigid_triangles import RigidTriangle, certify_rigid_triangles
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.scale.settle import ExactRoot, settle
+from exactfold.scale.settle import ExactRoot, OpenEnd, Settler
 from exactfold.solve.nappes import NappeSystem, chamber_chart, sign_vectors
 from exactfold.system.branch_system import Chart
 
@@ -41,7 +41,7 @@ class ProvedBlock:
     boxes: FloatBoxes
     valleys: npt.NDArray[np.bool_]
     exact: Mapping[int, ExactRoot]
-    open: Mapping[int, str]
+    open: Mapping[int, OpenEnd]
     steps: int = 0
     seconds: Mapping[str, float] = field(default_factory=dict)
 
@@ -103,8 +103,8 @@ class Chambers:
         return NappeSystem(self.chart)
 
     @cached_property
-    def _flat_before(self) -> set[tuple[int, ...]]:
-        return set()
+    def _settler(self) -> Settler:
+        return Settler(self._nappes, self.functionals, self.labels)
 
     @cached_property
     def _test(self) -> FloatKrawczyk:
@@ -150,10 +150,10 @@ class Chambers:
             for start in range(0, count, _CHUNK)
         ]
         exact: dict[int, ExactRoot] = {}
-        unproved: dict[int, str] = {}
+        unproved: dict[int, OpenEnd] = {}
         for k, part in enumerate(parts):
             exact |= {k * _CHUNK + j: root for j, root in part.exact.items()}
-            unproved |= {k * _CHUNK + j: reason for j, reason in part.open.items()}
+            unproved |= {k * _CHUNK + j: end for j, end in part.open.items()}
         return ProvedBlock(
             index,
             FloatBoxes(
@@ -179,12 +179,10 @@ class Chambers:
         good &= boxes.exponents <= _WIDEST
         times.append(time.process_time())
         exact: dict[int, ExactRoot] = {}
-        unproved: dict[int, str] = {}
+        unproved: dict[int, OpenEnd] = {}
         for j in np.flatnonzero(~good).tolist():
             e = [int(sign) for sign in signs[j]]
-            found = settle(
-                self._nappes, self.functionals, e, ends.points[j], self.labels, self._flat_before
-            )
+            found = self._settler.settle(e, ends.points[j])
             if isinstance(found, ExactRoot):
                 exact[j] = found
             else:

@@ -64,7 +64,7 @@ def block_line(block: ProvedBlock) -> str:
                 }
                 for j, root in sorted(block.exact.items())
             ],
-            "open": [[j, reason] for j, reason in sorted(block.open.items())],
+            "open": [[j, end.reason] for j, end in sorted(block.open.items())],
         }
     )
 

@@ -14,7 +14,7 @@ from exactfold.errors import CertificateFormatError, UnreadableFileError
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.scale.chambers import Chambers, ProvedBlock
-from exactfold.scale.stream import OpenRoot, sign_text
+from exactfold.scale.stream import OpenRoot, open_root
 
 Progress = Callable[[int, int], None]
 
@@ -77,7 +77,7 @@ def branches_in_memory(
         block = chambers.prove(index)
         branches += maker.branches(block)
         first = index * chambers.block_size
-        unproved += [OpenRoot(sign_text(chambers, first + j), r) for j, r in block.open.items()]
+        unproved += [open_root(chambers, first + j, end) for j, end in block.open.items()]
         if progress is not None:
             progress(first + chambers.block_size, 1 << chambers.size)
     branches.sort(key=Branch.sort_key)

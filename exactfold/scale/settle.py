@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -31,82 +31,102 @@ class ExactRoot:
     assignment: str
 
 
-def settle(
-    system: NappeSystem,
-    functionals: Functionals,
-    signs: Sequence[int],
-    point: npt.NDArray[np.float64],
-    labels: Sequence[int],
-    flat_before: set[tuple[int, ...]],
-) -> ExactRoot | str:
-    """The zero with these vertex signs, proved, or why it was not (naming vertices by `labels`).
+@dataclass(frozen=True)
+class OpenEnd:
+    """Why no zero was proved for a sign vector, and which of its vertices look flat there.
 
-    The exact test of `krawczyk` at `point`; if it fails, or finds a zero with other signs, at the
-    end of the nappe equations in rising precision, which is that with the signs asked for. Sets of
-    vertices that look flat in the highest precision are remembered in `flat_before`; ends with the
-    same flat vertices then stop at the lowest.
+    `flat` gives places in the sign vector. Paths that differ only in their signs there seem to end
+    at one point, which is then a multiple zero; nothing of this is proved.
     """
-    chart = functionals.chart
-    if np.isfinite(point).all() and np.abs(point).max(initial=0.0) < _FAR:
-        (found,) = krawczyk(chart.system, point[None], precisions=_FIRST)
-        if isinstance(found, IsolatingBox):
-            root = _classified(functionals, signs, found, labels)
-            if isinstance(root, ExactRoot):
-                return root
-    reason = "no end was reached in higher precision"
-    for bits in _RISING:
-        end = refined_end(system, signs, bits)
-        if end is None:
-            continue
-        wide = IsolatingBox(end.point, (), 1 << (bits // 2), bits)
-        box = krawczyk_at(chart.system, wide, bits)
-        if isinstance(box, IsolatingBox):
-            root = _classified(functionals, signs, box, labels)
-            if isinstance(root, ExactRoot):
-                return root
-            reason = root
-        elif end.flat:
-            names = ", ".join(str(labels[v]) for v in end.flat)
-            many = 1 << len(end.flat)
-            reason = (
-                f"vertex {names} flat to {bits // 2} bits: {many} paths seem to meet in a "
-                "multiple root"
-            )
-            if end.flat in flat_before:
-                break
-            if bits == _RISING[-1]:
-                flat_before.add(end.flat)
-        else:
-            reason = box
-    return reason
+
+    reason: str
+    flat: tuple[int, ...] = ()
 
 
-def _classified(
-    functionals: Functionals, signs: Sequence[int], box: IsolatingBox, labels: Sequence[int]
-) -> ExactRoot | str:
-    """The box with its folds if they are decided and its vertex signs are those asked for."""
-    chart = functionals.chart
-    vertices = functionals.vertices
-    root = BoxRoot(box)
-    found = [root.sign(row) for row in vertices.values()]
-    folds = {fold: root.sign(row) for fold, row in functionals.folds.items()}
-    for bits in _SHARPER:
-        if None not in found and None not in folds.values():
-            break
-        sharper = krawczyk_at(chart.system, root.box, bits)
-        if not isinstance(sharper, IsolatingBox):
-            break
-        root = BoxRoot(sharper)
+@dataclass(frozen=True)
+class Settler:
+    """Settles sign vectors of one pattern, naming vertices by `labels`.
+
+    Sets of vertices that look flat even in the highest precision are remembered: where the same
+    ones look flat in doubles, nothing more is tried, as the zeros cannot all be simple any more.
+    """
+
+    system: NappeSystem
+    functionals: Functionals
+    labels: Sequence[int]
+    _flat_before: set[tuple[int, ...]] = field(default_factory=set)
+
+    def settle(self, signs: Sequence[int], point: npt.NDArray[np.float64]) -> ExactRoot | OpenEnd:
+        """The zero with these vertex signs, proved, or why it was not.
+
+        The exact test of `krawczyk` at `point`; if it fails, or finds a zero with other signs, at
+        the end of the nappe equations in rising precision, which is the one with these signs.
+        """
+        if self._flat_before:
+            flat = self.system.flat_at_end(signs)
+            if flat in self._flat_before:
+                return self._multiple(flat, "in double precision")
+        system = self.functionals.chart.system
+        if np.isfinite(point).all() and np.abs(point).max(initial=0.0) < _FAR:
+            (found,) = krawczyk(system, point[None], precisions=_FIRST)
+            if isinstance(found, IsolatingBox):
+                root = self._classified(signs, found)
+                if isinstance(root, ExactRoot):
+                    return root
+        reason = OpenEnd("no end was reached in higher precision")
+        for bits in _RISING:
+            end = refined_end(self.system, signs, bits)
+            if end is None:
+                continue
+            wide = IsolatingBox(end.point, (), 1 << (bits // 2), bits)
+            box = krawczyk_at(system, wide, bits)
+            if isinstance(box, IsolatingBox):
+                root = self._classified(signs, box)
+                if isinstance(root, ExactRoot):
+                    return root
+                reason = OpenEnd(root)
+            elif end.flat:
+                reason = self._multiple(end.flat, f"to {bits // 2} bits")
+            else:
+                reason = OpenEnd(box)
+        if reason.flat:
+            self._flat_before.add(reason.flat)
+        return reason
+
+    def _multiple(self, flat: tuple[int, ...], precision: str) -> OpenEnd:
+        interior = self.functionals.chart.branch_system.pattern.interior
+        names = ", ".join(str(self.labels[interior[k]]) for k in flat)
+        return OpenEnd(
+            f"vertex {names} flat {precision}: {1 << len(flat)} paths seem to meet in a "
+            "multiple root",
+            flat,
+        )
+
+    def _classified(self, signs: Sequence[int], box: IsolatingBox) -> ExactRoot | str:
+        """The box with its folds if they are decided and its vertex signs are those asked for."""
+        chart, labels = self.functionals.chart, self.labels
+        vertices, rows = self.functionals.vertices, self.functionals.folds
+        root = BoxRoot(box)
         found = [root.sign(row) for row in vertices.values()]
-        folds = {fold: root.sign(row) for fold, row in functionals.folds.items()}
-    for vertex, sign, wanted in zip(vertices, found, signs, strict=True):
-        if sign != wanted:
-            state = "undecided" if sign is None else "another"
-            return f"the sign of vertex {labels[vertex]} is {state}"
-    for fold in flat_folds(chart.branch_system.pattern, folds) if None in folds.values() else ():
-        folds[fold] = 0
-    still_open = [f"{labels[i]}-{labels[j]}" for (i, j), sign in folds.items() if sign is None]
-    if still_open:
-        return f"fold {', '.join(still_open)} undecided"
-    letters = "".join(_LETTERS[sign] for _, sign in sorted(folds.items()) if sign is not None)
-    return ExactRoot(root.box, letters)
+        folds = {fold: root.sign(row) for fold, row in rows.items()}
+        for bits in _SHARPER:
+            if None not in found and None not in folds.values():
+                break
+            sharper = krawczyk_at(chart.system, root.box, bits)
+            if not isinstance(sharper, IsolatingBox):
+                break
+            root = BoxRoot(sharper)
+            found = [root.sign(row) for row in vertices.values()]
+            folds = {fold: root.sign(row) for fold, row in rows.items()}
+        for vertex, sign, wanted in zip(vertices, found, signs, strict=True):
+            if sign != wanted:
+                state = "undecided" if sign is None else "another"
+                return f"the sign of vertex {labels[vertex]} is {state}"
+        if None in folds.values():
+            for fold in flat_folds(chart.branch_system.pattern, folds):
+                folds[fold] = 0
+        unknown = [f"{labels[i]}-{labels[j]}" for (i, j), sign in folds.items() if sign is None]
+        if unknown:
+            return f"fold {', '.join(unknown)} undecided"
+        letters = "".join(_LETTERS[sign] for _, sign in sorted(folds.items()) if sign is not None)
+        return ExactRoot(root.box, letters)

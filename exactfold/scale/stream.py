@@ -18,6 +18,7 @@ from exactfold.scale.chambers import Chambers, ProvedBlock
 from exactfold.scale.check import FastChecker
 from exactfold.scale.journal import Journal
 from exactfold.scale.lines import block_line, claims_line, header_line
+from exactfold.scale.settle import OpenEnd
 from exactfold.scale.threads import one_thread_each
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
@@ -32,10 +33,15 @@ LEAST = 8
 
 @dataclass(frozen=True)
 class OpenRoot:
-    """A sign vector whose branch was not proved, as text over the foldable vertices, and why."""
+    """A sign vector whose branch was not proved, as text over the foldable vertices, and why.
+
+    `limit` has 0 in place of the signs of vertices that look flat at the end of the path: paths
+    with the same `limit` seem to end at one point. Nothing of this is proved.
+    """
 
     signs: str
     reason: str
+    limit: str
 
 
 @dataclass(frozen=True)
@@ -43,10 +49,10 @@ class StreamedCount:
     """What a run of `count_streaming` proved.
 
     `status` is PROVED if `path` holds a complete certificate: 2^n branches, all real and simple,
-    no others. Otherwise UNDECIDED, and `open_roots` names the sign vectors without a proved branch,
-    whose number is `unproved`; the other blocks of the file are proved nevertheless. `exact` counts
-    roots that needed integers, `resumed` the blocks taken over from an earlier run (verified
-    again). `seconds` is processor time by stage, of all workers, and `elapsed` by the clock.
+    no others. Otherwise UNDECIDED, and `open_roots` names the sign vectors without a proved branch
+    (1000 at most; their number is `unproved`); the other roots in the file are proved nevertheless.
+    `exact` counts roots that needed integers, `resumed` the blocks taken over from an earlier run,
+    verified again. `seconds` is processor time by stage, of all workers, `elapsed` by the clock.
     """
 
     pattern: CreasePattern
@@ -153,15 +159,17 @@ class _Tally:
         self.unproved += len(block.open)
         self.steps += block.steps
         self.seconds.update(block.seconds)
-        for j, reason in block.open.items():
+        for j, end in block.open.items():
             if len(self.open_roots) < self.most_open:
                 number = block.index * chambers.block_size + j
-                self.open_roots.append(OpenRoot(sign_text(chambers, number), reason))
+                self.open_roots.append(open_root(chambers, number, end))
 
 
-def sign_text(chambers: Chambers, number: int) -> str:
-    """The sign vector of a number, as text over the foldable vertices."""
-    return "".join("+-"[number >> k & 1] for k in range(chambers.size))
+def open_root(chambers: Chambers, number: int, end: OpenEnd) -> OpenRoot:
+    """The open end of a path by its number."""
+    signs = "".join("+-"[number >> k & 1] for k in range(chambers.size))
+    limit = "".join("0" if k in end.flat else sign for k, sign in enumerate(signs))
+    return OpenRoot(signs, end.reason, limit)
 
 
 def _blocks(chambers: Chambers, first: int, workers: int) -> Iterator[tuple[ProvedBlock, str]]:

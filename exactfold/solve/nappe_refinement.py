@@ -18,9 +18,9 @@ _GUARD = 40
 
 @dataclass(frozen=True)
 class RefinedEnd:
-    """An end to `bits` bits: point / 2^bits in the chart, and the vertices that look flat there.
+    """An end to `bits` bits: point / 2^bits in the chart, and which vertices look flat there.
 
-    A vertex looks flat if |A_v h| is below 2^-(bits/2). Nothing is proved.
+    `flat` gives places in the sign vector, those with |A_v h| below 2^-(bits/2). Nothing is proved.
     """
 
     point: tuple[int, ...]
@@ -46,7 +46,7 @@ def refined_end(system: NappeSystem, signs: Sequence[int], bits: int) -> Refined
         return None
     _, _, norms = newton.values(x)
     tiny = newton.ctx.ldexp(1, -(bits // 2))
-    flat = tuple(v for v, norm in zip(system.movable, norms, strict=True) if norm < tiny)
+    flat = tuple(k for k, norm in enumerate(norms) if norm < tiny)
     pattern = system.chart.branch_system.pattern
     if pattern.reflex_corner is not None:
         weights = [system.chart.functional.get(v, 0) for v in system.movable]

@@ -13,6 +13,7 @@ is proved.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -35,6 +36,7 @@ _HALVINGS = 40
 _DECREASE = 0.1
 _CONVERGED = 1e-13
 _NOISE = 1e-14
+_FLAT = 1e-10
 
 
 @dataclass(frozen=True)
@@ -169,6 +171,13 @@ class NappeSystem:
         with np.errstate(all="ignore"):
             points = self._to_chart(x)
         return Ends(points, converged & np.isfinite(points).all(axis=1), steps)
+
+    def flat_at_end(self, signs: Sequence[int]) -> tuple[int, ...]:
+        """The places of `signs` whose vertices look flat in doubles at the end for these signs."""
+        e = self.full_signs(np.array([signs], dtype=np.float64))
+        x, _, _ = self.unknowns(e)
+        small = self._values(x, e)[2][0] < _FLAT * (1.0 + np.abs(x).max())
+        return tuple(np.flatnonzero(small).tolist())
 
     def unknowns(self, e: FloatArray) -> tuple[FloatArray, BoolArray, int]:
         """The same before scaling to the chart, for signs of all unknowns."""

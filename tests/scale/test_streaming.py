@@ -98,6 +98,8 @@ def test_multiple_roots_are_handed_on_by_name(tmp_path: Path) -> None:
     assert result.distinct is None
     assert [root.signs for root in result.open_roots] == ["++", "+-"]
     assert all("vertex 5 flat" in root.reason for root in result.open_roots)
+    assert [root.limit for root in result.open_roots] == ["+0", "+0"]
+    assert "in double precision" in result.open_roots[1].reason
     assert result.unproved == 2
     for fast in (True, False):
         with pytest.raises(CertificateError, match="root 0 is open"):
