@@ -25,7 +25,6 @@ BLOCK = 1024
 
 _BITS = 40
 _WIDEST = 52
-_CHUNK = 256
 
 
 @dataclass(frozen=True)
@@ -145,55 +144,38 @@ class Chambers:
     def prove(self, index: int) -> ProvedBlock:
         """Solve and prove the sign vectors of block `index`."""
         count = self.block_size
-        parts = [
-            self._chunk(index * count + start, min(_CHUNK, count - start))
-            for start in range(0, count, _CHUNK)
-        ]
-        exact: dict[int, ExactRoot] = {}
-        unproved: dict[int, OpenEnd] = {}
-        for k, part in enumerate(parts):
-            exact |= {k * _CHUNK + j: root for j, root in part.exact.items()}
-            unproved |= {k * _CHUNK + j: end for j, end in part.open.items()}
-        return ProvedBlock(
-            index,
-            FloatBoxes(
-                _BITS,
-                np.concatenate([part.boxes.centers for part in parts]),
-                np.concatenate([part.boxes.exponents for part in parts]),
-            ),
-            np.concatenate([part.valleys for part in parts]),
-            exact,
-            unproved,
-            sum(part.steps for part in parts),
-            {key: sum(part.seconds[key] for part in parts) for key in parts[0].seconds},
-        )
-
-    def _chunk(self, first: int, count: int) -> ProvedBlock:
-        times = [time.process_time()]
-        signs = sign_vectors(first, count, self.size)
-        ends = self._nappes.ends(signs)
-        times.append(time.process_time())
+        start = time.process_time()
+        ends = self._nappes.ends_of_block(index * count, count)
+        middle = time.process_time()
         boxes = self._test.isolate(ends.points, _BITS)
+        signs = sign_vectors(index * count, count, self.size)
         vertices, folds = self._vertices.on(boxes), self._folds.on(boxes)
         good = boxes.proved & (vertices == signs).all(axis=1) & (folds != 0).all(axis=1)
         good &= boxes.exponents <= _WIDEST
-        times.append(time.process_time())
+        certified = time.process_time()
         exact: dict[int, ExactRoot] = {}
         unproved: dict[int, OpenEnd] = {}
         for j in np.flatnonzero(~good).tolist():
-            e = [int(sign) for sign in signs[j]]
-            found = self._settler.settle(e, ends.points[j])
+            found = self._settler.settle([int(sign) for sign in signs[j]], ends.points[j])
             if isinstance(found, ExactRoot):
                 exact[j] = found
             else:
                 unproved[j] = found
-        times.append(time.process_time())
-        boxes = FloatBoxes(
-            boxes.bits,
-            np.where(good[:, None], boxes.centers, 0),
-            np.where(good, boxes.exponents, UNPROVED),
+        settled = time.process_time()
+        return ProvedBlock(
+            index,
+            FloatBoxes(
+                boxes.bits,
+                np.where(good[:, None], boxes.centers, 0),
+                np.where(good, boxes.exponents, UNPROVED),
+            ),
+            (folds > 0) & good[:, None],
+            exact,
+            unproved,
+            ends.steps,
+            {
+                "solve": middle - start,
+                "certify": certified - middle,
+                "settle": settled - certified,
+            },
         )
-        names = ("solve", "certify", "settle")
-        spent = {name: b - a for name, a, b in zip(names, times, times[1:], strict=False)}
-        valleys = (folds > 0) & good[:, None]
-        return ProvedBlock(-1, boxes, valleys, exact, unproved, ends.steps, spent)

@@ -111,16 +111,16 @@ def test_multiple_roots_are_handed_on_by_name(tmp_path: Path) -> None:
 def test_paths_that_solver_loses_are_settled_or_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """A solver that returns nonsense costs time, never a branch."""
     chambers = Chambers.of(random_square(3, seed=1))
-    ends = chambers._nappes.ends
+    ends = chambers._nappes.ends_of_block
 
-    def spoiled(signs: np.ndarray) -> object:
-        found = ends(signs)
+    def spoiled(first: int, count: int) -> object:
+        found = ends(first, count)
         found.points[0] = np.nan
         found.points[1] = found.points[2]  # the branch of another chamber
         found.points[3] += 0.4
         return found
 
-    monkeypatch.setattr(type(chambers._nappes), "ends", lambda _, signs: spoiled(signs))
+    monkeypatch.setattr(type(chambers._nappes), "ends_of_block", lambda _, *rows: spoiled(*rows))
     block = chambers.prove(0)
     assert sorted(block.exact) == [0, 1, 3]
     assert not block.open

@@ -99,6 +99,18 @@ def test_nearly_flat_stars_converge() -> None:
     assert len(np.unique(np.round(ends.points, 12), axis=0)) == 4
 
 
+@pytest.mark.parametrize(
+    ("first", "count"), [(0, 1), (0, 32), (256, 256), (512, 512), (1023, 1), (0, 1024)]
+)
+def test_ends_of_blocks_are_those_of_single_sign_vectors(first: int, count: int) -> None:
+    system = NappeSystem(chamber_chart(random_square(10, seed=5)))
+    block = system.ends_of_block(first, count)
+    single = system.ends(sign_vectors(first, count, 10))
+    assert block.converged.all()
+    assert np.abs(block.points - single.points).max() < 1e-12
+    assert count < 128 or block.steps < 0.9 * single.steps
+
+
 def test_singular_matrices_spoil_only_their_own_solution() -> None:
     matrices = np.array([np.eye(2), np.zeros((2, 2)), 2 * np.eye(2)])
     found = solve_each(matrices, np.ones((3, 2)))
