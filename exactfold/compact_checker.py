@@ -5,7 +5,7 @@
 needs `checker.py` beside it and nothing else. The sheet and its curvature forms are rebuilt from
 the file, and every claim is verified in integers, block by block, so that memory does not grow with
 the file. Exit codes as in `checker.py`: 0 every claim holds, 1 some claim is not supported, 3 not a
-compact certificate.
+compact certificate, 70 a worker process died.
 
 Why it is a proof: root number s lies in a box with exactly one zero (Krawczyk); on the whole box
 the sign functional of the k-th foldable vertex is negative if bit k of s is set and positive if
@@ -24,7 +24,7 @@ import json
 import sys
 from collections import deque
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
 from contextlib import ExitStack
 from multiprocessing import get_context
 from typing import IO, TYPE_CHECKING, Any, NamedTuple, NoReturn
@@ -368,6 +368,9 @@ def main(arguments: list[str]) -> int:
     except (checker.FormatError, OSError) as error:
         print(f"not a compact certificate: {error}", file=sys.stderr)
         return 3
+    except BrokenExecutor:
+        print("a worker process died: nothing is known of the file", file=sys.stderr)
+        return 70
     print(checker.summary(claims))
     return 0
 

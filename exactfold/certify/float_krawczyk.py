@@ -61,7 +61,8 @@ class FloatBoxes:
     @property
     def proved(self) -> BoolArray:
         """Which rows are proved; never one whose centre is not exactly a double."""
-        exact = (np.abs(self.centers) < int(_INTEGERS)).all(axis=1)
+        most = int(_INTEGERS)
+        exact = ((self.centers < most) & (self.centers > -most)).all(axis=1)
         return np.asarray((self.exponents != UNPROVED) & exact)
 
     @property

@@ -147,6 +147,11 @@ class NappeSystem:
         ]
 
     @cached_property
+    def _stacked(self) -> FloatArray:
+        """All A_v below each other."""
+        return np.vstack(self._roots)
+
+    @cached_property
     def _owners(self) -> FloatArray:
         """One column for every v: 1 at the squares of v."""
         return np.repeat(np.eye(len(self.nappes)), [len(a) for a in self._roots], axis=0)
@@ -234,7 +239,7 @@ class NappeSystem:
     def _values(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """g, the products A h and the norms |A_v h|."""
         z = np.hstack([x, np.ones((len(x), 1))])
-        products = z @ np.vstack(self._roots).T
+        products = z @ self._stacked.T
         norms = np.sqrt((products * products) @ self._owners)
         return z @ self._lines.T - e * norms, products, norms
 

@@ -201,3 +201,13 @@ def test_singular_matrices_spoil_only_their_own_inverse() -> None:
     assert found[0].tolist() == [[1, 0], [0, 1]]
     assert found[2].tolist() == [[0.5, 0], [0, 0.5]]
     assert np.isnan(found[1]).all()
+
+
+def test_centres_that_are_no_doubles_are_never_proved() -> None:
+    centers = np.array([[2**52], [-(2**52)], [-(2**63)], [2**52 - 1]])
+    assert FloatBoxes(40, centers, np.zeros(4, dtype=np.int64)).proved.tolist() == [
+        False,
+        False,
+        False,
+        True,
+    ]
