@@ -12,7 +12,7 @@ import numpy.typing as npt
 from exactfold import checker, compact_checker
 from exactfold.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
-from exactfold.scale.threads import one_thread_each
+from exactfold.scale.environment import worker_environment
 from exactfold.solve.nappes import sign_vectors
 from exactfold.system.quadratic import QuadraticSystem
 
@@ -42,7 +42,7 @@ def check_compact(
         else (compact_checker.start_worker, compact_checker.check_line, 1)
     )
     try:
-        with one_thread_each(workers):
+        with worker_environment():
             return compact_checker.check(os.fspath(path), workers, start, work, least)
     except checker.FormatError as error:
         raise CertificateFormatError(f"{path}: {error}") from None

@@ -16,10 +16,10 @@ from exactfold.errors import WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 from exactfold.scale.chambers import Chambers, ProvedBlock
 from exactfold.scale.check import FastChecker
+from exactfold.scale.environment import worker_environment
 from exactfold.scale.journal import Journal
 from exactfold.scale.lines import block_line, claims_line, header_line
 from exactfold.scale.settle import OpenEnd
-from exactfold.scale.threads import one_thread_each
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 Progress = Callable[[int, int], None]
@@ -182,7 +182,7 @@ def _blocks(chambers: Chambers, first: int, workers: int) -> Iterator[tuple[Prov
             yield block, block_line(block)
         return
     pattern = chambers.pattern
-    with one_thread_each(workers), ExitStack() as stack:
+    with worker_environment(), ExitStack() as stack:
         pool = ProcessPoolExecutor(
             workers,
             get_context("spawn"),

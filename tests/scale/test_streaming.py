@@ -1,5 +1,6 @@
 """All branches streamed to a compact certificate: right, resumable, and never lost silently."""
 
+import os
 import subprocess
 import sys
 from fractions import Fraction
@@ -16,6 +17,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.scale import chambers as chambers_module
 from exactfold.scale.chambers import Chambers
 from exactfold.scale.check import CertificateError, check_compact
+from exactfold.scale.environment import worker_environment
 from exactfold.scale.read import branches_in_memory, read_branches
 from exactfold.scale.stream import count_streaming
 from exactfold.verdict import PROVED, UNDECIDED
@@ -233,3 +235,12 @@ def test_a_flat_fold_and_a_wide_block_are_written(tmp_path: Path) -> None:
     assert (crossed.status, crossed.exact) == (PROVED, 2)
     assert all("F" in b.assignment_text for b in read_branches(tmp_path / "cross.txt"))
     assert check_compact(tmp_path / "cross.txt")["distinct"] == 2
+
+
+def test_the_environment_is_restored(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    with worker_environment():
+        assert os.environ["OMP_NUM_THREADS"] == os.environ["OPENBLAS_NUM_THREADS"] == "1"
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "OPENBLAS_NUM_THREADS" not in os.environ
