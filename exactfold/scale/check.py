@@ -18,7 +18,7 @@ from exactfold.system.quadratic import QuadraticSystem
 
 CertificateError = checker.CertificateError
 
-LEAST = 16
+LEAST = 32
 """Blocks for each worker that make starting processes worth while."""
 
 
