@@ -42,7 +42,7 @@ from proofs.potential import corner_polar
 NAME = "multiplicity"
 TITLE = "Multiplicities and the number of distinct branches"
 
-CORRECTED, FALSE = Ruling.CORRECTED, Ruling.FALSE
+CORRECTED = Ruling.CORRECTED
 
 HUB = (Fraction(3, 7), Fraction(5, 9))
 
@@ -108,7 +108,7 @@ def _multiplicity(script: Script) -> None:
         "IIIA.12",
         "Section III A, Eq. (B distinct)",
         r"B_{distinct}=2^{V_i-V_t}",
-        FALSE,
+        CORRECTED,
         r"\sum_{branches}2^{|F|}=2^{V_i},\ F\text{ the vertices that are flat on the branch; "
         r"}B_{distinct}\le2^{V_i-V_t},\text{ equality iff }|F|=V_t\text{ on every branch}",
         "square with inner vertices (1/2,1/2), (7/10,1/5), triangles 015, 125, 245, 405, 234, 304: "
@@ -119,12 +119,12 @@ def _multiplicity(script: Script) -> None:
         "IIIA.13",
         "Section III A, before Eq. (B distinct)",
         r"\text{``the distinct roots of the quadratic equations had multiplicity }2^{V_t}\text{''}",
-        CORRECTED,
-        r"2^{|F|},\ F\text{ the vertices that are flat on the branch, }|F|\ge V_t",
-        "docs/theorem.md, Theorem 3; in other words 2^Vt times the multiplicity in the emptied "
-        "pattern; as printed where no other vertex is flat. The square of IIIA.12 with a "
-        "degree-3 vertex (17/30, 1/15) in 015 has multiplicities 2, 2, 4",
-        "Branch.multiplicity",
+        Ruling.AS_PRINTED,
+        note="reports the four systems found; in general 2^|F|, F the vertices that are flat on the "
+        "branch (docs/theorem.md, Theorem 3), that is 2^Vt times the multiplicity in the emptied "
+        "pattern. The square of IIIA.12 with a degree-3 vertex (17/30, 1/15) in 015 has "
+        "multiplicities 2, 2, 4",
+        code="Branch.multiplicity",
     )
 
 
