@@ -120,7 +120,7 @@ def _multiplicity(script: Script) -> None:
         "Section III A, before Eq. (B distinct)",
         r"\text{``the distinct roots of the quadratic equations had multiplicity }2^{V_t}\text{''}",
         Ruling.AS_PRINTED,
-        note="reports the four systems found; in general 2^|F|, F the vertices that are flat on the "
+        note="reports the systems found; in general 2^|F|, F the vertices that are flat on the "
         "branch (docs/theorem.md, Theorem 3), that is 2^Vt times the multiplicity in the emptied "
         "pattern. The square of IIIA.12 with a degree-3 vertex (17/30, 1/15) in 015 has "
         "multiplicities 2, 2, 4",

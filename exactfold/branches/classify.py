@@ -80,18 +80,26 @@ def _decide(
         root = root.mirrored()
     vertices = {v: root.sign(row) for v, row in functionals.vertices.items()}
     folds = {fold: root.sign(row) for fold, row in functionals.folds.items()}
+    _add_flat(emptied, folds)
     for bits in _RISING:
-        if None not in vertices.values() and None not in folds.values():
-            return root, vertices, folds
-        sharper = _sharpen(chart, root, bits)
+        done = None not in vertices.values() and None not in folds.values()
+        # A fold that is still open on a sharp box is most likely flat.
+        likely_flat = bits > _RISING[0] and None not in vertices.values()
+        sharper = None if done or likely_flat else _sharpen(chart, root, bits)
         if sharper is None:
             break
         root = sharper
         _fill(vertices, functionals.vertices, root)
         _fill(folds, functionals.folds, root)
-    for fold in flat_folds(emptied, folds):
-        folds[fold] = 0
+        _add_flat(emptied, folds)
     return root, vertices, folds
+
+
+def _add_flat(emptied: CreasePattern, folds: dict[Edge, int | None]) -> None:
+    """Enter the folds that the signs of the others prove to be flat."""
+    if None in folds.values():
+        for fold in flat_folds(emptied, folds):
+            folds[fold] = 0
 
 
 def _fill(signs: dict[K, int | None], rows: Mapping[K, Row], root: Root) -> None:

@@ -18,6 +18,8 @@ from exactfold.solve.exact_solution import RootClass
 from exactfold.solve.strata import FloatArray, flat_sheets, zeros_flat_at
 from exactfold.system.branch_system import Chart
 
+_MOST_TOGETHER = 64  # conjugate zeros in one class, for the sake of the checker
+
 GROEBNER_LIMIT = 5
 """Largest number of unknowns for which a Groebner basis is tried without being asked for."""
 
@@ -66,6 +68,8 @@ def recognised(chart: Chart, found: Zeros, undecided: Sequence[Undecided]) -> Ze
             groups.setdefault((flat, *item.what), []).append(item.root)
     result = Zeros(list(found.classes), list(found.boxes), list(found.flat_boxes))
     for group in groups.values():
+        if len(group) > _MOST_TOGETHER:
+            continue
         boxes = [root.box for root in group]
         first = group[0]
         if isinstance(first, BoxRoot):

@@ -62,11 +62,39 @@ def parametrisation_from_roots(
     ((-2, 0, 1), ((Fraction(4, 1),),))
     """
     refined = refined_roots(system, roots)
-    form = None if refined is None else _separating_form(refined)
-    if refined is None or form is None:
+    return None if refined is None else _parametrised(system, refined)
+
+
+def parametrisation_of_some(
+    system: QuadraticSystem, roots: Candidates | Iterable[Centre]
+) -> RootClass | None:
+    """One parametrisation of some of the zeros: all that satisfy further rational equations.
+
+    The same for any set of zeros that is closed under conjugation over Q, given by approximations.
+    What is returned passed `RootClass.verify`: each root of its polynomial belongs to a zero of the
+    system; which ones is for the caller to see. None as above, or if the coefficients are not
+    rational.
+
+    >>> import numpy as np
+    >>> system = QuadraticSystem((((1, 0, 0), (0, 0, 0), (0, 0, -2)),  # x^2 = 2, y^2 = 4
+    ...                           ((0, 0, 0), (0, 1, 0), (0, 0, -4))))
+    >>> guesses = Candidates("guess", np.array([[1.4, 2], [-1.4, 2]], dtype=complex))
+    >>> parametrisation_of_some(system, guesses).degree
+    2
+    """
+    refined = refined_roots(system, roots, some=True)
+    return None if refined is None else _parametrised(system, refined)
+
+
+def _parametrised(system: QuadraticSystem, refined: RefinedRoots) -> RootClass | None:
+    """Rising precision until a proposal passes the proof."""
+    form = _separating_form(refined)
+    if form is None:
         return None
-    bezout = _bezout_bits(system, form)
-    height = bezout // 3  # enough for most branch systems; random quadrics need all of it
+    count = len(refined.real) + 2 * len(refined.upper)
+    bezout = max(_bezout_bits(system, form) * count // system.bezout_number, 1)
+    # A third is enough for most branch systems; random quadrics need all of it.
+    height = bezout // 3
     while height < 4 * bezout:
         if not refined.refine(height + height // _VALUES + _magnitude(refined, form) + 8 * _SURE):
             return None
@@ -78,14 +106,15 @@ def parametrisation_from_roots(
                 pass  # too little precision: the numbers found are not the true ones
             else:
                 return found
-        height += height // 2
+        height += height // 2 + 1
     return None
 
 
 def _separating_form(roots: RefinedRoots) -> tuple[int, ...] | None:
     """A form with different values at all zeros, as far as their accuracy shows."""
     for form in islice(separating_forms(roots.system.size), _FORMS_TRIED):
-        values = [acb(_value(form, row)) for row in (*roots.real, *roots.upper)]
+        with ctx.workprec(roots.accuracy + _magnitude(roots, form)):
+            values = [acb(_value(form, row)) for row in (*roots.real, *roots.upper)]
         places = {(_rounded(t.real, _APART), abs(_rounded(t.imag, _APART))) for t in values}
         flat = [t for t in values[len(roots.real) :] if _rounded(t.imag, _APART) == 0]
         if len(places) == len(values) and not flat:

@@ -150,9 +150,11 @@ _MUCH = 1 << 30
 
 
 def refined_roots(
-    system: QuadraticSystem, roots: Candidates | Iterable[Centre]
+    system: QuadraticSystem, roots: Candidates | Iterable[Centre], *, some: bool = False
 ) -> RefinedRoots | None:
-    """The zeros near the given points at the first accuracy; None unless there are 2^n of them.
+    """The zeros near the given points at the first accuracy.
+
+    None unless there are 2^n of them, or `some` are enough.
 
     Points are the rows of `Candidates`, or the centres of isolating boxes. Of two conjugate points
     the one kept has a positive first imaginary part. None if Newton's method does not converge.
@@ -162,7 +164,8 @@ def refined_roots(
     else:
         rows = [_centre(box) for box in roots]
     finite = all(x.is_finite() for row in rows for x in row)
-    if len(rows) != system.bezout_number or system.size == 0 or not finite:
+    wanted = len(rows) if some else system.bezout_number
+    if len(rows) != wanted or not rows or system.size == 0 or not finite:
         return None
     real = [row for row in rows if all(x.imag == 0 for x in row)]
     found = RefinedRoots(
@@ -180,7 +183,7 @@ def refined_roots(
         elif heights[0] > 0:
             upper.append(row)
     found.upper = upper
-    return found if len(found.real) + 2 * len(upper) == system.bezout_number else None
+    return found if len(found.real) + 2 * len(upper) == wanted else None
 
 
 def _centre(box: Centre) -> list[acb]:
