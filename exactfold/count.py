@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from exactfold.branches.attempt import Attempt, isolated, solved_exactly, with_flat_vertices
-from exactfold.branches.multiple_roots import GROEBNER_LIMIT
 from exactfold.branches.result import BranchCount
 from exactfold.certify.certificate import triangle_evidence
 from exactfold.certify.rigid_triangles import RigidTriangle, certify_rigid_triangles
@@ -20,6 +19,9 @@ from exactfold.verdict import PROVED, UNDECIDED
 __all__ = ["METHODS", "count_branches"]
 
 Progress = Callable[[str, int, int], None]
+
+GROEBNER_LIMIT = 6
+"""Largest number of unknowns for which "auto" turns to the exact engine."""
 
 
 def count_branches(

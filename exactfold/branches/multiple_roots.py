@@ -21,7 +21,7 @@ from exactfold.system.branch_system import Chart
 _MOST_TOGETHER = 64  # conjugate zeros in one class, for the sake of the checker
 
 GROEBNER_LIMIT = 5
-"""Largest number of unknowns for which a Groebner basis is tried without being asked for."""
+"""Largest number of unknowns left on flat sheets for which a Groebner basis is computed."""
 
 
 @dataclass

@@ -62,9 +62,10 @@ def test_lifting_agrees_with_the_groebner_basis(system):
     assert groebner(system, engine="lifting").classes == groebner(system, engine="flint").classes
 
 
-def test_lifting_is_chosen_for_five_unknowns():
+def test_roots_and_lifting_agree_for_five_unknowns():
     solution = groebner(chart_system(FIVE_VERTICES))
-    assert solution.engine == "lifting"
+    assert solution.engine == "roots"
+    assert solution.classes == groebner(chart_system(FIVE_VERTICES), engine="lifting").classes
     assert solution.dimension == 32
     assert all(c.multiplicity == 1 for c in solution.classes)
     boxes = solution.real_points(30)
