@@ -14,6 +14,7 @@ starts to fold, proves it, and tells the ways apart by vertex signs and mountain
 from exactfold.branches.branch import Branch
 from exactfold.branches.claims import certificate
 from exactfold.branches.result import BranchCount
+from exactfold.certify.arb_krawczyk import arb_krawczyk
 from exactfold.certify.certificate import write_certificate
 from exactfold.certify.interval_newton import interval_newton
 from exactfold.certify.isolation import isolate
@@ -21,11 +22,12 @@ from exactfold.certify.krawczyk import krawczyk
 from exactfold.count import METHODS, count_branches
 from exactfold.data import EXAMPLES, example_path
 from exactfold.errors import ExactfoldError, InputError
+from exactfold.exact.factor_degrees import factor_degrees
 from exactfold.exact.forms import QuadraticForm
 from exactfold.exact.numbers import as_rational
 from exactfold.ondemand.find import BranchFinder, find_branch, find_branches, neighbours
 from exactfold.ondemand.result import SignedBranch
-from exactfold.pattern import families
+from exactfold.pattern import degenerate, families
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.delaunay import delaunay
 from exactfold.pattern.fold import FoldFile, load_fold, read_fold
@@ -36,10 +38,13 @@ from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stre
 from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.rigidity.facts import pattern_facts
 from exactfold.rigidity.framework import rigidity_matrix, self_stresses
-from exactfold.solve.groebner import groebner
+from exactfold.solve.from_roots import parametrisation_from_roots
+from exactfold.solve.groebner import groebner, quotient_algebra
+from exactfold.solve.hermite import hermite_counts
 from exactfold.solve.homotopy import homotopy
 from exactfold.solve.methods import find_candidates
 from exactfold.solve.popping import popping
+from exactfold.solve.splitting import split_form
 from exactfold.system.branch_system import BranchSystem, Chart
 from exactfold.system.export import (
     to_homotopy_continuation,
@@ -48,6 +53,7 @@ from exactfold.system.export import (
     to_singular,
     to_sympy,
 )
+from exactfold.system.perturbed import perturbed
 from exactfold.system.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
@@ -70,31 +76,39 @@ __all__ = [
     "QuadraticSystem",
     "SignedBranch",
     "Verdict",
+    "arb_krawczyk",
     "as_rational",
     "certificate",
     "count_branches",
     "curvature_form",
     "decide_all_branches_real",
     "definite_stress",
+    "degenerate",
     "delaunay",
     "example_path",
+    "factor_degrees",
     "families",
     "find_branch",
     "find_branches",
     "find_candidates",
     "groebner",
+    "hermite_counts",
     "homotopy",
     "interval_newton",
     "isolate",
     "krawczyk",
     "load_fold",
     "neighbours",
+    "parametrisation_from_roots",
     "pattern_facts",
+    "perturbed",
     "popping",
+    "quotient_algebra",
     "random_square",
     "read_fold",
     "rigidity_matrix",
     "self_stresses",
+    "split_form",
     "stress_form",
     "to_homotopy_continuation",
     "to_macaulay2",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from math import gcd, lcm
@@ -283,6 +283,7 @@ class ExactSolution:
     `krull_dimension` is the dimension of the zero set over C, -1 if it is empty, and `degree` its
     degree: the number of zeros with multiplicity if they are finitely many, else the sum of the
     degrees of the components of that dimension with multiplicity (see `dimension_and_degree`).
+    `guesses` are approximate zeros, if the engine started from some: shape (m, n).
     """
 
     system: QuadraticSystem
@@ -292,6 +293,7 @@ class ExactSolution:
     settings: Mapping[str, int | str]
     krull_dimension: int
     degree: int
+    guesses: ComplexArray | None = field(default=None, compare=False, repr=False)
 
     @property
     def factor_degrees(self) -> tuple[int, ...]:
@@ -335,4 +337,5 @@ class ExactSolution:
     @cached_property
     def candidates(self) -> Candidates:
         """The zeros as untrusted candidates, for a certifier of isolated regular zeros."""
-        return Candidates("groebner", self.approx_points(), settings=dict(self.settings))
+        points = self.approx_points() if self.guesses is None else self.guesses
+        return Candidates("groebner", points, settings=dict(self.settings))

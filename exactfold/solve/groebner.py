@@ -66,9 +66,11 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
         raise UsageError(f"unknown engine {engine!r}: choose auto, {', '.join(ENGINES)}")
     large = engine == "auto" and system.size > _SMALL
     if engine == "roots" or large:
-        whole = parametrisation_from_roots(system, homotopy(system))
+        ends = homotopy(system)
+        whole = parametrisation_from_roots(system, ends)
         if whole is not None:
-            return _verified(system, system.bezout_number, tuple(whole.factors()), "roots")
+            solution = _verified(system, system.bezout_number, tuple(whole.factors()), "roots")
+            return replace(solution, guesses=ends.points)
         if engine == "roots":
             raise NotApplicableError(
                 "2^n different zeros are needed, none at infinity: take another engine"
