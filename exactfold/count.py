@@ -12,6 +12,7 @@ from exactfold.certify.certificate import triangle_evidence
 from exactfold.certify.rigid_triangles import RigidTriangle, certify_rigid_triangles
 from exactfold.errors import NoInteriorVertexError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.solve.methods import METHODS, Choice, choose, find_candidates
 from exactfold.system.branch_system import BranchSystem, notch_chart
 from exactfold.verdict import PROVED, UNDECIDED
@@ -67,7 +68,11 @@ def count_branches(
         result = _lines(pattern, triangles, method, seed, progress)
     else:
         result = _higher(pattern, triangles)
-    return replace(result, seconds=time.perf_counter() - start)
+    seconds = time.perf_counter() - start
+    if result.status is not PROVED and definite_stress(pattern) is None:
+        return replace(result, seconds=seconds)
+    dimension = pattern.degrees_of_freedom
+    return replace(result, dimension=dimension, degree=1 << pattern.Vi, seconds=seconds)
 
 
 def _rigid(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> BranchCount:
@@ -108,8 +113,8 @@ def _higher(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bra
         pattern,
         UNDECIDED,
         "none",
-        f"with D = {pattern.degrees_of_freedom} branches are not isolated lines, and only the "
-        f"single-vertex pattern is settled{chords}",
+        f"with D = {pattern.degrees_of_freedom} branches are no isolated lines, and are "
+        f"counted for the single-vertex pattern only{chords}",
     )
 
 

@@ -51,6 +51,14 @@ def count_report(result: BranchCount, certificate: str | None, *, everything: bo
             ),
             ("true branches", str(result.true_branches)),
         ]
+    elif result.degree is not None:
+        rows.append(
+            (
+                "solutions",
+                f"a cone of dimension {result.dimension} and degree {result.degree} "
+                "(complex, modulo planes, with multiplicity)",
+            )
+        )
     if result.branches:
         each = sorted(set(result.sign_vectors.values()))
         per = f"{each[0]}" if len(each) == 1 else f"{each[0]} to {each[-1]}"

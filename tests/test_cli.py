@@ -29,7 +29,7 @@ COUNT_KEYS = {
     *("pattern", "status", "method", "distinct", "with_multiplicity", "real", "nonreal"),
     *("true_branches", "certificate", "seconds", "branches"),
 }
-EXTRA_KEYS = {"reason", "why", "open_questions", "settings"}
+EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree"}
 BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
 
 CORNERS = [[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0.25]]

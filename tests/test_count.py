@@ -46,8 +46,11 @@ from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.pattern.families import FAMILIES, h1_sequence, hypar, single_vertex, two_vertex
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.solve.candidates import Candidates
+from exactfold.solve.groebner import groebner
 from exactfold.solve.methods import SOLVERS
 from exactfold.solve.popping import popping
+from exactfold.system.branch_system import BranchSystem
+from exactfold.system.quadratic import QuadraticSystem
 
 # (distinct, with multiplicity); None where D > 1 or flat vertices make it other than a power of 2.
 EXPECTED = {
@@ -687,3 +690,28 @@ def test_undecided_where_signs_stay_open(monkeypatch):
     assert "all 4 solutions isolated, but signs are undecided on 4" in result.reason
     assert "vertex 4" in result.open_questions[0]
     assert result.branches == ()
+
+
+def test_dimension_and_degree_of_sheets_with_more_freedom():
+    """The cone of solutions against a Groebner basis of its section by fixed boundary heights."""
+    for seed in range(3):
+        pattern = scrambled(seed, HEXAGON, 3)
+        result = count_branches(pattern)
+        assert result.status is UNDECIDED
+        assert (result.dimension, result.degree) == (3, 1 << pattern.Vi)
+        system = BranchSystem(pattern)
+        inner = [v for v in system.variables if v in pattern.interior]
+        rim = {v: Fraction(3 + 2 * v) for v in system.variables if v not in pattern.interior}
+        matrices = []
+        for form in system.quadrics.values():
+            rows = {v: {inner.index(v): Fraction(1)} for v in inner}
+            rows |= {v: {len(inner): height} for v, height in rim.items()}
+            matrix = [[Fraction(0)] * (len(inner) + 1) for _ in range(len(inner) + 1)]
+            for a, left in zip(form.labels, form.matrix, strict=True):
+                for b, weight in zip(form.labels, left, strict=True):
+                    for i, x in rows[a].items():
+                        for j, y in rows[b].items():
+                            matrix[i][j] += weight * x * y
+            matrices.append(matrix)
+        section = groebner(QuadraticSystem.from_rational(matrices), engine="flint")
+        assert section.dimension == 1 << pattern.Vi

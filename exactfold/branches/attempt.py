@@ -144,7 +144,10 @@ def solved_exactly(attempt: Attempt) -> BranchCount:
     solution = groebner(attempt.chart.system)
     stage(1, 1)
     if solution.dimension is None:
-        return attempt.undecided("the branch system has infinitely many solutions")
+        return attempt.undecided(
+            "the branch system has infinitely many solutions: dimension "
+            f"{solution.krull_dimension}, degree {solution.degree}"
+        )
     if solution.distinct == attempt.total:
         with suppress(OverflowError):  # zeros beyond floats are proved as they are
             result = isolated(attempt, solution.candidates)

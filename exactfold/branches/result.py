@@ -22,7 +22,9 @@ class BranchCount:
     missing; `why` says why the method was chosen. `distinct` counts branches as lines (for D = 1),
     `with_multiplicity` the solutions of the branch system with multiplicity, `real` and `nonreal`
     its distinct solutions by reality. `true_branches` is PROVED when the count is also that of the
-    true configuration space (docs/mathematics.md, 5). `branches` holds every branch decided, all of
+    true configuration space (docs/mathematics.md, 5). `dimension` and `degree` are those of the
+    cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi where that is proved
+    (docs/mathematics.md, 10), else None. `branches` holds every branch decided, all of
     them if PROVED and D = 1; for D > 1 a branch is no line and none is listed. `evidence` is what a
     certificate holds.
     """
@@ -37,6 +39,8 @@ class BranchCount:
     real: int | None = None
     nonreal: int | None = None
     true_branches: Verdict = UNDECIDED
+    dimension: int | None = None
+    degree: int | None = None
     branches: tuple[Branch, ...] = ()
     open_questions: tuple[str, ...] = ()
     evidence: Mapping[str, Any] | None = None
@@ -64,6 +68,8 @@ class BranchCount:
             "real": self.real,
             "nonreal": self.nonreal,
             "true_branches": str(self.true_branches),
+            "dimension": self.dimension,
+            "degree": self.degree,
             "certificate": certificate,
             "seconds": round(self.seconds, 3),
             "open_questions": list(self.open_questions),
