@@ -76,6 +76,11 @@ def count_report(result: BranchCount, certificate: str | None, *, everything: bo
                 "mountain-valley assignment with another",
             )
         )
+    degrees = str(result.settings.get("factor_degrees", ""))
+    if degrees:
+        several = " " in degrees
+        form = "factors of degrees" if several else "irreducible over Q of degree"
+        rows.append(("polynomial", f"{form} {degrees}"))
     why = f" ({result.why})" if result.why else ""
     rows.append(("method", f"{result.method}{why}, {result.seconds:.2f} s"))
     if certificate:

@@ -587,3 +587,10 @@ def test_main_survives_a_closed_pipe(monkeypatch):
 
     monkeypatch.setattr(cli, "app", closed)
     assert cli.main() is None
+
+
+def test_factors_of_the_branch_polynomial_are_reported(two_vertex):
+    result = run("count", two_vertex, "--method", "groebner")
+    assert "irreducible over Q of degree 4" in result.stdout
+    result = run("count", example_path("flat-vertex"), "--method", "groebner")
+    assert "factors of degrees 1 2" in result.stdout

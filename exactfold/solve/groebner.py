@@ -133,7 +133,9 @@ def _verified(
     for root_class in classes:
         root_class.verify(system)
     krull = 0 if dimension else -1
-    return ExactSolution(system, dimension, classes, engine, {"engine": engine}, krull, dimension)
+    degrees = " ".join(str(c.degree) for c in classes)
+    settings = {"engine": engine, "factor_degrees": degrees}
+    return ExactSolution(system, dimension, classes, engine, settings, krull, dimension)
 
 
 def _flint_basis(system: QuadraticSystem) -> list[SparsePolynomial]:
