@@ -8,7 +8,7 @@ sign functionals are rebuilt from the file, by other formulas than those of the 
 it; divisions of integers are rounded in the safe direction.
 
 Why it is a proof: heights with K_v > 0 at every interior vertex bound the distance to the only
-solution with the same signs (Theorem 3 of docs/branch.md, which also describes the file). The
+solution with the same signs (Theorem 5 of docs/branch.md, which also describes the file). The
 boundary must be convex, or that of a quadrilateral whose notch is closed here. Vertices inside a
 3-cycle of edges stay flat (Theorem 2 (a), applied to the triangle) and are removed.
 """

@@ -66,7 +66,7 @@ def enclose(
 ) -> Enclosure | tuple[int, ...]:
     """The branches near rational heights, or the vertices at which the test fails.
 
-    *Theorem 3* (docs/branch.md, 2). Let the boundary be convex, let h' have the given rim heights
+    *Theorem 5* (docs/branch.md, 2). Let the boundary be convex, let h' have the given rim heights
     and K_v(h') > 0 for all interior v, and let e_v be the nappe of h' at v. Then K_v(h) = k_v has
     exactly one solution in the closed nappes e, and it satisfies
 

@@ -120,7 +120,7 @@ def test_a_rough_bound_leaves_letters_open() -> None:
 
 
 def test_the_inequality_for_any_two_sheets_in_the_same_nappes() -> None:
-    # Theorem 3 (a) with targets other than zero, in exact arithmetic.
+    # Theorem 5 (a) with targets other than zero, in exact arithmetic.
     sheet = Sheet.of(SHEETS["thin"])
     pattern = sheet.pattern
     points, denominator = pattern.integer_vertices
