@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from functools import cache
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -33,6 +34,17 @@ SECTIONS = {
 }
 
 
+PLAIN = {
+    "``": "\u201c",
+    "''": "\u201d",
+    r"\dots\ ": "\u2026 ",
+    r"\dots": "\u2026",
+    r"\%": "%",
+    "--": "\u2013",
+}
+EDGES = re.compile(r"((?:\\[,;\s]|\\q?quad|[,;.]|\s)*)(.*?)((?:\\[,;\s]|\\q?quad|[,;.]|\s)*)")
+
+
 def order(key: str) -> tuple[int, int, str]:
     """Sort key of a statement number such as "IIB.12"."""
     part, _, number = key.partition(".")
@@ -42,9 +54,66 @@ def order(key: str) -> tuple[int, int, str]:
     return rank, int(digits[0]) if digits else 0, number
 
 
-def mathematics(text: str) -> str:
-    """LaTeX between dollar signs, on one line."""
-    return f"$`{' '.join(text.split())}`$"
+def pieces(latex: str) -> list[tuple[bool, str]]:
+    """LaTeX cut at its outermost `\\text{...}`: pairs (whether it is prose, content)."""
+    found, start, at = [], 0, 0
+    depth = 0
+    while at < len(latex):
+        if depth == 0 and latex.startswith(r"\text{", at):
+            end, level = at + len(r"\text{"), 1
+            while level:
+                level += {"{": 1, "}": -1}.get(latex[end], 0)
+                end += 1
+            found += [(False, latex[start:at]), (True, latex[at + len(r"\text{") : end - 1])]
+            start = at = end
+            continue
+        depth += {"{": 1, "}": -1}.get(latex[at], 0)
+        at += 2 if latex[at] == "\\" else 1
+    return [*found, (False, latex[start:])]
+
+
+def prose(text: str) -> str:
+    """The words inside `\\text{...}` as Markdown."""
+    for latex, plain in PLAIN.items():
+        text = text.replace(latex, plain)
+    if "\\" in text or "$" in text:
+        raise ValueError(f"LaTeX that a reader would see as such: {text}")
+    return text
+
+
+def mathematics(latex: str) -> str:
+    """A statement on one line: its prose as Markdown, its formulas between dollar signs."""
+    words, latex = "", " ".join(latex.split())
+    parts = pieces(latex)
+    if any(part.count(a) != part.count(b) for _, part in parts for a, b in ("()", "[]", "{}")):
+        return f"$`{latex}`$"  # a formula with words in it
+    for is_prose, content in parts:
+        if is_prose:
+            words += prose(content)
+            continue
+        # spaces and the commas that separate a formula from prose stay outside of it
+        before, formula, after = re.fullmatch(EDGES, content).groups()  # type: ignore[union-attr]
+        spaced = [re.sub(r"\\(?:,|;|quad|qquad|\s)|\s", " ", edge) for edge in (before, after)]
+        words += spaced[0] + (f"$`{formula}`$" if formula else "") + spaced[1]
+    return " ".join(words.split())
+
+
+def code_links(names: str) -> str:
+    """Links to the files that define the names in exactfold. Raises `KeyError` if one is not."""
+    where = definitions()
+    return ", ".join(f"[`{n}`](../{where[n.partition('.')[0]]})" for n in names.split(", "))
+
+
+@cache
+def definitions() -> dict[str, str]:
+    """Path in the repository by name of a class, a function or a module of exactfold."""
+    found: dict[str, str] = {}
+    for path in sorted((HERE.parent / "exactfold").rglob("*.py")):
+        where = path.relative_to(HERE.parent).as_posix()
+        names = re.findall(r"^(?:class|def) (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE)
+        found |= dict.fromkeys(names, where)
+        found.setdefault(path.stem, where)
+    return found
 
 
 def entry(statement: Statement, proof: Proof) -> str:
@@ -58,8 +127,9 @@ def entry(statement: Statement, proof: Proof) -> str:
         lines.append(f"- correct: {mathematics(statement.corrected)}")
     if statement.note:
         lines.append(f"- {' '.join(statement.note.split())}")
-    where = f"`python -m proofs {proof.name}`"
-    lines.append(f"- proof: {where}" + (f"; code: `{statement.code}`" if statement.code else ""))
+    where = f"[`python -m proofs {proof.name}`](../proofs/{proof.name}.py)"
+    code = f"; code: {code_links(statement.code)}" if statement.code else ""
+    lines.append(f"- proof: {where}{code}")
     return "\n".join(lines) + "\n\n"
 
 
@@ -73,7 +143,7 @@ def pages() -> dict[str, str]:
     names = {
         Ruling.AS_PRINTED: "hold as printed",
         Ruling.CORRECTED: "hold when corrected",
-        Ruling.FALSE: "are false",
+        Ruling.FALSE: "is false" if counts[Ruling.FALSE] == 1 else "are false",
     }
     summary = ", ".join(f"{number} {names[ruling]}" for ruling, number in counts.items())
     steps = [step for proof in proofs for step in proof.steps]

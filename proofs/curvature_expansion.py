@@ -135,6 +135,15 @@ def _deficit(script: Script) -> None:
         note="a multiple of 2 pi for every star without a fold along the z axis; near the unfolded "
         "state it is 2 pi by continuity",
     )
+    script.state(
+        "IIB.31",
+        "Section II B, definition of the trace",
+        r"\text{``it is non-self-intersecting for a vertex sufficiently close to being unfolded "
+        r"and thus cuts the sphere into two pieces''}",
+        Ruling.AS_PRINTED,
+        note="there every beta is close to its alpha in (0, pi), and they add up to 2 pi (A.4), so "
+        "that the trace is a graph over the equator",
+    )
     _, turn_, K = ring("P K", QQ)  # P stands for 2 pi
     sum_alpha = turn_ + script.alter("excess in place of deficit", -1, 1) * K
     script.identity("sum delta beta = sum beta - sum alpha = K", (turn_ - sum_alpha) - K)

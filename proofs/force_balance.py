@@ -68,7 +68,11 @@ def _stresses(script: Script) -> None:
         r"\sigma_i=\frac{\csc\alpha_{i,i+1}}{L_{i+1}}+\frac{\csc\alpha_{i-1,i}}{L_{i-1}}"
         r"-\frac{\cot\alpha_{i,i+1}}{L_i}-\frac{\cot\alpha_{i-1,i}}{L_i}"
     )
-    both = outer + r",\quad " + spokes
+    both = (
+        r"\tilde\sigma_{I,I+1}=-\csc\alpha_{I,I+1}\frac{\Delta L_{I,I+1}}{L_IL_{I+1}},\quad "
+        r"\tilde\sigma_I=L_{I+1}^{-1}\csc\alpha_{I,I+1}+L_{I-1}^{-1}\csc\alpha_{I-1,I}"
+        r"-L_I^{-1}(\cot\alpha_{I,I+1}+\cot\alpha_{I-1,I})"
+    )
     code, read = "wheel_stress", "read off A.8: coefficient of (h_i - h_j)^2 / (2 length)"
     script.state("IIB.4", "Section II B, Eq. (wheelstress)", both, PRINTED, code=code)
     script.state("B.1", "Appendix B, Eq. (outer)", outer, PRINTED, note=read, code=code)
@@ -76,7 +80,7 @@ def _stresses(script: Script) -> None:
     script.state(
         "B.3",
         "Appendix B, second paragraph",
-        r"\bm\sigma^T\cdot\mathbf C=\mathbf 0^T\iff\text{force balance at each vertex}",
+        r"\boldsymbol\sigma^T\cdot\mathbf C=\mathbf 0^T\iff\text{ force balance at each vertex}",
         PRINTED,
         note="the columns of vertex n give the sum over its edges of sigma times the unit vector",
     )

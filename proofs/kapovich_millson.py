@@ -69,7 +69,8 @@ def _minors(script: Script) -> None:
     script.state(
         "C.13",
         "Appendix C, proof of Theorem KM",
-        r"\chi(j)\text{ is also an expression for }\Delta_j\text{, the }j\text{th principal minor}",
+        r"\chi(j)\text{ is also an expression for }\Delta_j\text{, the }j\text{-th principal "
+        r"minor}",
         Ruling.CORRECTED,
         r"\Delta_j=\chi(j+2)",
         note="chi(n) is the determinant on h_2, ..., h_{n-1}: Delta_0 = chi(2) = 1, and the last "
@@ -225,7 +226,7 @@ def _germ(script: Script) -> None:
     script.state(
         "C.17",
         "Appendix C, Theorem 1 (Kapovich and Millson)",
-        r"\text{germ of the configuration space}\cong\text{germ of the null cone of a form with "
+        r"\text{germ of the configuration space }\cong\text{ germ of the null cone of a form with "
         r"nullity 3 and signature }(f-2w-1,b+2w-1)",
         Ruling.AS_PRINTED,
         note="in the sign of Appendix C, -2 K_v. Nullity 3 by C.4 and chi(N) = "

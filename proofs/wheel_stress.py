@@ -219,7 +219,7 @@ def _force_balance(script: Script) -> None:
     script.state(
         "IIB.5",
         "Section II B, 'Eqs. (wheelstress) do give the coefficients of a self stress'",
-        r"\tilde{\bm\sigma}^T\cdot\mathbf C=\mathbf 0^T",
+        r"\tilde{\boldsymbol\sigma}^T\cdot\mathbf C=\mathbf 0^T",
         Ruling.AS_PRINTED,
         note="also after embedding in the larger structure with all other components zero; for the "
         "proof of Appendix B see B.1 and following",
