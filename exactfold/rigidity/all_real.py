@@ -52,7 +52,14 @@ def decide_all_branches_real(pattern: CreasePattern) -> Reality:
         return Reality(PROVED, "three boundary vertices: the sheet is rigid", 0, stress)
     if pattern.Ve == 4:
         shape = "convex" if pattern.is_convex else "reflex, its notch closed by a triangle"
-        text = f"boundary quadrilateral ({shape}): {count} branches with multiplicity, all real"
+        text = (
+            f"boundary quadrilateral ({shape}): {count} branches with multiplicity, all real; a "
+            "branch with f flat vertices counts 2^f times, and if none has any there are exactly "
+            "two for each pair of opposite vertex sign vectors"
+        )
         return Reality(PROVED, text, count, stress)
-    text = f"convex boundary: {count} solutions for any given boundary heights, all real"
+    text = (
+        f"convex boundary: {count} solutions with multiplicity for any given boundary heights, all "
+        "real; one with f flat vertices counts 2^f times"
+    )
     return Reality(PROVED, text, count, stress)
