@@ -91,6 +91,10 @@ class CertificateFormatError(InputError):
     """The file is not a certificate of a known format and version."""
 
 
+class ClusterError(InputError):
+    """A cluster that does not answer, has no workers, or workers that cannot do the work."""
+
+
 class ForeignJournalError(InputError):
     """A file to be resumed belongs to another pattern or version, or is no compact certificate."""
 
@@ -198,3 +202,7 @@ class DualSpaceError(ExactfoldError):
 
 class WorkerDiedError(ExactfoldError):
     """A worker process was killed or ran out of memory; nothing that was written is lost."""
+
+
+class DaskMissingError(ExactfoldError):
+    """dask.distributed, an optional part, is not installed."""

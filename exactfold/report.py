@@ -12,6 +12,7 @@ from exactfold.branches.result import BranchCount
 from exactfold.exact.numbers import format_rational
 from exactfold.ondemand.result import SignedBranch
 from exactfold.rigidity.facts import PatternFacts
+from exactfold.scale.stream import StreamedCount
 from exactfold.verdict import PROVED, UNDECIDED
 
 SHOWN = 32
@@ -27,7 +28,13 @@ def _facts_table(rows: list[tuple[str, str]]) -> Table:
     return table
 
 
-def count_report(result: BranchCount, certificate: str | None, *, everything: bool) -> Group:
+def count_report(
+    result: BranchCount,
+    certificate: str | None,
+    *,
+    everything: bool,
+    streamed: StreamedCount | None = None,
+) -> Group:
     """The summary and the table of branches printed by `exactfold count`."""
     pattern = result.pattern
     rows = [
@@ -83,6 +90,8 @@ def count_report(result: BranchCount, certificate: str | None, *, everything: bo
         rows.append(("polynomial", f"{form} {degrees}"))
     why = f" ({result.why})" if result.why else ""
     rows.append(("method", f"{result.method}{why}, {result.seconds:.2f} s"))
+    if streamed is not None:
+        rows += _stream_rows(streamed)
     if certificate:
         rows.append(("certificate", certificate))
     parts: list[Any] = [_facts_table(rows)]
@@ -94,6 +103,18 @@ def count_report(result: BranchCount, certificate: str | None, *, everything: bo
         parts += [Text(f"- {question}") for question in result.open_questions[:limit]]
         parts += _more(len(result.open_questions) - limit)
     return Group(*parts)
+
+
+def _stream_rows(streamed: StreamedCount) -> list[tuple[str, str]]:
+    rows = [("streamed to", streamed.path)]
+    if streamed.resumed:
+        rows.append(("resumed", f"{streamed.resumed} of {streamed.blocks} blocks were there"))
+    if streamed.unproved:
+        rows.append(("open there", f"{streamed.unproved} of {1 << streamed.foldable} sign vectors"))
+    for limit, group in list(streamed.groups.items())[:SHOWN]:
+        signs = ", ".join(root.signs for root in group[:8]) + (", ..." if len(group) > 8 else "")
+        rows.append(("seem to meet", f"{signs} at {limit}"))
+    return rows
 
 
 def _branch_table(result: BranchCount, everything: bool) -> list[Any]:

@@ -19,6 +19,7 @@ from exactfold import (
     write_fold,
 )
 from exactfold.cli import app
+from exactfold.commands.shell import Bar
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES
 
@@ -554,7 +555,7 @@ def test_progress_on_a_terminal(monkeypatch):
     """The bar appears once the work has taken a second; the clock is turned instead of waiting."""
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("TERM", "xterm")
-    bar = cli._Bar()
+    bar = Bar()
     bar.start -= 10
     for stage in ("solving", "certifying"):
         for done in range(3):

@@ -13,6 +13,7 @@ from exactfold import checker, compact_checker
 from exactfold.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.scale.environment import worker_environment
+from exactfold.scale.interrupts import become_worker
 from exactfold.solve.nappes import sign_vectors
 from exactfold.system.quadratic import QuadraticSystem
 
@@ -112,6 +113,7 @@ _fast: FastChecker | None = None  # of a worker process
 def start_fast_worker(header: str) -> None:
     """Rebuild the sheet in a worker process."""
     global _fast
+    become_worker()
     _fast = FastChecker(compact_checker.Chambers(compact_checker.read_header(header)))
 
 

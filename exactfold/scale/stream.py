@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
-from contextlib import ExitStack
-from dataclasses import dataclass
+from contextlib import ExitStack, closing
+from dataclasses import asdict, dataclass
 from multiprocessing import get_context
+from typing import Any
 
 from exactfold import compact_checker
 from exactfold.errors import WorkerDiedError
@@ -17,12 +18,16 @@ from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 from exactfold.scale.chambers import Chambers, ProvedBlock
 from exactfold.scale.check import FastChecker
 from exactfold.scale.environment import worker_environment
+from exactfold.scale.interrupts import become_worker, held_interrupts
 from exactfold.scale.journal import Journal
 from exactfold.scale.lines import block_line, claims_line, header_line
 from exactfold.scale.settle import OpenEnd
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 Progress = Callable[[int, int], None]
+
+Engine = Callable[[Chambers, range], Generator[tuple[ProvedBlock, str], None, None]]
+"""Yields the blocks with the numbers given and their lines, in order; closed at an interruption."""
 
 _AHEAD = 2
 """Blocks under way or waiting for each worker: this bounds memory."""
@@ -70,6 +75,35 @@ class StreamedCount:
     seconds: Mapping[str, float]
     elapsed: float
 
+    @property
+    def foldable(self) -> int:
+        """n, the number of foldable vertices."""
+        return self.pattern.Vi - self.pattern.Vt
+
+    @property
+    def groups(self) -> dict[str, list[OpenRoot]]:
+        """The open roots whose paths seem to meet others, by the sign vector they share there."""
+        found: dict[str, list[OpenRoot]] = {}
+        for root in self.open_roots:
+            if "0" in root.limit:
+                found.setdefault(root.limit, []).append(root)
+        return found
+
+    def to_dict(self) -> dict[str, Any]:
+        """The object under "stream" in the output of `exactfold count --stream --json`."""
+        return {
+            "file": self.path,
+            "blocks": self.blocks,
+            "resumed": self.resumed,
+            "unproved": self.unproved,
+            "exact": self.exact,
+            "open": [asdict(root) for root in self.open_roots],
+            "groups": {
+                limit: [root.signs for root in group] for limit, group in self.groups.items()
+            },
+            "cpu_seconds": {name: round(value, 3) for name, value in self.seconds.items()},
+        }
+
 
 def count_streaming(
     pattern: CreasePattern,
@@ -78,6 +112,8 @@ def count_streaming(
     workers: int = 1,
     resume: bool = False,
     progress: Progress | None = None,
+    verified: Progress | None = None,
+    engine: Engine | None = None,
 ) -> StreamedCount:
     """Prove all branches of a pattern with four boundary vertices, streaming them to `path`.
 
@@ -89,7 +125,8 @@ def count_streaming(
     Up to `workers` processes share the blocks, fewer if there is little to do; a script that asks
     for several needs the usual `if __name__ == "__main__"`. With `resume`, a file left by an
     interrupted run is verified and continued; otherwise it is replaced. `progress(done, total)`
-    counts sign vectors.
+    counts sign vectors, and `verified` those taken over. An `engine`, such as `dask_engine`, takes
+    the place of the `workers`.
 
     Raises `NotApplicableError` unless D = 1 and some vertex is foldable, `ForeignJournalError`,
     `UnwritableFileError`, `WorkerDiedError`. An interruption leaves a file that can be resumed.
@@ -105,23 +142,28 @@ def count_streaming(
     chambers = Chambers.of(pattern)
     header = header_line(chambers)
     tally = _Tally()
+    total = 1 << chambers.size
     if resume:
         known = FastChecker(compact_checker.Chambers(compact_checker.read_header(header)))
-        journal = Journal.resumed(path, header, known.refusal)
+
+        def refusal(text: str, number: int) -> str | None:
+            if verified is not None:
+                verified(number * chambers.block_size, total)
+            return known.refusal(text, number)
+
+        journal = Journal.resumed(path, header, refusal)
     else:
         journal = Journal(path, header)
     resumed = journal.blocks
-    total = 1 << chambers.size
-    try:
-        for block, line in _blocks(chambers, resumed, workers):
+    left = range(resumed, chambers.blocks)
+    with closing(journal), closing((engine or _processes(workers))(chambers, left)) as blocks:
+        for block, line in blocks:
             tally.add(chambers, block)
             journal.append(line)
             if progress is not None:
                 progress(journal.blocks * chambers.block_size, total)
         if not tally.unproved:
             journal.finish(claims_line(chambers))
-    finally:
-        journal.close()
     proved = journal.complete
     return StreamedCount(
         pattern,
@@ -172,9 +214,26 @@ def open_root(chambers: Chambers, number: int, end: OpenEnd) -> OpenRoot:
     return OpenRoot(signs, end.reason, limit)
 
 
-def _blocks(chambers: Chambers, first: int, workers: int) -> Iterator[tuple[ProvedBlock, str]]:
-    """The blocks from number `first` on with their lines, in order."""
-    left = range(first, chambers.blocks)
+def available_cores() -> int:
+    """Number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _processes(workers: int) -> Engine:
+    """The engine of up to `workers` processes of this machine."""
+
+    def engine(chambers: Chambers, left: range) -> Generator[tuple[ProvedBlock, str], None, None]:
+        return _blocks(chambers, left, workers)
+
+    return engine
+
+
+def _blocks(
+    chambers: Chambers, left: range, workers: int
+) -> Generator[tuple[ProvedBlock, str], None, None]:
+    """The blocks with the numbers given and their lines, in order."""
     workers = min(workers, len(left) // LEAST)
     if workers < 2:
         for index in left:
@@ -193,7 +252,8 @@ def _blocks(chambers: Chambers, first: int, workers: int) -> Iterator[tuple[Prov
         waiting: deque[Future[tuple[ProvedBlock, str]]] = deque()
         try:
             for index in left:
-                waiting.append(pool.submit(_prove, index))
+                with held_interrupts():  # this may start a process
+                    waiting.append(pool.submit(_prove, index))
                 if len(waiting) > _AHEAD * workers:
                     yield waiting.popleft().result()
             while waiting:
@@ -211,6 +271,7 @@ def _start_worker(
     vertices: Sequence[Point], triangles: Sequence[Triangle], block_size: int
 ) -> None:
     global _chambers
+    become_worker()
     _chambers = Chambers.of(CreasePattern(vertices, triangles), block_size)
 
 

@@ -1,0 +1,52 @@
+"""`exactfold check`: which checker a file needs, and what it says."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from exactfold import branch_checker, checker, compact_checker
+from exactfold.errors import CertificateFormatError, UnreadableFileError
+from exactfold.scale.check import check_compact
+from exactfold.scale.stream import available_cores
+
+LONG = ("branches", "vertex_signs", "assignment")
+"""Claims that grow with the pattern, left out of `check --json`."""
+
+_COMPACT = re.compile(rb'"format"\s*:\s*"' + compact_checker.FORMAT.encode() + b'"')
+
+
+def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, str]:
+    """The claims of a file and what to print; None and the reason if one does not hold.
+
+    Raises `CertificateFormatError`, `UnreadableFileError`, `WorkerDiedError`.
+    """
+    try:
+        with open(path, "rb") as stream:
+            compact = _COMPACT.search(stream.read(4096)) is not None
+    except OSError as error:
+        raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
+    try:
+        if compact:
+            claims = check_compact(path, workers=workers or available_cores())
+            return claims, checker.summary(claims)
+        data, judge = _load(path)
+        claims = judge.check(data)
+        return claims, judge.summary(claims)
+    except checker.CertificateError as error:
+        return None, str(error)
+
+
+def _load(path: Path) -> tuple[Any, Any]:
+    """The certificate and the module that checks its kind."""
+    try:
+        text = path.read_text(encoding="utf-8")
+        try:
+            return branch_checker.load(text), branch_checker
+        except checker.FormatError:
+            return checker.load(text), checker
+    except OSError as error:
+        raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
+    except (checker.FormatError, UnicodeDecodeError) as error:
+        raise CertificateFormatError(f"{path}: {error}") from None

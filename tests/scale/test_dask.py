@@ -1,0 +1,164 @@
+"""Blocks on a dask.distributed cluster: the same file, whatever happens to the workers."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from exactfold import example_path, random_square, write_fold
+from exactfold.cli import app
+from exactfold.errors import ClusterError, DaskMissingError
+from exactfold.scale import dask_engine as engine_module
+from exactfold.scale.chambers import Chambers
+from exactfold.scale.dask_engine import dask_engine, prove_block
+from exactfold.scale.lines import block_line
+from exactfold.scale.stream import count_streaming
+
+TWO = example_path("two-vertex")
+
+KILLED = """
+import logging, os, signal, sys
+from distributed import Client, LocalCluster
+from exactfold import random_square
+from exactfold.scale import chambers, stream
+from exactfold.scale.dask_engine import dask_engine
+from exactfold.scale.environment import worker_environment
+
+def kill(done, total):
+    dones.append(done)
+    if done == 16 * 4:
+        os.kill(next(iter(observer.run(os.getpid).values())), signal.SIGKILL)
+
+if __name__ == "__main__":
+    chambers.BLOCK = 16
+    pattern, dones = random_square(9, seed=1), []
+    with worker_environment():
+        local = stream.count_streaming(pattern, sys.argv[1])
+        with (
+            LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
+                         silence_logs=logging.CRITICAL) as cluster,
+            Client(cluster.scheduler_address) as observer,
+            dask_engine(cluster.scheduler_address) as engine,
+        ):
+            result = stream.count_streaming(pattern, sys.argv[2], progress=kill, engine=engine)
+    print(dones == list(range(16, 513, 16)))
+    print(result.status, result.distinct, result.steps == local.steps, result.exact == local.exact)
+"""
+
+LOST = """
+import logging, os, sys
+import dask
+from distributed import Client, LocalCluster, WorkerPlugin
+from exactfold import random_square
+from exactfold.errors import WorkerDiedError
+from exactfold.scale import chambers, stream
+from exactfold.scale.dask_engine import dask_engine
+
+class Deadly(WorkerPlugin):
+    def setup(self, worker):
+        chambers.Chambers.prove = lambda chambers, index: os._exit(1)
+
+def failed(progress):
+    try:
+        with dask_engine(cluster.scheduler_address) as engine:
+            stream.count_streaming(
+                pattern, sys.argv[1], progress=progress, engine=engine, resume=True
+            )
+    except WorkerDiedError as error:
+        print(str(error).partition(";")[0])
+
+if __name__ == "__main__":
+    chambers.BLOCK = 16
+    pattern = random_square(9, seed=1)
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
+        LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None,
+                     silence_logs=logging.CRITICAL) as cluster,
+    ):
+        with Client(cluster.scheduler_address) as observer:
+            observer.register_plugin(Deadly())
+        failed(None)
+    with LocalCluster(processes=False, threads_per_worker=1, dashboard_address=None,
+                      silence_logs=logging.CRITICAL) as cluster:
+        failed(lambda done, total: cluster.close())
+    result = stream.count_streaming(pattern, sys.argv[1], resume=True)
+    print(result.status, result.resumed > 0)
+"""
+
+
+def script(folder: Path, text: str, *arguments: Path) -> list[str]:
+    """The lines printed by a script in a process of its own, as workers are started anew."""
+    path = folder / "run.py"
+    path.write_text(text)
+    command = [sys.executable, str(path), *map(str, arguments)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    return run.stdout.splitlines()
+
+
+def test_killed_workers_lose_nothing_and_nothing_is_counted_twice(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    one, two = tmp_path / "one.txt", tmp_path / "two.txt"
+    assert script(tmp_path, KILLED, one, two) == ["True", "proved 512 True True"]
+    assert one.read_bytes() == two.read_bytes()
+
+
+@pytest.mark.slow
+def test_a_deadly_block_and_a_lost_scheduler_leave_a_file_to_resume(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    path = tmp_path / "c.txt"
+    killed, lost, resumed = script(tmp_path, LOST, path)
+    assert killed == "a block killed worker after worker"
+    assert lost == "the scheduler is lost"
+    assert resumed == "proved True"
+
+
+def test_a_local_cluster_by_command(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    fold, file = tmp_path / "p.fold", tmp_path / "c.txt"
+    pattern = random_square(11, seed=1)
+    write_fold(pattern, fold)
+    command = [sys.executable, "-c", "from exactfold.cli import main; main()", "count", str(fold)]
+    options = ["--stream", str(file), "--dask", "local", "--workers", "1", "--json"]
+    run = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert json.loads(run.stdout)["distinct"] == 2048
+    count_streaming(pattern, tmp_path / "whole.txt")
+    assert file.read_bytes() == (tmp_path / "whole.txt").read_bytes()
+
+
+def test_a_scheduler_that_does_not_answer_is_bad_input(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    for address in ("tcp://127.0.0.1:1", "nonsense://x"):
+        with pytest.raises(ClusterError, match="no scheduler"), dask_engine(address, timeout=0.2):
+            raise AssertionError("no engine should be there")
+
+
+def test_without_dask_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(DaskMissingError, match=r"exactfold\[dask\]"), dask_engine("local"):
+        raise AssertionError("no engine should be there")
+    file = tmp_path / "c.txt"
+    result = CliRunner().invoke(app, ["count", str(TWO), "--stream", str(file), "--dask", "local"])
+    assert result.exit_code == 2
+    assert "DaskMissingError" in result.stderr
+    assert not file.exists()
+
+
+def test_a_task_is_a_block_and_knows_its_version(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run here as a worker runs it: the tasks carry all they need, and no boxes go back."""
+    chambers = Chambers.of(random_square(5, seed=1), 8)
+    pattern = chambers.pattern
+    spec = (engine_module.version("exactfold"), pattern.vertices, pattern.triangles, 8)
+    for index in (3, 0):
+        block, line = prove_block(spec, index)
+        expected = chambers.prove(index)
+        assert line == block_line(expected)
+        assert (block.index, block.steps, block.boxes.centers.size) == (index, expected.steps, 0)
+    with pytest.raises(ClusterError, match="not other"):
+        prove_block(("other", *spec[1:]), 0)

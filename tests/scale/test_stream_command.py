@@ -1,0 +1,297 @@
+"""`exactfold count --stream`: what it prints, exit codes, and interruptions that lose nothing."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from exactfold import example_path, families, random_square, write_fold
+from exactfold.cli import app
+from exactfold.commands import stream as stream_command
+from exactfold.errors import UnwritableFileError, WorkerDiedError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.scale import chambers as chambers_module
+from exactfold.scale import stream as stream_module
+from exactfold.scale.journal import Journal
+from exactfold.scale.stream import count_streaming
+
+PROVED, INVALID, USAGE, BAD_INPUT, UNDECIDED, INTERRUPTED = 0, 1, 2, 3, 4, 130
+TWO, FLAT = example_path("two-vertex"), example_path("flat-vertex")
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(a) for a in arguments])
+
+
+def folded(path: Path, pattern: CreasePattern) -> Path:
+    write_fold(pattern, path)
+    return path
+
+
+def test_the_branches_are_in_the_file_and_the_counts_are_shown(tmp_path: Path) -> None:
+    file = tmp_path / "two.txt"
+    result = run("count", TWO, "--stream", file)
+    assert result.exit_code == PROVED
+    assert "4 distinct, 4 with multiplicity; 4 real, 0 not real" in result.stdout
+    assert result.stderr == ""
+    for more in ((), ("--workers", 2)):
+        checked = run("check", file, *more)
+        assert checked.exit_code == PROVED
+        assert checked.stdout.startswith("VALID: 4 branches")
+    claims = json.loads(run("check", file, "--json").stdout)["claims"]
+    assert claims["distinct"] == 4
+
+
+def test_json_has_the_keys_of_count_and_one_more(tmp_path: Path) -> None:
+    plain = json.loads(run("count", TWO, "--json").stdout)
+    data = json.loads(run("count", TWO, "--json", "--stream", tmp_path / "c.txt").stdout)
+    assert set(data) == set(plain) | {"stream"}
+    for key in ("pattern", "status", "distinct", "with_multiplicity", "real", "nonreal"):
+        assert data[key] == plain[key]
+    for key in ("true_branches", "dimension", "degree"):
+        assert data[key] == plain[key]
+    assert data["branches"] == []
+    assert set(data["stream"]) == {
+        *("file", "blocks", "resumed", "unproved", "exact", "open", "groups", "cpu_seconds"),
+    }
+    assert data["stream"]["file"] == str(tmp_path / "c.txt")
+
+
+def test_a_file_is_never_overwritten(tmp_path: Path) -> None:
+    file = tmp_path / "c.txt"
+    assert run("count", TWO, "--stream", file).exit_code == PROVED
+    before = file.read_bytes()
+    refused = run("count", TWO, "--stream", file)
+    assert refused.exit_code == USAGE
+    assert "--resume continues it" in refused.stderr
+    again = run("count", TWO, "--stream", file, "--resume", "--json")
+    assert again.exit_code == PROVED
+    assert json.loads(again.stdout)["stream"]["resumed"] == 1
+    assert file.read_bytes() == before
+    other = run("count", FLAT, "--stream", file, "--resume")
+    assert other.exit_code == BAD_INPUT
+    assert "ForeignJournalError" in other.stderr
+    assert file.read_bytes() == before
+
+
+def test_multiple_roots_are_named_and_handed_over(tmp_path: Path) -> None:
+    """The streamed run leaves two paths open that meet; the other methods settle them."""
+    file, certificate = tmp_path / "c.txt", tmp_path / "c.json"
+    result = run("count", FLAT, "--stream", file, "--certificate", certificate)
+    assert result.exit_code == PROVED
+    assert "2 of 4 sign vectors" in result.stdout
+    assert "++, +- at +0" in result.stdout
+    assert "3 distinct, 4 with multiplicity" in result.stdout
+    assert run("check", file).exit_code == INVALID
+    assert run("check", certificate).stdout.startswith("VALID: 3 branches (4 with multiplicity")
+
+
+def test_what_stays_open_is_undecided(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stream_command, "HANDED_OVER", 0)
+    file, certificate = tmp_path / "c.txt", tmp_path / "c.json"
+    given = ("count", FLAT, "--stream", file, "--certificate", certificate)
+    result = run(*given)
+    assert result.exit_code == UNDECIDED
+    assert "2 of 4 solutions isolated" in result.stdout
+    assert "sign vectors ++, +- seem to meet at +0: vertex 5 flat" in " ".join(
+        result.stdout.split()
+    )
+    assert not certificate.exists()
+    assert "nothing is proved" in result.stderr
+    data = json.loads(run(*given, "--resume", "--json").stdout)
+    assert data["status"] == "undecided"
+    assert data["distinct"] is data["real"] is data["nonreal"] is data["degree"] is None
+    assert data["stream"]["groups"] == {"+0": ["++", "+-"]}
+    assert [root["signs"] for root in data["stream"]["open"]] == ["++", "+-"]
+
+
+def test_both_methods_say_what_is_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("exactfold.branches.attempt.flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr("exactfold.count.GROEBNER_LIMIT", 0)
+    data = json.loads(run("count", FLAT, "--stream", tmp_path / "c.txt", "--json").stdout)
+    assert data["status"] == "undecided"
+    assert data["open_questions"][0].startswith("sign vectors ++, +- seem to meet at +0")
+    assert len(data["open_questions"]) > 1
+    assert len(data["branches"]) == 2
+
+
+def test_a_certificate_is_not_written_twice(tmp_path: Path) -> None:
+    file, certificate = tmp_path / "c.txt", tmp_path / "c.json"
+    result = run("count", TWO, "--stream", file, "--certificate", certificate)
+    assert result.exit_code == PROVED
+    assert f"the proof is in {file}" in result.stderr
+    assert not certificate.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [
+        (["--resume"], "go with --stream"),
+        (["--workers", "2"], "go with --stream"),
+        (["--dask", "local"], "go with --stream"),
+        (["--stream", "x.txt", "--method", "groebner"], "--method"),
+        (["--stream", "x.txt", "--dask", "tcp://h:1", "--workers", "2"], "--dask local"),
+    ],
+)
+def test_options_that_do_not_go_together(options: list[str], word: str) -> None:
+    result = run("count", TWO, *options)
+    assert result.exit_code == USAGE
+    assert word in result.stderr
+    assert not Path("x.txt").exists()
+
+
+def test_patterns_that_are_not_streamed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stream_command, "ADVISED", 2)
+    monkeypatch.setattr(stream_command, "MOST_UNKNOWNS", 3)
+    triangle = CreasePattern([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])
+    for k, (pattern, code, word) in enumerate(
+        (
+            (families.single_vertex(5), USAGE, "four boundary vertices"),
+            (triangle, BAD_INPUT, "no interior vertex"),
+            (random_square(4, seed=1), USAGE, "exactfold branch"),
+        )
+    ):
+        file = tmp_path / f"{k}.txt"
+        result = run("count", folded(tmp_path / f"{k}.fold", pattern), "--stream", file)
+        assert result.exit_code == code
+        assert word in result.stderr
+        assert not file.exists()
+
+
+def test_large_counts_are_told_of_the_faster_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stream_command, "ADVISED", 2)
+    result = run("count", TWO, "--json")
+    assert result.exit_code == PROVED
+    assert result.stderr == "exactfold: 2^2 branches are proved faster with --stream FILE\n"
+    assert stream_command.advice(families.single_vertex(5)) is None
+    monkeypatch.setattr(stream_command, "MOST_UNKNOWNS", 1)
+    assert "exactfold branch" in str(stream_command.advice(random_square(2, seed=1)))
+
+
+def test_unwritable_files_are_bad_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    result = run("count", TWO, "--stream", tmp_path / "none" / "c.txt")
+    assert result.exit_code == BAD_INPUT
+    assert "UnwritableFileError" in result.stderr
+    assert "--resume" not in result.stderr
+
+    def full(self: Journal, body: str) -> None:
+        raise UnwritableFileError("cannot write: No space left on device")
+
+    monkeypatch.setattr(Journal, "append", full)
+    result = run("count", TWO, "--stream", tmp_path / "c.txt")
+    assert result.exit_code == BAD_INPUT
+    assert f"--stream {tmp_path / 'c.txt'} --resume" in result.stderr
+
+
+def test_a_dead_worker_is_no_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def died(*_: object, **__: object) -> None:
+        (tmp_path / "c.txt").write_text("some blocks")
+        raise WorkerDiedError("a worker process died")
+
+    monkeypatch.setattr(stream_command, "count_streaming", died)
+    result = run("count", TWO, "--stream", tmp_path / "c.txt", "--workers", 3)
+    assert result.exit_code == 70
+    assert "a worker process died; go on with" in result.stderr
+    assert "--resume --workers 3" in result.stderr
+
+
+SIGNALLED = """
+import os, signal, sys
+from exactfold.cli import main
+from exactfold.scale import chambers, journal, stream
+
+append = journal.Journal.append
+
+def then_signal(self, body):
+    append(self, body)
+    if self.blocks == 3:
+        if os.environ["SENT_TO"] == "group":
+            os.killpg(0, signal.SIGINT)
+        else:
+            os.kill(os.getpid(), signal.SIGTERM)
+
+if __name__ == "__main__":
+    journal.Journal.append, chambers.BLOCK, stream.LEAST = then_signal, 16, 1
+    main()
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize(("whole", "workers"), [(True, 2), (False, 2)])
+def test_interruptions_leave_a_file_to_resume(
+    whole: bool, workers: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C reaches all processes of a terminal, SIGTERM only the one that is meant."""
+    pattern, script = random_square(8, seed=1), tmp_path / "run.py"
+    script.write_text(SIGNALLED)
+    fold, file = folded(tmp_path / "a pattern.fold", pattern), tmp_path / "c.txt"
+    given = ["count", str(fold), "--stream", str(file), "--workers", str(workers)]
+    done = subprocess.run(  # returns when every worker has closed stderr: none is left behind
+        [sys.executable, str(script), *given],
+        env={**os.environ, "SENT_TO": "group" if whole else "process"},
+        capture_output=True,
+        text=True,
+        start_new_session=True,
+        check=False,
+    )
+    assert done.returncode == INTERRUPTED, done.stderr
+    first, again = done.stderr.splitlines()
+    assert first == "exactfold: interrupted; go on with"
+    kept = file.read_bytes()
+    assert kept.count(b"\n") == 4
+
+    monkeypatch.setattr(chambers_module, "BLOCK", 16)
+    monkeypatch.setattr(stream_module, "LEAST", 1000)
+    words = shlex.split(again)
+    assert words[0] == "exactfold"
+    result = run(*words[1:], "--json")
+    assert result.exit_code == PROVED
+    assert json.loads(result.stdout)["stream"]["resumed"] == 3
+    assert file.read_bytes().startswith(kept)
+    count_streaming(pattern, tmp_path / "whole.txt")
+    assert file.read_bytes() == (tmp_path / "whole.txt").read_bytes()
+
+
+def test_every_command_ends_with_130_on_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("exactfold.cli.count_branches", stop)
+    result = run("count", TWO)
+    assert result.exit_code == INTERRUPTED
+    assert result.stderr == "exactfold: interrupted\n"
+
+
+def test_progress_names_what_is_verified_and_what_is_proved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(chambers_module, "BLOCK", 8)
+    square, file = random_square(5, seed=1), tmp_path / "c.txt"
+
+    def stop(done: int, total: int) -> None:
+        if done == 16:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        count_streaming(square, file, progress=stop)
+    seen: list[tuple[str, int, int]] = []
+    count_streaming(
+        square,
+        file,
+        resume=True,
+        progress=lambda *at: seen.append(("proved", *at)),
+        verified=lambda *at: seen.append(("verified", *at)),
+    )
+    assert seen == [
+        ("verified", 0, 32),
+        ("verified", 8, 32),
+        ("proved", 24, 32),
+        ("proved", 32, 32),
+    ]
