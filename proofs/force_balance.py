@@ -97,7 +97,8 @@ def _rim(script: Script) -> None:
     rim_next, rim_last = -a.csc * D / (L * M), -b.csc * E / (L * N)
     over = script.alter("outer2 with L_{i+1}", L, M)
     script.identity("Eq. (outer2)", rim_next + 1 / (sin_next * over))
-    script.identity("Eq. (outer3)", rim_last + 1 / (sin_last * L))
+    over = script.alter("outer3 with L_{i-1}", L, N)
+    script.identity("Eq. (outer3)", rim_last + 1 / (sin_last * over))
     script.state(
         "B.4",
         "Appendix B, Eq. (outer2)",
@@ -118,11 +119,13 @@ def _rim(script: Script) -> None:
         rim_next * sin_next - sign * rim_last * sin_last,
         rim_next * sin_next + 1 / L,
     )
+    sign = script.alter("both rim edges on one side of the spoke", 1, -1)
     script.identity(
         "perpendicular components of the two rim forces add up to zero",
-        rim_next * to_next[1] / D + rim_last * to_last[1] / E,
+        rim_next * to_next[1] / D + sign * rim_last * to_last[1] / E,
     )
-    value = Fraction(-1)  # alpha = pi/2 and L = 1 throughout: sigma sin eta = -1/L on both sides
+    value = script.alter("rim of the cross positive", Fraction(-1), Fraction(1))
+    # alpha = pi/2 and L = 1 throughout: sigma sin eta = -1/L on both sides
     square = wheel_stress(star((1, 0), (0, 1), (-1, 0), (0, -1)), 4)
     script.counterexample(
         "cross of unit spokes: rim density times height over the spoke is -1 on both sides, so the "
@@ -151,7 +154,8 @@ def _rim(script: Script) -> None:
         PRINTED,
     )
     sign = script.alter("first piece with the cotangent added", 1, -1)
-    first, second = b.csc / N - sign * b.cot / L, a.csc / M - a.cot / L
+    over = script.alter("second piece with L_i for L_{i+1}", M, L)
+    first, second = b.csc / N - sign * b.cot / L, a.csc / over - a.cot / L
     script.identity("first piece cancels F_{rim,-}, second F_{rim,+}", first - cot_last / L)
     script.identity("the two pieces make up the spoke", first + second - spoke(N, L, M, b, a))
     script.identity("second piece cancels F_{rim,+}", second - cot_next / L)
@@ -162,8 +166,9 @@ def _rim(script: Script) -> None:
         PRINTED,
         note="for acute, right and obtuse angles; the second piece is its mirror image",
     )
+    sign = script.alter("foot of the height beyond the hub", 1, -1)
     script.identity(
-        "cot eta_{i-1,i} = (L_i - h cot alpha)/h", cot_last - (L - N * b.cos) / (N * b.sin)
+        "cot eta_{i-1,i} = (L_i - h cot alpha)/h", cot_last - (L - sign * N * b.cos) / (N * b.sin)
     )
 
 
@@ -174,7 +179,8 @@ def _crossed_ladders(script: Script) -> None:
     x = L * h / B
     script.identity("1/A + 1/B = 1/h", 1 / A + 1 / B - 1 / h, A * (1 - x / L) - h)
     alpha, eta = Angle.twice_arctan(p), Angle.twice_arctan(e)
-    length = L * eta.sin / (alpha + eta).sin  # L_{i-1} by the law of sines
+    opposite = script.alter("law of sines with the other angle", eta, alpha)
+    length = L * opposite.sin / (alpha + eta).sin  # L_{i-1} by the law of sines
     script.identity(
         "A = L tan eta, B = L tan alpha, h = L_{i-1} sin alpha, for all angles",
         eta.cot / L + alpha.cot / L - 1 / (length * alpha.sin),
@@ -186,7 +192,7 @@ def _crossed_ladders(script: Script) -> None:
         PRINTED,
         note="for signed lengths, hence also for an obtuse angle; at a right angle 1/A or 1/B is 0",
     )
-    obtuse = Angle(Fraction(-3, 5), Fraction(4, 5))
+    obtuse = Angle(Fraction(script.alter("obtuse angle taken acute", -3, 3), 5), Fraction(4, 5))
     script.example(
         "alpha with cosine -3/5, L_i = 1: B = L_i tan alpha = -4/3 is no side length",
         1 / obtuse.cot == Fraction(-4, 3),
@@ -227,10 +233,11 @@ def _telescope(script: Script) -> None:
     script.identity(
         "rim vertex: the three forces add up to 0", *(rim[k] + w * e[k] for k in (0, 1))
     )
+    sign = script.alter("sector that does not telescope", 1, -1)
     step = [
         (d[k] + e[k]) / cross(d, e)
         - dot(d, e) / cross(d, e) * (d[k] / dot(d, d) + e[k] / dot(e, e))
-        - (turned(d, k) / dot(d, d) - turned(e, k) / dot(e, e))
+        - (turned(d, k) / dot(d, d) - sign * turned(e, k) / dot(e, e))
         for k in (0, 1)
     ]
     script.identity(

@@ -49,7 +49,8 @@ def _base_case(script: Script) -> None:
     script.identity(
         "csc a csc b = csc(a + b)(cot a + cot b)", a.csc * b.csc + c.csc * (a.cot + sign * b.cot)
     )
-    script.identity("-csc alpha_31 = csc(alpha_12 + alpha_23)", c.csc + (a + b).csc)
+    sign = script.alter("csc alpha_31 without its sign", 1, -1)
+    script.identity("-csc alpha_31 = csc(alpha_12 + alpha_23)", sign * c.csc + (a + b).csc)
     script.state(
         "B.11",
         "Appendix B, Eq. (simpletrig)",
@@ -92,7 +93,8 @@ def _base_case(script: Script) -> None:
     third = Angle(Fraction(-3, 5), Fraction(4, 5))  # a = alpha_12; b below; c closes up
     other = Angle(Fraction(-4, 5), Fraction(3, 5))
     last = -(third + other)
-    gap = (third.cot + last.cot) - (third.cot + other.cot)
+    printed = script.alter("example with the index corrected", other, last)
+    gap = (third.cot + last.cot) - (third.cot + printed.cot)
     script.counterexample(
         "cos a = -3/5, cos b = -4/5, alpha_31 = pi/2: the cotangent sums over L_1 differ by 4/3",
         last.sin == 1 and gap == Fraction(4, 3),
@@ -110,7 +112,8 @@ def _base_case(script: Script) -> None:
         "index: cot alpha_31, not cot alpha_23. Example: cosines -3/5, -4/5, 0 of alpha_12, "
         "alpha_23, alpha_31, where the coefficients of 1/L_1 differ by csc(alpha_23) 4/3",
     )
-    common = b.csc * c.csc / L3 + c.csc * a.csc / L1 + a.csc * b.csc / L2
+    sign = script.alter("one of the positive terms negative", 1, -1)
+    common = b.csc * c.csc / L3 + c.csc * a.csc / L1 + sign * a.csc * b.csc / L2
     script.identity(
         "all three ratios are csc_23 csc_31/L_3 + csc_31 csc_12/L_1 + csc_12 csc_23/L_2, a sum of "
         "positive terms",
@@ -147,11 +150,13 @@ def _induction_formulas(script: Script) -> None:
     change = spoke(L0, L1, L2, z, a) - spoke(L0, L1, L3, z, merged)
     long = a.csc / L2 + z.csc / L0 - (a.cot + z.cot) / L1
     long += -(a + b).csc / L3 - z.csc / L0 + ((a + b).cot + z.cot) / L1
-    short = a.csc / L2 - (a + b).csc / L3 - (a.cot - (a + b).cot) / L1
+    sign = script.alter("Delta sigma_{i-1} with a sum of cotangents", 1, -1)
+    short = a.csc / L2 - (a + b).csc / L3 - (a.cot - sign * (a + b).cot) / L1
     script.identity("Delta sigma_{i-1} = sigma_{i-1} - sigma^0_{i-1}, unsimplified", change - long)
     script.identity("its terms with alpha_{i-2,i-1} cancel", long - short)
     mirrored = spoke(L2, L3, L0, b, z) - spoke(L1, L3, L0, a + b, z)  # z: angle i+1, i+2; L0: i+2
-    after = b.csc / L2 - (a + b).csc / L1 - (b.cot - (a + b).cot) / L3
+    far = script.alter("Delta sigma_{i+1} with L_{i+1} for L_{i-1}", L1, L3)
+    after = b.csc / L2 - (a + b).csc / far - (b.cot - (a + b).cot) / L3
     script.identity("Delta sigma_{i+1}", mirrored - after)
     gone = r"\frac{\csc\alpha_{i-2,i-1}}{L_{i-2}}"
     script.state(
@@ -191,7 +196,8 @@ def _induction_step(script: Script) -> None:
     before = a.csc / L2 - total.csc / L3 - (a.cot - total.cot) / L1
     after = b.csc / L2 - total.csc / L1 - (b.cot - total.cot) / L3
     beta = Angle(K(-1), K(0)) + (-total)
-    script.identity("sin beta_i = +sin(alpha_{i-1,i} + alpha_{i,i+1})", beta.sin - total.sin)
+    sign = script.alter("sin beta_i negative", 1, -1)
+    script.identity("sin beta_i = +sin(alpha_{i-1,i} + alpha_{i,i+1})", beta.sin - sign * total.sin)
     sign = script.alter("the law of sines as printed", -1, 1)
     script.identity(
         "sigma_i/sin beta_i = -Delta sigma_{i-1}/sin alpha_{i,i+1} = "
@@ -200,12 +206,15 @@ def _induction_step(script: Script) -> None:
         sigma / beta.sin - sign * after / a.sin,
     )
     # Vectors, with u_{i-1} = (1, 0): no law of sines and no lengths are needed.
-    closed = (before + sigma * a.cos + after * total.cos, sigma * a.sin + after * total.sin)
+    sign = script.alter("Delta sigma_{i+1} reversed", 1, -1)
+    last = sign * after
+    closed = (before + sigma * a.cos + last * total.cos, sigma * a.sin + last * total.sin)
     script.identity(
         "sigma_i u_i + Delta sigma_{i-1} u_{i-1} + Delta sigma_{i+1} u_{i+1} = 0", *closed
     )
     five: list[tuple[Any, Any]] = [(1, 0), ("4/5", "3/5"), ("7/25", "24/25"), (-1, 0), (0, -1)]
-    full, less = wheel_stress(star(*five), 5), wheel_stress(star(five[0], *five[2:]), 4)
+    i = script.alter("another spoke taken out", 1, 2)
+    full, less = wheel_stress(star(*five), 5), wheel_stress(star(*five[:i], *five[i + 1 :]), 4)
     rise = full[(0, 5)] - less[(0, 4)]  # unit spokes: densities are stresses
     script.counterexample(
         "five unit spokes, cos alpha_12 = cos alpha_23 = 4/5, i = 2: sigma_i/sin beta_i = 25/36, "
@@ -265,14 +274,15 @@ def _last_display(script: Script) -> None:
 def _choice_of_spoke(script: Script) -> None:
     """Which spoke can be taken out, and the one star where none can."""
     straight = star((1, 0), (0, 1), (-1, 0), (0, -1)).vertices
+    step = script.alter("one angle for the sum of two", 1, 0)
     script.counterexample(
         "cross: alpha_{i-1,i} + alpha_{i,i+1} = pi for every i, so no spoke can be taken out",
-        all(cross(straight[i - 1], straight[(i + 1) % 4]) == 0 for i in range(4)),
+        all(cross(straight[i - 1], straight[(i + step) % 4]) == 0 for i in range(4)),
     )
     _, w, x, y, z = ring("w x y z", QQ)  # angles of four spokes
     script.identity(
         "four spokes: the sums at opposite spokes add up to 2 pi, so one is < pi, or all are pi",
-        (w + x) + (y + z) - ((x + y) + (z + w)),
+        (w + x) + (y + z) - ((x + y) + (z + script.alter("sums that share an angle", w, y))),
         (w + x) - (x + y) - (w - y),
         (x + y) - (y + z) - (x - z),
     )

@@ -89,7 +89,8 @@ def _laplace_matrix(script: Script) -> None:
     jump = minus(gradient_a, gradient_b)
     sign = script.alter("fold with the wrong sign", 1, -1)
     weight = -at(origin, hv, 1)
-    script.identity("K_v(h, e_w) = K_w(h, e_v): J is symmetric", weight + at(w, hw, 0))
+    same = script.alter("J antisymmetric", 1, -1)
+    script.identity("K_v(h, e_w) = K_w(h, e_v): J is symmetric", weight + same * at(w, hw, 0))
     script.identity(
         "the jump of the gradient across the edge d is -2 weight Jd, weight = -K_v(h, e_w): "
         "|weight| = fold/(2 length)",
@@ -97,17 +98,18 @@ def _laplace_matrix(script: Script) -> None:
         jump[1] + 2 * weight * w[0],
     )
     (_, p, q, r) = ring("p q r", QQ)
+    relative = script.alter("sum of squares of sums", 1, -1)
     script.identity(
         "an edge with weight r adds r (p - q)^2 to w^T J(h) w, as constants are in the kernel",
-        p * r * (p - q) + q * r * (q - p) - r * (p - q) ** 2,
+        p * r * (p - q) + q * r * (q - p) - r * (p - relative * q) ** 2,
     )
     script.cases(
         "w^T J(h) w = sum weight (w_i - w_j)^2 for the package's forms, w = 0 on the boundary",
-        (_is_laplacian(p, seed) for seed, p in enumerate(hostile_patterns(14))),
+        (_is_laplacian(p, seed, relative) for seed, p in enumerate(hostile_patterns(14))),
     )
 
 
-def _is_laplacian(pattern: CreasePattern, seed: int) -> bool:
+def _is_laplacian(pattern: CreasePattern, seed: int, sign: int) -> bool:
     source = random.Random(seed)
     h = {v: Fraction(source.randint(-9, 9)) for v in range(len(pattern.vertices))}
     w = {v: Fraction(source.randint(-9, 9) * (v in pattern.interior)) for v in h}
@@ -121,7 +123,7 @@ def _is_laplacian(pattern: CreasePattern, seed: int) -> bool:
         Fraction(0),
     )
     return total == sum(
-        fold_weight(pattern, (i, j), h) * (w[i] - w[j]) ** 2 for i, j in pattern.folds
+        fold_weight(pattern, (i, j), h) * (w[i] - sign * w[j]) ** 2 for i, j in pattern.folds
     )
 
 
@@ -157,6 +159,7 @@ def _all_up(script: Script) -> None:
 def _tensor(script: Script) -> None:
     """T any symmetric trilinear form in n variables, K_u(a, b) = T(e_u, a, b), J = T(h, ., .)."""
     sign = script.alter("derivative of the tangent with the wrong sign", 1, -1)
+    count = script.alter("K_u(w) counted twice", 1, 2)
     for n in (1, 2, 3, 4):
         triples = [(i, j, k) for i, j, k in product(range(n), repeat=3) if i <= j <= k]
         names = [f"t{i}{j}{k}" for i, j, k in triples]
@@ -182,7 +185,7 @@ def _tensor(script: Script) -> None:
         )
         script.identity(
             f"n = {n}: T(z, w, w) = w^T J(z) w = sum_u z_u K_u(w)",
-            form(z, w, w) - sum(z[u] * form(units[u], w, w) for u in range(n)),
+            form(z, w, w) - count * sum(z[u] * form(units[u], w, w) for u in range(n)),
         )
 
 
@@ -207,10 +210,11 @@ def _midpoints(script: Script) -> None:
     dot = sum(a * b for a, b in zip(p, q, strict=True))
     kp, kq = p0**2 - sum(a**2 for a in p), q0**2 - sum(b**2 for b in q)
     squares = sum((p[i] * q[j] - p[j] * q[i]) ** 2 for i, j in combinations(range(3), 2))
+    sign = script.alter("the squares subtracted", 1, -1)
     script.identity(
         "(p0 q0)^2 - (p.q)^2 = K(p) q0^2 + |p|^2 K(q) + sum of squares, for K = x0^2 - |x|^2: on "
         "one nappe K(p, q) = p0 q0 - p.q > 0 and K((p + q)/2) > 0",
-        (p0 * q0) ** 2 - dot**2 - (kp * q0**2 + sum(a**2 for a in p) * kq + squares),
+        (p0 * q0) ** 2 - dot**2 - (kp * q0**2 + sum(a**2 for a in p) * kq + sign * squares),
     )
 
 

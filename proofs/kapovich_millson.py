@@ -61,10 +61,11 @@ def _minors(script: Script) -> None:
     matrix = kapovich_millson(d).form.matrix
     true_ratio = matrix[3][3] - matrix[2][3] ** 2 / matrix[2][2]  # chi(4) / chi(3)
     sines = Fraction(cross(d[0], d[3]), cross(d[0], d[2]))
+    i = script.alter("cosecant of the angle before", 2, 1)
     script.counterexample(
         "spokes (5,0), (4,3), (-3,4), (0,-5), j = 3: chi(4)/chi(3) = sines csc a_34 / 25, and not "
         "sines csc a_23 / 25",
-        true_ratio == sines / cross(d[2], d[3]) != sines / cross(d[1], d[2]),
+        true_ratio == sines / cross(d[i], d[i + 1]) != sines / cross(d[1], d[2]),
     )
     script.state(
         "C.13",
@@ -102,7 +103,8 @@ def _squares(script: Script) -> None:
         "p_{n-1}/(p_n c_{n-1}), where p_1 = 0",
         p_after * before + sign * p_before * after - p * cross(a, c),
     )
-    square = (p_after * x - p * y) ** 2 / (p * p_after * after)
+    sign = script.alter("squares of sums", 1, -1)
+    square = (p_after * x - sign * p * y) ** 2 / (p * p_after * after)
     script.identity(
         "term n of the sum of squares is p_{n+1}/(p_n c_n) x_n^2 - 2/c_n x_n x_{n+1} + "
         "p_n/(p_{n+1} c_n) x_{n+1}^2: summed over n = 2, ..., N-1 with x_N = 0 it is the form, "
@@ -134,10 +136,12 @@ def _crossings(script: Script) -> None:
         end - start + (b - first - last) - (b + 2 * w - 1),
     )
     found = kapovich_millson(BACK_FIRST)
+    net = script.alter("net crossings as printed", 2, 1)
     script.counterexample(
         "spokes (1,0), (2,-1), (0,1), (-1,-1): f = 3, b = 1, w = 1, a_12 < 0; from a_12 to 2 pi w "
         "- a_41 there are 2 = 2w net crossings, not 2w - 1",
-        (found.forward, found.back, found.winding) == (3, 1, 1) and net_crossings(BACK_FIRST) == 2,
+        (found.forward, found.back, found.winding) == (3, 1, 1)
+        and net_crossings(BACK_FIRST) == net,
     )
     script.state(
         "C.15",
@@ -173,7 +177,8 @@ def _vanishing(script: Script) -> None:
         cross(e, c) / (cross(e, a) * before * after)
         + script.alter("sign at a vanishing minor", 1, -1) / before**2,
     )
-    turned = (b[0] - eps * b[1], b[1] + eps * b[0])
+    turn = script.alter("turned the other way", eps, -eps)
+    turned = (b[0] - turn * b[1], b[1] + turn * b[0])
     script.identity(
         "turning d_n a little gives p_n = eps d_1 . d_n, (d_1 . d_n)^2 = |d_1|^2 |d_n|^2 > 0; f, "
         "b, w and chi(N) c_1...c_{N-1} = -c_N (2 < n < N) do not change sign, so the inertia does "
@@ -218,10 +223,11 @@ def _germ(script: Script) -> None:
         "spokes are parallel to the first, so that minors vanish",
         (r.inertia == (r.predicted[0] - shift, r.predicted[1] + shift, 3) for r in results),
     )
+    stresses = script.alter("lengths without a self stress", 1, 0)
     script.example(
         "a spoke adds two unknowns and two lengths, independent since consecutive spokes are not "
         "parallel: the 2N lengths have rank 2N - 1, and one equation remains (pentagram: rank 9)",
-        rank(_lengths(PENTAGRAM)) == 2 * len(PENTAGRAM) - 1,
+        rank(_lengths(PENTAGRAM)) == 2 * len(PENTAGRAM) - stresses,
     )
     script.state(
         "C.17",
@@ -265,7 +271,8 @@ def _changes(script: Script) -> None:
         Ruling.AS_PRINTED,
         note="with the sign of Appendix C: (N - 3, 1); Eq. (compat) has the other sign (IIB.21)",
     )
-    stars = [kapovich_millson(d) for d in (PENTAGRAM, TWICE_BACK)]
+    second = script.alter("stars of different signature", TWICE_BACK, BACK_FIRST)
+    stars = [kapovich_millson(d) for d in (PENTAGRAM, second)]
     script.counterexample(
         "pentagram (f, b, w) = (5, 0, 2) and spokes (1,0), (-5,1), (-1,5), (0,-1), (-5,-2) with "
         "(3, 2, 1): both have inertia (0, 3, 3)",
@@ -273,7 +280,8 @@ def _changes(script: Script) -> None:
         == [(5, 0, 2, (0, 3, 3)), (3, 2, 1, (0, 3, 3))],
     )
     jump = script.alter("winding kept at pi", 1, 0)
-    for name, change, expected in (("0", 0, -1), ("pi", jump, 1)):
+    kept = script.alter("winding changed at 0", 0, 1)
+    for name, change, expected in (("0", kept, -1), ("pi", jump, 1)):
         script.identity(
             f"as one forward-track turns into a back-track through {name}, the signature changes "
             f"by ({expected:+}, {-expected:+})",

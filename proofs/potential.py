@@ -74,15 +74,16 @@ def _symmetry(script: Script) -> None:
             total += corner_polar(spokes[lowered], spokes[1 - lowered], *one, *two)
         return total
 
+    sign = script.alter("polar form antisymmetric", 1, -1)
     for x in "vwab":
         script.identity(
-            f"K_v(e_{x}, e_w) = K_w(e_{x}, e_v)", polar("v", x, "w") - polar("w", x, "v")
+            f"K_v(e_{x}, e_w) = K_w(e_{x}, e_v)", polar("v", x, "w") - sign * polar("w", x, "v")
         )
     script.cases(
         "the same for the package's forms on random squares",
         (
             curvature_form(p, v).functional(_unit(p, v, w))[x]
-            == curvature_form(p, w).functional(_unit(p, w, v))[x]
+            == sign * curvature_form(p, w).functional(_unit(p, w, v))[x]
             for p in (random_square(5, seed) for seed in range(4))
             for v, w in p.folds
             if v in p.interior and w in p.interior
@@ -106,22 +107,29 @@ def _lorentzian_along_the_path(script: Script) -> None:
         "(1 - T) l^2 + T K = l^2 - T N with N = l^2 - K",
         (1 - T) * square + T * kh - (square - sign * T * n_of_h),
     )
-    residual = kh - 2 * (kth / kt) * kth + (kth / kt) ** 2 * kt  # K(h - (K(t,h)/K(t,t)) t)
+    twice = script.alter("mixed term counted once", 2, 1)
+    residual = kh - twice * (kth / kt) * kth + (kth / kt) ** 2 * kt  # K(h - (K(t,h)/K(t,t)) t)
     script.identity(
         "N(h) = -K(h - K(t,h)/K(t,t) t): minus K on the complement of t, where K <= 0",
         n_of_h + residual,
     )
+    sign = script.alter("l^2 subtracted twice", 1, -1)
     script.identity(
         "T K = K^T - (1 - T) l^2: where K^T <= 0 and 0 < T <= 1, also K <= 0 (key lemma)",
-        T * kh - ((1 - T) * square + T * kh) + (1 - T) * square,
+        T * kh - ((1 - T) * square + T * kh) + sign * (1 - T) * square,
     )
+    nullity = script.alter("nullity 3", 4, 3)
     script.cases(
         "N is positive semidefinite of nullity 4 for the package's round cones (exact inertia)",
-        (_n_inertia(p, v) for p in (random_square(5, s) for s in range(5)) for v in p.interior),
+        (
+            _n_inertia(p, v, nullity)
+            for p in (random_square(5, s) for s in range(5))
+            for v in p.interior
+        ),
     )
 
 
-def _n_inertia(pattern: Any, vertex: int) -> bool:
+def _n_inertia(pattern: Any, vertex: int, nullity: int) -> bool:
     form = curvature_form(pattern, vertex)
     cone = round_cone(pattern, vertex)
     line = form.functional(cone)
@@ -131,7 +139,7 @@ def _n_inertia(pattern: Any, vertex: int) -> bool:
         for i, a in enumerate(form.labels)
     ]
     positive, negative, zero = inertia(matrix)
-    return negative == 0 and zero == 4 and positive == len(form.labels) - 4
+    return negative == 0 and zero == nullity and positive == len(form.labels) - nullity
 
 
 if __name__ == "__main__":

@@ -115,7 +115,7 @@ def _forms(script: Script) -> None:
         stress_form(pattern, wheel_stress(pattern, 4)).matrix
         == tuple(tuple(matrix[(i + 1) % 5][(j + 1) % 5] for j in range(5)) for i in range(5))
         and kapovich_millson(REFLEX).form.matrix
-        == tuple(tuple(-2 * entry for entry in row) for row in matrix),
+        == tuple(tuple(factor * entry for entry in row) for row in matrix),
     )
     script.state(
         "C.1",
@@ -148,14 +148,19 @@ def _stress_signs(script: Script) -> None:
         A - script.alter("turn of the link reversed", 1, -1) * turn / (before * after),
         f - cross(a, c) / (before * after),
     )
-    stress = wheel_stress(star(*REFLEX), 4)
+    convex = [(4, 0), (3, 3), (0, 4), (-1, -1)]
+    stress = wheel_stress(star(*script.alter("a convex link", REFLEX, convex)), 4)
     script.counterexample(
         "hub (0,0), spokes (4,0), (1,1), (0,4), (-1,-1): A_2 = -1/2, the other three A_n > 0",
         stress[1, 4] == Fraction(-1, 2) and all(stress[j, 4] > 0 for j in (0, 2, 3)),
     )
+    sign = script.alter("rim densities positive", -1, 1)
     script.example(
         "its rim densities in the sign of Eq. (wheelstress) are -1/c_n < 0",
-        all(stress[edge] < 0 for edge in ((0, 1), (1, 2), (2, 3), (0, 3))),
+        all(
+            stress[min(j, k), max(j, k)] == Fraction(sign, cross(REFLEX[j], REFLEX[k])) < 0
+            for j, k in ((0, 1), (1, 2), (2, 3), (3, 0))
+        ),
     )
     script.state(
         "C.3",
@@ -191,12 +196,13 @@ def _null_directions(script: Script) -> None:
         *(sign * a[i] / before + f * b[i] + sign * c[i] / after for i in range(2)),
     )
     g, a, c = (symbols("gx gy ax ay cx cy")[2 * i : 2 * i + 2] for i in range(3))
+    turn = script.alter("quarter turn to the right", 1, -1)
     script.identity(
         "an affine function that vanishes at the hub, d_1 and d_N is zero: its slope g satisfies "
         "c_N g = (g . d_1) J d_N - (g . d_N) J d_1, J the quarter turn, and c_N = d_N x d_1 is "
         "not 0",
-        cross(c, a) * g[0] + dot(g, a) * c[1] - dot(g, c) * a[1],
-        cross(c, a) * g[1] - dot(g, a) * c[0] + dot(g, c) * a[0],
+        cross(c, a) * g[0] + turn * (dot(g, a) * c[1] - dot(g, c) * a[1]),
+        cross(c, a) * g[1] - turn * (dot(g, a) * c[0] - dot(g, c) * a[0]),
     )
     script.state(
         "C.4",
@@ -210,7 +216,7 @@ def _null_directions(script: Script) -> None:
     )
     script.example(
         "with h_0 = h_1 = h_N = 0 the terms left have indices 2 to N-1, tridiagonally (N = 3 to 9)",
-        all(_is_pinned_form(n) for n in range(3, 10)),
+        all(_is_pinned_form(n, sign) for n in range(3, 10)),
     )
     script.state(
         "C.5",
@@ -221,14 +227,17 @@ def _null_directions(script: Script) -> None:
     )
 
 
-def _is_pinned_form(n: int) -> bool:
-    """Whether rows 2 to N-1 of the library's matrix, times -2, are those of Eq. (form)."""
+def _is_pinned_form(n: int, sign: int) -> bool:
+    """Whether rows 2 to N-1 of the library's matrix, times -2, are those of Eq. (form).
+
+    `sign` is that of g, -1.
+    """
     matrix, d = curvature_form(single_vertex(n), n).matrix, single_vertex(n).vertices
     for i in range(2, n):  # label i sits at position i of the matrix and at d[i - 1]
         for j in range(2, n):
             near = {i: cross(d[i - 2], d[i]) / (cross(d[i - 2], d[i - 1]) * cross(d[i - 1], d[i]))}
-            near[i + 1] = -1 / cross(d[i - 1], d[i])
-            near[i - 1] = -1 / cross(d[i - 2], d[i - 1])
+            near[i + 1] = sign / cross(d[i - 1], d[i])
+            near[i - 1] = sign / cross(d[i - 2], d[i - 1])
             if -2 * matrix[i][j] != near.get(j, 0):
                 return False
     return True
@@ -247,10 +256,11 @@ def _determinant(script: Script) -> None:
         "step for every N: chi(N+2) = f_{N+1} chi(N+1) - g_{N,N+1}^2 chi(N) for the closed formula",
         chi_2 - f * chi_1 + g**power * chi,
     )
+    over = script.alter("base over the wrong length", lq, lp)
     script.identity(
         "base: the formula gives chi(2) = 1 (empty matrix) and chi(3) = f_2",
         csc(p, q) * cross(p, q) - 1,
-        csc(p, q) * csc(q, r) / lq**2 * cross(p, r) - f,
+        csc(p, q) * csc(q, r) / over**2 * cross(p, r) - f,
     )
     d = [(4, 0), (3, 3), (0, 4), (-3, 1), (-1, -4), (2, -3)]
     crosses = [cross(a, b) for a, b in pairwise(d)]
@@ -271,13 +281,15 @@ def _determinant(script: Script) -> None:
         "the recurrence holds for the determinants of a six-fold star, N = 2, 3, 4",
         all(minor(n + 2) == right_side(n, shift) for n in (2, 3, 4)),
     )
+    printed = script.alter("the corrected recurrence for the printed one", 1, 0)
     script.counterexample(
         "with f_{N+2} and g_{N+1,N+2} it fails on the same star for N = 2, 3, 4",
-        all(minor(n + 2) != right_side(n, 1) for n in (2, 3, 4)),
+        all(minor(n + 2) != right_side(n, printed) for n in (2, 3, 4)),
     )
+    last = script.alter("chi(n) over c_n as well", 1, 0)
     script.example(
         "chi(n) = (d_1 x d_n)/(c_1 ... c_{n-1}) on the same star, n = 3 to 6",
-        all(minor(n) * prod(crosses[: n - 1]) == cross(d[0], d[n - 1]) for n in (3, 4, 5, 6)),
+        all(minor(n) * prod(crosses[: n - last]) == cross(d[0], d[n - 1]) for n in (3, 4, 5, 6)),
     )
     script.state(
         "C.6",

@@ -49,10 +49,13 @@ def test_is_not_proved_with_an_unknown_change() -> None:
         module.prove("no such change")
 
 
-def test_runs_alone(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "argv", [MODULES[0]])
+@pytest.mark.parametrize("name", [MODULES[0], "inertia"])  # inertia imports helper modules
+def test_runs_alone(
+    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "argv", [name])
     with pytest.raises(SystemExit) as stop:
-        runpy.run_path(str(ROOT / "proofs" / f"{MODULES[0]}.py"), run_name="__main__")
+        runpy.run_path(str(ROOT / "proofs" / f"{name}.py"), run_name="__main__")
     assert stop.value.code == 0
     assert "Verdict: proved" in capsys.readouterr().out
 
