@@ -73,9 +73,10 @@ def _expansion(script: Script) -> None:
     def up_to_second(poly: Any) -> list[Any]:
         return [poly.coeff_wrt(t, k) for k in range(3)]
 
+    slope = script.alter("psi = pi/2 + (h_i - h_0)/L_i", 1, -1)
     script.identity(
         "cos(pi/2 - t x) = t x up to and including t^2, so psi = pi/2 - (h_i - h_0)/L_i + O(t^3)",
-        *up_to_second(sine(t * x) - t * x),
+        *up_to_second(sine(t * x) - slope * t * x),
     )
     script.state(
         "A.1",
@@ -90,7 +91,8 @@ def _expansion(script: Script) -> None:
     law = sine(t * p) * sine(t * q)  # cos psi = -sin(delta psi): the two signs cancel
     law += cosine(t * p) * cosine(t * q) * (C * cosine(delta) + turn * S * sine(delta)) - C
     order0, order1, order2 = up_to_second(law)
-    script.identity("order t^0 vanishes", order0)
+    cosines = script.alter("cos alpha on the other side", 0, 2)
+    script.identity("order t^0 vanishes", order0 + cosines * C)
     script.identity("order t: -sin(alpha) b1 = 0, so that b1 = 0", order1 + S * b1)
     mixed = script.alter("sign of delta psi_i delta psi_{i+1}", 2, -2)
     printed = mixed * p * q - p**2 * C - q**2 * C  # over 2 sin(alpha)
@@ -185,7 +187,8 @@ def _heights(script: Script) -> None:
         r"\frac{(h_{i+1}-h_0)^2}{2L_{i+1}}",
         Ruling.AS_PRINTED,
     )
-    main = x / L * (x1 / L1) / a.sin - a.cot / 2 * ((x / L) ** 2 + (x1 / L1) ** 2)
+    half = script.alter("summand without its one half", 2, 1)
+    main = x / L * (x1 / L1) / a.sin - a.cot / half * ((x / L) ** 2 + (x1 / L1) ** 2)
     script.identity("the summand of Section II B, with psi = +x/L from the xy-plane", delta - main)
     script.state(
         "IIB.1",
@@ -204,9 +207,10 @@ def _heights(script: Script) -> None:
         Ruling.AS_PRINTED,
         note="n the far end, m the hub; exactly sin psi = (h_n - h_m)/L",
     )
-    rational = x * x1 / c - s / (2 * c) * (x**2 / L**2 + x1**2 / L1**2)
+    sign = script.alter("scalar product with the wrong sign", 1, -1)
+    rational = x * x1 / c - sign * s / (2 * c) * (x**2 / L**2 + x1**2 / L1**2)
     script.identity("delta beta = x x'/c - (s/2c)(x^2/L^2 + x'^2/L'^2)", delta - rational)
-    tent = _sector(a, L, L1, -L, -L1)
+    tent = _sector(a, L, L1, -L, script.alter("a cone that is not round", -L1, L1))
     script.identity("round cone x = -L: delta beta = tan(alpha/2) > 0, K > 0 on a tent", tent - p)
     chord = (L - L1 * a.cos) ** 2 + (L1 * a.sin) ** 2
     sign = script.alter("law of cosines for Delta L with a plus", -2, 2)

@@ -108,13 +108,14 @@ def _compatibility(script: Script) -> None:
     rows, points = rigidity_matrix(triangle), triangle.vertices
     turn = script.alter("a reflection in place of a rotation", -1, 1)
     motion = [z for x, y in points for z in (tx + turn * w * y, ty + w * x)]
+    ends = script.alter("displacements added", 1, -1)
     products, lengths = [], []
     for row, (i, j) in zip(rows, triangle.edges, strict=True):
         move = sum((m * u for m, u in zip(row, motion, strict=True)), K(0))
         along = [points[i][k] - points[j][k] for k in (0, 1)]
         products.append(move)
         lengths.append(
-            move - sum(along[k] * (motion[2 * i + k] - motion[2 * j + k]) for k in (0, 1))
+            move - sum(along[k] * (motion[2 * i + k] - ends * motion[2 * j + k]) for k in (0, 1))
         )
     script.identity("row (i, j) applied to u is (U_i - U_j) . (u_i - u_j)", *lengths)
     script.identity("translations and rotations are in the kernel of every row", *products)
@@ -131,10 +132,11 @@ def _compatibility(script: Script) -> None:
     columns = ([2, 4, 5], [3, 4, 5])
     minors = [cross_minor([[row[c] for c in chosen] for row in rows]) for chosen in columns]
     area = cross((bx - ax, by - ay), (cx - ax, cy - ay))
+    double = script.alter("the area for twice the area", 1, 2)
     script.identity(
         "triangle ABC: two 3 x 3 minors with squares adding up to |AB|^2 (2 area)^2 > 0: rank 3, "
         "and in-plane motions of one triangle are its rigid motions",
-        minors[0] ** 2 + minors[1] ** 2 - ((bx - ax) ** 2 + (by - ay) ** 2) * area**2,
+        minors[0] ** 2 + minors[1] ** 2 - ((bx - ax) ** 2 + (by - ay) ** 2) * (area / double) ** 2,
     )
 
 
@@ -193,7 +195,10 @@ def _force_balance(script: Script) -> None:
         return ((a[1] - b[1]) / c, (b[0] - a[0]) / c)
 
     g0, g1 = gradient(d0, d1), gradient(d1, d2)
-    script.identity("the hat is 1 at the hub and 0 at the rim", dot(g1, d1) + 1, dot(g1, d2) + 1)
+    one = script.alter("hat of height -1", 1, -1)
+    script.identity(
+        "the hat is 1 at the hub and 0 at the rim", dot(g1, d1) + one, dot(g1, d2) + one
+    )
     c0, c1, length2 = cross(d0, d1), cross(d1, d2), dot(d1, d1)
     angles = script.alter("cotangents left out", 1, 0)
     spoke = 1 / c1 + 1 / c0 - angles * (dot(d1, d2) / c1 + dot(d0, d1) / c0) / length2
@@ -209,11 +214,14 @@ def _force_balance(script: Script) -> None:
         g1[0] - rim * along[1],
         g1[1] + rim * along[0],
     )
+    sign = script.alter("spokes with the sign of the rim", 1, -1)
     residues = []
     for n in (3, 4, 5):
         wheel = free_wheel(n)
         stress = wheel_stress(wheel, n)
         rows = dict(zip(wheel.edges, rigidity_matrix(wheel), strict=True))
+        for e in wheel.edges:
+            stress[e] *= sign if n in e else 1
         residues += [sum(stress[e] * rows[e][k] for e in wheel.edges) for k in range(2 * n + 2)]
     script.identity("the same by exactfold over the field of all spokes, N = 3, 4, 5", *residues)
     script.state(
@@ -248,16 +256,17 @@ def _independence(script: Script) -> None:
         families.hypar(2),
         families.h1_sequence(5),
     )
+    motions = script.alter("ranks with four rigid motions", 3, 4)
     script.cases(
         "by exactfold: rank C = 2V - 3, rank of the wheel stresses = number of self stresses = Vi",
-        (_ranks(f) for f in patterns),
+        (_ranks(f, motions) for f in patterns),
     )
 
 
-def _ranks(pattern: CreasePattern) -> bool:
+def _ranks(pattern: CreasePattern, motions: int) -> bool:
     stresses = [wheel_stress(pattern, v) for v in pattern.interior]
     rows = [[w.get(e, 0) for e in pattern.edges] for w in stresses]
-    regular = rank(rigidity_matrix(pattern)) == 2 * len(pattern.vertices) - 3
+    regular = rank(rigidity_matrix(pattern)) == 2 * len(pattern.vertices) - motions
     return regular and rank(rows) == len(self_stresses(pattern)) == pattern.Vi
 
 
