@@ -52,10 +52,11 @@ def _round_cone(script: Script) -> None:
         sector - half,
         csc(u, v) - cot(u, v) - half,
     )
+    plus = script.alter("a square for the product", 1, -1)
     script.identity(
         "(csc a - cot a)(csc a + cot a) = 1, and the two add up to 2 csc a: both are positive if "
         "sin a > 0",
-        (csc(u, v) - cot(u, v)) * (csc(u, v) + cot(u, v)) - 1,
+        (csc(u, v) - cot(u, v)) * (csc(u, v) + plus * cot(u, v)) - 1,
     )
     form = curvature_form(star(*SPIKY), 4)
     script.example(
@@ -81,10 +82,14 @@ def _nappes(script: Script) -> None:
     )
     # If T > 0, K is negative semidefinite on the complement of t and zero only on affine functions,
     # by the inertia (1, N-3, 3). So H = 0 = P only for affine h, and P does not vanish on a nappe.
+    extra = script.alter("nullity 2", 0, 1)
     script.example(
         "inertia (1, N-3, 3), N = 3 to 8: if K(t) > 0, nothing but affine functions has K(h) = 0 "
         "= K(t, h)",
-        all(curvature_form(single_vertex(n), n).inertia == (1, n - 3, 3) for n in range(3, 9)),
+        all(
+            curvature_form(single_vertex(n), n).inertia == (1, n - 3 + extra, 3 - extra)
+            for n in range(3, 9)
+        ),
     )
     matrix = curvature_form(star(*SPIKY), 4).matrix
     value = script.alter("another eigenvalue", Fraction(4, 5), Fraction(5, 4))
@@ -181,11 +186,12 @@ def _components(script: Script) -> None:
         [_dot(row, ones) for row in square.matrix] == [5 * e for e in ones],
     )
     stress = wheel_stress(star(*SPIKY), 4)
+    j = script.alter("another neighbour", 1, 3)
     script.counterexample(
         "spokes (1,0), (3,4), (-2,-1), (8,-2): neighbour (-2,-1) moves by -26, the hub by 25, "
         "neighbour (1,0) by +15; the link is reflex at (1,0)",
         abs(EIGENVECTOR[3]) > abs(EIGENVECTOR[0])
-        and EIGENVECTOR[1] * EIGENVECTOR[0] > 0
+        and EIGENVECTOR[j] * EIGENVECTOR[0] > 0
         and [stress[j, 4] < 0 for j in range(4)] == [True, False, False, False],
     )
     script.state(

@@ -47,10 +47,11 @@ def _expansion(script: Script) -> None:
     script.identity(
         "|X|^2 - L^2 = t^2 (2 U.u + h^2) + t^4 |u|^2", moved - leading - t**4 * u.dot(u)
     )
+    two = script.alter("polarity without its factor", 2, 1)
     a, b = sympy.Matrix(sympy.symbols("a1:4")), sympy.Matrix(sympy.symbols("b1:4"))
     script.identity(
         "three lengths of a triangle fix the angle: 2 a.b = |a|^2 + |b|^2 - |a - b|^2",
-        2 * a.dot(b) - a.dot(a) - b.dot(b) + (a - b).dot(a - b),
+        two * a.dot(b) - a.dot(a) - b.dot(b) + (a - b).dot(a - b),
     )
     tilt = U + t * script.alter("an in-plane displacement of first order", 0, 1) * u
     script.identity(
@@ -102,18 +103,21 @@ def _in_plane(script: Script) -> None:
         "a triangle (0,0), (p,0), (q,r) has rank 3: a 3 x 3 minor of C is +-p^2 r", rigid
     )
     w, a, b = sympy.symbols("omega a b")
-    end = sympy.Matrix([a, b]) + w * sympy.Matrix([0, p])
+    arm = script.alter("both conditions at one end", p, 0)
+    end = sympy.Matrix([a, b]) + w * sympy.Matrix([0, arm])
     solution = sympy.solve([a, b, *end], [w, a, b], dict=True)
     script.certificate(
         "a planar rigid motion that fixes both ends of an edge is zero, so motions of two pieces "
         "glued along an edge agree: rank 2V - 3 by induction over the triangles",
         solution == [{w: 0, a: 0, b: 0}],
     )
+    motions = script.alter("four rigid motions", 3, 4)
     patterns = (families.waterbomb(), families.flat_vertex_square(), families.hypar(2))
     script.cases(
         "rank of the rigidity matrix is 2V - 3, and there are Vi self stresses",
         (
-            rank(rigidity_matrix(f)) == 2 * len(f.vertices) - 3 and len(self_stresses(f)) == f.Vi
+            rank(rigidity_matrix(f)) == 2 * len(f.vertices) - motions
+            and len(self_stresses(f)) == f.Vi
             for f in patterns
         ),
     )
@@ -151,8 +155,9 @@ def _stresses(script: Script) -> None:
         "sigma . (2 C u + h^2/|U|), with sigma C = 0, is the sum of sigma h^2 / |U|",
         s * (2 * half * cu + h**2 / length) - s * h**2 / length,
     )
+    kept = script.alter("rows for all edges", CROSS.folds, CROSS.edges)
     spokes_only = [
-        row for e, row in zip(CROSS.edges, rigidity_matrix(CROSS), strict=True) if e in CROSS.folds
+        row for e, row in zip(CROSS.edges, rigidity_matrix(CROSS), strict=True) if e in kept
     ]
     script.counterexample(
         "with rows for the folds (interior edges) only, a single vertex has no self stress, "
@@ -168,11 +173,13 @@ def _stresses(script: Script) -> None:
         sum(terms[e] for e in over) == 0 and sum(terms[e] for e in CROSS.folds) != 0,
     )
     dx, dy, zi, zj = sympy.symbols("dx dy z_i z_j")
+    level = script.alter("ends at different heights", zj, -zj)
     script.identity(
         "a self stress of the flat sheet in the plane is one in space: where z_i = z_j the squared "
         "length does not change with z_i to first order",
-        sympy.diff(dx**2 + dy**2 + (zi - zj) ** 2, zi).subs(zi, zj),
+        sympy.diff(dx**2 + dy**2 + (zi - zj) ** 2, zi).subs(zi, level),
     )
+    power = script.alter("height differences not squared", 2, 1)
     outcomes = []
     for pattern in (CROSS, families.two_vertex(), families.flat_vertex_square()):
         for k in range(12):
@@ -180,10 +187,10 @@ def _stresses(script: Script) -> None:
                 v: Fraction((v * v * (k + 3) + 5 * k * v + k) % 7 - 3)
                 for v in range(len(pattern.vertices))
             }
-            outcomes.append(_solvable(pattern, heights) == is_solution(pattern, heights))
+            outcomes.append(_solvable(pattern, heights, power) == is_solution(pattern, heights))
         flat = dict.fromkeys(range(len(pattern.vertices)), Fraction(0))
-        outcomes.append(_solvable(pattern, flat))
-    outcomes.append(_solvable(CROSS, bent) and is_solution(CROSS, bent))
+        outcomes.append(_solvable(pattern, flat, power))
+    outcomes.append(_solvable(CROSS, bent, power) and is_solution(CROSS, bent))
     script.cases("2 C u = -(h_n - h_m)^2 / L is solvable exactly if all K_v(h) = 0", outcomes)
     script.state(
         "IIA.6",
@@ -228,11 +235,11 @@ def _stresses(script: Script) -> None:
     )
 
 
-def _solvable(pattern: CreasePattern, heights: Heights) -> bool:
+def _solvable(pattern: CreasePattern, heights: Heights, power: int) -> bool:
     """Whether some in-plane displacement compensates the heights to second order."""
     rows = rigidity_matrix(pattern)
     augmented = [
-        [*row, (heights[i] - heights[j]) ** 2]
+        [*row, (heights[i] - heights[j]) ** power]
         for row, (i, j) in zip(rows, pattern.edges, strict=True)
     ]
     return rank(rows) == rank(augmented)
