@@ -38,6 +38,10 @@ from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stre
 from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.rigidity.facts import pattern_facts
 from exactfold.rigidity.framework import rigidity_matrix, self_stresses
+from exactfold.scale.check import check_compact
+from exactfold.scale.dask_engine import dask_engine
+from exactfold.scale.read import read_branches
+from exactfold.scale.stream import StreamedCount, count_streaming
 from exactfold.solve.from_roots import parametrisation_from_roots
 from exactfold.solve.groebner import groebner, quotient_algebra
 from exactfold.solve.hermite import hermite_counts
@@ -75,12 +79,16 @@ __all__ = [
     "QuadraticForm",
     "QuadraticSystem",
     "SignedBranch",
+    "StreamedCount",
     "Verdict",
     "arb_krawczyk",
     "as_rational",
     "certificate",
+    "check_compact",
     "count_branches",
+    "count_streaming",
     "curvature_form",
+    "dask_engine",
     "decide_all_branches_real",
     "definite_stress",
     "degenerate",
@@ -105,6 +113,7 @@ __all__ = [
     "popping",
     "quotient_algebra",
     "random_square",
+    "read_branches",
     "read_fold",
     "rigidity_matrix",
     "self_stresses",

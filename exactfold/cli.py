@@ -91,7 +91,10 @@ def count(
     seed: Annotated[int, typer.Option(min=0, help="Seed of the complex homotopy.")] = 0,
     everything: Annotated[bool, typer.Option("--all", help="List every branch.")] = False,
 ) -> None:
-    """Count the branches of a pattern at the unfolded state, with proof."""
+    """Count the branches of a pattern at the unfolded state, with proof.
+
+    With --stream, Ctrl-C loses one block at most and prints how to go on.
+    """
     streamed: StreamedCount | None = None
     if stream is not None:
         if method.value != "auto":
@@ -201,10 +204,11 @@ def branch(
     as_json: Json = False,
     snap: Snap = None,
 ) -> None:
-    """Find and prove the one branch with given vertex signs, without enumerating the others.
+    """Find and prove the one branch with given vertex signs, and no other.
 
-    Signs are those of the side with boundary saddle +1 (with a reflex corner: on which the corner
-    pops up); the other side has all of them reversed. With --json, one object a line.
+    Signs are those of the side with boundary saddle +1 (with a reflex corner:
+    on which the corner pops up); the other side has all of them reversed. With
+    --json, one object a line.
     """
     if (signs is not None) + (up is not None) + (batch is not None) != 1:
         raise UsageError("give one of --signs, --up and --batch")

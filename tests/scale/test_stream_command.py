@@ -18,7 +18,6 @@ from exactfold.commands import stream as stream_command
 from exactfold.errors import UnwritableFileError, WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.scale import chambers as chambers_module
-from exactfold.scale import stream as stream_module
 from exactfold.scale.journal import Journal
 from exactfold.scale.stream import count_streaming
 
@@ -224,15 +223,24 @@ if __name__ == "__main__":
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-@pytest.mark.parametrize(("whole", "workers"), [(True, 2), (False, 2)])
+@pytest.mark.parametrize(
+    ("whole", "engine"),
+    [
+        (True, "--workers 2"),
+        (False, "--workers 2"),
+        pytest.param(True, "--dask local", marks=pytest.mark.slow),
+    ],
+)
 def test_interruptions_leave_a_file_to_resume(
-    whole: bool, workers: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    whole: bool, engine: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Ctrl-C reaches all processes of a terminal, SIGTERM only the one that is meant."""
+    if "dask" in engine:
+        pytest.importorskip("distributed")
     pattern, script = random_square(8, seed=1), tmp_path / "run.py"
     script.write_text(SIGNALLED)
     fold, file = folded(tmp_path / "a pattern.fold", pattern), tmp_path / "c.txt"
-    given = ["count", str(fold), "--stream", str(file), "--workers", str(workers)]
+    given = ["count", str(fold), "--stream", str(file), *engine.split()]
     done = subprocess.run(  # returns when every worker has closed stderr: none is left behind
         [sys.executable, str(script), *given],
         env={**os.environ, "SENT_TO": "group" if whole else "process"},
@@ -248,10 +256,9 @@ def test_interruptions_leave_a_file_to_resume(
     assert kept.count(b"\n") == 4
 
     monkeypatch.setattr(chambers_module, "BLOCK", 16)
-    monkeypatch.setattr(stream_module, "LEAST", 1000)
     words = shlex.split(again)
-    assert words[0] == "exactfold"
-    result = run(*words[1:], "--json")
+    assert (words[0], words[-2:]) == ("exactfold", engine.split())
+    result = run(*words[1:-2], "--workers", 1, "--json")
     assert result.exit_code == PROVED
     assert json.loads(result.stdout)["stream"]["resumed"] == 3
     assert file.read_bytes().startswith(kept)
