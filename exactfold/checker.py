@@ -1132,7 +1132,8 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     elif kind == "single vertex":
         keys(evidence, "kind triangles", "evidence")
         require(
-            len(emptied.interior) == 1 and len(emptied.triangles) == len(emptied.boundary) >= 5,
+            len(emptied.interior) == 1
+            and len(emptied.star(emptied.interior[0])) == len(emptied.boundary) >= 5,
             "the emptied sheet is no single vertex of degree 5 or more",
         )
         check_lorentzian(emptied, emptied.interior[0])

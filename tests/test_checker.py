@@ -421,6 +421,34 @@ def test_single_vertex_evidence_for_degree_four_is_refused():
         checker.check(document)
 
 
+@pytest.mark.parametrize(
+    ("points", "faces"),
+    [
+        # a hub of degree 4 with an ear: two planes of sheets, not one cone
+        (
+            [(0, 0), (4, 0), (4, 4), (0, 4), (6, 2), ("3/2", "7/5")],
+            [*((k, (k + 1) % 4, 5) for k in range(4)), (1, 4, 2)],
+        ),
+        # a hub of degree 3 with two ears: one plane of sheets that counts twice
+        (
+            [(0, 0), (4, 0), (2, 4), (4, -3), (6, 3), (2, 1)],
+            [(0, 1, 5), (1, 2, 5), (2, 0, 5), (0, 3, 1), (1, 4, 2)],
+        ),
+    ],
+)
+def test_single_vertex_evidence_for_a_hub_not_joined_to_all_corners_is_refused(points, faces):
+    """With one interior vertex there are as many faces as corners, whatever the degree."""
+    pattern = CreasePattern(points, faces)
+    assert pattern.Vi == 1 and pattern.Ve == len(pattern.triangles) == 5
+    document = proof("nine folds")
+    corners = [[str(x), str(y)] for x, y in pattern.vertices]
+    document["pattern"] = {"vertices": corners, "triangles": [list(t) for t in pattern.triangles]}
+    document["claims"] |= {"boundary": 5, "folds": 5, "degrees_of_freedom": 2}
+    document["claims"]["sha256"] = pattern.sha256
+    with pytest.raises(checker.CertificateError, match="degree 5 or more"):
+        checker.check(document)
+
+
 def test_branch_lists_where_none_belong_are_refused():
     for name, message in (("triangle", "no branches"), ("nine folds", "not listed")):
         document = proof(name)
