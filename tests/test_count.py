@@ -213,6 +213,18 @@ def test_flat_vertices_by_boxes_and_by_exact_classes_agree(monkeypatch):
                 checker.check(document)
 
 
+def test_flat_vertices_among_nearly_flat_ones_are_found():
+    """Five vertices are flat on one branch; paths that end near it make others seem flat too."""
+    inner = [(3, 3), (2, 4), (4, 4), (4, 1), (3, 4), (3, 1), (3, 2), (2, 2)]
+    faces = [(0, 1, 9), (0, 11, 3), (1, 2, 7), (1, 7, 9), (2, 3, 8), (2, 6, 7), (2, 8, 6)]
+    faces += [(3, 5, 8), (3, 11, 5), (4, 5, 11), (4, 6, 8), (4, 8, 5), (4, 10, 6), (4, 11, 10)]
+    faces += [(6, 10, 7), (7, 10, 9), (0, 9, 10), (0, 10, 11)]
+    result = count_branches(CreasePattern([(0, 0), (5, 0), (5, 5), (0, 5), *inner], faces))
+    assert counts(result) == (225, 256, 225, 0)
+    assert Counter(b.multiplicity for b in result.branches) == {1: 224, 32: 1}
+    checker.check(json.loads(json.dumps(certificate(result))))
+
+
 def test_hypar_with_a_straight_diagonal():
     pattern = hypar(1, twist=0)
     result = count_branches(pattern)

@@ -15,7 +15,8 @@ from exactfold.certify.isolation import isolate
 from exactfold.certify.recognition import recognise
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.exact_solution import RootClass
-from exactfold.solve.strata import FloatArray, flat_sheets, zeros_flat_at
+from exactfold.solve.near_zeros import FloatArray
+from exactfold.solve.strata import flat_sheets, zeros_flat_at
 from exactfold.system.branch_system import Chart
 
 _MOST_TOGETHER = 64  # conjugate zeros in one class, for the sake of the checker

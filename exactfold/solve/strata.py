@@ -13,7 +13,6 @@ from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from flint import fmpq, fmpq_mat
 
 from exactfold.errors import ParametrisationError
@@ -21,16 +20,16 @@ from exactfold.exact.numbers import over_common_denominator
 from exactfold.rigidity.timelike import fold_functional
 from exactfold.solve.exact_solution import RootClass
 from exactfold.solve.groebner import classes_of_ideal
+from exactfold.solve.near_zeros import BoolArray, FloatArray, near_zeros
 from exactfold.solve.quotient import Exponent, separating_forms
 from exactfold.system.branch_system import Chart
 from exactfold.system.quadratic import QuadraticSystem
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 Row = tuple[Fraction, ...]
 
 _FLAT = (1e-5, 1e-4, 1e-3, 1e-2)
 _NEVER_FOLDED = 1e-9
+_REACH = 10.0  # times the tolerance
 _ONE_POINT = RootClass((0, 1), (), 1, ())  # the point of a space of dimension 0
 
 
@@ -81,6 +80,13 @@ class FlatSheets:
         return QuadraticSystem.from_rational(
             [[[_fraction(c) for c in line] for line in form.tolist()] for form in self.quadrics]
         )
+
+    def near(self, points: FloatArray, reach: float) -> BoolArray:
+        """Near which points, of shape (m, n), these quadrics seem to have a zero (`near_zeros`)."""
+        size = len(self.free) + 1
+        flat = [[_fraction(c) for c in form.entries()] for form in self.quadrics]
+        forms = _floats(flat).reshape(len(flat), size, size)
+        return near_zeros(forms, points[:, list(self.free)], reach)
 
     def lift(self, inner: RootClass) -> RootClass:
         """A class of zeros in the unknowns y as one in the unknowns x, of multiplicity 2^f."""
@@ -223,7 +229,9 @@ def flat_vertices(chart: Chart, points: FloatArray) -> Iterator[Guess]:
     """Guesses from approximate zeros, of shape (m, n): which vertices are flat on which of them.
 
     One guess for each tolerance on the largest fold at a vertex (each fold in units of its largest
-    value on any of the zeros), as far as they differ and some vertex is flat. Untrusted.
+    value on any of the zeros), as far as they differ and some vertex is flat. Vertices that are
+    nearly flat are told from flat ones by whether the quadrics have a zero near the point on the
+    sheets with these flat vertices, the flattest of them first. Untrusted.
     """
     pattern = chart.branch_system.pattern
     weights = _floats([chart.restrict(fold_functional(pattern, fold)) for fold in pattern.folds])
@@ -233,20 +241,41 @@ def flat_vertices(chart: Chart, points: FloatArray) -> Iterator[Guess]:
     values /= np.where(largest > _NEVER_FOLDED, largest, 1.0)
     at = [[k for k, fold in enumerate(pattern.folds) if v in fold] for v in pattern.interior]
     bend = np.stack([values[:, columns].max(axis=1) for columns in at], axis=1)
-    seen: list[BoolArray] = [np.zeros(bend.shape, dtype=bool)]
+    known: dict[frozenset[int], FlatSheets | None] = {}
+
+    def has_zeros(row: BoolArray, where: BoolArray, reach: float) -> BoolArray:
+        chosen = frozenset(v for v, f in zip(pattern.interior, row, strict=True) if f)
+        if chosen not in known:
+            known[chosen] = flat_sheets(chart, chosen)
+        sheets = known[chosen]
+        if sheets is None:
+            return np.zeros(int(where.sum()), dtype=bool)
+        return sheets.near(points[where], reach)
+
+    best: BoolArray = np.zeros(bend.shape, dtype=bool)
     for tolerance in _FLAT:
-        flat = bend < tolerance
-        if any(np.array_equal(flat, other) for other in seen):
+        flat, before = bend < tolerance, best
+        best = before.copy()
+        left = (flat != before).any(axis=1)
+        while left.any():
+            for row in np.unique(flat[left], axis=0):
+                where = left & (flat == row).all(axis=1)
+                near = has_zeros(row, where, _REACH * tolerance)
+                best[where] = np.where(near[:, None], row, best[where])
+            left &= (best != flat).any(axis=1)
+            last = np.where(flat, bend, -1.0).argmax(axis=1)
+            flat[left, last[left]] = False  # the least flat of them is not flat
+            left &= (flat != before).any(axis=1) & flat.any(axis=1)
+        if np.array_equal(best, before):
             continue
-        seen.append(flat)
         sets = {
             frozenset(v for v, f in zip(pattern.interior, row, strict=True) if f): np.asarray(
-                (flat == row).all(axis=1)
+                (best == row).all(axis=1)
             )
-            for row in np.unique(flat, axis=0)
+            for row in np.unique(best, axis=0)
             if row.any()
         }
-        yield Guess(sets, np.asarray(~flat.any(axis=1)))
+        yield Guess(sets, np.asarray(~best.any(axis=1)))
 
 
 def _floats(rows: list[list[Fraction]]) -> FloatArray:
