@@ -795,6 +795,7 @@ class RootClass:
             [parse_rational(c) for c in items(w, "numerator")]
             for w in items(entry["numerators"], "numerators", n)
         ]
+        require(all(len(w) < len(self.p) for w in self.w), "a numerator has too high a degree")
         flat = set(items(entry["flat"], "flat vertices"))
         require(
             len(flat) == len(entry["flat"]) and flat <= set(system.sheet.interior),

@@ -439,7 +439,8 @@ def test_single_vertex_evidence_for_degree_four_is_refused():
 def test_single_vertex_evidence_for_a_hub_not_joined_to_all_corners_is_refused(points, faces):
     """With one interior vertex there are as many faces as corners, whatever the degree."""
     pattern = CreasePattern(points, faces)
-    assert pattern.Vi == 1 and pattern.Ve == len(pattern.triangles) == 5
+    assert pattern.Vi == 1
+    assert pattern.Ve == len(pattern.triangles) == 5
     document = proof("nine folds")
     corners = [[str(x), str(y)] for x, y in pattern.vertices]
     document["pattern"] = {"vertices": corners, "triangles": [list(t) for t in pattern.triangles]}
