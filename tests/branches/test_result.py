@@ -35,7 +35,7 @@ patterns = pytest.mark.parametrize("pattern", PATTERNS.values(), ids=PATTERNS.ke
 
 KEYS = {
     *("pattern", "status", "reason", "method", "distinct", "with_multiplicity", "real"),
-    *("nonreal", "true_branches", "certificate", "seconds", "branches"),
+    *("nonreal", "true_branches", "dimension", "degree", "certificate", "seconds", "branches"),
 }
 
 
