@@ -99,7 +99,7 @@ def count(
     if stream is not None:
         if method.value != "auto":
             raise UsageError("--stream has a method of its own: leave --method away")
-        asked = Streaming(pattern, stream, resume, workers, dask, snap, seed)
+        asked = Streaming(pattern, stream, resume, workers, dask, snap, seed, certificate)
         result, streamed = asked.run()
     elif resume or workers is not None or dask is not None:
         raise UsageError("--resume, --workers and --dask go with --stream")

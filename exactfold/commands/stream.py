@@ -44,13 +44,14 @@ class Streaming:
     dask: str | None
     snap: int | None
     seed: int
+    certificate: Path | None
 
     @property
     def again(self) -> str:
         """The command that continues."""
         words = ["exactfold", "count", str(self.pattern), "--stream", str(self.file), "--resume"]
-        for name in ("workers", "dask", "snap"):
-            if (value := getattr(self, name)) is not None:
+        for name in ("workers", "dask", "snap", "seed", "certificate"):
+            if value := getattr(self, name):  # the seed is 0 by default, the others None
                 words += [f"--{name}", str(value)]
         return shlex.join(words)
 
@@ -70,13 +71,13 @@ class Streaming:
         try:
             with interruptible(), self._resumable():
                 streamed = self._streamed(file.pattern, bar)
-            result = streamed_count(streamed)
-            if streamed.status is UNDECIDED and streamed.foldable <= HANDED_OVER:
-                other = count_branches(file.pattern, seed=self.seed, progress=bar)
-                if other.status is not PROVED:
-                    questions = (*result.open_questions, *other.open_questions)
-                    other = replace(other, open_questions=questions)
-                result = other
+                result = streamed_count(streamed)
+                if streamed.status is UNDECIDED and streamed.foldable <= HANDED_OVER:
+                    other = count_branches(file.pattern, seed=self.seed, progress=bar)
+                    if other.status is not PROVED:
+                        questions = (*result.open_questions, *other.open_questions)
+                        other = replace(other, open_questions=questions)
+                    result = other
         finally:
             bar.close()
         return replace(result, snapped=file.snapped), streamed

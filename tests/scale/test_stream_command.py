@@ -195,10 +195,11 @@ def test_a_dead_worker_is_no_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyP
         raise WorkerDiedError("a worker process died")
 
     monkeypatch.setattr(stream_command, "count_streaming", died)
-    result = run("count", TWO, "--stream", tmp_path / "c.txt", "--workers", 3)
+    more = ("--workers", 3, "--seed", 0, "--certificate", "c.json")
+    result = run("count", TWO, "--stream", tmp_path / "c.txt", *more)
     assert result.exit_code == 70
     assert "a worker process died; go on with" in result.stderr
-    assert "--resume --workers 3" in result.stderr
+    assert "--resume --workers 3 --certificate c.json\n" in result.stderr
 
 
 SIGNALLED = """
@@ -264,6 +265,21 @@ def test_interruptions_leave_a_file_to_resume(
     assert file.read_bytes().startswith(kept)
     count_streaming(pattern, tmp_path / "whole.txt")
     assert file.read_bytes() == (tmp_path / "whole.txt").read_bytes()
+
+
+def test_an_interrupted_hand_over_can_be_resumed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    file = tmp_path / "c.txt"
+    with monkeypatch.context() as patch:
+        patch.setattr(stream_command, "count_branches", stop)
+        result = run("count", FLAT, "--stream", file)
+    assert result.exit_code == INTERRUPTED
+    again = shlex.split(result.stderr.splitlines()[-1])
+    assert run(*again[1:]).exit_code == PROVED
 
 
 def test_every_command_ends_with_130_on_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
