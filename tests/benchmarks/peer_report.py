@@ -48,9 +48,8 @@ def cell(results: Results, program: str, size: int) -> str:
     if not lines or all(x["outcome"] == NOTHING for x in lines):
         return ""
     base = [x for x in of(results, BASE, size) if x["outcome"] == COMPLETE]
-    late = [x for x in lines if x["outcome"] == LIMIT]
-    value = min(x["cpu"] for x in late) if late else seconds(lines)
-    more = "> " if late else ""
+    value = seconds(lines)  # with a limit in place of a time it is a lower bound
+    more = "> " if any(x["outcome"] == LIMIT for x in lines) else ""
     text = f"{more}{number(value)}"
     if base and program != BASE:
         text += f" ({more}{number(value / seconds(base))}x)"
@@ -86,7 +85,7 @@ def rivals(results: Results) -> str:
         mine, theirs = of(results, EXACT, size), of(results, RIVAL, size)
         if mine and all(x["outcome"] == COMPLETE for x in mine + theirs):
             found.append(f"{number(seconds(theirs) / seconds(mine))} at {size}")
-    return f"{RIVAL} / {EXACT}: {', '.join(found)} vertices" if found else ""
+    return f"Ratio of {RIVAL} to {EXACT}: {', '.join(found)} vertices." if found else ""
 
 
 def main_table(results: Results) -> list[list[str]]:
@@ -198,7 +197,7 @@ _PAGE = """# exactfold, other programs, and exactfold by size
 One run of
 
 ```sh
-{command}
+{command} --markdown
 ```
 
 on {machine}.
@@ -216,7 +215,8 @@ here takes {start} s, which is most of exactfold's time at small sizes and is in
 
 Processor seconds, medians of {count} patterns, by number of interior vertices; in brackets the
 ratio to the first line. *Growth* is the factor a vertex between the two largest sizes with
-complete answers, *MB* the largest memory of any run.
+complete answers (starting the program included: for exactfold see the next table), *MB* the largest
+memory of any run.
 
 {main}
 
@@ -225,8 +225,9 @@ complete answers, *MB* the largest memory of any run.
 - An answer is *complete* if it has `2^Vi` different points at each of which every quadric,
   evaluated in integers, is at most 1e-9 times the sum of the sizes of its terms, and if each of
   the boxes proved by exactfold has a point of its own. **Bold**: the least number of solutions
-  found where some are missing. `>`: stopped by the limit of {limit} s; empty: not asked (after a
-  limit was reached, beyond the sizes of this run, or, for lifting, beyond 7 vertices).{missing}
+  found where some are missing. `>`: stopped after {limit} s by the clock; empty: not asked (after a
+  limit was reached, beyond the sizes of this run, or beyond 7 vertices for lifting and 10 for
+  the parametrisation from roots).{missing}
 - *exactfold, certificate* is `count_branches` with its certificate: every branch in a box,
   proved, with its signs and folds. *Streaming* is `count_streaming` on one core: the same with a
   compact certificate. *Exact* is the rational parametrisation of all branches, proved by
@@ -252,7 +253,8 @@ _BRANCH = """
 processor seconds, of the whole process and for the branch alone. *Plain splu*
 (`tests/benchmarks/plain_splu.py`) follows the popping path of the same signs by Runge and Kutta's
 method, with SciPy's general sparse factorisation, and proves nothing; its heights are compared
-with those proved.
+with those proved. Where it does not agree, its path stalled before its end, at a vertex whose
+star ends nearly flat.
 
 {table}
 """
@@ -264,6 +266,16 @@ Shares of the time spent in single functions (Python's profiler, seed 1, which m
 functions look slower than they are).
 
 {table}
+
+- *Certificate*: popping paths, then Krawczyk's test and the signs of every fold in Python's
+  integers, one branch after the other. *Streaming* does the same in arrays: what is left is
+  Newton's method on the nappes, and setting up the exact system in fractions, which does not grow
+  with the number of branches.
+- *Exact from roots* is bound by the size of its answer: `2^Vi` coefficients for each unknown, each
+  of them about twice as long for each further vertex. Products of long polynomials, roots refined
+  to that length, and the proof by substitution share the time.
+- *One branch*: the sparse factorisations are the largest single part; the others are reading and
+  validating the file and the proof in integers, all linear in the number of folds.
 """
 
 _TITLES = {
@@ -278,7 +290,7 @@ def markdown(results: Results) -> str:
     """docs/benchmarks.md."""
     machine = dict(results["machine"])
     first = f"{machine.pop('processor')}, {machine.pop('cores')} cores, {machine.pop('memory')}"
-    versions = ", ".join(f"{name} {value.rstrip(',')}" for name, value in machine.items())
+    versions = ", ".join(f"{name} {value.strip(',PHCv')}" for name, value in machine.items())
     missing = "".join(f" {name} was not installed." for name in results["missing"])
     branch = profiles = ""
     if programs(results, single=True):

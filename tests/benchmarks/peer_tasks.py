@@ -43,6 +43,7 @@ LARGEST_RESIDUAL = 1e-9
 """Of a quadric, in units of the sum of the sizes of its terms."""
 
 _DUPLICATES = 1e-9
+_LARGEST_PARAMETRISED = 10
 
 
 def machine(size: int, seed: int) -> Found:
@@ -118,7 +119,9 @@ def lifting(size: int, seed: int) -> Found:
 
 
 def parametrise(size: int, seed: int) -> Found:
-    """The exact solution from approximate roots."""
+    """The exact solution from approximate roots; None where it would take a quarter of an hour."""
+    if size > _LARGEST_PARAMETRISED:
+        return {"found": None}
     chart = BranchSystem(read_fold("pattern.fold")).chart
     found = parametrisation_from_roots(chart.system, popping(chart))
     return {"found": 0 if found is None else found.degree}
@@ -131,7 +134,8 @@ def branch(size: int, seed: int) -> Found:
     read = time.process_time()
     result = find_branch(pattern, _signs(size, seed))
     ended = time.process_time()
-    np.save("branch.npy", [result.approx_heights[v] for v in range(len(pattern.vertices))])
+    heights = result.approx_heights
+    np.save("branch.npy", [heights[v] for v in range(len(pattern.vertices))])
     return {
         "found": int(str(result.status) == "proved"),
         "undecided folds": len(result.undecided_folds),
@@ -147,7 +151,11 @@ def plain(size: int, seed: int) -> Found:
     [rim] = [v for v in pattern.boundary if proved[v] == 1.0]
     signs = np.array([1.0 if sign == "+" else -1.0 for sign in _signs(size, seed)])
     begun = time.process_time()
-    heights, steps = plain_branch(pattern, signs, rim)
+    try:
+        heights, steps = plain_branch(pattern, signs, rim)
+    except (ArithmeticError, RuntimeError) as reason:  # the path stalled, a matrix was singular
+        stages = {"find": time.process_time() - begun}
+        return {"found": 0, "reason": str(reason), "stages": stages}
     error = float(np.abs(heights - proved).max() / np.abs(proved).max())
     return {
         "found": int(error < 1e-6),
