@@ -253,8 +253,7 @@ _BRANCH = """
 processor seconds, of the whole process and for the branch alone. *Plain splu*
 (`tests/benchmarks/plain_splu.py`) follows the popping path of the same signs by Runge and Kutta's
 method, with SciPy's general sparse factorisation, and proves nothing; its heights are compared
-with those proved. Where it does not agree, its path stalled before its end, at a vertex whose
-star ends nearly flat.
+with those proved. Where it does not agree, its path stalled just before its end.
 
 {table}
 """
