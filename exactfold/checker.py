@@ -1182,9 +1182,10 @@ def check_branches(
 ) -> None:
     """Vertex signs, mountain-valley assignment and multiplicity of every branch.
 
-    Also that these signs tell zeros listed in different ways apart.
+    The letter U claims nothing. The signs that are known on all branches must tell zeros listed in
+    different ways apart.
     """
-    kinds: dict[tuple[str, str], object] = {}
+    texts: list[tuple[str, str]] = []
     emptied = system.sheet
     vertex_rows = {v: system.row(emptied.sign_of_vertex(v)) for v in emptied.interior}
     fold_rows = {f: system.row(emptied.bend(f)) for f in emptied.folds}
@@ -1195,15 +1196,21 @@ def check_branches(
         close_flat(emptied, signs)
         at = {v: root.sign(row) for v, row in vertex_rows.items()}
         up_down = "".join("-0+?"[1 + digit(at.get(v, 0))] for v in sheet.interior)
-        letters = "".join("MFV?"[1 + digit(signs.get(f, 0))] for f in sheet.folds)
-        require("?" not in up_down + letters, f"branch {number}: signs are open")
+        letters = "".join("MFVU"[1 + digit(signs.get(f, 0))] for f in sheet.folds)
+        require("?" not in up_down, f"branch {number}: signs are open")
         seen = (up_down, letters)
-        require(kinds.setdefault(seen, root.kind) == root.kind, "a root may be counted twice")
+        texts.append(seen)
         mirror = (up_down.translate(UPSIDE_DOWN), letters.translate(UPSIDE_DOWN))
         side = root.sign(saddle)
         allowed = {1: (seen,), -1: (mirror,)}.get(side or 0, (seen, mirror))
         require(
-            (branch["vertex_signs"], branch["assignment"]) in allowed
+            any(
+                branch["vertex_signs"] == up_down
+                and isinstance(branch["assignment"], str)
+                and len(branch["assignment"]) == len(letters)
+                and all(a in (b, "U") for a, b in zip(branch["assignment"], letters, strict=True))
+                for up_down, letters in allowed
+            )
             and branch["representative"] == ("saddle" if side else "either"),
             f"branch {number}: not {' or '.join(map(' '.join, allowed))} as shown by "
             f"{'its positive saddle' if side else 'either side'}",
@@ -1213,6 +1220,11 @@ def check_branches(
             and branch["multiplicity"] == multiplicity << removed,
             f"branch {number}: multiplicity is {multiplicity << removed}",
         )
+    known = [k for k in range(len(sheet.folds)) if all(text[1][k] != "U" for text in texts)]
+    kinds: dict[tuple[str, str], object] = {}
+    for (up_down, letters), (root, _) in zip(texts, roots, strict=True):
+        key = (up_down, "".join(letters[k] for k in known))
+        require(kinds.setdefault(key, root.kind) == root.kind, "a root may be counted twice")
 
 
 def digit(sign: int | None) -> int:

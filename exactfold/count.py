@@ -156,7 +156,8 @@ def _in_chart(attempt: Attempt, method: str, seed: int) -> BranchCount:
         result = isolated(attempt, candidates)
         if result.status is not PROVED:
             result = with_flat_vertices(attempt, candidates) or result
-    if result.status is PROVED or method != "auto":
+    proved = result.status is PROVED
+    if method != "auto" or (proved and not (result.undecided_folds and size <= GROEBNER_LIMIT)):
         return result
     if size > GROEBNER_LIMIT:
         advice = (
@@ -164,6 +165,7 @@ def _in_chart(attempt: Attempt, method: str, seed: int) -> BranchCount:
             "(--method groebner insists)"
         )
         return replace(result, reason=f"{result.reason}; {advice}")
-    return solved_exactly(
+    exactly = solved_exactly(
         replace(attempt, choice=Choice("groebner", "popping paths did not settle it"))
     )
+    return result if proved and exactly.status is not PROVED else exactly

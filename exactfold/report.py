@@ -79,7 +79,9 @@ def count_report(
         rows.append(
             (
                 "shared folds",
-                f"{result.repeated_assignments} branches share their "
+                "undecided"
+                if result.repeated_assignments is None
+                else f"{result.repeated_assignments} branches share their "
                 "mountain-valley assignment with another",
             )
         )

@@ -43,6 +43,7 @@ from exactfold.branches import attempt, classify, multiple_roots
 from exactfold.branches.claims import certificate
 from exactfold.certify import algebraic, rigid_triangles
 from exactfold.errors import NoInteriorVertexError, UsageError
+from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import FAMILIES, h1_sequence, hypar, single_vertex, two_vertex
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.solve.candidates import Candidates
@@ -702,6 +703,54 @@ def test_undecided_where_signs_stay_open(monkeypatch):
     assert "all 4 solutions isolated, but signs are undecided on 4" in result.reason
     assert "vertex 4" in result.open_questions[0]
     assert result.branches == ()
+
+
+@pytest.mark.parametrize("name", ["cross", "straight-path", "ring", "waterbomb-pair"])
+def test_open_folds_cost_their_letters_and_not_the_count(monkeypatch, name):
+    pattern = DEGENERATE[name]()
+    known = count_branches(pattern)
+    assert not known.undecided_folds
+    monkeypatch.setattr(attempt, "recognised", lambda chart, found, undecided: None)
+    monkeypatch.setattr(classify, "flat_folds", lambda pattern, signs: frozenset())
+    result = count_branches(pattern, method="popping")
+    assert result.status is PROVED
+    assert counts(result) == counts(known)
+    assert result.true_branches is known.true_branches
+    open_folds = result.undecided_folds
+    assert open_folds
+    assert result.repeated_assignments is None
+    for fold in open_folds:
+        assert any(f"{fold[0]}-{fold[1]}" in question for question in result.open_questions)
+    shown = {(b.sign_text, b.assignment_text) for b in known.branches}
+    for branch in result.branches:
+        agreeing = [
+            text
+            for signs, text in shown
+            if signs == branch.sign_text
+            and all(a in (b, "U") for a, b in zip(branch.assignment_text, text, strict=True))
+        ]
+        assert agreeing
+    document = json.loads(json.dumps(certificate(result)))
+    assert checker.check(document) == document["claims"]
+    monkeypatch.setattr(checker, "close_flat", lambda sheet, signs: None)
+    assert checker.check(document) == document["claims"]
+    place = next(b for b in document["claims"]["branches"] if "U" in b["assignment"])
+    for letter in "MVF?":
+        forged = dict(place, assignment=place["assignment"].replace("U", letter, 1))
+        branches = [forged if b is place else b for b in document["claims"]["branches"]]
+        claims = dict(document["claims"], branches=branches)
+        with pytest.raises(checker.CertificateError, match="as shown by"):
+            checker.check(dict(document, claims=claims))
+    monkeypatch.setattr(classify, "flat_folds", lambda pattern, signs: frozenset())
+    assert not count_branches(pattern).undecided_folds  # "auto" asks the exact engine
+
+
+def test_largest_straight_hypar_is_proved_but_for_one_letter():
+    """Vi = 12: the folds across the middle square are flat on some simple roots."""
+    result = count_branches(hypar(3, 0))
+    assert result.status is PROVED
+    assert (result.with_multiplicity, result.nonreal) == (4096, 0)
+    assert set(result.undecided_folds) <= {(13, 15)}
 
 
 def test_dimension_and_degree_of_sheets_with_more_freedom():

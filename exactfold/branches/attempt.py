@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -71,7 +72,6 @@ class Attempt:
             open_count,
             status=PROVED,
             reason=reason,
-            open_questions=(),
             with_multiplicity=self.total << self.pattern.Vt,
             evidence={
                 "triangles": triangle_evidence(self.triangles),
@@ -99,9 +99,13 @@ def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
             reason=f"{len(isolation.boxes)} of {attempt.total} solutions isolated: the others are "
             "multiple, at infinity or were not found",
         )
-    if open_signs:
-        exactly = _algebraic(attempt, Zeros(boxes=list(isolation.boxes)), result.settings)
-        return exactly if exactly.status is PROVED else result
+    more = recognised(attempt.chart, Zeros(boxes=list(isolation.boxes)), open_signs)
+    if more is not None:
+        exactly = _algebraic(attempt, more, result.settings)
+        if exactly.status is PROVED:
+            return exactly
+    if len(branches) < len(roots):
+        return result
     boxes = [branch.root.box for branch in branches if isinstance(branch.root, BoxRoot)]
     return attempt.proved(
         result,
@@ -151,7 +155,7 @@ def solved_exactly(attempt: Attempt) -> BranchCount:
     if solution.distinct == attempt.total:
         with suppress(OverflowError):  # zeros beyond floats are proved as they are
             result = isolated(attempt, solution.candidates)
-            if result.status is PROVED:
+            if result.status is PROVED and not result.undecided_folds:
                 return result
     return _algebraic(attempt, Zeros(list(solution.classes)), dict(solution.settings))
 
@@ -168,7 +172,9 @@ def _algebraic(attempt: Attempt, found: Zeros, settings: Mapping[str, int | str]
     if proof.complete is PROVED and open_signs:
         more = recognised(chart, found, open_signs)
         if more is not None:
-            return _algebraic(attempt, more, settings)
+            exactly = _algebraic(attempt, more, settings)
+            if exactly.status is PROVED:
+                return exactly
     result = attempt.undecided(
         proof.reason,
         branches=tuple(branches),
@@ -177,7 +183,7 @@ def _algebraic(attempt: Attempt, found: Zeros, settings: Mapping[str, int | str]
     )
     if proof.complete is not PROVED:
         return result
-    if open_signs:
+    if len(branches) < len(given):
         return replace(result, reason=f"{proof.reason}, but signs are undecided")
     if not _told_apart(branches):
         return replace(result, reason="two roots found in different ways may be the same")
@@ -205,12 +211,17 @@ def _entry(proof: AlgebraicProof, labels: Sequence[int], root: Root) -> dict[str
 
 
 def _told_apart(branches: Sequence[Branch]) -> bool:
-    """Whether no two branches proved in different ways have the same, or mirrored, signs."""
+    """Whether no two branches proved in different ways have the same, or mirrored, signs.
+
+    Only the folds that are decided on all branches are looked at.
+    """
     kinds: dict[tuple[str, str], object] = {}
-    for branch in branches:
+    texts = [branch.assignment_text for branch in branches]
+    decided = [k for k, letters in enumerate(zip(*texts, strict=True)) if "U" not in letters]
+    for branch, text in zip(branches, texts, strict=True):
         root = branch.root
         kind = root.sheets.vertices if isinstance(root, FlatBoxRoot) else type(root)
-        seen = (branch.sign_text, branch.assignment_text)
+        seen = (branch.sign_text, "".join(text[k] for k in decided))
         mirrored = (seen[0].translate(_UPSIDE_DOWN), seen[1].translate(_UPSIDE_DOWN))
         for letters in (seen, mirrored):
             if kinds.setdefault(letters, kind) != kind:
@@ -228,4 +239,6 @@ def _failures(isolation: Isolation) -> list[str]:
 
 
 def _signs(undecided: list[Undecided]) -> tuple[str, ...]:
-    return tuple("sign not decided: " + ", ".join(item.what) for item in undecided)
+    """What is not decided, and on how many roots."""
+    counts = Counter(", ".join(item.what) for item in undecided)
+    return tuple(f"sign not decided on {count} roots: {what}" for what, count in counts.items())

@@ -17,10 +17,10 @@ class Branch:
     """One branch of a pattern with D = 1, shown by its ray of positive boundary saddle.
 
     `vertex_signs`: interior vertex -> +1 popped up, -1 popped down, 0 proved flat. `assignment`:
-    fold (i, j) -> "M" mountain, "V" valley, "F" proved flat, seen from +z. `multiplicity` is that
-    of the solution of the branch system. `representative` is "saddle", or "either" if the saddle is
-    not proved to differ from 0 (reflex boundaries only): then either side may be shown. `heights`
-    encloses the height of every vertex.
+    fold (i, j) -> "M" mountain, "V" valley, "F" proved flat, "U" undecided, seen from +z.
+    `multiplicity` is that of the solution of the branch system. `representative` is "saddle", or
+    "either" if the saddle is not proved to differ from 0 (reflex boundaries only): then either side
+    may be shown. `heights` encloses the height of every vertex.
     """
 
     vertex_signs: Mapping[int, int]

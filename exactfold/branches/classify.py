@@ -40,8 +40,9 @@ def classify(
 
     `chart` belongs to the emptied pattern, whose vertex k is `labels[k]` of `pattern`; each root
     comes with its multiplicity there and is mirrored if its boundary saddle is negative. A sign
-    that a box does not decide is tried on sharper boxes of the same root, then by `flat_folds`;
-    roots with an open sign are returned apart.
+    that a box does not decide is tried on sharper boxes of the same root, then by `flat_folds`. All
+    roots with an open sign are returned apart; where only folds are open, there is a branch as
+    well, on which these have the letter "U".
     """
     emptied = chart.branch_system.pattern
     functionals = Functionals(chart)
@@ -55,12 +56,14 @@ def classify(
         ]
         if still_open:
             undecided.append(Undecided(root, tuple(still_open)))
+        if None in vertex_signs.values():
             continue
         signs = dict.fromkeys(pattern.interior, 0)
         signs |= {labels[v]: s for v, s in vertex_signs.items() if s is not None}
         letters = dict.fromkeys(pattern.folds, "F")
         letters |= {
-            (labels[i], labels[j]): _LETTERS[s] for (i, j), s in fold_signs.items() if s is not None
+            (labels[i], labels[j]): "U" if s is None else _LETTERS[s]
+            for (i, j), s in fold_signs.items()
         }
         shown = "saddle" if root.sign(functionals.saddle) else "either"
         weight = multiplicity << pattern.Vt

@@ -10,7 +10,7 @@ from typing import Any
 
 from exactfold.branches.branch import Branch
 from exactfold.exact.numbers import format_rational
-from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.verdict import UNDECIDED, Verdict
 
 
@@ -26,7 +26,7 @@ class BranchCount:
     cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi where that is proved
     (docs/mathematics.md, 10), else None. `branches` holds every branch decided, all of
     them if PROVED and D = 1; for D > 1 a branch is no line and none is listed. `evidence` is what a
-    certificate holds.
+    certificate holds. `open_questions` is what is missing; if PROVED, folds with the letter "U".
     """
 
     pattern: CreasePattern
@@ -87,11 +87,26 @@ class BranchCount:
         return counts
 
     @property
-    def repeated_assignments(self) -> int:
-        """Number of branches that share their mountain-valley assignment (up to reflection)."""
+    def undecided_folds(self) -> Counter[Edge]:
+        """On how many branches each fold has the letter "U"; it may be flat or nearly so there."""
+        return Counter(
+            fold
+            for branch in self.branches
+            for fold, letter in branch.assignment.items()
+            if letter == "U"
+        )
+
+    @property
+    def repeated_assignments(self) -> int | None:
+        """Number of branches that share their mountain-valley assignment (up to reflection).
+
+        None if the letter of some fold is undecided.
+        """
         counts: Counter[str] = Counter()
         for branch in self.branches:
             text = branch.assignment_text
+            if "U" in text:
+                return None
             counts[min(text, text.translate(str.maketrans("MV", "VM")))] += 1
         return sum(count for count in counts.values() if count > 1)
 

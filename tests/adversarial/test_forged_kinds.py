@@ -140,3 +140,35 @@ def test_finiteness_needs_positive_multipliers_for_every_vertex():
     forged = document("bent-off-path")
     del forged["evidence"]["multipliers"][1]
     refuse(forged, "multipliers has not 3 entries")
+
+
+def test_zeros_listed_in_two_ways_are_not_told_apart_by_an_open_fold(monkeypatch):
+    """A zero in a class, with a fold that is flat, and once more in a box that leaves it open."""
+    monkeypatch.setattr(checker, "close_flat", lambda sheet, signs: None)
+    sheet, _ = checker.read_sheet(certificate(count_branches(DEGENERATE["cross"]()))["pattern"])
+    system = checker.BranchSystem(sheet, None)
+    rows = [system.row(sheet.bend(f)) for f in sheet.folds]
+
+    class Shown(checker.Root):
+        def __init__(self, kind, first_fold):
+            self.kind, self.first_fold = kind, first_fold
+
+        def sign(self, row):
+            return self.first_fold if row == rows[0] else 1
+
+    def claim(*roots):
+        branches = [
+            {
+                "vertex_signs": "+",
+                "assignment": "".join({0: "F", 1: "V", None: "U"}[r.sign(row)] for row in rows),
+                "multiplicity": 1,
+                "representative": "saddle",
+            }
+            for r in roots
+        ]
+        checker.check_branches(sheet, system, [(r, 1) for r in roots], branches, 0)
+
+    claim(Shown("box", 1), Shown("class", 0))
+    claim(Shown("box", None), Shown("box", 1))  # boxes are compared elsewhere
+    with pytest.raises(checker.CertificateError, match="counted twice"):
+        claim(Shown("box", None), Shown("class", 0))
