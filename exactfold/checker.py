@@ -20,6 +20,7 @@ Floating point is used in one place, to choose the matrix Y of Krawczyk's test, 
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import itertools
 import json
@@ -988,18 +989,20 @@ def kernel(rows: list[list[Fraction]], size: int) -> list[list[Fraction]]:
     return basis
 
 
-def flat_at(sheet: Sheet, vertex: int, signs: dict[Edge, int | None]) -> list[Edge]:
-    """Folds at a vertex that must be flat, given right signs of some (None where open).
+@functools.lru_cache(maxsize=4096)  # many branches ask with the same signs
+def flat_at(
+    sheet: Sheet, vertex: int, folds: tuple[Edge, ...], signs: tuple[int | None, ...]
+) -> list[Edge]:
+    """Those of the folds around a vertex that must be flat, given right signs (None where open).
 
     The bends at the vertex that agree with the flat folds span a space on which the curvature form
     vanishes at the branch. In dimension 1 a non-zero form leaves only 0; in dimension 2 a form that
     splits into rational lines leaves the lines that agree with the known signs.
     """
     ring = sheet.star(vertex)
-    folds = [(min(vertex, j), max(vertex, j)) for j in ring]
     free = ring[2:]  # hub and two neighbouring rim vertices at 0: heights modulo planes
     rows = [[Fraction(sheet.bend(f).get(j, 0)) for j in free] for f in folds]
-    basis = kernel([r for r, f in zip(rows, folds, strict=True) if signs[f] == 0], len(free))
+    basis = kernel([r for r, sign in zip(rows, signs, strict=True) if sign == 0], len(free))
     form = matrix_of(sheet.curvature(vertex), free)
 
     def polar(a: list[Fraction], b: list[Fraction]) -> Fraction:
@@ -1026,7 +1029,7 @@ def flat_at(sheet: Sheet, vertex: int, signs: dict[Edge, int | None]) -> list[Ed
         [sum((r * h for r, h in zip(row, line, strict=True)), Fraction(0)) for row in rows]
         for line in lines
     ]
-    known = [(k, signs[f]) for k, f in enumerate(folds) if signs[f] is not None]
+    known = [(k, sign) for k, sign in enumerate(signs) if sign is not None]
 
     def agrees(vector: list[Fraction]) -> bool:
         one = [(vector[k] > 0) - (vector[k] < 0) for k, _ in known]
@@ -1038,7 +1041,7 @@ def flat_at(sheet: Sheet, vertex: int, signs: dict[Edge, int | None]) -> list[Ed
     return [
         f
         for k, f in enumerate(folds)
-        if signs[f] is None and all(vector[k] == 0 for vector in left)
+        if signs[k] is None and all(vector[k] == 0 for vector in left)
     ]
 
 
@@ -1048,7 +1051,8 @@ def close_flat(sheet: Sheet, signs: dict[Edge, int | None]) -> None:
     while changed and None in signs.values():
         changed = False
         for vertex in sheet.interior:
-            for fold in flat_at(sheet, vertex, signs):
+            folds = tuple((min(vertex, j), max(vertex, j)) for j in sheet.star(vertex))
+            for fold in flat_at(sheet, vertex, folds, tuple(signs[f] for f in folds)):
                 signs[fold], changed = 0, True
 
 

@@ -9,8 +9,9 @@ This settles the crosses (collinear folds at a vertex of degree 4) and what foll
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from math import isqrt
 
 from exactfold.exact.linalg import nullspace
@@ -35,27 +36,30 @@ def flat_folds(pattern: CreasePattern, signs: Mapping[Edge, int | None]) -> froz
     pending &= set(pattern.interior)
     while pending:
         vertex = pending.pop()
-        found = _at_vertex(pattern, vertex, known)
-        for fold in found:
+        around = tuple((min(vertex, j), max(vertex, j)) for j in pattern.star(vertex))
+        for fold in _at_vertex(pattern, vertex, around, tuple(known[fold] for fold in around)):
             known[fold] = 0
             pending |= set(fold) & set(pattern.interior)
     return frozenset(fold for fold, sign in known.items() if sign == 0)
 
 
-def _at_vertex(pattern: CreasePattern, vertex: int, known: Mapping[Edge, int | None]) -> list[Edge]:
+@lru_cache(maxsize=4096)
+def _at_vertex(
+    pattern: CreasePattern, vertex: int, folds: tuple[Edge, ...], signs: tuple[int | None, ...]
+) -> list[Edge]:
+    """The open folds around a vertex that are flat; many branches ask with the same signs."""
     ring = pattern.star(vertex)
-    folds = [(min(vertex, j), max(vertex, j)) for j in ring]
     bends = [fold_functional(pattern, fold) for fold in folds]
     # Heights of the star modulo planes: hub and two neighbouring rim vertices at 0.
     free = ring[2:]
     rows = [[Fraction(bend.get(j, 0)) for j in free] for bend in bends]
-    flat = [row for row, fold in zip(rows, folds, strict=True) if known[fold] == 0]
+    flat = [row for row, sign in zip(rows, signs, strict=True) if sign == 0]
     basis = nullspace(flat) if flat else _identity(len(free))
     form = curvature_form(pattern, vertex)
     lifted = [
         {v: Fraction(0) for v in form.labels} | dict(zip(free, b, strict=True)) for b in basis
     ]
-    undecided = [k for k, fold in enumerate(folds) if known[fold] is None]
+    undecided = [k for k, sign in enumerate(signs) if sign is None]
     if not basis or (len(basis) == 1 and form(lifted[0]) != 0):
         return [folds[k] for k in undecided]
     if len(basis) != 2:
@@ -73,7 +77,7 @@ def _at_vertex(pattern: CreasePattern, vertex: int, known: Mapping[Edge, int | N
         vector = [
             sum((c * h for c, h in zip(row, heights, strict=True)), Fraction(0)) for row in rows
         ]
-        if _agrees(vector, [known[fold] for fold in folds]):
+        if _agrees(vector, signs):
             vectors.append(vector)
     return [folds[k] for k in undecided if all(vector[k] == 0 for vector in vectors)]
 
@@ -103,7 +107,7 @@ def _rational_sqrt(value: Fraction) -> Fraction | None:
     return Fraction(p, q) if exact else None
 
 
-def _agrees(vector: list[Fraction], signs: list[int | None]) -> bool:
+def _agrees(vector: list[Fraction], signs: Sequence[int | None]) -> bool:
     """Whether some multiple of `vector` has the known signs (None is unknown)."""
     pairs = [((x > 0) - (x < 0), s) for x, s in zip(vector, signs, strict=True) if s is not None]
     return any(all(x * side == s for x, s in pairs) for side in (1, -1)) or all(
