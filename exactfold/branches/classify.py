@@ -17,8 +17,11 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.system.branch_system import Chart
 
 K = TypeVar("K")
+R = TypeVar("R", bound=Root)
 
-_LETTERS = {1: "V", -1: "M", 0: "F"}
+LETTERS = {1: "V", -1: "M", 0: "F", None: "U"}
+"""Letter of a fold by its sign."""
+
 _RISING = (256, 1024)
 
 
@@ -44,12 +47,11 @@ def classify(
     roots with an open sign are returned apart; where only folds are open, there is a branch as
     well, on which these have the letter "U".
     """
-    emptied = chart.branch_system.pattern
     functionals = Functionals(chart)
     height_rows = vertex_height_rows(pattern, functionals, labels)
     branches, undecided = [], []
     for given, multiplicity in roots:
-        root, vertex_signs, fold_signs = _decide(emptied, chart, functionals, given)
+        root, vertex_signs, fold_signs = _decide(chart, functionals, given)
         still_open = [f"vertex {labels[v]}" for v, s in vertex_signs.items() if s is None]
         still_open += [
             f"fold {labels[i]}-{labels[j]}" for (i, j), s in fold_signs.items() if s is None
@@ -61,10 +63,7 @@ def classify(
         signs = dict.fromkeys(pattern.interior, 0)
         signs |= {labels[v]: s for v, s in vertex_signs.items() if s is not None}
         letters = dict.fromkeys(pattern.folds, "F")
-        letters |= {
-            (labels[i], labels[j]): "U" if s is None else _LETTERS[s]
-            for (i, j), s in fold_signs.items()
-        }
+        letters |= {(labels[i], labels[j]): LETTERS[s] for (i, j), s in fold_signs.items()}
         shown = "saddle" if root.sign(functionals.saddle) else "either"
         weight = multiplicity << pattern.Vt
         branches.append(Branch(signs, letters, weight, root, shown, height_rows))
@@ -73,14 +72,25 @@ def classify(
 
 
 def _decide(
-    emptied: CreasePattern, chart: Chart, functionals: Functionals, root: Root
+    chart: Chart, functionals: Functionals, root: Root
 ) -> tuple[Root, dict[int, int | None], dict[Edge, int | None]]:
-    """Signs of all vertices and folds at the root, and the (sharpest) root used."""
+    """`decide_signs` at the root or, if its saddle is negative, at its mirror image."""
     for bits in _RISING:
         if root.sign(functionals.saddle) is None:
             root = _sharpen(chart, root, bits) or root
     if root.sign(functionals.saddle) == -1:
         root = root.mirrored()
+    return decide_signs(chart, functionals, root)
+
+
+def decide_signs(
+    chart: Chart, functionals: Functionals, root: R
+) -> tuple[R, dict[int, int | None], dict[Edge, int | None]]:
+    """The root, on a sharper box if that was needed, and the signs of all vertices and folds there.
+
+    None where a sign is not decided; a fold may then be flat.
+    """
+    emptied = chart.branch_system.pattern
     vertices = {v: root.sign(row) for v, row in functionals.vertices.items()}
     folds = {fold: root.sign(row) for fold, row in functionals.folds.items()}
     _add_flat(emptied, folds)
@@ -111,7 +121,7 @@ def _fill(signs: dict[K, int | None], rows: Mapping[K, Row], root: Root) -> None
             signs[key] = root.sign(rows[key])
 
 
-def _sharpen(chart: Chart, root: Root, bits: int) -> Root | None:
+def _sharpen(chart: Chart, root: R, bits: int) -> R | None:
     if not isinstance(root, BoxRoot | FlatBoxRoot) or root.box.bits >= bits:
         return None
     system = chart.system if isinstance(root, BoxRoot) else root.sheets.system

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from exactfold.branches.flat_folds import flat_folds
+from exactfold.branches.classify import LETTERS, decide_signs
 from exactfold.branches.functionals import Functionals
 from exactfold.branches.roots import BoxRoot
 from exactfold.certify.box import IsolatingBox
@@ -18,9 +18,7 @@ from exactfold.solve.nappes import NappeSystem
 
 _FIRST = (64, 128)
 _RISING = (128, 256, 512, 1024)
-_SHARPER = (256, 1024)
 _FAR = 1e100
-_LETTERS = {1: "V", -1: "M", 0: "F"}
 
 
 @dataclass(frozen=True)
@@ -104,29 +102,13 @@ class Settler:
 
     def _classified(self, signs: Sequence[int], box: IsolatingBox) -> ExactRoot | str:
         """The box with its folds if they are decided and its vertex signs are those asked for."""
-        chart, labels = self.functionals.chart, self.labels
-        vertices, rows = self.functionals.vertices, self.functionals.folds
-        root = BoxRoot(box)
-        found = [root.sign(row) for row in vertices.values()]
-        folds = {fold: root.sign(row) for fold, row in rows.items()}
-        for bits in _SHARPER:
-            if None not in found and None not in folds.values():
-                break
-            sharper = krawczyk_at(chart.system, root.box, bits)
-            if not isinstance(sharper, IsolatingBox):
-                break
-            root = BoxRoot(sharper)
-            found = [root.sign(row) for row in vertices.values()]
-            folds = {fold: root.sign(row) for fold, row in rows.items()}
-        for vertex, sign, wanted in zip(vertices, found, signs, strict=True):
+        labels = self.labels
+        root, found, folds = decide_signs(self.functionals.chart, self.functionals, BoxRoot(box))
+        for wanted, (vertex, sign) in zip(signs, found.items(), strict=True):
             if sign != wanted:
                 state = "undecided" if sign is None else "another"
                 return f"the sign of vertex {labels[vertex]} is {state}"
-        if None in folds.values():
-            for fold in flat_folds(chart.branch_system.pattern, folds):
-                folds[fold] = 0
         unknown = [f"{labels[i]}-{labels[j]}" for (i, j), sign in folds.items() if sign is None]
         if unknown:
             return f"fold {', '.join(unknown)} undecided"
-        letters = "".join(_LETTERS[sign] for _, sign in sorted(folds.items()) if sign is not None)
-        return ExactRoot(root.box, letters)
+        return ExactRoot(root.box, "".join(LETTERS[sign] for _, sign in sorted(folds.items())))
