@@ -30,10 +30,7 @@ def document(
     return {
         "format": FORMAT,
         "version": VERSION,
-        "pattern": {
-            "vertices": [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
-            "triangles": [list(t) for t in pattern.triangles],
-        },
+        "pattern": pattern_document(pattern),
         "claims": {
             "interior": pattern.Vi,
             "boundary": pattern.Ve,
@@ -44,6 +41,14 @@ def document(
         },
         "evidence": dict(evidence),
         "provenance": dict(provenance),
+    }
+
+
+def pattern_document(pattern: CreasePattern) -> Document:
+    """Vertices and triangles, exactly."""
+    return {
+        "vertices": [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
+        "triangles": [list(t) for t in pattern.triangles],
     }
 
 

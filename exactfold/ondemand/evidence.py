@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import lcm
 from typing import Any
 
+from exactfold.certify.certificate import pattern_document
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.ondemand.result import SignedBranch
@@ -33,10 +34,7 @@ def branch_certificate(branch: SignedBranch) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "version": VERSION,
-        "pattern": {
-            "vertices": [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
-            "triangles": [list(t) for t in pattern.triangles],
-        },
+        "pattern": pattern_document(pattern),
         "claims": {
             "gauge": branch.gauge,
             "vertex_signs": [branch.vertex_signs[v] for v in pattern.interior],

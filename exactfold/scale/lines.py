@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from exactfold.certify.certificate import Document
+from exactfold.certify.certificate import pattern_document
 from exactfold.compact_checker import FORMAT, UNPROVED, VERSION
-from exactfold.exact.numbers import format_integer, format_rational
-from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.exact.numbers import format_integer
 from exactfold.scale.chambers import Chambers, ProvedBlock
 
 
@@ -28,14 +27,6 @@ def header_line(chambers: Chambers) -> str:
             "provenance": {"method": "nappes", "python": platform.python_version()},
         }
     )
-
-
-def pattern_document(pattern: CreasePattern) -> Document:
-    """Vertices and triangles, exactly."""
-    return {
-        "vertices": [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
-        "triangles": [list(t) for t in pattern.triangles],
-    }
 
 
 def block_line(block: ProvedBlock) -> str:
