@@ -47,6 +47,7 @@ from exactfold.solve.groebner import groebner, quotient_algebra
 from exactfold.solve.hermite import hermite_counts
 from exactfold.solve.homotopy import homotopy
 from exactfold.solve.methods import find_candidates
+from exactfold.solve.nappe_ends import nappe_ends
 from exactfold.solve.popping import popping
 from exactfold.solve.splitting import split_form
 from exactfold.system.branch_system import BranchSystem, Chart
@@ -106,6 +107,7 @@ __all__ = [
     "isolate",
     "krawczyk",
     "load_fold",
+    "nappe_ends",
     "neighbours",
     "parametrisation_from_roots",
     "pattern_facts",

@@ -50,8 +50,8 @@ def count(
         Method,
         typer.Option(
             metavar="METHOD",
-            help="auto, popping, homotopy or groebner: how solutions are found. The proof does "
-            "not depend on it.",
+            help="auto, nappes, popping, homotopy or groebner: how solutions are found. The proof "
+            "does not depend on it.",
         ),
     ] = Method.auto,  # type: ignore[attr-defined]
     certificate: Annotated[

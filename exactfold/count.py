@@ -37,8 +37,8 @@ def count_branches(
     For D = 1: solve the branch system of the emptied pattern, isolate every solution by an exact
     test, prove by refined Bezout that there are no others (docs/mathematics.md, 3 to 5), and decide
     all vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For D >= 2 only
-    the single-vertex pattern is settled. `method` is one of `METHODS`; "auto" follows popping paths
-    and turns to the exact engine where roots are multiple and the pattern is small.
+    the single-vertex pattern is settled. `method` is one of `METHODS`; "auto" takes Newton's
+    method on the nappes and turns to the exact engine where that does not settle a small pattern.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
     `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.
@@ -151,10 +151,11 @@ def _in_chart(attempt: Attempt, method: str, seed: int) -> BranchCount:
         return solved_exactly(attempt)
     stage = attempt.stage("solving")
     candidates = find_candidates(attempt.chart, method, seed=seed, progress=stage)
-    result = with_flat_vertices(attempt, candidates) if candidates.lost else None
+    multiple = bool(candidates.lost) or candidates.some_meet
+    result = with_flat_vertices(attempt, candidates) if multiple else None
     if result is None:
         result = isolated(attempt, candidates)
-        if result.status is not PROVED:
+        if result.status is not PROVED and not multiple:
             result = with_flat_vertices(attempt, candidates) or result
     proved = result.status is PROVED
     if method != "auto" or (proved and not (result.undecided_folds and size <= GROEBNER_LIMIT)):
@@ -166,6 +167,6 @@ def _in_chart(attempt: Attempt, method: str, seed: int) -> BranchCount:
         )
         return replace(result, reason=f"{result.reason}; {advice}")
     exactly = solved_exactly(
-        replace(attempt, choice=Choice("groebner", "popping paths did not settle it"))
+        replace(attempt, choice=Choice("groebner", "numerics did not settle it"))
     )
     return result if proved and exactly.status is not PROVED else exactly

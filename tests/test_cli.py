@@ -106,11 +106,11 @@ def test_count_json_is_exact(two_vertex):
             assert tuple(map(Fraction, ends)) == expected.heights[int(v)]
 
 
-@pytest.mark.parametrize("method", ["auto", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["auto", "nappes", "popping", "homotopy", "groebner"])
 def test_methods(two_vertex, method):
     data = json.loads(run("count", two_vertex, "--json", "--method", method).stdout)
     assert data["distinct"] == 4
-    assert data["method"] == ("popping" if method == "auto" else method)
+    assert data["method"] == ("nappes" if method == "auto" else method)
 
 
 def test_rigid_sheet_has_no_branches(tmp_path):

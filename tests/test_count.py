@@ -259,7 +259,7 @@ def test_degree_four_cross_folds_along_its_lines():
 # --- triangulated triangles ----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
 def test_one_vertex_of_degree_three(method):
     pattern = with_point(two_vertex(), 2, (1, 2, 2))
     assert pattern.Vt == 1
@@ -362,7 +362,7 @@ def test_unknown_method_error():
 # --- chords, reflex corners, straight sides ------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
 def test_chord_between_two_halves_with_vertices(method):
     """Each half is a triangle, hence rigid: one branch, the fold along the chord."""
     pattern = CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)])
@@ -392,12 +392,12 @@ def star_in(corners):
     return wheel(corners, (ax + near * (cx - ax), ay + near * (cy - ay)))
 
 
-@pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
 def test_dart(method):
     check_generic(dart(), count_branches(dart(), method=method))
 
 
-@pytest.mark.parametrize("method", ["auto", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["auto", "nappes", "popping", "homotopy", "groebner"])
 def test_branch_with_a_flat_boundary_is_not_lost_silently(method):
     """Here raising the hub alone bends the sheet without curvature: the saddle of that branch is 0.
 
@@ -411,7 +411,7 @@ def test_branch_with_a_flat_boundary_is_not_lost_silently(method):
     assert len(result.branches) < 2 or result.status is PROVED
 
 
-@pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
 @pytest.mark.parametrize("first", range(4))
 def test_boundary_angle_of_pi_wherever_numbering_starts(method, first):
     pattern = straight_side(smallest=True)
@@ -449,7 +449,9 @@ AGREEMENT = {
 
 @pytest.mark.parametrize("pattern", AGREEMENT.values(), ids=AGREEMENT.keys())
 def test_methods_agree(pattern):
-    results = [count_branches(pattern, method=m) for m in ("popping", "homotopy", "groebner")]
+    results = [
+        count_branches(pattern, method=m) for m in ("nappes", "popping", "homotopy", "groebner")
+    ]
     for result in results:
         check_generic(pattern, result)
         assert summary(result) == summary(results[0])
@@ -566,7 +568,7 @@ def test_huge_denominators():
 
 
 @pytest.mark.parametrize("scale", [Fraction(10**40), Fraction(1, 10**40), Fraction(10**150)])
-@pytest.mark.parametrize("method", ["popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
 def test_scale_does_not_matter(scale, method):
     pattern = random_square(3, seed=8)
     scaled = mapped(pattern, lambda p: (scale * p[0], scale * p[1]))

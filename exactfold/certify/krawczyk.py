@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from operator import mul
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 _PRECISIONS = (64, 128, 256, 512, 1024)
 _Y_BITS = 56
 _NEWTON_STEPS = 12
+_SETTLED = 2
 _WIDE = 1 << 16
 _LEFT = "Newton's steps left the candidate"
 _SLOW = "Newton's steps do not shrink quadratically: the zero is multiple or the candidate far off"
@@ -151,11 +153,16 @@ class _Kernel:
         return matrices, bits
 
     @cached_property
-    def stacked(self) -> fmpz_mat:
-        """All S_p below each other: n (n + 1) rows, n + 1 columns."""
+    def stacked(self) -> tuple[list[int], fmpz_mat]:
+        """All S_p below each other, n (n + 1) rows, n + 1 columns: those that are not 0, and where.
+
+        A quadric depends on the heights of one star only, so that most rows are 0.
+        """
         matrices, _ = self.shifted
-        n = self.system.size
-        return fmpz_mat(n * (n + 1), n + 1, [x for m in matrices for row in m for x in row])
+        rows = [row for matrix in matrices for row in matrix]
+        places = [k for k, row in enumerate(rows) if any(row)]
+        cells = [x for k in places for x in rows[k]]
+        return places, fmpz_mat(len(places), self.system.size + 1, cells)
 
     @cached_property
     def float_stack(self) -> FloatArray:
@@ -185,10 +192,14 @@ class _Kernel:
         first, *rising = precisions
         results: list[IsolatingBox | str] = []
         inverses = self._float_inverses(floats)
-        for point, row, inverse in zip(points, floats.tolist(), inverses, strict=True):
-            result: IsolatingBox | str = "the Jacobian is singular in double precision"
-            if np.isfinite(inverse).all():
-                result = self._attempt([_dyadic(x, first) for x in row], first, inverse)
+        finite = np.isfinite(inverses).all(axis=(1, 2))
+        usable = np.asarray(finite & inverses.any(axis=(1, 2)))
+        shifts, entries = _fixed_point(np.where(usable[:, None, None], inverses, 1.0))
+        for k, (point, row) in enumerate(zip(points, floats.tolist(), strict=True)):
+            result: IsolatingBox | str = "the Jacobian has no usable inverse in double precision"
+            if usable[k]:
+                start = [_dyadic(x, first) for x in row]
+                result = self._attempt(start, first, entries[k], shifts[k])
             if isinstance(result, IsolatingBox) and result.radius > _WIDE:
                 sharper = self._attempt_exactly(list(result.real), first)
                 if isinstance(sharper, IsolatingBox) and sharper.is_inside(result):
@@ -238,21 +249,19 @@ class _Kernel:
                     continue
         return np.asarray(inverses)
 
-    def _attempt(self, m: list[int], bits: int, inverse: FloatArray) -> IsolatingBox | str:
-        """Newton steps with a fixed Y from floating point, then the test."""
-        largest = float(np.abs(inverse).max())
-        if largest == 0.0:
-            return "the Jacobian has no usable inverse in double precision"
-        q = _Y_BITS - int(np.ceil(np.log2(largest)))
+    def _attempt(self, m: list[int], bits: int, entries: list[int], q: int) -> IsolatingBox | str:
+        """Newton steps with a fixed Y = entries / 2^q from floating point, then the test."""
         n = self.system.size
-        entries = [_dyadic(x, q) for x in inverse.ravel().tolist()]
         y = fmpz_mat(n, n, entries)
         shift = q + self.shifted[1]
+        jacobian, values = self._evaluate(m, bits)
         for _ in range(_NEWTON_STEPS):
-            before, m = m, self._newton(m, bits, y, shift)
-            if _settled(before, m):
+            step = self._step(values, bits, y, shift)
+            if max(map(abs, step)) <= _SETTLED:
                 break
-        return self._test(m, bits, y, entries, shift)
+            m = [a - s for a, s in zip(m, step, strict=True)]
+            jacobian, values = self._evaluate(m, bits)
+        return self._test(m, jacobian, values, bits, y, entries, shift)
 
     def _attempt_exactly(self, m: list[int], bits: int) -> IsolatingBox | str:
         """Newton with the exact inverse, rounded; for clusters that doubles cannot tell apart."""
@@ -261,18 +270,19 @@ class _Kernel:
         length: int | None = None
         last: int | None = None
         for _ in range(_NEWTON_STEPS):
-            jacobian, _values = self._evaluate(m, bits)
+            jacobian, values = self._evaluate(m, bits)
             rounded = self._rounded_inverse(jacobian, bits, bits)
             if rounded is None:
                 return f"the Jacobian is singular at {bits} bits"
             entries, shift = rounded
             y = fmpz_mat(n, n, entries)
-            before, m = m, self._newton(m, bits, y, shift)
-            result = self._test(m, bits, y, entries, shift)
+            step = self._step(values, bits, y, shift)
+            m = [a - s for a, s in zip(m, step, strict=True)]
+            result = self._test(m, *self._evaluate(m, bits), bits, y, entries, shift)
             sharp = isinstance(result, IsolatingBox) and result.radius <= _WIDE
-            if sharp or _settled(before, m):
+            if sharp or max(map(abs, step)) <= _SETTLED:
                 return result
-            length, last = _distance(before, m), length
+            length, last = max(map(abs, step)), length
         slow = last is not None and length is not None and 8 * length > last
         return _SLOW if slow and not isinstance(result, IsolatingBox) else result
 
@@ -280,17 +290,18 @@ class _Kernel:
         """2^bits F'(m) as an n x n matrix, and 2^(2 bits + 1) F(m) as a column."""
         n = self.system.size
         z = fmpz_mat(n + 1, 1, [*m, 1 << bits])
-        products = (self.stacked * z).entries()
-        rows = fmpz_mat(n, n + 1, products)
-        values = rows * z
-        jacobian = fmpz_mat(n, n, [products[p * (n + 1) + k] for p in range(n) for k in range(n)])
-        return jacobian, values
+        places, stacked = self.stacked
+        products: list[int | fmpz] = [0] * (n * (n + 1))
+        for place, product in zip(places, (stacked * z).entries(), strict=True):
+            products[place] = product
+        values = fmpz_mat(n, n + 1, products) * z
+        del products[n :: n + 1]
+        return fmpz_mat(n, n, products), values
 
-    def _newton(self, m: list[int], bits: int, y: fmpz_mat, shift: int) -> list[int]:
-        _, values = self._evaluate(m, bits)
-        step = (y * values).entries()
+    def _step(self, values: fmpz_mat, bits: int, y: fmpz_mat, shift: int) -> list[int]:
+        """Y F(m), rounded to units of 2^-bits: what a Newton step subtracts from m."""
         down = shift + bits + 1
-        return [a - int(_shift_round(s, down)) for a, s in zip(m, step, strict=True)]
+        return [int(_shift_round(s, down)) for s in (y * values).entries()]
 
     def _rounded_inverse(
         self, jacobian: fmpz_mat, bits: int, significant: int
@@ -323,20 +334,23 @@ class _Kernel:
         for i in range(n):
             row = product[i * n : (i + 1) * n]
             row[i] = row[i] - unit
-            k0 = max(k0, int(sum(abs(x) for x in row)))
+            k0 = max(k0, int(sum(map(abs, row))))
         eta = max(abs(int(x)) for x in (y * values).entries())
-        norms = self.hessian_norms
-        bound = max(
-            sum(abs(e) * w for e, w in zip(entries[i * n : (i + 1) * n], norms, strict=True))
-            for i in range(n)
-        )
+        sizes = list(map(abs, entries))
+        bound = max(sum(map(mul, sizes[i * n : (i + 1) * n], self.hessian_norms)) for i in range(n))
         return k0, eta, bound, unit
 
     def _test(
-        self, m: list[int], bits: int, y: fmpz_mat, entries: list[int], shift: int
+        self,
+        m: list[int],
+        jacobian: fmpz_mat,
+        values: fmpz_mat,
+        bits: int,
+        y: fmpz_mat,
+        entries: list[int],
+        shift: int,
     ) -> IsolatingBox | str:
         """The Krawczyk inequalities at m, Y = y / 2^shift, for the smallest radius that fits."""
-        jacobian, values = self._evaluate(m, bits)
         k0, eta, bound, unit = self._norms(jacobian, values, bits, y, entries, shift)
         if k0 >= unit:
             return f"|I - Y F'(m)| is not below 1 at {bits} bits: the zero may be multiple"
@@ -349,12 +363,12 @@ class _Kernel:
         return f"no contraction at {bits} bits: the zero may be multiple or too far off"
 
 
-def _distance(before: list[int], after: list[int]) -> int:
-    return max(abs(a - b) for a, b in zip(before, after, strict=True))
-
-
-def _settled(before: list[int], after: list[int]) -> bool:
-    return _distance(before, after) <= 2
+def _fixed_point(matrices: FloatArray) -> tuple[list[int], list[list[int]]]:
+    """Shifts q and entries times 2^q, at most `_Y_BITS` bits long, of finite non-zero matrices."""
+    sizes = np.frexp(np.abs(matrices).max(axis=(1, 2)))[1]
+    shifts = _Y_BITS - sizes
+    entries = np.rint(np.ldexp(matrices, shifts[:, None, None])).astype(np.int64)
+    return shifts.tolist(), entries.reshape(len(matrices), -1).tolist()
 
 
 def _dyadic(value: float | Fraction, bits: int) -> int:

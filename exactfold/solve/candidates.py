@@ -23,3 +23,10 @@ class Candidates:
     points: ComplexArray
     lost: tuple[str, ...] = ()
     settings: Mapping[str, int | str] = field(default_factory=dict)
+
+    @property
+    def some_meet(self) -> bool:
+        """Whether two of them agree to about six digits, as they do at a multiple zero."""
+        size = np.abs(self.points).max(axis=1, initial=1.0)
+        rounded = np.round(self.points / size[:, None], 6)
+        return len(np.unique(rounded, axis=0)) < len(rounded)

@@ -11,12 +11,14 @@ from exactfold.errors import UsageError
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.groebner import groebner
 from exactfold.solve.homotopy import homotopy
+from exactfold.solve.nappe_ends import nappe_ends
 from exactfold.solve.popping import popping
 from exactfold.system.branch_system import Chart
 
 Progress = Callable[[int, int], None]
 
 SOLVERS: dict[str, Callable[[Chart, int, Progress | None], Candidates]] = {
+    "nappes": lambda chart, seed, progress: nappe_ends(chart, progress=progress),
     "popping": lambda chart, seed, progress: popping(chart, progress=progress),
     "homotopy": lambda chart, seed, progress: homotopy(chart.system, seed=seed, progress=progress),
     "groebner": lambda chart, seed, progress: groebner(chart.system).candidates,
@@ -33,18 +35,18 @@ class Choice:
 
 
 def choose(method: str) -> Choice:
-    """The solver to start with; "auto" takes popping paths, which every pattern with D = 1 has.
+    """The solver to start with; "auto" takes the nappes, which every pattern with D = 1 has.
 
     Raises `UsageError` for a method not in `METHODS`.
 
     >>> choose("auto").method
-    'popping'
+    'nappes'
     """
     if method not in METHODS:
         raise UsageError(f"unknown method {method!r}: choose one of {', '.join(METHODS)}")
     if method != "auto":
         return Choice(method, "as asked for")
-    return Choice("popping", "four boundary vertices: one real path for each sign vector")
+    return Choice("nappes", "one end for each vector of vertex signs")
 
 
 def find_candidates(
@@ -60,7 +62,7 @@ def find_candidates(
     >>> from exactfold.system.branch_system import BranchSystem
     >>> chart = BranchSystem(two_vertex()).chart
     >>> [len(find_candidates(chart, method).points) for method in METHODS]
-    [4, 4, 4, 4]
+    [4, 4, 4, 4, 4]
     """
     chosen = choose(method).method
     if seed < 0:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +13,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form, spokes
 from exactfold.rigidity.timelike import saddle_functional
 from exactfold.solve.candidates import Candidates
+from exactfold.solve.gauge import pattern_size, to_chart
 from exactfold.system.branch_system import Chart
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,7 +23,6 @@ _ORDER = 8
 _BLOCK = 4096
 _MAX_STEPS = 400
 _MIN_STEP = 1e-12
-_INFINITY = 1e-12
 
 
 def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
@@ -66,7 +65,7 @@ def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
     heights = problem.full_heights(np.concatenate(arrived))
     return Candidates(
         method="popping",
-        points=_to_chart(chart, heights).astype(np.complex128),
+        points=to_chart(chart, heights).astype(np.complex128),
         lost=tuple(lost),
         settings={"paths": len(signs), "steps": steps, "order": _ORDER},
     )
@@ -117,7 +116,7 @@ class _Problem:
         if unit is not None:
             position[unit] = n
         forms, lines = np.zeros((n, n + 1, n + 1)), np.zeros((n, n + 1))
-        size = _size(pattern)
+        size = pattern_size(pattern)
         for p, v in enumerate(movable):
             form = curvature_form(sheet, v)
             matrix = np.array([[float(w * size**2) for w in row] for row in form.matrix])
@@ -148,36 +147,6 @@ class _Problem:
         if self.unit is not None:
             heights[:, self.unit] = 1.0
         return heights
-
-
-def _size(pattern: CreasePattern) -> Fraction:
-    """The larger side of the bounding box: the unit of length that keeps floats in range."""
-    sides = (
-        max(p[axis] for p in pattern.vertices) - min(p[axis] for p in pattern.vertices)
-        for axis in (0, 1)
-    )
-    return max(sides)
-
-
-def _to_chart(chart: Chart, heights: FloatArray) -> FloatArray:
-    """The same sheets in the gauge of the chart: pinned vertices at 0, functional 1.
-
-    Sheets at infinity of the chart, on which the functional vanishes, are left out.
-    """
-    pattern = chart.branch_system.pattern
-    size, (x0, y0) = _size(pattern), pattern.vertices[0]
-    plane = np.array(
-        [[float((x - x0) / size), float((y - y0) / size), 1.0] for x, y in pattern.vertices]
-    )
-    pinned = list(chart.branch_system.pinned)
-    tilt = np.linalg.solve(plane[pinned], heights[:, pinned].T)
-    level = heights - (plane @ tilt).T
-    weights = np.zeros(len(plane))
-    for v, weight in chart.functional.items():
-        weights[v] = float(weight)
-    values = level @ weights
-    reached = np.abs(values) > _INFINITY * np.abs(level).max(axis=1, initial=0.0)
-    return np.asarray((level[reached] / values[reached, None])[:, list(chart.variables)])
 
 
 def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, npt.NDArray[np.bool_], int]:

@@ -25,6 +25,7 @@ from exactfold.pattern.random_squares import random_square
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.groebner import groebner
 from exactfold.solve.homotopy import homotopy
+from exactfold.solve.nappe_ends import nappe_ends
 from exactfold.solve.popping import popping
 from exactfold.system.branch_system import BranchSystem, Chart
 from exactfold.system.quadratic import QuadraticSystem
@@ -109,7 +110,7 @@ def test_equal_calls_give_equal_results(solve: SystemSolver) -> None:
     assert first.settings == second.settings
 
 
-# --- the branch systems: popping takes a chart, the others its quadrics --------------------------
+# --- the branch systems: two solvers take a chart, the others its quadrics -----------------------
 
 PATTERNS = [
     ("single vertex", single_vertex(4), 1),
@@ -127,8 +128,8 @@ def on_chart(solve: SystemSolver) -> Callable[[Chart], Candidates]:
 
 @pytest.mark.parametrize(
     "solve",
-    [popping, on_chart(homotopy), on_chart(by_groebner)],
-    ids=["popping", "homotopy", "groebner"],
+    [nappe_ends, popping, on_chart(homotopy), on_chart(by_groebner)],
+    ids=["nappes", "popping", "homotopy", "groebner"],
 )
 @pytest.mark.parametrize(("name", "pattern", "n"), PATTERNS, ids=[p[0] for p in PATTERNS])
 def test_branch_systems_have_two_to_the_n_branches(
