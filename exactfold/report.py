@@ -18,6 +18,9 @@ from exactfold.verdict import PROVED, UNDECIDED
 SHOWN = 32
 """Branches and open questions listed unless all are asked for."""
 
+LISTED = 8
+"""Entries of a list in the table of `exactfold info`."""
+
 
 def _facts_table(rows: list[tuple[str, str]]) -> Table:
     table = Table(box=None, show_header=False, pad_edge=False)
@@ -192,23 +195,27 @@ def info_report(facts: PatternFacts) -> Table:
             else str(facts.rigidity_rank),
         ),
         ("self stresses", str(facts.self_stresses)),
-        (
-            "inertia of curvature forms",
-            "; ".join(f"{v}: {i}" for v, i in list(facts.inertias.items())[:SHOWN]) or "none",
-        ),
+        ("inertia of curvature forms", _listed([f"{v}: {i}" for v, i in facts.inertias.items()])),
         (
             "triangulated triangles",
-            "; ".join(
-                f"{c} around {', '.join(map(str, inside))}"
-                for c, inside in pattern.triangulated_triangles
-            )
-            or "none",
+            _listed(
+                [
+                    f"{corners} around {_listed(list(map(str, inside)), ', ')}"
+                    for corners, inside in pattern.triangulated_triangles
+                ]
+            ),
         ),
-        ("folds that split the sheet", ", ".join(f"{i}-{j}" for i, j in pattern.chords) or "none"),
+        ("folds that split the sheet", _listed([f"{i}-{j}" for i, j in pattern.chords], ", ")),
         ("expected", expectation(facts)),
         ("sha256", pattern.sha256),
     ]
     return _facts_table(rows)
+
+
+def _listed(entries: list[str], separator: str = "; ") -> str:
+    rest = len(entries) - LISTED
+    more = [f"... and {rest} more (--json lists all)"] if rest > 0 else []
+    return separator.join(entries[:LISTED] + more) or "none"
 
 
 def expectation(facts: PatternFacts) -> str:

@@ -122,7 +122,7 @@ class CreasePattern:
         from the next to the previous boundary vertex.
         """
         rotation = self._next[vertex]
-        start = min(rotation) if vertex in self._interior_set else self._first_spoke(vertex)
+        start = min(rotation) if vertex in self.interior_set else self._first_spoke(vertex)
         cycle = [start]
         while cycle[-1] in rotation and (after := rotation[cycle[-1]]) != start:
             cycle.append(after)
@@ -133,7 +133,8 @@ class CreasePattern:
         return next(iter(set(rotation) - set(rotation.values())))
 
     @cached_property
-    def _interior_set(self) -> frozenset[int]:
+    def interior_set(self) -> frozenset[int]:
+        """The interior vertices, for tests of membership."""
         return frozenset(self.interior)
 
     def degree(self, vertex: int) -> int:

@@ -14,7 +14,7 @@ def spokes(
     pattern: CreasePattern, vertex: int
 ) -> tuple[tuple[int, ...], list[tuple[Fraction, Fraction]]]:
     """Neighbours of an interior vertex counter-clockwise, and the vectors U_j - U_v to them."""
-    if vertex not in pattern.interior:
+    if vertex not in pattern.interior_set:
         raise UsageError(f"vertex {vertex} is not an interior vertex")
     x, y = pattern.vertices[vertex]
     ring = pattern.star(vertex)
@@ -62,17 +62,20 @@ def curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
     """
     ring, d = spokes(pattern, vertex)
     n = len(ring)
+    turned = d[1:] + d[:1]
+    c = [a[0] * b[1] - a[1] * b[0] for a, b in zip(d, turned, strict=True)]
+    s = [a[0] * b[0] + a[1] * b[1] for a, b in zip(d, turned, strict=True)]
+    cot = [p / q for p, q in zip(s, c, strict=True)]
     matrix = [[Fraction(0)] * (n + 1) for _ in range(n + 1)]
+    for j in range(1, n + 1):
+        length2 = d[j - 1][0] ** 2 + d[j - 1][1] ** 2
+        matrix[j][j] = -(cot[j - 1] + cot[j - 2]) / (2 * length2)
     for j in range(n):
         k = (j + 1) % n
-        c = d[j][0] * d[k][1] - d[j][1] * d[k][0]
-        s = d[j][0] * d[k][0] + d[j][1] * d[k][1]
-        matrix[1 + j][1 + k] += 1 / (2 * c)
-        matrix[1 + k][1 + j] += 1 / (2 * c)
-        matrix[1 + j][1 + j] -= s / (2 * c) / (d[j][0] ** 2 + d[j][1] ** 2)
-        matrix[1 + k][1 + k] -= s / (2 * c) / (d[k][0] ** 2 + d[k][1] ** 2)
+        matrix[1 + j][1 + k] = matrix[1 + k][1 + j] = 1 / (2 * c[j])
     for j in range(1, n + 1):  # invariance under h -> h + constant fixes the hub's row
-        matrix[j][0] = matrix[0][j] = -sum(matrix[j][1:], Fraction(0))
+        row = matrix[j]
+        row[0] = matrix[0][j] = -(row[j] + row[j % n + 1] + row[(j - 2) % n + 1])
     matrix[0][0] = -sum(matrix[0][1:], Fraction(0))
     return QuadraticForm((vertex, *ring), tuple(tuple(row) for row in matrix))
 

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from flint import nmod_mat
-
 from exactfold.exact.linalg import Inertia
-from exactfold.exact.linalg import rank as rational_rank
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.rigidity.framework import rigidity_matrix
 
-_PRIME = (1 << 61) - 1
+Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
@@ -61,11 +58,8 @@ class PatternFacts:
         return dict(sorted(Counter(self.pattern.degree(v) for v in self.pattern.interior).items()))
 
 
-def pattern_facts(pattern: CreasePattern) -> PatternFacts:
-    """The exact facts that `exactfold info` reports.
-
-    The rank of the rigidity matrix over Q is bounded below by its rank modulo a prime and above by
-    2V - 3 (the rigid motions of the plane); for a triangulated disk the two meet.
+def pattern_facts(pattern: CreasePattern, progress: Progress | None = None) -> PatternFacts:
+    """The exact facts that `exactfold info` reports; every inertia is computed, none assumed.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> facts = pattern_facts(single_vertex(5))
@@ -73,21 +67,19 @@ def pattern_facts(pattern: CreasePattern) -> PatternFacts:
     (9, 1, {5: (1, 2, 3)})
     """
     rank = rigidity_rank(pattern)
-    inertias = {v: curvature_form(pattern, v).inertia for v in pattern.interior}
+    inertias = {}
+    for k, v in enumerate(pattern.interior):
+        if progress is not None and k % 100 == 0:
+            progress("curvature forms", k, pattern.Vi)
+        inertias[v] = curvature_form(pattern, v).inertia
     return PatternFacts(pattern, rank, len(pattern.edges) - rank, inertias)
 
 
 def rigidity_rank(pattern: CreasePattern) -> int:
-    """Rank over Q of the rigidity matrix; exact (see `pattern_facts`)."""
-    points, _ = pattern.integer_vertices
-    columns = 2 * len(points)
-    entries = [0] * (columns * len(pattern.edges))
-    for row, (i, j) in enumerate(pattern.edges):
-        for axis in (0, 1):
-            difference = (points[i][axis] - points[j][axis]) % _PRIME
-            entries[row * columns + 2 * i + axis] = difference
-            entries[row * columns + 2 * j + axis] = -difference % _PRIME
-    rank = int(nmod_mat(len(pattern.edges), columns, entries, _PRIME).rank())
-    if rank == columns - 3:
-        return rank
-    return rational_rank(rigidity_matrix(pattern))
+    """Rank over Q of the rigidity matrix: 2V - 3, as for every triangulated disk.
+
+    A face is infinitesimally rigid in the plane, its vertices not being collinear. Two such bodies
+    with two points in common are one, and the faces of a disk are connected through their sides.
+    So nothing but the three rigid motions is in the kernel.
+    """
+    return 2 * len(pattern.vertices) - 3

@@ -7,7 +7,6 @@ import pytest
 from sheets import (
     TRIANGLE,
     dart,
-    mapped,
     nested_triangles,
     random_wheel,
     scrambled,
@@ -15,11 +14,12 @@ from sheets import (
     two_triangles,
 )
 
+from exactfold.exact.linalg import rank
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import hypar, waterbomb
-from exactfold.pattern.random_squares import random_square
-from exactfold.rigidity import facts as module
+from exactfold.pattern.random_squares import random_square, sample_random_square
 from exactfold.rigidity.facts import pattern_facts, rigidity_rank
+from exactfold.rigidity.framework import rigidity_matrix
 
 PATTERNS = {
     "random": random_square(6, seed=2),
@@ -74,12 +74,19 @@ def test_degree_counts():
     assert counts == {d: neighbours.count(d) for d in sorted(set(neighbours))}
 
 
-def test_rank_where_the_prime_is_unlucky(monkeypatch):
-    # Modulo 2 the matrix loses rank for this sheet; the rational rank must be found then.
-    monkeypatch.setattr(module, "_PRIME", 2)
-    pattern = mapped(PATTERNS["random"], lambda p: (2048 * p[0], 2048 * p[1]))
-    assert all(x % 2 == 0 for p in pattern.vertices for x in p)
-    assert rigidity_rank(pattern) == 2 * len(pattern.vertices) - 3
+@patterns
+def test_rank_is_that_of_the_matrix(pattern):
+    assert rigidity_rank(pattern) == rank(rigidity_matrix(pattern))
+
+
+def test_large_patterns_cost_what_their_vertices_cost():
+    # A dense matrix of this sheet has 6 * 10^7 entries; curvature forms are asked for one by one.
+    asked = []
+    pattern = sample_random_square(2000, 1, 1 << 20, redraw=True).pattern
+    facts = pattern_facts(pattern, lambda stage, done, total: asked.append((stage, done, total)))
+    assert (facts.rigidity_rank, facts.self_stresses) == (4005, 2000)
+    assert asked[0] == ("curvature forms", 0, 2000)
+    assert len(asked) == 20
 
 
 def test_foldable_vertices_lie_outside_every_three_cycle():
