@@ -11,56 +11,113 @@ starts to fold, proves it, and tells the ways apart by vertex signs and mountain
 ['--', '-+', '+-', '++']
 """
 
-from exactfold.branches.branch import Branch
-from exactfold.branches.claims import certificate
-from exactfold.branches.result import BranchCount
-from exactfold.certify.arb_krawczyk import arb_krawczyk
-from exactfold.certify.certificate import write_certificate
-from exactfold.certify.interval_newton import interval_newton
-from exactfold.certify.isolation import isolate
-from exactfold.certify.krawczyk import krawczyk
-from exactfold.count import METHODS, count_branches
-from exactfold.data import EXAMPLES, example_path
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from exactfold.errors import ExactfoldError, InputError
-from exactfold.exact.factor_degrees import factor_degrees
-from exactfold.exact.forms import QuadraticForm
-from exactfold.exact.numbers import as_rational
-from exactfold.ondemand.find import BranchFinder, find_branch, find_branches, neighbours
-from exactfold.ondemand.result import SignedBranch
-from exactfold.pattern import degenerate, families
-from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.delaunay import delaunay
-from exactfold.pattern.fold import FoldFile, load_fold, read_fold
-from exactfold.pattern.fold_writing import write_fold
-from exactfold.pattern.random_squares import random_square
-from exactfold.rigidity.all_real import decide_all_branches_real
-from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stress
-from exactfold.rigidity.definite_stress import definite_stress
-from exactfold.rigidity.facts import pattern_facts
-from exactfold.rigidity.framework import rigidity_matrix, self_stresses
-from exactfold.scale.check import check_compact
-from exactfold.scale.dask_engine import dask_engine
-from exactfold.scale.read import read_branches
-from exactfold.scale.stream import StreamedCount, count_streaming
-from exactfold.solve.from_roots import parametrisation_from_roots
-from exactfold.solve.groebner import groebner, quotient_algebra
-from exactfold.solve.hermite import hermite_counts
-from exactfold.solve.homotopy import homotopy
-from exactfold.solve.methods import find_candidates
-from exactfold.solve.nappe_ends import nappe_ends
-from exactfold.solve.popping import popping
-from exactfold.solve.splitting import split_form
-from exactfold.system.branch_system import BranchSystem, Chart
-from exactfold.system.export import (
-    to_homotopy_continuation,
-    to_macaulay2,
-    to_msolve,
-    to_singular,
-    to_sympy,
-)
-from exactfold.system.perturbed import perturbed
-from exactfold.system.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+
+if TYPE_CHECKING:
+    from exactfold.branches.branch import Branch
+    from exactfold.branches.claims import certificate
+    from exactfold.branches.result import BranchCount
+    from exactfold.certify.arb_krawczyk import arb_krawczyk
+    from exactfold.certify.certificate import write_certificate
+    from exactfold.certify.interval_newton import interval_newton
+    from exactfold.certify.isolation import isolate
+    from exactfold.certify.krawczyk import krawczyk
+    from exactfold.count import METHODS, count_branches
+    from exactfold.data import EXAMPLES, example_path
+    from exactfold.exact.factor_degrees import factor_degrees
+    from exactfold.exact.forms import QuadraticForm
+    from exactfold.exact.numbers import as_rational
+    from exactfold.ondemand.find import BranchFinder, find_branch, find_branches, neighbours
+    from exactfold.ondemand.result import SignedBranch
+    from exactfold.pattern import degenerate, families
+    from exactfold.pattern.crease_pattern import CreasePattern
+    from exactfold.pattern.delaunay import delaunay
+    from exactfold.pattern.fold import FoldFile, load_fold, read_fold
+    from exactfold.pattern.fold_writing import write_fold
+    from exactfold.pattern.random_squares import random_square
+    from exactfold.rigidity.all_real import decide_all_branches_real
+    from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stress
+    from exactfold.rigidity.definite_stress import definite_stress
+    from exactfold.rigidity.facts import pattern_facts
+    from exactfold.rigidity.framework import rigidity_matrix, self_stresses
+    from exactfold.scale.check import check_compact
+    from exactfold.scale.dask_engine import dask_engine
+    from exactfold.scale.read import read_branches
+    from exactfold.scale.stream import StreamedCount, count_streaming
+    from exactfold.solve.from_roots import parametrisation_from_roots
+    from exactfold.solve.groebner import groebner, quotient_algebra
+    from exactfold.solve.hermite import hermite_counts
+    from exactfold.solve.homotopy import homotopy
+    from exactfold.solve.methods import find_candidates
+    from exactfold.solve.nappe_ends import nappe_ends
+    from exactfold.solve.popping import popping
+    from exactfold.solve.splitting import split_form
+    from exactfold.system.branch_system import BranchSystem, Chart
+    from exactfold.system.export import (
+        to_homotopy_continuation,
+        to_macaulay2,
+        to_msolve,
+        to_singular,
+        to_sympy,
+    )
+    from exactfold.system.perturbed import perturbed
+    from exactfold.system.quadratic import QuadraticSystem
+
+_HOMES = {
+    "exactfold.branches.branch": ("Branch",),
+    "exactfold.branches.claims": ("certificate",),
+    "exactfold.branches.result": ("BranchCount",),
+    "exactfold.certify.arb_krawczyk": ("arb_krawczyk",),
+    "exactfold.certify.certificate": ("write_certificate",),
+    "exactfold.certify.interval_newton": ("interval_newton",),
+    "exactfold.certify.isolation": ("isolate",),
+    "exactfold.certify.krawczyk": ("krawczyk",),
+    "exactfold.count": ("METHODS", "count_branches"),
+    "exactfold.data": ("EXAMPLES", "example_path"),
+    "exactfold.exact.factor_degrees": ("factor_degrees",),
+    "exactfold.exact.forms": ("QuadraticForm",),
+    "exactfold.exact.numbers": ("as_rational",),
+    "exactfold.ondemand.find": ("BranchFinder", "find_branch", "find_branches", "neighbours"),
+    "exactfold.ondemand.result": ("SignedBranch",),
+    "exactfold.pattern": ("degenerate", "families"),
+    "exactfold.pattern.crease_pattern": ("CreasePattern",),
+    "exactfold.pattern.delaunay": ("delaunay",),
+    "exactfold.pattern.fold": ("FoldFile", "load_fold", "read_fold"),
+    "exactfold.pattern.fold_writing": ("write_fold",),
+    "exactfold.pattern.random_squares": ("random_square",),
+    "exactfold.rigidity.all_real": ("decide_all_branches_real",),
+    "exactfold.rigidity.curvature": ("curvature_form", "stress_form", "wheel_stress"),
+    "exactfold.rigidity.definite_stress": ("definite_stress",),
+    "exactfold.rigidity.facts": ("pattern_facts",),
+    "exactfold.rigidity.framework": ("rigidity_matrix", "self_stresses"),
+    "exactfold.scale.check": ("check_compact",),
+    "exactfold.scale.dask_engine": ("dask_engine",),
+    "exactfold.scale.read": ("read_branches",),
+    "exactfold.scale.stream": ("StreamedCount", "count_streaming"),
+    "exactfold.solve.from_roots": ("parametrisation_from_roots",),
+    "exactfold.solve.groebner": ("groebner", "quotient_algebra"),
+    "exactfold.solve.hermite": ("hermite_counts",),
+    "exactfold.solve.homotopy": ("homotopy",),
+    "exactfold.solve.methods": ("find_candidates",),
+    "exactfold.solve.nappe_ends": ("nappe_ends",),
+    "exactfold.solve.popping": ("popping",),
+    "exactfold.solve.splitting": ("split_form",),
+    "exactfold.system.branch_system": ("BranchSystem", "Chart"),
+    "exactfold.system.export": (
+        "to_homotopy_continuation",
+        "to_macaulay2",
+        "to_msolve",
+        "to_singular",
+        "to_sympy",
+    ),
+    "exactfold.system.perturbed": ("perturbed",),
+    "exactfold.system.quadratic": ("QuadraticSystem",),
+}
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [
     "EXAMPLES",
@@ -130,3 +187,17 @@ __all__ = [
     "write_certificate",
     "write_fold",
 ]
+
+if not TYPE_CHECKING:  # type checkers read the imports above, and know every name
+
+    def __getattr__(name: str) -> object:
+        """Import a public name where it is first used: few programs need all of them."""
+        if name not in _HOME:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        home = import_module(_HOME[name])
+        value = getattr(home, name, None) or import_module(f"{_HOME[name]}.{name}")
+        globals()[name] = value
+        return value
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *__all__})

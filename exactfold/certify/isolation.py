@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from exactfold.certify.box import IsolatingBox, Uncertified
-from exactfold.certify.interval_newton import interval_newton
 from exactfold.certify.krawczyk import krawczyk
 from exactfold.solve.candidates import Candidates
 from exactfold.system.quadratic import QuadraticSystem
@@ -112,6 +111,8 @@ def _settle(
     for point in group:
         (result,) = krawczyk(system, [point], precisions=_RISING, reach=None)
         if isinstance(result, Uncertified):
+            from exactfold.certify.interval_newton import interval_newton  # loads mpmath
+
             (result,) = interval_newton(system, [point.tolist()], precisions=_INTERVAL)
         if isinstance(result, Uncertified):
             left = len(group) - len(found)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
-from exactfold.exact.linalg import Inertia, inertia
+if TYPE_CHECKING:
+    from exactfold.exact.linalg import Inertia
 
 
 @dataclass(frozen=True)
@@ -51,4 +53,6 @@ class QuadraticForm:
     @property
     def inertia(self) -> Inertia:
         """(positive, negative, zero), exactly."""
+        from exactfold.exact.linalg import inertia  # FLINT, for this alone
+
         return inertia(self.matrix)

@@ -10,21 +10,23 @@ from math import lcm
 from numbers import Rational
 from typing import TypeAlias
 
-from flint import fmpz
-
 from exactfold.errors import FloatRefusedError, NotANumberError, UsageError
 
 RationalLike: TypeAlias = "int | Fraction | Decimal | str"
 
 _INTEGER = re.compile(r"[+-]?[0-9]+\Z")
 _QUOTIENT = re.compile(r"([+-]?[0-9]+)/([0-9]+)\Z")
-_DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]{1,6}))?\Z")
+_DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?\Z")
 _MAX_EXPONENT = 20_000
 
 
 def _int(text: str) -> int:
     """Integer of any length; `int` alone stops at 4300 digits."""
-    return int(fmpz(text.lstrip("+"))) if len(text) > 4000 else int(text)
+    if len(text) <= 4000:
+        return int(text)
+    from flint import fmpz  # here, as loading it takes longer than reading a pattern
+
+    return int(fmpz(text.lstrip("+")))
 
 
 def parse_rational(text: str) -> Fraction:
@@ -50,7 +52,7 @@ def parse_rational(text: str) -> Fraction:
         return Fraction(_int(quotient[1]), denominator)
     decimal = _DECIMAL.match(text)
     if decimal and (decimal[2] or decimal[3]):
-        sign, whole, part, power = decimal[1], decimal[2], decimal[3] or "", int(decimal[4] or 0)
+        sign, whole, part, power = decimal[1], decimal[2], decimal[3] or "", _int(decimal[4] or "0")
         if abs(power) > _MAX_EXPONENT:
             raise NotANumberError(f"{shown(text)} has an exponent beyond {_MAX_EXPONENT}")
         digits = _int(f"{sign}{whole}{part}")
@@ -131,7 +133,11 @@ def snap(value: Fraction, denominator: int) -> Fraction:
 
 def format_integer(value: int) -> str:
     """Decimal text of an integer of any length."""
-    return str(fmpz(value)) if value.bit_length() > 13_000 else str(value)
+    if value.bit_length() <= 13_000:
+        return str(value)
+    from flint import fmpz  # as in `_int`
+
+    return str(fmpz(value))
 
 
 def format_rational(value: Fraction) -> str:

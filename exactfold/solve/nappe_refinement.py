@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from mpmath.ctx_mp import MPContext
 
 from exactfold.solve.nappes import NappeSystem
 
@@ -61,6 +60,8 @@ class _Newton:
     """Damped Newton in mpmath, in a context of its own."""
 
     def __init__(self, system: NappeSystem, e: list[int], bits: int) -> None:
+        from mpmath.ctx_mp import MPContext  # here, as few paths need it
+
         self.ctx: Any = MPContext()
         self.ctx.prec = bits + _GUARD
         self.e = e
