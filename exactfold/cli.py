@@ -2,34 +2,37 @@
 
 from __future__ import annotations
 
+import io
 import json
+import os
 import sys
-from contextlib import suppress
 from dataclasses import replace
-from enum import Enum
-from importlib.metadata import version
+from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from exactfold import report
-from exactfold.branches.claims import certificate as certificate_of
-from exactfold.certify.certificate import write_certificate
-from exactfold.commands import check as check_command
-from exactfold.commands.shell import EXIT, Bar, Json, Pattern, Snap, reported
-from exactfold.commands.stream import Streaming, advice
-from exactfold.count import METHODS, count_branches
-from exactfold.errors import UnreadableFileError, UsageError
-from exactfold.ondemand.evidence import branch_certificate
-from exactfold.ondemand.find import BranchFinder
-from exactfold.ondemand.result import SignedBranch
-from exactfold.pattern.fold import load_fold
-from exactfold.pattern.fold_writing import fold_text, write_text
-from exactfold.pattern.random_squares import sample_random_square
-from exactfold.rigidity.facts import pattern_facts
-from exactfold.scale.stream import StreamedCount
+from exactfold.commands.shell import (
+    EXIT,
+    OUTPUT_FAILED,
+    Bar,
+    Json,
+    Pattern,
+    Snap,
+    apart,
+    not_a_dash,
+    output_failed,
+    reported,
+    standard_input,
+)
+from exactfold.errors import UsageError
 from exactfold.verdict import PROVED, UNDECIDED
+
+if TYPE_CHECKING:
+    from exactfold.scale.stream import StreamedCount
+
+# Each command imports what it needs: loading everything takes longer than most of the work.
 
 app = typer.Typer(
     help="Proven branch counts of triangulated origami near the unfolded state.",
@@ -39,7 +42,16 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     add_completion=False,
 )
-Method = Enum("Method", {name: name for name in METHODS}, type=str)  # type: ignore[misc]
+
+
+class Method(StrEnum):
+    """The names of `exactfold.count.METHODS`."""
+
+    auto = "auto"
+    nappes = "nappes"
+    popping = "popping"
+    homotopy = "homotopy"
+    groebner = "groebner"
 
 
 @app.command()
@@ -53,10 +65,11 @@ def count(
             help="auto, nappes, popping, homotopy or groebner: how solutions are found. The proof "
             "does not depend on it.",
         ),
-    ] = Method.auto,  # type: ignore[attr-defined]
+    ] = Method.auto,
     certificate: Annotated[
         Path | None,
         typer.Option(
+            callback=not_a_dash,
             metavar="OUT.json",
             help="Write a certificate if proved. With --stream, only where other methods had to "
             "prove what it left open.",
@@ -65,6 +78,7 @@ def count(
     stream: Annotated[
         Path | None,
         typer.Option(
+            callback=not_a_dash,
             metavar="FILE",
             help="Prove block by block and write each branch to FILE, a compact certificate: the "
             "way for 12 foldable vertices and more. Memory: 100 MB for each worker and 100 MB "
@@ -95,6 +109,14 @@ def count(
 
     With --stream, Ctrl-C loses one block at most and prints how to go on.
     """
+    from exactfold import report
+    from exactfold.branches.claims import certificate as certificate_of
+    from exactfold.certify.certificate import write_certificate
+    from exactfold.commands.stream import Streaming, advice
+    from exactfold.count import count_branches
+    from exactfold.pattern.fold import load_fold
+
+    apart(certificate, pattern, stream)
     streamed: StreamedCount | None = None
     if stream is not None:
         if method.value != "auto":
@@ -104,14 +126,12 @@ def count(
     elif resume or workers is not None or dask is not None:
         raise UsageError("--resume, --workers and --dask go with --stream")
     else:
-        file = load_fold(pattern, snap)
-        if (better := advice(file.pattern)) is not None:
-            print(f"exactfold: {better}", file=sys.stderr)
-        bar = Bar()
-        try:
+        with Bar("reading") as bar:
+            file = load_fold(pattern, snap)
+            if (better := advice(file.pattern)) is not None:
+                print(f"exactfold: {better}", file=sys.stderr)
+            bar("solving")
             result = count_branches(file.pattern, method=method.value, seed=seed, progress=bar)
-        finally:
-            bar.close()
         result = replace(result, snapped=file.snapped)
     written = None
     in_stream = streamed is not None and result.evidence is None
@@ -135,7 +155,11 @@ def count(
 @reported
 def check(
     certificate: Annotated[
-        Path, typer.Argument(help="A certificate written by `count` or `branch`, of any kind.")
+        Path,
+        typer.Argument(
+            callback=standard_input,
+            help="A certificate written by `count` or `branch`, of any kind.",
+        ),
     ],
     as_json: Json = False,
     workers: Annotated[
@@ -148,7 +172,10 @@ def check(
     ] = None,
 ) -> None:
     """Verify every claim of a certificate with code that trusts nothing."""
-    claims, text = check_command.verified(certificate, workers)
+    from exactfold.commands import check as check_command
+
+    with Bar("checking"):
+        claims, text = check_command.verified(certificate, workers)
     if as_json:
         short = {k: v for k, v in (claims or {}).items() if k not in check_command.LONG}
         reason = text if claims is None else "every claim holds"
@@ -156,21 +183,6 @@ def check(
     else:
         print(f"INVALID: {text}" if claims is None else text)
     raise typer.Exit(0 if claims is not None else 1)
-
-
-def _indices(option: str, text: str) -> list[int]:
-    try:
-        return [int(part) for part in text.split(",") if part.strip()]
-    except ValueError:
-        raise UsageError(f"{option} takes vertex indices such as 5,7, not {text!r}") from None
-
-
-def _lines(path: Path) -> list[str]:
-    try:
-        lines = path.read_text(encoding="utf-8").split("\n")
-    except (OSError, UnicodeDecodeError) as error:
-        raise UnreadableFileError(f"cannot read {path}: {error}") from None
-    return [line.strip() for line in lines if line.strip()]
 
 
 @app.command()
@@ -199,7 +211,10 @@ def branch(
         ),
     ] = None,
     certificate: Annotated[
-        Path | None, typer.Option(metavar="OUT.json", help="Of one branch: write a certificate.")
+        Path | None,
+        typer.Option(
+            callback=not_a_dash, metavar="OUT.json", help="Of one branch: write a certificate."
+        ),
     ] = None,
     as_json: Json = False,
     snap: Snap = None,
@@ -210,45 +225,16 @@ def branch(
     on which the corner pops up); the other side has all of them reversed. With
     --json, one object a line.
     """
+    from exactfold.commands.branch import Asked
+
     if (signs is not None) + (up is not None) + (batch is not None) != 1:
         raise UsageError("give one of --signs, --up and --batch")
     if pops is not None and batch is not None:
         raise UsageError("--neighbours goes with --signs or --up")
     if certificate is not None and (pops is not None or batch is not None):
         raise UsageError("--certificate goes with a single branch")
-    finder = BranchFinder(load_fold(pattern, snap).pattern)
-    bar = Bar()
-    found: list[tuple[str, SignedBranch]] = []
-    try:
-        if batch is not None:
-            for line, text in enumerate(_lines(batch), 1):
-                result = finder.find(finder.signs(text, None), progress=bar)
-                found.append((f"line {line}", result))
-        else:
-            if signs is not None and signs.startswith("@"):
-                signs = "".join(_lines(Path(signs[1:])))
-            given = finder.signs(signs, None if up is None else _indices("--up", up))
-            if pops is None:
-                found.append(("", finder.find(given, progress=bar)))
-            else:
-                chosen = None if pops == "all" else _indices("--neighbours", pops)
-                reached = finder.neighbours(given, chosen, progress=bar)
-                found += [(f"pop {v}", result) for v, result in reached.items()]
-    finally:
-        bar.close()
-    if certificate is not None:
-        if found[0][1].status is PROVED:
-            write_certificate(branch_certificate(found[0][1]), certificate)
-        else:
-            print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
-    if as_json:
-        for _, result in found:
-            print(json.dumps(result.to_dict()))
-    elif len(found) == 1:
-        report.show(report.branch_report(found[0][1]))
-    else:
-        report.show(report.branches_report(found))
-    proved = all(result.status is PROVED for _, result in found)
+    apart(certificate, pattern)
+    proved = Asked(pattern, snap, signs, up, batch, pops, certificate, as_json).answer()
     raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
 
 
@@ -267,15 +253,20 @@ def random_(
         ),
     ] = False,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FILE.fold", help="Default: stdout.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE.fold", help="Default, and -: stdout."),
     ] = None,
 ) -> None:
     """Sample the paper's random squares: a Delaunay triangulation of random points."""
-    sample = sample_random_square(interior, seed, denominator, redraw=redraw)
+    from exactfold.pattern.fold_writing import fold_text, write_text
+    from exactfold.pattern.random_squares import sample_random_square
+
     title = f"random square, {interior} interior vertices, seed {seed}, denominator {denominator}"
     title += ", points redrawn" if redraw else ""
-    text = fold_text(sample.pattern, title=title)
-    if output is None:
+    with Bar("drawing"):
+        sample = sample_random_square(interior, seed, denominator, redraw=redraw)
+        text = fold_text(sample.pattern, title=title)
+    if output is None or str(output) == "-":
         sys.stdout.write(text)
     else:
         write_text(output, text)
@@ -285,16 +276,24 @@ def random_(
 @reported
 def info(pattern: Pattern, as_json: Json = False, snap: Snap = None) -> None:
     """Report what is exactly known of a pattern without solving for its branches."""
-    file = load_fold(pattern, snap)
-    facts = pattern_facts(file.pattern)
-    if as_json:
-        print(json.dumps({**facts.to_dict(), "expected": report.expectation(facts)}))
+    from exactfold import report
+    from exactfold.pattern.fold import load_fold
+    from exactfold.rigidity.facts import pattern_facts
+
+    with Bar("reading") as bar:
+        facts = pattern_facts(load_fold(pattern, snap).pattern, bar)
+        shown = {**facts.to_dict(), "expected": report.expectation(facts)} if as_json else None
+        table = report.info_report(facts)
+    if shown is not None:
+        print(json.dumps(shown))
     else:
-        report.show(report.info_report(facts))
+        report.show(table)
 
 
 def _version(value: bool) -> None:
     if value:
+        from importlib.metadata import version
+
         print(f"exactfold {version('exactfold')}")
         raise typer.Exit
 
@@ -310,5 +309,12 @@ def _options(
 
 def main() -> None:
     """Entry point of the `exactfold` command."""
-    with suppress(BrokenPipeError):
+    if sys.stdout is None:  # it was closed before the start
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
+    if isinstance(sys.stdout, io.TextIOWrapper):  # names of files that the terminal cannot show
+        sys.stdout.reconfigure(errors="backslashreplace")
+    try:
         app()
+    except OSError as error:  # of --help and --version; `reported` sees to the others
+        output_failed(error)
+        raise SystemExit(OUTPUT_FAILED) from None

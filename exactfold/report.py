@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from exactfold.branches.result import BranchCount
 from exactfold.exact.numbers import format_rational
-from exactfold.ondemand.result import SignedBranch
-from exactfold.rigidity.facts import PatternFacts
-from exactfold.scale.stream import StreamedCount
 from exactfold.verdict import PROVED, UNDECIDED
+
+if TYPE_CHECKING:
+    from exactfold.branches.result import BranchCount
+    from exactfold.ondemand.result import SignedBranch
+    from exactfold.rigidity.facts import PatternFacts
+    from exactfold.scale.stream import StreamedCount
 
 SHOWN = 32
 """Branches and open questions listed unless all are asked for."""
@@ -155,15 +157,22 @@ def branch_report(result: SignedBranch) -> Group:
     return Group(_facts_table(rows))
 
 
-def branches_report(found: list[tuple[str, SignedBranch]]) -> Group:
+Row = tuple[str, str, str, str]
+
+
+def branch_row(name: str, result: SignedBranch) -> Row:
+    """The row of a branch in `branches_report`."""
+    return name, str(result.status), _cut(result.sign_text), _cut(result.assignment_text)
+
+
+def branches_report(rows: list[Row]) -> Group:
     """The table that `exactfold branch` prints for a batch or for neighbours."""
     table = Table(box=None, pad_edge=False)
     table.add_column("")
     table.add_column("status")
     table.add_column("vertex signs", overflow="fold")
     table.add_column("mountain-valley", overflow="fold")
-    for name, result in found:
-        row = (name, str(result.status), _cut(result.sign_text), _cut(result.assignment_text))
+    for row in rows:
         table.add_row(*row)
     return Group(table)
 

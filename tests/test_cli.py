@@ -1,6 +1,7 @@
 """The command line: exit codes, errors on stderr, JSON with exactly the documented keys."""
 
 import json
+import os
 import subprocess
 import sys
 from fractions import Fraction
@@ -9,6 +10,7 @@ import pytest
 from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
 from typer.testing import CliRunner
 
+import exactfold
 from exactfold import (
     EXAMPLES,
     cli,
@@ -531,7 +533,7 @@ def test_info_says_what_to_expect(tmp_path, pattern, expected):
 
 
 def process(*arguments, **options):
-    command = [sys.executable, "-c", "from exactfold.cli import main; main()", *map(str, arguments)]
+    command = [sys.executable, "-m", "exactfold", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, check=False, **options)
 
 
@@ -552,17 +554,42 @@ def test_bad_input_of_a_process(tmp_path):
 
 
 def test_progress_on_a_terminal(monkeypatch):
-    """The bar appears once the work has taken a second; the clock is turned instead of waiting."""
+    """One line for the stage under way, with a total or without."""
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("TERM", "xterm")
-    bar = Bar()
-    bar.start -= 10
-    for stage in ("solving", "certifying"):
-        for done in range(3):
-            bar(stage, done, 2)
-    assert bar.progress is not None
-    assert [task.description for task in bar.progress.tasks] == ["certifying"]
-    bar.close()
+    with Bar("reading", delay=3600) as bar:
+        bar.show()  # as the timer does
+        assert bar.display is not None
+        tasks = bar.display.progress.tasks
+        assert [task.description for task in tasks] == ["reading"]
+        for stage in ("solving", "certifying"):
+            for done in range(3):
+                bar(stage, done, 2)
+        (task,) = bar.display.progress.tasks
+        assert (task.description, task.completed, task.total) == ("certifying", 2, 2)
+        bar("writing")
+        (task,) = bar.display.progress.tasks
+        assert (task.description, task.total) == ("writing", None)
+        display = bar.display
+    assert bar.display is None
+    assert display.progress.live.is_started is False
+
+
+def test_a_stage_that_reports_nothing_is_shown_by_the_timer(monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    with Bar("reading", delay=0) as bar:
+        bar.timer.join()
+        assert bar.display is not None
+
+
+def test_no_progress_off_a_terminal_or_after_the_end(monkeypatch):
+    with Bar("reading", delay=3600) as bar:
+        bar.show()
+        assert bar.display is None
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    bar.show()
+    assert bar.display is None
 
 
 def test_colours_on_a_terminal_only(monkeypatch):
@@ -582,12 +609,141 @@ def test_main_runs_the_application(monkeypatch, capsys):
     assert "2 interior, 4 boundary" in capsys.readouterr().out
 
 
-def test_main_survives_a_closed_pipe(monkeypatch):
-    def closed():
-        raise BrokenPipeError
+@pytest.mark.parametrize(
+    ("error", "said"), [(BrokenPipeError(), ""), (OSError(28, "full"), "full")]
+)
+def test_output_that_cannot_be_written(monkeypatch, capsys, error, said):
+    def failing():
+        raise error
 
-    monkeypatch.setattr(cli, "app", closed)
-    assert cli.main() is None
+    monkeypatch.setattr(cli, "app", failing)
+    monkeypatch.setattr(sys, "stdout", sys.stdout)  # `main` replaces it
+    with pytest.raises(SystemExit) as stopped:
+        cli.main()
+    assert stopped.value.code == 74
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", ["--help", "--version"])
+def test_full_disk(option):
+    with open("/dev/full", "w") as full:
+        result = subprocess.run(
+            [sys.executable, "-m", "exactfold", option],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert result.returncode == 74
+    assert result.stderr == "exactfold: cannot write the output: No space left on device\n"
+
+
+def test_closed_standard_output(two_vertex):
+    script = "import sys; sys.stdout = None; from exactfold.cli import main; main()"
+    command = [sys.executable, "-c", script, "count", str(two_vertex)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (result.returncode, result.stderr) == (PROVED, "")
+
+
+def test_a_name_that_the_terminal_cannot_show(tmp_path, two_vertex):
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    out = tmp_path / "z\u00e4hlung.json"
+    result = process("count", two_vertex, "--certificate", out, env=environment)
+    assert (result.returncode, result.stderr) == (PROVED, "")
+    assert "z\\xe4hlung.json" in result.stdout
+
+
+# --- standard input, pipes, one file for two things ----------------------------------------------
+
+
+def test_dash_is_standard_input(tmp_path, two_vertex, certificate):
+    stream = tmp_path / "stream.txt"
+    assert run("count", two_vertex, "--stream", stream).exit_code == PROVED
+    told = process("info", "-", input=two_vertex.read_text())
+    assert (told.returncode, told.stdout) == (0, run("info", two_vertex).stdout)
+    for file in (certificate, stream):
+        checked = process("check", "-", input=file.read_text())
+        assert (checked.returncode, checked.stdout[:6]) == (PROVED, "VALID:")
+
+
+def test_dash_as_an_output(tmp_path, monkeypatch, two_vertex):
+    monkeypatch.chdir(tmp_path)
+    drawn = run("random", "--interior", 3, "--seed", 1, "-o", "-")
+    assert drawn.stdout == run("random", "--interior", 3, "--seed", 1).stdout
+    for command in (["count"], ["branch", "--up", "4"]):
+        assert run(*command, two_vertex, "--certificate", "-").exit_code == USAGE
+    assert run("count", two_vertex, "--stream", "-").exit_code == USAGE
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_output_never_replaces_another_file_of_the_command(tmp_path, two_vertex):
+    path, link = tmp_path / "p.fold", tmp_path / "link.fold"
+    text = two_vertex.read_text()
+    path.write_text(text)
+    link.symlink_to(path)
+    for arguments in (
+        ["count", path, "--certificate", path],
+        ["count", path, "--certificate", link],
+        ["branch", path, "--up", 4, "--certificate", path],
+        ["count", path, "--stream", link, "--resume"],
+        ["count", path, "--stream", tmp_path / "s.txt", "--certificate", tmp_path / "s.txt"],
+    ):
+        result = run(*arguments)
+        assert result.exit_code == USAGE
+        assert "name another file" in result.stderr
+        assert path.read_text() == text
+    assert not (tmp_path / "s.txt").exists()
+
+
+def test_only_files_are_streamed_to(two_vertex):
+    # A device has no lines to continue, and /dev/full never ends when it is read.
+    for device in ("/dev/null", "/dev/full"):
+        result = run("count", two_vertex, "--stream", device, "--resume")
+        assert result.exit_code == USAGE
+        assert "is not a file" in result.stderr
+
+
+# --- what is loaded ------------------------------------------------------------------------------
+
+HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "idle"),
+    [
+        (["--help"], ("numpy", "flint", "multiprocessing", *HEAVY)),
+        (["random", "--interior", "3", "--seed", "1"], ("numpy", "flint", "rich", *HEAVY)),
+        (["info"], ("numpy", "multiprocessing", *HEAVY)),
+        (["branch", "--up", "4"], ("flint", "multiprocessing", "exactfold.solve", *HEAVY)),
+        (["count"], HEAVY),
+    ],
+    ids=lambda value: value[0],
+)
+def test_commands_load_what_they_need(two_vertex, arguments, idle):
+    script = (
+        "import sys\n"
+        "from exactfold.cli import main\n"
+        "try: main()\n"
+        "except SystemExit as end: code = end.code\n"
+        f"print(code, *(m for m in {idle!r} if m in sys.modules), file=sys.stderr)"
+    )
+    pattern = [] if arguments[0] in ("--help", "random") else [str(two_vertex)]
+    command = [sys.executable, "-c", script, *arguments, *pattern]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.stderr == "0\n"
+    assert result.stdout != ""
+
+
+def test_public_names():
+    assert set(exactfold._HOME) < set(exactfold.__all__) <= set(dir(exactfold))
+    for name in exactfold.__all__:
+        assert getattr(exactfold, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'brunch'"):
+        exactfold.brunch  # noqa: B018
+
+
+def test_methods_of_the_command_line():
+    assert tuple(method.value for method in cli.Method) == exactfold.METHODS
 
 
 def test_factors_of_the_branch_polynomial_are_reported(two_vertex):

@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from exactfold import branch_checker, checker, compact_checker
+from exactfold.commands.shell import regular
 from exactfold.errors import CertificateFormatError, UnreadableFileError
-from exactfold.scale.check import check_compact
-from exactfold.scale.stream import available_cores
 
 LONG = ("branches", "vertex_signs", "assignment")
 """Claims that grow with the pattern, left out of `check --json`."""
@@ -22,6 +21,11 @@ def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, st
 
     Raises `CertificateFormatError`, `UnreadableFileError`, `WorkerDiedError`.
     """
+    with regular(path) as file:
+        return _verified(file, workers)
+
+
+def _verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, str]:
     try:
         with open(path, "rb") as stream:
             compact = _COMPACT.search(stream.read(4096)) is not None
@@ -29,6 +33,9 @@ def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, st
         raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
     try:
         if compact:
+            from exactfold.scale.check import check_compact  # needs NumPy, as no other kind does
+            from exactfold.scale.stream import available_cores
+
             claims = check_compact(path, workers=workers or available_cores())
             return claims, checker.summary(claims)
         data, judge = _load(path)

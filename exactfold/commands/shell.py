@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import sys
+import tempfile
 import threading
-import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
-from typing import Annotated, Any, NoReturn, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Annotated, NoReturn, ParamSpec, TypeVar
 
 import typer
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from exactfold import report
-from exactfold.errors import ExactfoldError, InputError, WorkerDiedError
+from exactfold.errors import ExactfoldError, InputError, UsageError, WorkerDiedError
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
+
+if TYPE_CHECKING:
+    from exactfold.commands.display import Display
 
 EXIT = {PROVED: 0, REFUTED: 1, UNDECIDED: 4}
 USAGE, BAD_INPUT = 2, 3
@@ -44,16 +46,11 @@ def reported(command: Callable[P, R]) -> Callable[P, R]:
             finally:
                 sys.stdout.flush()
         except OSError as error:
-            if not isinstance(error, BrokenPipeError):
-                print(f"exactfold: cannot write the output: {error.strerror}", file=sys.stderr)
-            sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - what is left must go nowhere
+            output_failed(error)
             raise typer.Exit(OUTPUT_FAILED) from None
         except ExactfoldError as error:
             print(f"exactfold: {type(error).__name__}: {error}", file=sys.stderr)
-            code = BAD_INPUT if isinstance(error, InputError) else USAGE
-            if isinstance(error, WorkerDiedError):
-                code = INTERNAL
-            raise typer.Exit(code) from None
+            raise typer.Exit(_code(error)) from None
         except KeyboardInterrupt:
             stopped()
         except (typer.Exit, typer.Abort):
@@ -63,6 +60,19 @@ def reported(command: Callable[P, R]) -> Callable[P, R]:
             raise typer.Exit(INTERNAL) from None
 
     return wrapped
+
+
+def _code(error: ExactfoldError) -> int:
+    if isinstance(error, WorkerDiedError):
+        return INTERNAL
+    return BAD_INPUT if isinstance(error, InputError) else USAGE
+
+
+def output_failed(error: OSError) -> None:
+    """Say that standard output cannot be written, unless its reader has left, and drop the rest."""
+    if not isinstance(error, BrokenPipeError):
+        print(f"exactfold: cannot write the output: {error.strerror}", file=sys.stderr)
+    sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
 
 
 def stopped(advice: str = "") -> NoReturn:
@@ -87,43 +97,96 @@ def interruptible() -> Iterator[None]:
 class Bar:
     """Progress on stderr, shown once the work has taken a second; silent off a terminal.
 
-    A total of 0 means that it is not known.
+    A timer shows it, so that stages which report nothing are seen too. Closed at the end of a
+    `with` block.
     """
 
-    def __init__(self) -> None:
-        self.console = report.console(stderr=True)
-        self.start = time.monotonic()
-        self.progress: Progress | None = None
-        self.task: Any = None
-        self.stage = ""
+    def __init__(self, stage: str, delay: float = 1.0) -> None:
+        self.lock = threading.RLock()
+        self.state = (stage, 0, 0)
+        self.display: Display | None = None
+        self.timer = threading.Timer(delay, self.show)
+        self.timer.daemon = True
+        self.timer.start()
 
-    def __call__(self, stage: str, done: int, total: int) -> None:
-        """Show how far a stage has come."""
-        if not self.console.is_terminal or time.monotonic() - self.start < 1.0:
-            return
-        if self.progress is None:
-            self.progress = Progress(
-                TextColumn("{task.description}"),
-                BarColumn(),
-                MofNCompleteColumn(),
-                TimeRemainingColumn(),
-                console=self.console,
-                transient=True,
-            )
-            self.progress.start()
-        if stage != self.stage:
-            if self.task is not None:
-                self.progress.remove_task(self.task)
-            self.stage, self.task = stage, self.progress.add_task(stage, total=total or None)
-        self.progress.update(self.task, completed=done, total=total or None)
+    def __enter__(self) -> Bar:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __call__(self, stage: str, done: int = 0, total: int = 0) -> None:
+        """Say how far a stage has come; a total of 0 means that it is not known."""
+        with self.lock:
+            self.state = (stage, done, total)
+            if self.display is not None:
+                self.display.show(*self.state)
+
+    def show(self) -> None:
+        """Show the stage under way, from now on."""
+        from exactfold.commands.display import Display
+        from exactfold.report import console
+
+        out = console(stderr=True)
+        with self.lock:
+            if out.is_terminal and not self.timer.finished.is_set():
+                self.display = Display(out)
+                self.display.show(*self.state)
 
     def close(self) -> None:
-        """Take the bar away."""
-        if self.progress is not None:
-            self.progress.stop()
+        """Take the line away."""
+        with self.lock:
+            self.timer.cancel()
+            if self.display is not None:
+                self.display.close()
+                self.display = None
 
 
-Pattern = Annotated[Path, typer.Argument(help="A FOLD file with triangular faces.")]
+def apart(output: Path | None, *others: Path | None) -> None:
+    """Raise `UsageError` if an output would replace one of the other files of the command."""
+    for other in others:
+        if output is None or other is None:
+            continue
+        if os.path.realpath(output) == os.path.realpath(other) and not _is_special(output):
+            raise UsageError(f"{output} is also read or written otherwise: name another file")
+
+
+def standard_input(path: Path) -> Path:
+    """`-` means standard input."""
+    return Path("/dev/stdin") if str(path) == "-" else path
+
+
+def not_a_dash(path: Path | None) -> Path | None:
+    """`-` is no name of an output: the table or the JSON object goes to standard output."""
+    if path is not None and str(path) == "-":
+        raise typer.BadParameter("an output has a name of its own; write ./- if that is -")
+    return path
+
+
+@contextmanager
+def regular(path: Path) -> Iterator[Path]:
+    """The path, or for a pipe that of a copy: what reads it may read it more than once."""
+    if not _is_special(path):
+        yield path
+        return
+    with tempfile.TemporaryDirectory(prefix="exactfold-") as folder:
+        copy = Path(folder, "stdin" if str(path) == "/dev/stdin" else path.name)
+        with open(path, "rb") as source, open(copy, "wb") as target:
+            shutil.copyfileobj(source, target)
+        yield copy
+
+
+def _is_special(path: Path) -> bool:
+    """Whether a path is there and neither a file nor a folder."""
+    return path.exists() and not path.is_file() and not path.is_dir()
+
+
+Pattern = Annotated[
+    Path,
+    typer.Argument(
+        callback=standard_input, help="A FOLD file with triangular faces; - for standard input."
+    ),
+]
 Snap = Annotated[
     int | None,
     typer.Option(min=1, metavar="DEN", help="Round coordinates to multiples of 1/DEN first."),

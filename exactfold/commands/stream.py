@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from exactfold.branches.result import BranchCount
-from exactfold.commands.shell import Bar, interruptible, stopped
+from exactfold.commands.shell import Bar, apart, interruptible, stopped
 from exactfold.compact_checker import MOST_UNKNOWNS
 from exactfold.count import count_branches
 from exactfold.errors import (
@@ -63,12 +63,14 @@ class Streaming:
         """
         if self.workers is not None and self.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --workers goes with --dask local")
-        file = load_fold(self.pattern, self.snap)
-        _require_streamable(file.pattern)
-        if self.file.exists() and not self.resume:
-            raise UsageError(f"{self.file} is there already; --resume continues it")
-        bar = Bar()
-        try:
+        apart(self.file, self.pattern)
+        if self.file.exists() and not self.file.is_file():
+            raise UsageError(f"{self.file} is not a file")
+        with Bar("reading") as bar:
+            file = load_fold(self.pattern, self.snap)
+            _require_streamable(file.pattern)
+            if self.file.exists() and not self.resume:
+                raise UsageError(f"{self.file} is there already; --resume continues it")
             with interruptible(), self._resumable():
                 streamed = self._streamed(file.pattern, bar)
                 result = streamed_count(streamed)
@@ -78,8 +80,6 @@ class Streaming:
                         questions = (*result.open_questions, *other.open_questions)
                         other = replace(other, open_questions=questions)
                     result = other
-        finally:
-            bar.close()
         return replace(result, snapped=file.snapped), streamed
 
     def _streamed(self, pattern: CreasePattern, bar: Bar) -> StreamedCount:

@@ -221,6 +221,16 @@ class BranchFinder:
         progress: Progress | None = None,
     ) -> dict[int, SignedBranch]:
         """The branches that differ from `signs`, as returned by `signs`, at one of `vertices`."""
+        return dict(self.each_neighbour(signs, vertices, progress=progress))
+
+    def each_neighbour(
+        self,
+        signs: Mapping[int, int],
+        vertices: Iterable[int] | None = None,
+        *,
+        progress: Progress | None = None,
+    ) -> Iterator[tuple[int, SignedBranch]]:
+        """`neighbours` one by one, for patterns where all of them would fill the memory."""
         chosen = self.poppable if vertices is None else tuple(dict.fromkeys(vertices))
         for v in chosen:
             if v not in self._names:
@@ -229,12 +239,10 @@ class BranchFinder:
         with suppress(OverflowError), np.errstate(all="ignore"):
             base = self.propose(signs, None, progress)
             first = None if base.failure else base.x
-        found = {}
         for k, v in enumerate(chosen):
             if progress is not None:
                 progress("neighbours", k, len(chosen))
-            found[v] = self.find({**signs, v: -signs[v]}, start=first)
-        return found
+            yield v, self.find({**signs, v: -signs[v]}, start=first)
 
     # --- the proof -------------------------------------------------------------------------------
 

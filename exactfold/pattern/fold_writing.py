@@ -103,10 +103,11 @@ def write_text(path: str | PathLike[str], text: str) -> None:
     """
     temporary: Path | None = None
     try:
-        target = Path(os.path.realpath(path))
+        target = Path(path)
         if target.exists() and not target.is_file() and not target.is_dir():
             target.write_text(text, encoding="utf-8")
             return
+        target = Path(os.path.realpath(path))  # not of a pipe, which has no real path
         if target.is_dir():
             raise IsADirectoryError(21, "it is a folder")
         temporary = target.with_name(f".exactfold-{secrets.token_hex(8)}.tmp")

@@ -8,8 +8,9 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from exactfold.cli import app
+from exactfold.commands import branch
 from exactfold.data import example_path
-from exactfold.ondemand.find import find_branch
+from exactfold.ondemand.find import BranchFinder, find_branch
 from exactfold.pattern.fold import read_fold
 
 TWO = example_path("two-vertex")
@@ -61,6 +62,40 @@ def test_signs_from_a_file_and_a_batch(tmp_path) -> None:
     ]
     path.write_text("-\n+\n")
     assert "VVMMVVM" in run(TWO, "--signs", f"@{path}").stdout
+
+
+def test_a_batch_is_read_to_its_end_before_anything_is_found(tmp_path) -> None:
+    path = tmp_path / "signs.txt"
+    path.write_text("-+\n\n+-\n")
+    assert [line[:6] for line in run(TWO, "--batch", path).stdout.splitlines()[1:]] == [
+        "line 1",
+        "line 3",
+    ]
+    path.write_text("-+\n\n+\n")
+    result = run(TWO, "--batch", path, "--json")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert f"{path}, line 3: 1 signs for 2 vertices" in result.stderr
+
+
+def test_nothing_asked_for_is_wrong_usage(tmp_path) -> None:
+    path = tmp_path / "signs.txt"
+    path.write_text("\n")
+    assert run(TWO, "--batch", path).exit_code == 2
+    assert run(TWO, "--up", "4", "--neighbours", "").exit_code == 2
+
+
+def test_branches_are_printed_as_they_are_found(monkeypatch) -> None:
+    events: list[str] = []
+    find = BranchFinder.find
+
+    def finding(self, signs, **options):
+        events.append("find")
+        return find(self, signs, **options)
+
+    monkeypatch.setattr(BranchFinder, "find", finding)
+    monkeypatch.setattr(branch, "print", lambda *_, **__: events.append("print"), raising=False)
+    assert run(TWO, "--up", "4", "--neighbours", "all", "--json").exit_code == 0
+    assert events == ["find", "print", "find", "print"]
 
 
 @pytest.mark.parametrize(("pops", "letters"), [("all", 2), ("5", 1), ("5,4", 2)])

@@ -1,0 +1,5 @@
+"""`python -m exactfold`: the command line."""
+
+from exactfold.cli import main
+
+main()

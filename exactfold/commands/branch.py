@@ -1,0 +1,124 @@
+"""`exactfold branch`: branches by their signs, each shown or kept as briefly as it can be."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from exactfold.commands.shell import Bar
+from exactfold.errors import UnreadableFileError, UsageError
+from exactfold.ondemand.find import BranchFinder
+from exactfold.ondemand.result import SignedBranch
+from exactfold.pattern.fold import load_fold
+from exactfold.verdict import PROVED
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What was asked for, as text from the command line."""
+
+    pattern: Path
+    snap: int | None
+    signs: str | None
+    up: str | None
+    batch: Path | None
+    pops: str | None
+    certificate: Path | None
+    as_json: bool
+
+    def answer(self) -> bool:
+        """Find, prove and print; whether all branches were proved.
+
+        Of many branches none is kept: with JSON each is printed when it is found, and of the others
+        the row of the table remains. Raises the errors of `load_fold` and `BranchFinder`.
+        """
+        from exactfold import report
+
+        proved, rows = True, []
+        with Bar("reading") as bar:
+            finder = BranchFinder(load_fold(self.pattern, self.snap).pattern)
+            bar("setting up")
+            for name, result in self._found(finder, bar):
+                proved &= result.status is PROVED
+                if self.as_json:
+                    print(json.dumps(result.to_dict()), flush=True)
+                elif name:
+                    rows.append(report.branch_row(name, result))
+        if not self._is_many:
+            self._certify(result)
+            if not self.as_json:
+                report.show(report.branch_report(result))
+        elif not self.as_json:
+            report.show(report.branches_report(rows))
+        return proved
+
+    @property
+    def _is_many(self) -> bool:
+        return self.batch is not None or self.pops is not None
+
+    def _found(self, finder: BranchFinder, bar: Bar) -> Iterator[tuple[str, SignedBranch]]:
+        if self.batch is not None:
+            yield from _of_lines(finder, self.batch, bar)
+            return
+        signs = self.signs
+        if signs is not None and signs.startswith("@"):
+            signs = "".join(text for _, text in _lines(Path(signs[1:])))
+        given = finder.signs(signs, None if self.up is None else _indices("--up", self.up))
+        if self.pops is None:
+            yield "", finder.find(given, progress=bar)
+            return
+        chosen = None if self.pops == "all" else _indices("--neighbours", self.pops)
+        if chosen == []:
+            raise UsageError("--neighbours names no vertex")
+        for v, result in finder.each_neighbour(given, chosen, progress=bar):
+            yield f"pop {v}", result
+
+    def _certify(self, result: SignedBranch) -> None:
+        if self.certificate is None:
+            return
+        if result.status is PROVED:
+            from exactfold.certify.certificate import write_certificate
+            from exactfold.ondemand.evidence import branch_certificate
+
+            with Bar("writing"):
+                write_certificate(branch_certificate(result), self.certificate)
+        else:
+            print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
+
+
+def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str, SignedBranch]]:
+    """The branches of a file of sign vectors, which is read to its end before any is found."""
+    lines = list(_lines(path))
+    if not lines:
+        raise UsageError(f"{path} holds no sign vector")
+    for line, text in lines:
+        try:
+            finder.signs(text, None)
+        except UsageError as error:
+            raise UsageError(f"{path}, line {line}: {error}") from None
+    for k, (line, text) in enumerate(lines):
+        bar("branches", k, len(lines))
+        yield f"line {line}", finder.find(finder.signs(text, None))
+
+
+def _indices(option: str, text: str) -> list[int]:
+    try:
+        return [int(part) for part in text.split(",") if part.strip()]
+    except ValueError:
+        raise UsageError(f"{option} takes vertex indices such as 5,7, not {text!r}") from None
+
+
+def _lines(path: Path) -> Iterator[tuple[int, str]]:
+    """The lines of a text file that are not blank, with their numbers from 1."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise UnreadableFileError(f"cannot read {path}: it is not UTF-8 text") from None
+    except OSError as error:
+        raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
+    for number, line in enumerate(text.split("\n"), 1):
+        if line.strip():
+            yield number, line.strip()
