@@ -15,12 +15,11 @@ boundary must be convex, or that of a quadrilateral whose notch is closed here. 
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Mapping
 from fractions import Fraction
 from math import isqrt, lcm
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING or __package__:
     from exactfold.checker import (
@@ -32,6 +31,7 @@ if TYPE_CHECKING or __package__:
         natural,
         parse_integer,
         parse_rational,
+        read_json,
         read_sheet,
         require,
         turn,
@@ -46,6 +46,7 @@ else:
         natural,
         parse_integer,
         parse_rational,
+        read_json,
         read_sheet,
         require,
         turn,
@@ -53,24 +54,17 @@ else:
 
 FORMAT, VERSION = "exactfold branch", 1
 MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
-SPARE = 400  # binary places of a curvature below size^-2
+SPARE = 400  # binary places of a curvature below (height / size)^2
 Heights = Mapping[int, int]
 
 
 def load(text: str) -> dict[str, Any]:
     """The JSON object of a certificate of one branch; raises `FormatError`."""
-
-    def refuse(number: str) -> NoReturn:
-        raise FormatError(f"a certificate holds no floats, but here is {number[:40]}")
-
-    try:
-        data = json.loads(text, parse_float=refuse, parse_constant=refuse)
-    except (ValueError, RecursionError) as error:
-        raise FormatError(f"not JSON, or cut off: {error}") from None
+    data = read_json(text)
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise FormatError(f'not a certificate of one branch: "format" is not "{FORMAT}"')
     if type(data.get("version")) is not int or data["version"] != VERSION:
-        raise FormatError(f"version {data.get('version')!r} is not known to this checker")
+        raise FormatError(f"version {data.get('version')!a} is not known to this checker")
     keys(data, "format version pattern claims evidence", "certificate", FormatError)
     return data
 
@@ -135,7 +129,7 @@ def _emptied(given: Sheet, points: dict[int, Any], evidence: Any) -> tuple[Sheet
         a, b, c = (natural(v, "corner") for v in items(entry["corners"], "corners", 3))
         for i, j in ((a, b), (b, c), (a, c)):
             require((min(i, j), max(i, j)) in edges, f"{i}-{j} is no edge")
-        for v in items(entry["inside"], "inside"):
+        for v in (natural(v, "vertex inside") for v in items(entry["inside"], "inside")):
             sides = [turn(points[i], points[j], points[v]) for i, j in ((a, b), (b, c), (c, a))]
             require(min(sides) > 0, f"vertex {v} is not inside {(a, b, c)}")
             removed.add(v)
@@ -188,7 +182,8 @@ class _Proof:
         self.sheet, self.heights, self.q, self.corner = sheet, heights, q, corner
         xs, ys = zip(*sheet.points.values(), strict=True)
         self.size = int(max(max(xs) - min(xs), max(ys) - min(ys)))
-        self.bits = max(0, SPARE + 2 * self.size.bit_length() - 2 * q.bit_length())
+        highest = max(map(abs, heights.values()))
+        self.bits = max(0, SPARE + 2 * self.size.bit_length() - 2 * highest.bit_length())
         self.signs = {v: self._sign(v) for v in sheet.interior}
         self.squared_distance = self._distance(int(min(xs) + max(xs)), int(min(ys) + max(ys)))
 
@@ -282,7 +277,7 @@ def _check_letters(given: Sheet, letters: Any, proof: _Proof, removed: set[int])
     for fold, letter in zip(given.folds, letters, strict=True):
         rigid = not removed.isdisjoint(fold)
         expected = "F" if rigid else proof.letter(fold)
-        require(letter == expected or letter == "U", f"fold {fold} is not known to be {letter}")
+        require(letter == expected or letter == "U", f"fold {fold} is not known to be {letter!a}")
 
 
 # --- the command ---------------------------------------------------------------------------------

@@ -61,7 +61,7 @@ def parse_integer(text: str) -> int:
     """Exact integer of any length from decimal digits."""
     sign, digits = (-1, text[1:]) if text[:1] == "-" else (1, text)
     if not (digits.isascii() and digits.isdigit()):
-        raise CertificateError(f"{text[:40]!r} is not an integer")
+        raise CertificateError(f"{text[:40]!a} is not an integer")
     value = 0
     for start in range(0, len(digits), 4000):
         part = digits[start : start + 4000]
@@ -71,15 +71,15 @@ def parse_integer(text: str) -> int:
 
 def parse_rational(text: Any) -> Fraction:
     """Exact rational from "p" or "p/q"."""
-    require(isinstance(text, str), f"{text!r} is not a rational number in quotes")
+    require(isinstance(text, str), f"{text!a} is not a rational number in quotes")
     numerator, slash, denominator = text.partition("/")
     q = parse_integer(denominator) if slash else 1
-    require(q > 0, f"{text[:40]!r} has no positive denominator")
+    require(q > 0, f"{text[:40]!a} has no positive denominator")
     return Fraction(parse_integer(numerator), q)
 
 
-def load(text: str) -> dict[str, Any]:
-    """The JSON object of a certificate, without floats or repeated keys."""
+def read_json(text: str) -> Any:
+    """A JSON value without floats, repeated keys or integers that Python would not print."""
 
     def refuse(number: str) -> NoReturn:
         raise FormatError(f"a certificate holds no floats, but here is {number[:40]}")
@@ -96,7 +96,7 @@ def load(text: str) -> dict[str, Any]:
         return dict(pairs)
 
     try:
-        data = json.loads(
+        return json.loads(
             text,
             parse_float=refuse,
             parse_constant=refuse,
@@ -105,10 +105,15 @@ def load(text: str) -> dict[str, Any]:
         )
     except (ValueError, RecursionError) as error:
         raise FormatError(f"not JSON, or cut off: {error}") from None
+
+
+def load(text: str) -> dict[str, Any]:
+    """The JSON object of a certificate; raises `FormatError`."""
+    data = read_json(text)
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise FormatError(f'not a certificate: "format" is not "{FORMAT}"')
     if type(data.get("version")) is not int or data["version"] != VERSION:
-        raise FormatError(f"version {data.get('version')!r} is not known to this checker")
+        raise FormatError(f"version {data.get('version')!a} is not known to this checker")
     keys(data, "format version pattern claims evidence provenance", "certificate", FormatError)
     return data
 
@@ -342,7 +347,7 @@ def check_triangles(sheet: Sheet, evidence: Any) -> Sheet:
         keys(entry, "corners inside multipliers", "triangle")
         corners, inside = items(entry["corners"], "corners", 3), items(entry["inside"], "inside")
         for v in corners + inside:
-            require(type(v) is int and v in emptied.points, f"{v!r} is no vertex")
+            require(type(v) is int and v in emptied.points, f"{v!a} is no vertex")
         a, b, c = (emptied.points[v] for v in corners)
         require(turn(a, b, c) > 0, f"the 3-cycle {corners} is not counter-clockwise")
         for i, j in ((0, 1), (0, 2), (1, 2)):
@@ -562,7 +567,7 @@ def short(value: Any) -> str:
 def text_of(value: Any) -> str:
     """`value` if it is a string."""
     if not isinstance(value, str):
-        raise CertificateError(f"{value!r} is not a number in quotes")
+        raise CertificateError(f"{value!a} is not a number in quotes")
     return value
 
 
@@ -953,7 +958,7 @@ def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Roo
 def natural_or_negative(value: Any) -> int:
     """`value` if it is an integer."""
     if type(value) is not int:
-        raise CertificateError(f"{value!r} is not an integer")
+        raise CertificateError(f"{value!a} is not an integer")
     return value
 
 
@@ -1168,11 +1173,11 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
         require(len(branches) == len(roots), f"{len(branches)} branches for {len(roots)} roots")
         check_branches(sheet, system, roots, branches, removed)
     else:
-        raise CertificateError(f"unknown kind of evidence {kind!r}")
+        raise CertificateError(f"unknown kind of evidence {kind!a}")
     for key, fact in facts.items():
         require(
             type(claims[key]) is type(fact) and claims[key] == fact,
-            f"claim {key} = {claims[key]!r}, but it is {fact!r}",
+            f"claim {key} = {claims[key]!a}, but it is {fact!a}",
         )
     return dict(claims)
 

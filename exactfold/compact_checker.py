@@ -97,7 +97,7 @@ def read_header(text: str) -> dict[str, Any]:
     if data.get("format") != FORMAT:
         raise checker.FormatError(f'not a compact certificate: "format" is not "{FORMAT}"')
     if type(data.get("version")) is not int or data["version"] != VERSION:
-        raise checker.FormatError(f"version {data.get('version')!r} is not known to this checker")
+        raise checker.FormatError(f"version {data.get('version')!a} is not known to this checker")
     checker.keys(data, "format version pattern evidence provenance", "header", checker.FormatError)
     return data
 
@@ -194,14 +194,14 @@ class Chambers:
         checker.keys(data, "block bits width centers radii folds exact open", what)
         checker.require(
             type(data["block"]) is int and data["block"] == number,
-            f"{what} is expected, but here is block {data['block']!r}",
+            f"{what} is expected, but here is block {data['block']!a}",
         )
         bits, width = checker.natural(data["bits"], "bits"), checker.natural(data["width"], "width")
         checker.require(bits <= MOST_BITS and 0 < width <= MOST_WIDTH, f"{what} is out of range")
         first = number * self.block
         for entry in checker.items(data["open"], "open"):
             index, reason = checker.items(entry, "open root", 2)
-            raise checker.CertificateError(f"root {first + index} is open: {reason}")
+            raise checker.CertificateError(f"root {first + index} is open: {reason!a}")
         parts = []
         for name, length in (("centers", self.size * width), ("radii", 1), ("folds", 0)):
             try:
@@ -345,7 +345,7 @@ def check(
         for key, fact in facts.items():
             claim = claims["claims"][key]
             checker.require(
-                type(claim) is type(fact) and claim == fact, f"{key} = {claim!r} is {fact!r}"
+                type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}"
             )
         return facts
 

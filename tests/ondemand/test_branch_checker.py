@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import os
 import random
 import shutil
 import subprocess
@@ -14,7 +15,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sheets import HEXAGON, SQUARE, dart, nested_triangles, reflex_corners, scrambled
+from sheets import (
+    HEXAGON,
+    SQUARE,
+    dart,
+    mapped,
+    nested_triangles,
+    reflex_corners,
+    relabelled,
+    scrambled,
+)
 from typer.testing import CliRunner
 
 import exactfold
@@ -209,6 +219,48 @@ def test_vertices_of_triangulated_triangles_must_be_the_ones_inside() -> None:
 def test_other_files_are_no_certificates(text: str) -> None:
     with pytest.raises(FormatError):
         branch_checker.load(text)
+
+
+def test_a_repeated_key_is_refused() -> None:
+    text = json.dumps(certificate("dart")).replace('"claims":', '"claims": {}, "claims":')
+    with pytest.raises(FormatError, match="a key appears twice"):
+        branch_checker.load(text)
+
+
+def test_a_truth_value_is_no_vertex() -> None:
+    order = [0, 7, 2, 3, 4, 5, 6, 1, 8, 9]  # vertex 1 lies in the triangle
+    document = branch_certificate(find_branch(relabelled(nested_triangles(), order), "+-+"))
+    inside = document["evidence"]["emptied"][0]["inside"]
+    inside[inside.index(1)] = True
+    with pytest.raises(CertificateError, match="not a natural number"):
+        branch_checker.check(document)
+
+
+@pytest.mark.parametrize("letter", ["\ud800", "\u00e9", "\x1b"])
+def test_verdicts_can_be_printed_whatever_the_file_holds(letter: str, tmp_path: Path) -> None:
+    path = tmp_path / "c.json"
+    for place in ("letter", "height"):
+        document = certificate("random")
+        if place == "letter":
+            document["claims"]["assignment"] = letter + document["claims"]["assignment"][1:]
+        else:
+            document["evidence"]["heights"][5] = letter
+        path.write_text(json.dumps(document))
+        command = [sys.executable, branch_checker.__file__, str(path)]
+        ascii_only = {**os.environ, "PYTHONIOENCODING": "ascii"}
+        run = subprocess.run(command, capture_output=True, text=True, check=False, env=ascii_only)
+        assert (run.returncode, run.stderr) == (1, "")
+        assert run.stdout.startswith("INVALID")
+        assert run.stdout.strip().isprintable()
+
+
+def test_low_heights_over_a_long_denominator_are_accepted() -> None:
+    # Coordinates of 150 bits and a rim of height 2^-400: curvatures far below 1 / denominator^2.
+    tiny = Fraction(1, 10**40)
+    pattern = mapped(scrambled(5, HEXAGON, 3), lambda p: (p[0] + tiny, p[1] * (1 + tiny)))
+    rim = {v: Fraction(v * v + 1, 3 << 400) for v in pattern.boundary}
+    document = branch_certificate(find_branch(pattern, "+-+", rim=rim))
+    assert branch_checker.check(document)["vertex_signs"] == [1, -1, 1]
 
 
 def test_versions_and_keys_are_checked() -> None:
