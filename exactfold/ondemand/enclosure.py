@@ -12,6 +12,8 @@ import numpy as np
 from exactfold.ondemand.sheet import BigArray, Sheet
 
 _LENGTH_BITS = 64
+_LEAST_COST = 2.0**-500
+"""The square of a smaller cost may be below the range of normal floats, where errors are larger."""
 
 
 @dataclass(frozen=True)
@@ -175,6 +177,7 @@ def height_radius(sheet: Sheet, squared: Fraction) -> Fraction:
     folds = sheet.folds
     widest = np.maximum(folds.left, folds.right)
     costs = (2 * folds.squared_length / widest).astype(np.float64) ** 0.5
+    costs = np.maximum(costs, _LEAST_COST)
     links: list[list[tuple[int, float]]] = [[] for _ in sheet.pattern.vertices]
     for (i, j), cost in zip(folds.corners[:, :2].tolist(), costs.tolist(), strict=True):
         links[i].append((j, cost))

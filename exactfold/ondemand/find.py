@@ -154,7 +154,7 @@ class BranchFinder:
         if isinstance(signs, Mapping):
             given = dict(signs)
         else:
-            values = [_value(s) for s in signs or ()]
+            values = [_value(s) for s in (() if signs is None else signs)]
             keys = names if len(values) == len(names) else self.pattern.interior
             if len(values) != len(keys):
                 inside = self.pattern.Vi - len(names)
@@ -170,7 +170,7 @@ class BranchFinder:
         missing = [v for v in names if v not in given]
         if missing:
             raise UsageError(f"vertex {missing[0]} has no sign")
-        return {v: given[v] for v in names}
+        return {v: int(given[v]) for v in names}
 
     @property
     def _gauge(self) -> str:
@@ -197,18 +197,21 @@ class BranchFinder:
         """The branch with the signs that `signs` returned."""
         begin = time.perf_counter()
         steps = 0
-        reason = "no heights with curvature above the target everywhere were found"
+        reason = ""
         try:
             with np.errstate(all="ignore"):  # what leaves the range of floats is no proposal
                 end = self.propose(signs, start, progress)
                 if end.failure and start is not None:
                     end = self.propose(signs, None, progress)
-                steps, reason = end.steps, end.failure or reason
-                best = None
+                steps = end.steps
+                best: Enclosure | None = None
                 if np.isfinite(end.x).all():
-                    best = self._prove(signs, end.x, progress)
+                    best, reason = self._prove(signs, end.x, progress)
             if best is not None:
                 return self._result(signs, best, steps, time.perf_counter() - begin)
+            if end.failure:
+                worst = () if end.worst is None else (self.sheet.unknowns[end.worst],)
+                reason = f"{end.failure}{self._named(', worst at', worst)}"
         except OverflowError:
             reason = "a length or a form is beyond the range of floats"
         return self._undecided(signs, reason, steps, time.perf_counter() - begin)
@@ -255,12 +258,12 @@ class BranchFinder:
 
     def _prove(
         self, signs: Mapping[int, int], x: FloatArray, progress: Progress | None
-    ) -> Enclosure | None:
-        """The enclosure of most precision needed or reached, of exactly these signs."""
+    ) -> tuple[Enclosure | None, str]:
+        """The enclosure of most precision needed or reached, of exactly these signs, or why not."""
         sheet, vector = self.sheet, self._vector(signs)
         wanted = dict(zip(sheet.unknowns, vector.astype(int).tolist(), strict=True))
         heights = exact(sheet, self._floats, x)
-        best = None
+        best, failed = None, tuple[int, ...]()
         for k, level in enumerate(_LEVELS):
             if progress is not None:
                 progress("proof", k, len(_LEVELS))
@@ -270,11 +273,16 @@ class BranchFinder:
             heights = refined
             found = enclose(sheet, heights.values, heights.denominator, heights.bits)
             if isinstance(found, tuple) or found.signs != wanted:
+                failed = found if isinstance(found, tuple) else ()
                 break
             best = found
             if all(found.letters):
                 break
-        return best
+        if best is None and not failed:
+            rough = enclose(sheet, heights.values, heights.denominator, heights.bits)
+            failed = rough if isinstance(rough, tuple) else ()
+        where = self._named(":", failed)
+        return best, f"no heights with curvature above the target everywhere were found{where}"
 
     def _result(
         self, signs: Mapping[int, int], proof: Enclosure, steps: int, seconds: float
@@ -290,11 +298,9 @@ class BranchFinder:
         loose = tuple(labels[v] for v in proof.loose)
         error = float(root_above(squared))
         if loose:
-            more = f" and {len(loose) - 3} more" if len(loose) > 3 else ""
-            names = ", ".join(map(str, loose[:3])) + more
             reason = (
-                f"the only solution with these signs is flat to within {error:.1g} at "
-                f"{'vertex' if len(loose) == 1 else 'vertices'} {names}"
+                "the only solution with these signs is flat to within "
+                f"{error:.1g}{self._named(' at', proof.loose)}"
             )
         else:
             inside = " of the pattern with its triangulated triangles emptied"
@@ -343,6 +349,14 @@ class BranchFinder:
         )
 
     # --- back to the pattern that was given ------------------------------------------------------
+
+    def _named(self, before: str, vertices: Sequence[int]) -> str:
+        """Vertices of the sheet under the labels of the pattern; "" if there are none."""
+        if not vertices:
+            return ""
+        more = f" and {len(vertices) - 3} more" if len(vertices) > 3 else ""
+        names = ", ".join(str(self.sheet.labels[v]) for v in vertices[:3])
+        return f"{before} {'vertex' if len(vertices) == 1 else 'vertices'} {names}{more}"
 
     def _all_signs(self, signs: Mapping[int, int]) -> dict[int, int]:
         return {v: signs.get(v, 0) for v in self.pattern.interior}

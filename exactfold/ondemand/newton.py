@@ -18,11 +18,15 @@ _NOISE = 1e-6
 
 @dataclass(frozen=True)
 class End:
-    """Where Newton's method ended: heights of the unknowns, and why it is not a zero, or ""."""
+    """Where Newton's method ended: heights of the unknowns, and why it is not a zero, or "".
+
+    `worst`: the unknown at which the equations fail most, if there is a failure and it has a place.
+    """
 
     x: FloatArray
     steps: int
     failure: str
+    worst: int | None = None
 
 
 @dataclass(frozen=True)
@@ -84,11 +88,14 @@ def solve(
             if length == 1.0 and change <= _CONVERGED * size:
                 return End(point.x, step, "")
             if length == 0.0:  # nothing left to gain: rounding errors, or a failure
-                failure = "" if change <= _NOISE * size else "Newton's method is stuck"
-                return End(point.x, step, failure)
+                if change <= _NOISE * size:
+                    return End(point.x, step, "")
+                worst = _worst(sheet, point, signs)
+                return End(point.x, step, "Newton's method is stuck", worst)
     except SingularError as error:
         return End(np.zeros(sheet.n), 0, f"a factorisation failed: {error}")
-    return End(point.x, _ITERATIONS, f"Newton's method did not end in {_ITERATIONS} steps")
+    failure = f"Newton's method did not end in {_ITERATIONS} steps"
+    return End(point.x, _ITERATIONS, failure, _worst(sheet, point, signs))
 
 
 def _start(sheet: FloatSheet, signs: FloatArray) -> FloatArray:
@@ -98,6 +105,10 @@ def _start(sheet: FloatSheet, signs: FloatArray) -> FloatArray:
     level, popped = sheet.solve(np.zeros(len(sheet.lengths)), ones, zeros, right).T
     size = 1.0 if sheet.corner is not None else max(float(np.abs(level).max()), 1e-3) / 4
     return np.asarray(size * popped - level)
+
+
+def _worst(sheet: FloatSheet, point: Point, signs: FloatArray) -> int:
+    return int(np.abs(equations(sheet, point, signs)[0]).argmax())
 
 
 def _step(sheet: FloatSheet, point: Point, signs: FloatArray) -> tuple[Point, float, float]:

@@ -21,6 +21,7 @@ from sheets import (
     rotated,
     scrambled,
     two_triangles,
+    wheel,
 )
 
 from exactfold import PROVED, UNDECIDED, count_branches, families, random_square, read_fold
@@ -347,3 +348,18 @@ def test_progress_is_reported() -> None:
     find_branch(pattern, "++++", progress=lambda stage, done, total: seen.append(stage))
     neighbours(pattern, "++++", progress=lambda stage, done, total: seen.append(stage))
     assert set(seen) == {"Newton steps", "proof", "neighbours"}
+
+
+@pytest.mark.parametrize("signs", [{4: True, 5: -1.0, 6: np.int64(1)}, np.array([1, -1, 1])])
+def test_signs_are_plain_integers(signs: object) -> None:
+    found = find_branch(random_square(3, seed=0), signs)  # type: ignore[arg-type]
+    assert [type(s) for s in found.vertex_signs.values()] == [int] * 3
+    assert found.sign_text == "+-+"
+
+
+def test_where_it_fails_the_vertex_is_named() -> None:
+    near = Fraction(1, 10**150)
+    pattern = wheel(SQUARE, (2 * near, near))
+    found = find_branch(pattern, "+")
+    assert found.status is UNDECIDED
+    assert "vertex 4" in found.reason
