@@ -8,15 +8,17 @@ sign functionals are rebuilt from the file, by other formulas than those of the 
 it; divisions of integers are rounded in the safe direction.
 
 Why it is a proof: heights with K_v > 0 at every interior vertex bound the distance to the only
-solution with the same signs (Theorem 5 of docs/branch.md, which also describes the file). The
-boundary must be convex, or that of a quadrilateral whose notch is closed here. Vertices inside a
-3-cycle of edges stay flat (Theorem 2 (a), applied to the triangle) and are removed.
+solution with the same signs (Theorem 5 of docs/branch.md, which also describes the file); heights
+that solve the equations exactly are that solution. The boundary must be convex, or that of a
+quadrilateral whose notch is closed here. Vertices inside a 3-cycle of edges stay flat (Theorem 2
+(a), applied to the triangle) and are removed. Other folds are flat if the heights are exact and
+flat there, or if K_v = 0 at a vertex leaves them no other choice (`flat_at`).
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import isqrt, lcm
 from typing import TYPE_CHECKING, Any
@@ -26,6 +28,7 @@ if TYPE_CHECKING or __package__:
         CertificateError,
         FormatError,
         Sheet,
+        flat_at,
         items,
         keys,
         natural,
@@ -41,6 +44,7 @@ else:
         CertificateError,
         FormatError,
         Sheet,
+        flat_at,
         items,
         keys,
         natural,
@@ -74,8 +78,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
     Returns the claims and the SHA-256 of the pattern. The claims are: of all branches, or of all
     solutions with the rim of the heights if `gauge` is "rim", exactly one has these vertex signs,
-    all of them exact; its folds have these letters, "U" making no claim; and for its heights h the
-    integral of |grad(h - heights)|^2 is at most `squared_distance`.
+    all of them exact, 0 where the star is flat; its folds have these letters, "U" making no claim;
+    and for its heights h the integral of |grad(h - heights)|^2 is at most `squared_distance`.
     """
     try:
         return _check(data)
@@ -184,34 +188,51 @@ class _Proof:
         self.size = int(max(max(xs) - min(xs), max(ys) - min(ys)))
         highest = max(map(abs, heights.values()))
         self.bits = max(0, SPARE + 2 * self.size.bit_length() - 2 * highest.bit_length())
+        self.exact = all(self._on_target(v) for v in sheet.interior)
         self.signs = {v: self._sign(v) for v in sheet.interior}
         self.squared_distance = self._distance(int(min(xs) + max(xs)), int(min(ys) + max(ys)))
+        self.letters = self._letters()
 
-    def form(self, v: int, a: Heights, b: Heights) -> tuple[int, int]:
-        """Integers that enclose 2^bits K_v(a, b), wedge by wedge from the definition.
+    def wedges(self, v: int, a: Heights, b: Heights) -> Iterator[tuple[int, int]]:
+        """Numerators and denominators of the terms of K_v(a, b), wedge by wedge as defined.
 
         K_v(a, b) = sum_j [(x_j y_j+1 + y_j x_j+1) L^2 L'^2 - s (x_j y_j L'^2 + x_j+1 y_j+1 L^2)]
         / (2 c L^2 L'^2) with x = a_j - a_v, y = b_j - b_v, L = L_j and L' = L_j+1.
         """
         ring = self.sheet.star(v)
         points: Mapping[int, Any] = self.sheet.points
-        low = 0
         for i, j in zip(ring, ring[1:] + ring[:1], strict=True):
             px, py = points[i][0] - points[v][0], points[i][1] - points[v][1]
             qx, qy = points[j][0] - points[v][0], points[j][1] - points[v][1]
             c, s, k, m = px * qy - py * qx, px * qx + py * qy, px * px + py * py, qx * qx + qy * qy
             xi, xj, yi, yj = a[i] - a[v], a[j] - a[v], b[i] - b[v], b[j] - b[v]
             top = (xi * yj + yi * xj) * k * m - s * (xi * yi * m + xj * yj * k)
-            low += int((top << self.bits) // (2 * c * k * m))
-        return low, low + len(ring)
+            yield int(top), int(2 * c * k * m)
+
+    def form(self, v: int, a: Heights, b: Heights) -> tuple[int, int]:
+        """Integers that enclose 2^bits K_v(a, b)."""
+        terms = [(top << self.bits) // bottom for top, bottom in self.wedges(v, a, b)]
+        return sum(terms), sum(terms) + len(terms)
+
+    def exact_form(self, v: int, a: Heights, b: Heights) -> Fraction:
+        """K_v(a, b)."""
+        return sum((Fraction(*term) for term in self.wedges(v, a, b)), Fraction(0))
+
+    def _on_target(self, v: int) -> bool:
+        """Whether K_v is exactly what it is on a solution."""
+        low, high = self.form(v, self.heights, self.heights)
+        target = Fraction(self.q**2, self.size**2) if v == self.corner else Fraction(0)
+        near = low <= target * (1 << self.bits) <= high
+        return near and self.exact_form(v, self.heights, self.heights) == target
 
     def _sign(self, v: int) -> int:
         """The nappe of K_v that holds the heights, by a timelike t that points up.
 
         t_j - t_v < 0 for all j, and K_v(t) > 0: up, as K_v(t, t') > 0 for the round cone t', which
-        is a mountain on all spokes.
+        is a mountain on all spokes. On a solution, K_v(t, .) is 0 only where the star is flat.
         """
-        require(self.form(v, self.heights, self.heights)[0] > 0, f"K is not positive at vertex {v}")
+        positive = self.exact or self.form(v, self.heights, self.heights)[0] > 0
+        require(positive, f"K is not positive at vertex {v}")
         x, y = self.sheet.points[v]
         bits = 8
         while True:
@@ -223,12 +244,17 @@ class _Proof:
                 break
             bits *= 2
         low, high = self.form(v, cone, self.heights)
+        if self.exact and low <= 0 <= high:
+            side = self.exact_form(v, cone, self.heights)
+            return (side > 0) - (side < 0)
         require(low > 0 or high < 0, f"the side of vertex {v} is not certain")
         return 1 if low > 0 else -1
 
     def _distance(self, x: int, y: int) -> Fraction:
         """sum_v m_v (sqrt K_v - sqrt k_v)^2 from above, for a disk around (x/2, y/2)."""
         points, unit = self.sheet.points, self.q**2 << self.bits
+        if self.exact:
+            return Fraction(0)
 
         def squared(v: int) -> int:
             return int((2 * points[v][0] - x) ** 2 + (2 * points[v][1] - y) ** 2)
@@ -246,8 +272,8 @@ class _Proof:
                 plain += (radius - squared(v)) * high
         return total + Fraction(plain, 4 * unit)
 
-    def letter(self, fold: tuple[int, int]) -> str:
-        """ "M" or "V" where the bend is more than the distance can undo, else "U"."""
+    def _side(self, fold: tuple[int, int]) -> int | None:
+        """The sign of a bend if the distance cannot undo it, None if it can."""
         bend = sum(w * self.heights[v] for v, w in self.sheet.bend(fold).items())
         i, j = fold
         left, right = self.sheet.next[i][j], self.sheet.next[j][i]
@@ -255,28 +281,44 @@ class _Proof:
         c, d = turn(p, q, r), turn(q, p, s)
         length = (q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2
         # |omega| L > (squared_distance (2/c + 2/d))^(1/2) with omega = bend / (c d q)
-        if bend**2 * length <= self.squared_distance * self.q**2 * 2 * (c + d) * c * d:
-            return "U"
-        return "V" if bend > 0 else "M"
+        most = self.squared_distance * self.q**2 * 2 * (c + d) * c * d
+        if bend**2 * length > most or self.exact:
+            return (bend > 0) - (bend < 0)
+        return None
+
+    def _letters(self) -> dict[tuple[int, int], str]:
+        """The letters of all folds of the sheet, those left open closed where K_v = 0 can."""
+        sides = {fold: self._side(fold) for fold in self.sheet.folds}
+        inner = set(self.sheet.interior) - {self.corner}
+        pending = {v for fold, side in sides.items() if side is None for v in fold} & inner
+        while pending:
+            for fold in flat_at(self.sheet, pending.pop(), sides):
+                sides[fold] = 0
+                pending |= set(fold) & inner
+        return {fold: "U" if s is None else "MFV"[s + 1] for fold, s in sides.items()}
 
 
 def _check_signs(given: Sheet, signs: Any, proof: _Proof, removed: set[int]) -> None:
-    values = items(signs, "vertex_signs", len(given.interior))
-    for v, sign in zip(given.interior, values, strict=True):
-        expected = 0 if v in removed else proof.signs[v]
-        require(type(sign) is int and sign == expected, f"vertex {v} has another sign")
     if proof.corner is not None:
         require(proof.signs[proof.corner] == 1, "the reflex corner does not pop up")
-    bent = {v for fold in proof.sheet.folds if proof.letter(fold) != "U" for v in fold}
-    flat = [v for v in proof.sheet.interior if v not in bent and v != proof.corner]
-    require(not flat, f"vertex {min(flat, default=0)} may be flat")
+    seen: dict[int, set[str]] = {v: set() for v in proof.sheet.points}
+    for fold, letter in proof.letters.items():
+        for v in fold:
+            seen[v].add(letter)
+    values = items(signs, "vertex_signs", len(given.interior))
+    for v, sign in zip(given.interior, values, strict=True):
+        expected = 0
+        if v not in removed and seen[v] != {"F"}:
+            require(seen[v] & {"M", "V"}, f"vertex {v} may be flat")
+            expected = proof.signs[v]
+        require(type(sign) is int and sign == expected, f"vertex {v} has another sign")
 
 
 def _check_letters(given: Sheet, letters: Any, proof: _Proof, removed: set[int]) -> None:
     require(isinstance(letters, str) and len(letters) == len(given.folds), "letters do not fit")
     for fold, letter in zip(given.folds, letters, strict=True):
         rigid = not removed.isdisjoint(fold)
-        expected = "F" if rigid else proof.letter(fold)
+        expected = "F" if rigid else proof.letters[fold]
         require(letter == expected or letter == "U", f"fold {fold} is not known to be {letter!a}")
 
 

@@ -1006,6 +1006,8 @@ def flat_at(
     """
     ring = sheet.star(vertex)
     free = ring[2:]  # hub and two neighbouring rim vertices at 0: heights modulo planes
+    if len(free) - sum(signs[f] == 0 for f in folds) > 2:
+        return []
     rows = [[Fraction(sheet.bend(f).get(j, 0)) for j in free] for f in folds]
     basis = kernel([r for r, sign in zip(rows, signs, strict=True) if sign == 0], len(free))
     form = matrix_of(sheet.curvature(vertex), free)

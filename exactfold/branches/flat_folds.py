@@ -32,14 +32,14 @@ def flat_folds(pattern: CreasePattern, signs: Mapping[Edge, int | None]) -> froz
     [(1, 4), (3, 4)]
     """
     known = dict(signs)
-    pending = {v for fold, sign in known.items() if sign is None for v in fold}
-    pending &= set(pattern.interior)
+    interior = set(pattern.interior)
+    pending = {v for fold, sign in known.items() if sign is None for v in fold} & interior
     while pending:
         vertex = pending.pop()
         around = tuple((min(vertex, j), max(vertex, j)) for j in pattern.star(vertex))
         for fold in _at_vertex(pattern, vertex, around, tuple(known[fold] for fold in around)):
             known[fold] = 0
-            pending |= set(fold) & set(pattern.interior)
+            pending |= set(fold) & interior
     return frozenset(fold for fold, sign in known.items() if sign == 0)
 
 
@@ -49,9 +49,11 @@ def _at_vertex(
 ) -> list[Edge]:
     """The open folds around a vertex that are flat; many branches ask with the same signs."""
     ring = pattern.star(vertex)
-    bends = [fold_functional(pattern, fold) for fold in folds]
     # Heights of the star modulo planes: hub and two neighbouring rim vertices at 0.
     free = ring[2:]
+    if len(free) - signs.count(0) > 2:
+        return []  # three dimensions or more are left
+    bends = [fold_functional(pattern, fold) for fold in folds]
     rows = [[Fraction(bend.get(j, 0)) for j in free] for bend in bends]
     flat = [row for row, sign in zip(rows, signs, strict=True) if sign == 0]
     basis = nullspace(flat) if flat else _identity(len(free))

@@ -23,7 +23,8 @@ class Enclosure:
     `signs[v]`: in which nappe of K_v the heights lie. `squared_distance` bounds the integral of
     |grad(h - heights)|^2 for the only solution h in these closed nappes. `letters[e]`: +1 valley,
     -1 mountain on h, 0 undecided, in the order of the folds of the sheet. `loose`: vertices at
-    which no fold is decided.
+    which no fold is decided. `flat_folds` (indices of folds with letter 0) and `flat_vertices` are
+    proved flat (`exactfold.ondemand.flat`).
     """
 
     heights: BigArray
@@ -32,6 +33,13 @@ class Enclosure:
     squared_distance: Fraction
     letters: tuple[int, ...]
     loose: tuple[int, ...]
+    flat_folds: frozenset[int] = frozenset()
+    flat_vertices: tuple[int, ...] = ()
+
+    @property
+    def complete(self) -> bool:
+        """Whether every fold is a mountain, a valley or flat."""
+        return self.letters.count(0) == len(self.flat_folds)
 
 
 @dataclass(frozen=True)
@@ -84,9 +92,9 @@ def enclose(
 
     Raises `ValueError` if the rim is not the one of the sheet or the boundary is not convex.
     """
-    _check_hypotheses(sheet, heights, denominator)
+    check_hypotheses(sheet, heights, denominator)
     found = curvatures(sheet, heights, bits)
-    signs = _nappes(sheet, found.bends)
+    signs = nappes(sheet, found.bends)
     failed = tuple(v for v in sheet.unknowns if found.low[v] <= 0 or not signs[v])
     if failed:
         return failed
@@ -98,7 +106,8 @@ def enclose(
     return Enclosure(heights, denominator, signs, distance, letters, loose)
 
 
-def _check_hypotheses(sheet: Sheet, heights: BigArray, denominator: int) -> None:
+def check_hypotheses(sheet: Sheet, heights: BigArray, denominator: int) -> None:
+    """Raise `ValueError` unless the boundary is convex and the heights continue the rim."""
     if not sheet.pattern.is_convex:
         raise ValueError("the theorem needs a convex boundary")
     if set(sheet.rim) != set(sheet.pattern.boundary) or any(
@@ -108,7 +117,7 @@ def _check_hypotheses(sheet: Sheet, heights: BigArray, denominator: int) -> None
         raise ValueError("the heights do not continue the rim")
 
 
-def _nappes(sheet: Sheet, bends: BigArray) -> dict[int, int]:
+def nappes(sheet: Sheet, bends: BigArray) -> dict[int, int]:
     """The side of each vertex, 0 if not proved: the sign of -sum_j L_j omega_vj.
 
     This is 2 K_v(t, h) for the round cone t, t_j - t_v = -L_j, which is timelike and points up. The
@@ -174,6 +183,8 @@ def height_radius(sheet: Sheet, squared: Fraction) -> Fraction:
     sqrt(2 L^2 / c) sqrt(squared), so that |w_v| is bounded by the shortest path from the rim. The
     sums are floats: each has a relative error below (V + 3) 2^-52, which 2^-20 covers.
     """
+    if not squared:
+        return Fraction(0)
     folds = sheet.folds
     widest = np.maximum(folds.left, folds.right)
     costs = (2 * folds.squared_length / widest).astype(np.float64) ** 0.5

@@ -13,6 +13,7 @@ import numpy as np
 
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import RationalLike
+from exactfold.ondemand import words
 from exactfold.ondemand.enclosure import (
     Enclosure,
     enclose,
@@ -20,6 +21,7 @@ from exactfold.ondemand.enclosure import (
     root_above,
     round_up,
 )
+from exactfold.ondemand.flat import deduced, rational
 from exactfold.ondemand.floats import FloatArray, FloatSheet
 from exactfold.ondemand.newton import End, solve
 from exactfold.ondemand.refine import exact, refine
@@ -54,7 +56,8 @@ def find_branch(
     the nappes proposes heights (docs/mathematics.md, 12); they are refined in exact arithmetic and
     enclosed by a theorem that needs no factorisation (docs/branch.md, `enclose`), so that the cost
     of the proof grows like the number of folds. Gauge: see `SignedBranch`. With `rim`, heights of
-    all boundary vertices of a convex boundary of any length, the branch of that rim.
+    all boundary vertices of a convex boundary of any length, the branch of that rim. A vertex that
+    is proved flat on the branch gets the sign 0: either sign leads to that branch.
 
     Raises `UsageError` for signs that do not fit the pattern, `NotApplicableError` if Ve is not 4
     and no rim is given, or if no vertex can pop. An `UNDECIDED` result is no statement that the
@@ -210,8 +213,10 @@ class BranchFinder:
             if best is not None:
                 return self._result(signs, best, steps, time.perf_counter() - begin)
             if end.failure:
-                worst = () if end.worst is None else (self.sheet.unknowns[end.worst],)
-                reason = f"{end.failure}{self._named(', worst at', worst)}"
+                reason = end.failure
+                if end.worst is not None:
+                    worst = self.sheet.labels[self.sheet.unknowns[end.worst]]
+                    reason += f", worst at {words.named([worst])}"
         except OverflowError:
             reason = "a length or a form is beyond the range of floats"
         return self._undecided(signs, reason, steps, time.perf_counter() - begin)
@@ -275,14 +280,15 @@ class BranchFinder:
             if isinstance(found, tuple) or found.signs != wanted:
                 failed = found if isinstance(found, tuple) else ()
                 break
-            best = found
-            if all(found.letters):
+            best = deduced(sheet, found)
+            if best.complete:
                 break
+        if best is not None and not best.complete:
+            best = rational(sheet, best, wanted) or best
         if best is None and not failed:
             rough = enclose(sheet, heights.values, heights.denominator, heights.bits)
             failed = rough if isinstance(rough, tuple) else ()
-        where = self._named(":", failed)
-        return best, f"no heights with curvature above the target everywhere were found{where}"
+        return best, words.not_found([sheet.labels[v] for v in failed])
 
     def _result(
         self, signs: Mapping[int, int], proof: Enclosure, steps: int, seconds: float
@@ -296,28 +302,18 @@ class BranchFinder:
             for v, height in enumerate(proof.heights)
         }
         loose = tuple(labels[v] for v in proof.loose)
-        error = float(root_above(squared))
-        if loose:
-            reason = (
-                "the only solution with these signs is flat to within "
-                f"{error:.1g}{self._named(' at', proof.loose)}"
-            )
-        else:
-            inside = " of the pattern with its triangulated triangles emptied"
-            reason = (
-                "exactly one branch has these signs; it is a simple solution"
-                f"{inside if self.pattern.Vt else ''} within {error:.1g} of the heights given, in "
-                "the norm of gradients"
-            )
+        flat = tuple(labels[v] for v in proof.flat_vertices)
+        error = float(root_above(squared)) if squared else 0.0
+        reason = words.proved(error, flat, self.pattern.Vt > 0)
         letters = {
-            (labels[i], labels[j]): "UVM"[letter]
-            for (i, j), letter in zip(sheet.pattern.folds, proof.letters, strict=True)
+            (labels[i], labels[j]): "F" if k in proof.flat_folds else "UVM"[proof.letters[k]]
+            for k, (i, j) in enumerate(sheet.pattern.folds)
         }
         return SignedBranch(
             pattern=self.pattern,
             status=UNDECIDED if loose else PROVED,
-            reason=reason,
-            vertex_signs=self._all_signs(signs),
+            reason=words.undecided(error, loose) if loose else reason,
+            vertex_signs=self._all_signs({**signs, **dict.fromkeys(flat, 0)}),
             undecided_vertices=loose,
             assignment=self._assignment(letters),
             centres=self._all_heights(centres),
@@ -349,14 +345,6 @@ class BranchFinder:
         )
 
     # --- back to the pattern that was given ------------------------------------------------------
-
-    def _named(self, before: str, vertices: Sequence[int]) -> str:
-        """Vertices of the sheet under the labels of the pattern; "" if there are none."""
-        if not vertices:
-            return ""
-        more = f" and {len(vertices) - 3} more" if len(vertices) > 3 else ""
-        names = ", ".join(str(self.sheet.labels[v]) for v in vertices[:3])
-        return f"{before} {'vertex' if len(vertices) == 1 else 'vertices'} {names}{more}"
 
     def _all_signs(self, signs: Mapping[int, int]) -> dict[int, int]:
         return {v: signs.get(v, 0) for v in self.pattern.interior}

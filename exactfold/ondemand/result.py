@@ -17,11 +17,12 @@ from exactfold.verdict import Verdict
 class SignedBranch:
     """The branch with given vertex signs.
 
-    `status` is PROVED if exactly one branch has these signs (in the gauge below) and it is a simple
-    solution, of the pattern with its triangulated triangles emptied. Unless `radius` is None, the
+    `status` is PROVED if exactly one branch has the signs `vertex_signs` (in the gauge below): +1
+    up, -1 down, as asked for, and 0 where the star is proved flat, whatever was asked, as in a
+    triangulated triangle. Of the pattern with these triangles emptied the branch is a simple
+    solution, or, with f flat vertices left, one of multiplicity 2^f. Unless `radius` is None, the
     heights of the only solution with these signs, zeros in their place allowed, lie within `radius`
-    of `centres`, whatever the status. `vertex_signs` are the signs asked
-    for: +1 up, -1 down, 0 for a vertex in a triangulated triangle, which stays flat.
+    of `centres`, whatever the status.
     `undecided_vertices`: the star is flat to within the error, so that the sign asked for may be 0.
     `assignment`: "M" mountain, "V" valley, "F" proved flat, "U" undecided by fold (i, j), i < j,
     seen from +z. UNDECIDED says nothing against the branch: `reason` names what is missing.

@@ -99,6 +99,11 @@ class Sheet:
         return max(max(p[a] for p in points) - min(p[a] for p in points) for a in (0, 1))
 
     @cached_property
+    def unclosed(self) -> CreasePattern:
+        """`pattern` without the triangle that closes a notch; the same vertices."""
+        return self.pattern if self.corner is None else self.original.emptied()[0]
+
+    @cached_property
     def folds(self) -> Folds:
         """The folds of `pattern` in its order."""
         return Folds.of(self.pattern)

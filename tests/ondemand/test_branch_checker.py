@@ -10,7 +10,9 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -24,16 +26,20 @@ from sheets import (
     reflex_corners,
     relabelled,
     scrambled,
+    wheel,
 )
 from typer.testing import CliRunner
 
 import exactfold
-from exactfold import branch_checker, find_branch, random_square, read_fold
+from exactfold import PROVED, branch_checker, families, find_branch, random_square, read_fold
 from exactfold.checker import CertificateError, FormatError
 from exactfold.cli import app
 from exactfold.data import example_path
 from exactfold.errors import UsageError
 from exactfold.ondemand.evidence import branch_certificate
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.degenerate import gridded_square, ringed_square
+from exactfold.pattern.fold_writing import fold_text
 
 Document = dict[str, Any]
 PATTERNS = {
@@ -179,6 +185,93 @@ def test_altered_certificates_are_refused(tamper: Callable[[Document], None]) ->
         branch_checker.check(altered)
 
 
+FLAT = {  # vertices and folds that are flat: by K_v = 0 at a vertex, or with exact heights
+    "flat vertex": (read_fold(example_path("flat-vertex")), "++", False),
+    "dart": (dart(), "+", False),
+    "folded along a line": (gridded_square(3, 3), "+++++++", True),
+    "straight hypar": (families.hypar(2, 0), "++++++++", True),
+}
+
+
+@pytest.mark.parametrize("name", FLAT)
+def test_flat_folds_and_vertices_are_proved_and_nothing_else_passes(name: str) -> None:
+    pattern, signs, exact = FLAT[name]
+    document = branch_certificate(find_branch(pattern, signs))
+    claims = document["claims"]
+    assert "F" in claims["assignment"]
+    assert "U" not in claims["assignment"]
+    assert (claims["squared_distance"] == "0") == exact
+    branch_checker.check(document)
+    forged = []
+    for k, letter in enumerate(claims["assignment"]):
+        text = claims["assignment"]
+        forged += [{"assignment": text[:k] + x + text[k + 1 :]} for x in "MVF" if x != letter]
+    for k, sign in enumerate(claims["vertex_signs"]):
+        values = claims["vertex_signs"]
+        others = {-1, 0, 1} - {sign}
+        forged += [{"vertex_signs": [*values[:k], x, *values[k + 1 :]]} for x in others]
+    forged += [] if exact else [{"squared_distance": "0"}]
+    for change in forged:
+        with pytest.raises(CertificateError):
+            branch_checker.check({**document, "claims": {**claims, **change}})
+
+
+@pytest.mark.parametrize(
+    ("pattern", "signs", "bits"),
+    [
+        (random_square(6, seed=0, denominator=4), "+-++++", 20),  # K = 0 at the other vertices
+        (gridded_square(3, 3), "+++++++", 300),  # K is of the order of 1 / denominator^2
+    ],
+)
+def test_heights_that_are_almost_exact_are_refused(
+    pattern: CreasePattern, signs: str, bits: int
+) -> None:
+    document = branch_certificate(find_branch(pattern, signs))
+    assert document["claims"]["squared_distance"] == "0"
+    evidence = document["evidence"]
+    evidence["denominator"] = str(int(evidence["denominator"]) << bits)
+    finer = [h and str(int(h) << bits) for h in evidence["heights"]]
+    evidence["heights"] = finer
+    branch_checker.check(document)
+    for v, by in product(range(4, len(finer)), (1, -1)):
+        if finer[v] is not None:
+            evidence["heights"] = [*finer[:v], shifted(finer[v], by), *finer[v + 1 :]]
+            with pytest.raises(CertificateError, match="K is not positive"):
+                branch_checker.check(document)
+
+
+def test_a_vertex_that_may_be_flat_is_refused() -> None:
+    found = find_branch(ringed_square(4), "+++++")
+    document = branch_certificate(replace(found, status=PROVED))
+    with pytest.raises(CertificateError, match="vertex 8 may be flat"):
+        branch_checker.check(document)
+
+
+def test_the_curvature_of_the_reflex_corner_counts() -> None:
+    document = certificate("reflex")
+    evidence, claims = document["evidence"], document["claims"]
+    evidence["heights"] = [h and str(2 * int(h)) for h in evidence["heights"]]
+    claims["assignment"] = "U" * len(claims["assignment"])
+    claims["squared_distance"] = str(Fraction(claims["squared_distance"]) * 1000)
+    with pytest.raises(CertificateError, match="distance is larger"):
+        branch_checker.check(document)
+
+
+def test_folds_are_not_flat_by_what_is_around_the_reflex_corner(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # K is 1 there. With K = 0 at a vertex of degree 3 all its folds would be flat.
+    pattern = wheel([(4, -4), ("1/10", 0), (4, 4), (-4, 0)], (0, "1/1000"))
+    assert find_branch(pattern, "-").assignment_text == "VMVV"
+    monkeypatch.setattr("exactfold.ondemand.find._LEVELS", (6,))  # too rough for fold (1, 4)
+    document = branch_certificate(find_branch(pattern, "-"))
+    assert document["claims"]["assignment"] == "VUVV"
+    branch_checker.check(document)
+    document["claims"]["assignment"] = "VFVV"
+    with pytest.raises(CertificateError, match="not known to be 'F'"):
+        branch_checker.check(document)
+
+
 def test_a_letter_may_be_left_open() -> None:
     document = certificate("random")
     document["claims"]["assignment"] = "U" * len(document["claims"]["assignment"])
@@ -271,7 +364,7 @@ def test_versions_and_keys_are_checked() -> None:
 
 
 def test_nothing_undecided_gets_a_certificate() -> None:
-    flat = find_branch(read_fold(example_path("flat-vertex")), "++")
+    flat = find_branch(ringed_square(4), "+++++")
     with pytest.raises(UsageError, match="not proved"):
         branch_certificate(flat)
 
@@ -298,9 +391,10 @@ def test_commands_write_and_check(tmp_path: Path) -> None:
 
 def test_undecided_and_several_branches_write_nothing(tmp_path: Path) -> None:
     path = tmp_path / "c.json"
-    flat = str(example_path("flat-vertex"))
+    flat = str(tmp_path / "ringed.fold")
+    Path(flat).write_text(fold_text(ringed_square(4)))
     runner = CliRunner()
-    done = runner.invoke(app, ["branch", flat, "--signs", "++", "--certificate", str(path)])
+    done = runner.invoke(app, ["branch", flat, "--signs", "+++++", "--certificate", str(path)])
     assert done.exit_code == 4
     assert "no certificate was written" in done.stderr
     several = ["branch", flat, "--up", "4", "--neighbours", "all", "--certificate", str(path)]

@@ -11,7 +11,9 @@ from exactfold.cli import app
 from exactfold.commands import branch
 from exactfold.data import example_path
 from exactfold.ondemand.find import BranchFinder, find_branch
+from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.fold import read_fold
+from exactfold.pattern.fold_writing import fold_text
 
 TWO = example_path("two-vertex")
 KEYS = {
@@ -41,11 +43,21 @@ def test_json_is_the_result() -> None:
         assert data[key] == expected[key]
 
 
-def test_a_flat_vertex_is_exit_code_four() -> None:
-    result = run(example_path("flat-vertex"), "--signs", "++")
+def test_a_vertex_that_may_be_flat_is_exit_code_four(tmp_path) -> None:
+    path = tmp_path / "ringed.fold"
+    path.write_text(fold_text(ringed_square(4)))
+    result = run(path, "--signs", "+++++")
     assert result.exit_code == 4
     assert "UNDECIDED" in result.stdout
     assert "flat to within" in result.stdout
+
+
+def test_a_flat_vertex_is_shown() -> None:
+    result = run(example_path("flat-vertex"), "--signs", "++")
+    assert result.exit_code == 0
+    text = " ".join(result.stdout.split())
+    assert "0 at vertex 5, where it is flat; it is a solution of multiplicity 2" in text
+    assert "vertex signs +0 mountain-valley MFFMFFF" in text
 
 
 def test_signs_from_a_file_and_a_batch(tmp_path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections import Counter
 from fractions import Fraction
 from itertools import product
 
@@ -24,14 +25,14 @@ from sheets import (
     wheel,
 )
 
-from exactfold import PROVED, UNDECIDED, count_branches, families, random_square, read_fold
+from exactfold import PROVED, UNDECIDED, count_branches, families, random_square
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.krawczyk import krawczyk
-from exactfold.data import example_path
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.ondemand.find import BranchFinder, find_branch, find_branches, neighbours
 from exactfold.ondemand.floats import FloatSheet
 from exactfold.ondemand.sheet import Sheet
+from exactfold.pattern import degenerate
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.system.branch_system import BranchSystem
 
@@ -67,15 +68,14 @@ def test_reflex_sheets_too_with_the_side_of_the_saddle(name: str) -> None:
     pattern = REFLEX[name]
     counted = count_branches(pattern)
     assert counted.status is PROVED
-    # A fold that is exactly flat, as in the dart, is undecided here.
-    wanted = {(b.sign_text, b.assignment_text.replace("F", "U")) for b in counted.branches}
+    wanted = {(b.sign_text, b.assignment_text) for b in counted.branches}
     seen = set()
     swap = str.maketrans("+-MV", "-+VM")
     for signs in product((1, -1), repeat=pattern.Vi - pattern.Vt):
         found = find_branch(pattern, signs)
         assert found.status is PROVED
         assert found.saddle != 0
-        pair = found.sign_text, found.assignment_text.replace("F", "U")
+        pair = found.sign_text, found.assignment_text
         if found.saddle < 0:
             pair = pair[0].translate(swap), pair[1].translate(swap)
         seen.add(pair)
@@ -120,22 +120,61 @@ def test_inertia_of_the_jacobian_counts_the_vertices_up_and_down() -> None:
         assert (values > 0).sum() == signs.count("+")
 
 
-def test_a_flat_vertex_is_undecided_and_everything_else_is_not() -> None:
-    pattern = read_fold(example_path("flat-vertex"))
-    results = {s: find_branch(pattern, s) for s in ("++", "+-", "-+", "--")}
-    open_ones = {s: r for s, r in results.items() if r.status is UNDECIDED}
-    assert len(open_ones) == 2
-    (a, b) = open_ones.values()
-    assert a.undecided_vertices == b.undecided_vertices == (5,)
-    assert a.assignment == b.assignment
+DEGENERATE = {
+    "flat vertex": families.flat_vertex_square(),
+    "straight path": degenerate.straight_path(4),
+    "off the path": degenerate.bent_off_path(),
+    "grid": degenerate.gridded_square(2, 3),
+    "lattice": random_square(5, seed=0, denominator=4),
+    "straight hypar": families.hypar(1, 0),
+    "notched": degenerate.notched(3),
+    "dart": dart(),
+}
+
+
+@pytest.mark.parametrize("name", DEGENERATE)
+def test_what_is_flat_is_what_the_enumeration_finds_flat(name: str) -> None:
+    pattern = DEGENERATE[name]
     counted = count_branches(pattern)
-    (double,) = (x for x in counted.branches if x.multiplicity == 2)
-    for result in open_ones.values():
-        for v, (low, high) in double.heights.items():
-            assert result.heights[v][0] <= high
-            assert low <= result.heights[v][1]
-        decided = {f: s for f, s in result.assignment.items() if s != "U"}
-        assert decided == {f: s for f, s in double.assignment.items() if s != "F"}
+    assert counted.status is PROVED
+    turn_over = str.maketrans("MV", "VM")
+    known = {}
+    for branch in counted.branches:
+        signs = tuple(branch.vertex_signs[v] for v in pattern.interior)
+        known[signs, branch.assignment_text] = branch.multiplicity
+        if not pattern.is_convex:  # shown by the side with positive saddle
+            other = tuple(-s for s in signs)
+            known[other, branch.assignment_text.translate(turn_over)] = branch.multiplicity
+    reached = Counter[tuple[tuple[int, ...], str]]()
+    finder = BranchFinder(pattern)
+    for values in product((1, -1), repeat=len(finder.poppable)):
+        found = finder.find(dict(zip(finder.poppable, values, strict=True)))
+        assert found.status is PROVED
+        assert found.undecided_folds == ()
+        signs = tuple(found.vertex_signs[v] for v in pattern.interior)
+        assert all(
+            found.vertex_signs[v] in (0, s) for v, s in zip(finder.poppable, values, strict=True)
+        )
+        reached[signs, found.assignment_text] += 1
+    # All signs of flat vertices lead to the same branch, whose multiplicity (Theorem 3) they are.
+    inside = 2**pattern.Vt
+    assert {key: times * inside for key, times in reached.items()} == {
+        key: known[key] for key in reached
+    }
+    assert len(reached) == len(counted.branches)
+
+
+def test_exact_heights_have_no_error() -> None:
+    found = find_branch(families.hypar(2, 0), "++++++++")
+    assert found.radius == found.squared_distance == 0
+    assert all(curvature(found.pattern, found.centres, v) == 0 for v in found.pattern.interior)
+
+
+def test_what_is_flat_for_no_rational_reason_is_undecided() -> None:
+    found = find_branch(degenerate.ringed_square(4), "+++++")
+    assert found.status is UNDECIDED
+    assert found.undecided_vertices == (8,)
+    assert "flat to within" in found.reason
 
 
 def test_a_very_symmetric_sheet_is_enclosed() -> None:
