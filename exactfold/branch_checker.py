@@ -12,7 +12,7 @@ solution with the same signs (Theorem 5 of docs/branch.md, which also describes 
 that solve the equations exactly are that solution. The boundary must be convex, or that of a
 quadrilateral whose notch is closed here. Vertices inside a 3-cycle of edges stay flat (Theorem 2
 (a), applied to the triangle) and are removed. Other folds are flat if the heights are exact and
-flat there, or if K_v = 0 at a vertex leaves them no other choice (`flat_at`).
+flat there, or if K_v = 0 at a vertex leaves them no other choice (`close_flat`).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING or __package__:
         CertificateError,
         FormatError,
         Sheet,
-        flat_at,
+        close_flat,
         items,
         keys,
         natural,
@@ -44,7 +44,7 @@ else:
         CertificateError,
         FormatError,
         Sheet,
-        flat_at,
+        close_flat,
         items,
         keys,
         natural,
@@ -289,12 +289,7 @@ class _Proof:
     def _letters(self) -> dict[tuple[int, int], str]:
         """The letters of all folds of the sheet, those left open closed where K_v = 0 can."""
         sides = {fold: self._side(fold) for fold in self.sheet.folds}
-        inner = set(self.sheet.interior) - {self.corner}
-        pending = {v for fold, side in sides.items() if side is None for v in fold} & inner
-        while pending:
-            for fold in flat_at(self.sheet, pending.pop(), sides):
-                sides[fold] = 0
-                pending |= set(fold) & inner
+        close_flat(self.sheet, sides, self.corner)
         return {fold: "U" if s is None else "MFV"[s + 1] for fold, s in sides.items()}
 
 

@@ -1006,7 +1006,7 @@ def flat_at(
     """
     ring = sheet.star(vertex)
     free = ring[2:]  # hub and two neighbouring rim vertices at 0: heights modulo planes
-    if len(free) - sum(signs[f] == 0 for f in folds) > 2:
+    if len(free) - signs.count(0) > 2:
         return []
     rows = [[Fraction(sheet.bend(f).get(j, 0)) for j in free] for f in folds]
     basis = kernel([r for r, sign in zip(rows, signs, strict=True) if sign == 0], len(free))
@@ -1052,15 +1052,19 @@ def flat_at(
     ]
 
 
-def close_flat(sheet: Sheet, signs: dict[Edge, int | None]) -> None:
-    """Settle open folds by `flat_at` until nothing changes."""
-    changed = True
-    while changed and None in signs.values():
-        changed = False
-        for vertex in sheet.interior:
-            folds = tuple((min(vertex, j), max(vertex, j)) for j in sheet.star(vertex))
-            for fold in flat_at(sheet, vertex, folds, tuple(signs[f] for f in folds)):
-                signs[fold], changed = 0, True
+def close_flat(sheet: Sheet, signs: dict[Edge, int | None], corner: int | None = None) -> None:
+    """Settle open folds by `flat_at` until nothing changes.
+
+    `corner`: an interior vertex at which the curvature form does not vanish.
+    """
+    inner = set(sheet.interior) - {corner}
+    pending = {v for fold, sign in signs.items() if sign is None for v in fold} & inner
+    while pending:
+        vertex = pending.pop()
+        folds = tuple((min(vertex, j), max(vertex, j)) for j in sheet.star(vertex))
+        for fold in flat_at(sheet, vertex, folds, tuple(signs[f] for f in folds)):
+            signs[fold] = 0
+            pending |= set(fold) & inner
 
 
 # --- claims --------------------------------------------------------------------------------------

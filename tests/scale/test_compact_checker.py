@@ -201,7 +201,7 @@ LIES: dict[Callable[[Lines], None], str] = {
     spare_bit: "a bit of no fold",
     short_centers: "centers has another length",
     no_base64: "centers is not base 64",
-    open_root: "root 2 is open: vertex 5 is flat",
+    open_root: "root 2 is open: 'vertex 5 is flat'",
     too_many_bits: "out of range",
     another_claim: "real = 63 is 64",
     true_for_one: "nonreal = False is 0",
