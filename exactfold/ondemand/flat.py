@@ -11,7 +11,6 @@ from fractions import Fraction
 
 import numpy as np
 
-from exactfold.branches.flat_folds import flat_folds
 from exactfold.ondemand.enclosure import Enclosure, check_hypotheses, nappes
 from exactfold.ondemand.sheet import BigArray, Sheet
 
@@ -26,6 +25,8 @@ def deduced(sheet: Sheet, proof: Enclosure) -> Enclosure:
     """
     if all(proof.letters):
         return proof
+    from exactfold.branches.flat_folds import flat_folds  # loaded only where needed
+
     decided = dict(zip(sheet.pattern.folds, proof.letters, strict=True))
     folds = sheet.unclosed.folds
     found = flat_folds(sheet.unclosed, {fold: decided[fold] or None for fold in folds})
