@@ -34,6 +34,7 @@ if TYPE_CHECKING or __package__:
         natural,
         parse_integer,
         parse_rational,
+        plain,
         read_json,
         read_sheet,
         require,
@@ -50,6 +51,7 @@ else:
         natural,
         parse_integer,
         parse_rational,
+        plain,
         read_json,
         read_sheet,
         require,
@@ -340,10 +342,10 @@ def main(arguments: list[str]) -> int:
         with open(arguments[0], encoding="utf-8") as stream:
             claims = check(load(stream.read()))
     except CertificateError as error:
-        print(f"INVALID: {error}")
+        print(f"INVALID: {plain(error)}")
         return 1
     except (FormatError, OSError, UnicodeDecodeError) as error:
-        print(f"not a certificate: {error}", file=sys.stderr)
+        print(f"not a certificate: {plain(error)}", file=sys.stderr)
         return 3
     print(summary(claims))
     return 0

@@ -27,6 +27,7 @@ import json
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal, localcontext
 from fractions import Fraction
 from math import gcd, isqrt, lcm
 from typing import Any, NoReturn
@@ -52,6 +53,11 @@ def require(condition: object, message: str) -> None:
     """Raise `CertificateError` unless the condition holds."""
     if not condition:
         raise CertificateError(message)
+
+
+def plain(error: object) -> str:
+    """A message in printable ASCII on one line, at most 1000 characters, whatever it quotes."""
+    return "".join(c if " " <= c <= "~" else ascii(c)[1:-1] for c in str(error)[:1000])[:1000]
 
 
 # --- reading -------------------------------------------------------------------------------------
@@ -431,7 +437,9 @@ def read_chart(evidence: Any) -> dict[int, Fraction] | None:
         return None
     if not isinstance(evidence, dict):
         raise CertificateError("the chart is neither null nor a functional")
-    return {parse_integer(v): parse_rational(c) for v, c in evidence.items()}
+    chart = {parse_integer(v): parse_rational(c) for v, c in evidence.items()}
+    require(len(chart) == len(evidence), "a vertex appears twice in the chart")
+    return chart
 
 
 # --- isolated roots ------------------------------------------------------------------------------
@@ -490,19 +498,34 @@ class Krawczyk:
     def _preconditioners(
         self, gradients: list[list[int]], bits: int
     ) -> Iterator[tuple[list[list[int]], int]]:
-        """Approximate inverses Y = y / 2^shift of F'(m): from doubles, then from exact numbers."""
-        down = 1 << (self.scale + bits)
-        with suppress(ArithmeticError, ValueError):
-            floats = [[g / down for g in row[: self.n]] for row in gradients]
-            yield self._rounded(inverse(floats), 56)
-        exact = [[Fraction(g, down) for g in row[: self.n]] for row in gradients]
-        with suppress(ZeroDivisionError):
-            yield self._rounded(inverse(exact), bits + 8)
+        """Approximate inverses Y = y / 2^shift of F'(m): from doubles, then to many digits.
 
-    def _rounded(self, matrix: list[list[Any]], digits: int) -> tuple[list[list[int]], int]:
+        If any Y passes the test, so does F'(m)^-1, for which eta, k0, M become at most
+        eta / (1 - k0), 0, M / (1 - k0). The second Y is as good up to 2^-29 of these bounds: it is
+        rounded to 2^-30 / sum |F'(m)|, and its digits allow for |Y| <= 2^(bits + scale), which
+        r M < 1 implies if every quadric has a quadratic part; if not, it is found in rationals.
+        """
+        n, down = self.n, 1 << (self.scale + bits)
+        jacobian = [row[:n] for row in gradients]
+        with suppress(ArithmeticError, ValueError):
+            yield self._rounded(inverse([[g / down for g in row] for row in jacobian]), 56)
+        total = sum(abs(g) for row in jacobian for g in row).bit_length() - (self.scale + bits)
+        if all(self.norms):
+            room = 2 * (max(total, 0) + max(bits, 64) + self.scale + n)
+            with localcontext(Context(room * 31 // 100 + 30, Emin=MIN_EMIN, Emax=MAX_EMAX)):
+                many = [[Decimal(g) / down for g in row] for row in jacobian]
+                found = _inverse_or_none(many)
+        else:
+            found = _inverse_or_none([[Fraction(g, down) for g in row] for row in jacobian])
+        if found is not None:
+            yield self._rounded(found, bits + 8, total + 30)
+
+    def _rounded(
+        self, matrix: list[list[Any]], digits: int, least: int | None = None
+    ) -> tuple[list[list[int]], int]:
         largest = Fraction(max(abs(x) for row in matrix for x in row))
         size = largest.numerator.bit_length() - largest.denominator.bit_length()
-        q = digits - size
+        q = digits - size if least is None else max(digits - size, least)
         power = Fraction(2) ** q
         return [[round(Fraction(x) * power) for x in row] for row in matrix], q + self.scale
 
@@ -522,6 +545,13 @@ def inverse(matrix: list[list[Any]]) -> list[list[Any]]:
             if i != k and factor:
                 work[i] = [x - factor * y for x, y in zip(work[i], work[k], strict=True)]
     return [row[n:] for row in work]
+
+
+def _inverse_or_none(matrix: list[list[Any]]) -> list[list[Any]] | None:
+    try:
+        return inverse(matrix)
+    except ArithmeticError:  # singular
+        return None
 
 
 class Root:
@@ -1257,10 +1287,10 @@ def main(arguments: list[str]) -> int:
             data = load(stream.read())
         claims = check(data)
     except CertificateError as error:
-        print(f"INVALID: {error}")
+        print(f"INVALID: {plain(error)}")
         return 1
     except (FormatError, OSError, UnicodeDecodeError) as error:
-        print(f"not a certificate: {error}", file=sys.stderr)
+        print(f"not a certificate: {plain(error)}", file=sys.stderr)
         return 3
     print(summary(claims))
     return 0

@@ -5,7 +5,7 @@
 needs `checker.py` beside it and nothing else. The sheet and its curvature forms are rebuilt from
 the file, and every claim is verified in integers, block by block, so that memory does not grow with
 the file. Exit codes as in `checker.py`: 0 every claim holds, 1 some claim is not supported, 3 not a
-compact certificate, 70 a worker process died.
+compact certificate, 70 a worker process died, memory is short, or a defect of this program.
 
 Why it is a proof: root number s lies in a box with exactly one zero (Krawczyk); on the whole box
 the sign functional of the k-th foldable vertex is negative if bit k of s is set and positive if
@@ -22,6 +22,7 @@ import binascii
 import hashlib
 import json
 import sys
+import traceback
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
@@ -36,6 +37,7 @@ else:
 
 FORMAT, VERSION = "exactfold compact certificate", 1
 MOST_BITS, MOST_WIDTH, MOST_BLOCK, MOST_UNKNOWNS = 52, 8, 1 << 16, 40
+MOST_LINE, MOST_DIGITS = 1 << 26, 4000  # bounds on the memory and the work one line can ask for
 UNPROVED = 255  # radius byte of a root given under "exact"
 COUNTS = "distinct with_multiplicity real nonreal true_branches"
 MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
@@ -52,12 +54,15 @@ def digest(previous: str, body: str) -> str:
 
 def lines(stream: IO[bytes]) -> Iterator[str]:
     """The JSON texts of a file, one a line; raises `checker.FormatError` where the chain breaks."""
-    previous = ""
-    for number, raw in enumerate(stream, 1):
-        body, tab, found = raw.decode("ascii", "replace").partition("\t")
-        if not tab or found != (previous := digest(previous, body)) + "\n":
+    previous, number = "", 0
+    while raw := stream.readline(MOST_LINE):
+        number += 1
+        body, _, found = raw.partition(b"\t")
+        text = body.decode("ascii", "replace")
+        previous = digest(previous, text)
+        if not body.isascii() or found != f"{previous}\n".encode():
             raise checker.FormatError(f"line {number} is cut off or was altered")
-        yield body
+        yield text
 
 
 def read_object(text: str, what: str) -> dict[str, Any]:
@@ -67,7 +72,7 @@ def read_object(text: str, what: str) -> dict[str, Any]:
         raise checker.FormatError(f"{what} holds a float: {number[:40]}")
 
     def integer(number: str) -> int:
-        if len(number) > 20:
+        if len(number) > MOST_DIGITS:
             raise checker.FormatError(f"{what} holds a long integer: {number[:40]}...")
         return int(number)
 
@@ -152,10 +157,12 @@ class Chambers:
         evidence = header["evidence"]
         checker.keys(evidence, "kind triangles chart block", "evidence")
         checker.require(evidence["kind"] == "chambers", "unknown kind of evidence")
-        self.sheet, self.sha256 = checker.read_sheet(header["pattern"])
-        checker.require(
-            len(self.sheet.boundary) == 4 and self.sheet.interior, "the sheet has not D = 1"
+        faces, vertices = (len(header["pattern"][k]) for k in ("triangles", "vertices"))
+        checker.require(  # by Euler; so the boundary is short before it is looked at
+            faces == 2 * vertices - 6 > 2, "the sheet has not four boundary vertices and an inner"
         )
+        self.sheet, self.sha256 = checker.read_sheet(header["pattern"])
+        checker.require(len(self.sheet.boundary) == 4, "the sheet has not D = 1")
         self.emptied = checker.check_triangles(self.sheet, evidence["triangles"])
         self.removed = len(self.sheet.interior) - len(self.emptied.interior)
         self.system = checker.BranchSystem(self.emptied, checker.read_chart(evidence["chart"]))
@@ -214,9 +221,15 @@ class Chambers:
         exact: dict[int, tuple[Root, str]] = {}
         for entry in checker.items(data["exact"], "exact"):
             checker.keys(entry, "root bits radius center assignment", "exact root")
-            box = checker.Box({k: entry[k] for k in ("bits", "radius", "center")}, self.size)
             index = checker.natural(entry["root"], "root")
-            checker.require(index < self.block and index not in exact, "a root is given twice")
+            checker.require(index < self.block, f"{what} has no root {index}")
+            checker.require(index not in exact, f"root {first + index} is given twice")
+            box = checker.Box({k: entry[k] for k in ("bits", "radius", "center")}, self.size)
+            checker.require(
+                box.bits <= MOST_DIGITS
+                and all(len(text) <= MOST_DIGITS for text in (entry["radius"], *entry["center"])),
+                f"root {first + index} is out of range",
+            )
             root = Root(box.center, box.radius, box.bits)
             exact[index] = (root, checker.text_of(entry["assignment"]))
         centers, radii, folds = parts
@@ -322,19 +335,28 @@ def check(
         else:
             start(first)
         waiting: deque[Future[str | None]] = deque()
+
+        def settle(most: int) -> None:
+            while len(waiting) > most:
+                _raise(waiting.popleft().result())
+
         for number in range(chambers.blocks):
-            text = next(found, None)
-            checker.require(
-                text is not None, f"only {number} of {chambers.blocks} blocks are there"
-            )
+            try:
+                text = next(found, None)
+            except checker.FormatError:
+                settle(0)  # a block before it that does not hold comes first
+                raise
+            if text is None:
+                settle(0)
+                raise checker.CertificateError(
+                    f"only {number} of {chambers.blocks} blocks are there"
+                )
             if pool is None:
                 _raise(work(text, number))
                 continue
             waiting.append(pool.submit(work, text, number))
-            if len(waiting) > 2 * workers:
-                _raise(waiting.popleft().result())
-        for future in waiting:
-            _raise(future.result())
+            settle(2 * workers)
+        settle(0)
         last = next(found, None)
         checker.require(last is not None, "the claims are missing")
         claims = read_object(last or "", "the last line")
@@ -357,19 +379,25 @@ def _raise(reason: str | None) -> None:
 
 def main(arguments: list[str]) -> int:
     """Check one file and print the verdict; the exit code."""
-    if len(arguments) not in (1, 2) or not "".join(arguments[1:] or ["1"]).isdecimal():
+    workers = arguments[1] if len(arguments) == 2 else "1"
+    usable = workers.isascii() and workers.isdecimal() and len(workers) < 5
+    if len(arguments) not in (1, 2) or not usable:
         print("usage: python compact_checker.py CERTIFICATE [WORKERS]", file=sys.stderr)
         return 2
     try:
-        claims = check(arguments[0], int("".join(arguments[1:] or ["1"])))
+        claims = check(arguments[0], int(workers))
     except checker.CertificateError as error:
-        print(f"INVALID: {error}")
+        print(f"INVALID: {checker.plain(error)}")
         return 1
     except (checker.FormatError, OSError) as error:
-        print(f"not a compact certificate: {error}", file=sys.stderr)
+        print(f"not a compact certificate: {checker.plain(error)}", file=sys.stderr)
         return 3
-    except BrokenExecutor:
-        print("a worker process died: nothing is known of the file", file=sys.stderr)
+    except (BrokenExecutor, MemoryError):
+        message = "a worker process died, or memory is short: nothing is known of the file"
+        print(message, file=sys.stderr)
+        return 70
+    except Exception:  # never to be read as one of the other codes
+        traceback.print_exc()
         return 70
     print(checker.summary(claims))
     return 0

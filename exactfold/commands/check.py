@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +30,11 @@ def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, st
 def _verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, str]:
     try:
         with open(path, "rb") as stream:
-            compact = _COMPACT.search(stream.read(4096)) is not None
+            first = stream.readline(compact_checker.MOST_LINE)
     except OSError as error:
         raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
     try:
-        if compact:
+        if _is_compact(first):
             from exactfold.scale.check import check_compact  # needs NumPy, as no other kind does
             from exactfold.scale.stream import available_cores
 
@@ -42,7 +44,16 @@ def _verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, s
         claims = judge.check(data)
         return claims, judge.summary(claims)
     except checker.CertificateError as error:
-        return None, str(error)
+        return None, checker.plain(error)
+
+
+def _is_compact(first: bytes) -> bool:
+    """Whether a first line is of a compact certificate: by its format, else by its digest."""
+    if _COMPACT.search(first[:4096]):
+        return True
+    with suppress(checker.FormatError):
+        return b"\t" in first and next(compact_checker.lines(BytesIO(first)), None) is not None
+    return False
 
 
 def _load(path: Path) -> tuple[Any, Any]:
@@ -56,4 +67,4 @@ def _load(path: Path) -> tuple[Any, Any]:
     except OSError as error:
         raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
     except (checker.FormatError, UnicodeDecodeError) as error:
-        raise CertificateFormatError(f"{path}: {error}") from None
+        raise CertificateFormatError(f"{path}: {checker.plain(error)}") from None

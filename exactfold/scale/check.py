@@ -46,7 +46,7 @@ def check_compact(
         with worker_environment():
             return compact_checker.check(os.fspath(path), workers, start, work, least)
     except checker.FormatError as error:
-        raise CertificateFormatError(f"{path}: {error}") from None
+        raise CertificateFormatError(f"{path}: {checker.plain(error)}") from None
     except BrokenExecutor:
         raise WorkerDiedError("a worker process died; nothing is known of the file") from None
     except OSError as error:

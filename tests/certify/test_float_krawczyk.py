@@ -3,6 +3,8 @@
 import random
 from fractions import Fraction
 from itertools import product
+from math import isqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +18,17 @@ from exactfold.certify.float_krawczyk import (
     inverse_each,
     scaled_rows,
 )
+from exactfold.checker import CertificateError, Krawczyk
 from exactfold.system.quadratic import QuadraticSystem
+
+
+def forms(system: QuadraticSystem) -> list[dict[tuple[int, int], int]]:
+    """The quadrics as the stand-alone checker holds them."""
+    return [
+        {(i, j): w for i, row in enumerate(matrix) for j, w in enumerate(row) if w}
+        for matrix in system.matrices
+    ]
+
 
 Pairs = list[tuple[Fraction, Fraction]]
 
@@ -194,6 +206,44 @@ def test_signs_are_those_of_the_exact_functional_on_the_box(seed: int) -> None:
                 assert abs(value) <= reach * 1.001 + 2.0**-40 * 10 * sum(
                     abs(a * b) for a, b in zip(row, [*center, 1 << 40], strict=True)
                 )
+
+
+def test_integers_accept_what_floats_accept() -> None:
+    """Rows of the inverse that differ by 2^70: rounded to one unit, the small ones would vanish."""
+    a, b, linear = 2**50, 2**50 + 2**31, 2**60
+    system = QuadraticSystem.from_rational(
+        [
+            [[2, 0, -(a + b)], [0, 0, 0], [-(a + b), 0, 2 * a * b]],
+            [[0, 0, 0], [0, 2, linear], [0, linear, 0]],
+        ]
+    )
+    test, exact = FloatKrawczyk(system), Krawczyk(SimpleNamespace(size=2, quadrics=forms(system)))
+    exponents = np.arange(36)
+    boxes = FloatBoxes(0, np.array([[a, 0]] * len(exponents)), exponents)
+    accepted = test.verify(boxes)
+    assert accepted[26]
+    assert not accepted[31:].any()  # the second zero is not far away
+    for e in exponents.tolist():
+        try:
+            exact.check([a, 0], 1 << e, 0)
+        except CertificateError:
+            assert e > 29
+            assert not accepted[e]
+
+
+@pytest.mark.parametrize("linear", [False, True])
+def test_inverses_to_many_digits_prove_zeros_that_doubles_cannot_tell_apart(linear: bool) -> None:
+    """(x - a)(x - b) = 0 with b - a = 2^-300, and a second equation with or without squares."""
+    bits, a, b = 700, 1, 1 + Fraction(1, 2**300)
+    rows = [[[2, 0, -(a + b)], [0, 0, 0], [-(a + b), 0, 2 * a * b]]]
+    rows += [[[0, 0, -1], [0, 0 if linear else 2, 1], [-1, 1, 0]]]  # y = x or y^2 + y = x
+    system = QuadraticSystem.from_rational(rows)
+    exact = Krawczyk(SimpleNamespace(size=2, quadrics=forms(system)))
+    y = (1 << bits) if linear else (isqrt(5 << 2 * bits) - (1 << bits)) // 2
+    exact.check([1 << bits, y], 1 << 300, bits)
+    for wrong in ([1 << bits, y], 1 << 400), ([(1 << bits) + (1 << 320), y], 1 << 300):
+        with pytest.raises(CertificateError):
+            exact.check(*wrong, bits)
 
 
 def test_singular_matrices_spoil_only_their_own_inverse() -> None:

@@ -1,7 +1,5 @@
 """Compact certificates with anything wrong in them are refused, by both checkers."""
 
-import base64
-import json
 import random
 import shutil
 import subprocess
@@ -11,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from compact_files import Lines, bodies, chained, listed_exactly, put, raw, refused
 from sheets import nested_triangles, reflex_corners, scrambled
 
 from exactfold import compact_checker, random_square
@@ -20,7 +19,6 @@ from exactfold.scale.check import CertificateError, check_compact
 from exactfold.scale.read import read_branches
 from exactfold.scale.stream import count_streaming
 
-Lines = list[dict[str, Any]]
 SIZE, BLOCK = 6, 16
 
 
@@ -31,35 +29,6 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> bytes:
         patch.setattr(chambers_module, "BLOCK", BLOCK)
         count_streaming(random_square(SIZE, seed=2), path)
     return path.read_bytes()
-
-
-def bodies(data: bytes) -> Lines:
-    return [json.loads(line.partition(b"\t")[0]) for line in data.splitlines()]
-
-
-def chained(lines: Lines) -> bytes:
-    """A file with right digests, whatever its lines say."""
-    digest, text = "", ""
-    for line in lines:
-        body = json.dumps(line, separators=(",", ":"))
-        digest = compact_checker.digest(digest, body)
-        text += f"{body}\t{digest}\n"
-    return text.encode()
-
-
-def raw(line: dict[str, Any], key: str) -> bytearray:
-    return bytearray(base64.b64decode(line[key]))
-
-
-def put(line: dict[str, Any], key: str, data: bytes | bytearray) -> None:
-    line[key] = base64.b64encode(data).decode()
-
-
-def refused(data: bytes, path: Path, match: str) -> None:
-    path.write_bytes(data)
-    for fast in (True, False):
-        with pytest.raises(CertificateError, match=match):
-            check_compact(path, fast=fast)
 
 
 def flip_letter(lines: Lines) -> None:
@@ -185,6 +154,50 @@ def other_kind(lines: Lines) -> None:
     lines[0]["evidence"]["kind"] = "isolated"
 
 
+def exact_root_true(lines: Lines) -> None:
+    listed_exactly(lines, root=True)
+
+
+def exact_root_elsewhere(lines: Lines) -> None:
+    listed_exactly(lines, root=BLOCK)
+
+
+def exact_root_twice(lines: Lines) -> None:
+    listed_exactly(lines)
+    lines[1]["exact"] *= 2
+
+
+def exact_point(lines: Lines) -> None:
+    listed_exactly(lines, radius="0")
+
+
+def exact_with_other_digits(lines: Lines) -> None:
+    listed_exactly(lines, radius="\u0661")
+
+
+def exact_without_end(lines: Lines) -> None:
+    listed_exactly(lines, bits=8000)
+
+
+def exact_long_center(lines: Lines) -> None:
+    listed_exactly(lines, center=["1" * 9000] * SIZE)
+
+
+def exact_flat_fold(lines: Lines) -> None:
+    listed_exactly(lines)
+    entry = lines[1]["exact"][0]
+    entry["assignment"] = "F" + entry["assignment"][1:]
+
+
+def chart_of_a_notch(lines: Lines) -> None:
+    lines[0]["evidence"]["chart"] = {"0": "1"}
+
+
+def no_such_triangle(lines: Lines) -> None:
+    triangle = {"corners": [0, 1, 2], "inside": [4], "multipliers": ["1"]}
+    lines[0]["evidence"]["triangles"] = [triangle]
+
+
 LIES: dict[Callable[[Lines], None], str] = {
     flip_letter: "folds are",
     swap_roots: "has not the sign",
@@ -211,6 +224,16 @@ LIES: dict[Callable[[Lines], None], str] = {
     moved_vertex: "Krawczyk|face|sign",
     other_blocks: "does not divide",
     other_kind: "unknown kind",
+    exact_root_true: "root is not a natural number",
+    exact_root_elsewhere: "block 0 has no root 16",
+    exact_root_twice: "root 0 is given twice",
+    exact_point: "radius is not positive",
+    exact_with_other_digits: "is not an integer",
+    exact_without_end: "root 0 is out of range",
+    exact_long_center: "root 0 is out of range",
+    exact_flat_fold: "root 0: folds are",
+    chart_of_a_notch: "needs a reflex corner",
+    no_such_triangle: "is no 3-cycle",
 }
 
 
@@ -225,8 +248,12 @@ def test_lies_with_right_digests_are_refused(
 
 def test_the_file_itself_is_accepted(written: bytes, tmp_path: Path) -> None:
     path = tmp_path / "c.txt"
-    path.write_bytes(chained(bodies(written)))
+    lines = bodies(written)
+    path.write_bytes(chained(lines))
     assert path.read_bytes() == written
+    assert check_compact(path) == check_compact(path, fast=False)
+    listed_exactly(lines)
+    path.write_bytes(chained(lines))
     assert check_compact(path) == check_compact(path, fast=False)
 
 
@@ -263,7 +290,9 @@ def test_random_bytes_of_a_block_never_pass_for_another_count(
         (lambda data: chained([{**bodies(data)[0], "version": 9}]), "version 9"),
         (lambda data: chained([{**bodies(data)[0], "more": 1}]), "header"),
         (lambda data: chained([{**bodies(data)[0], "more": 1.5}]), "float"),
-        (lambda data: chained([{**bodies(data)[0], "more": 10**30}]), "long integer"),
+        (lambda data: chained([{**bodies(data)[0], "more": 10**4001}]), "long integer"),
+        (lambda data: data.replace(b"nappes", b"napp\xe9s"), "line 1"),
+        (lambda data: b"[" * 99 + b"\n", "line 1"),
     ],
 )
 def test_other_files_are_no_compact_certificates(
@@ -307,6 +336,8 @@ def test_two_files_are_enough_to_check(written: bytes, tmp_path: Path) -> None:
     flip_letter(lines)
     (tmp_path / "bad.txt").write_bytes(chained(lines))
     (tmp_path / "none.txt").write_bytes(written[:-1])
+    rows = chained(lines).splitlines(keepends=True)
+    (tmp_path / "both.txt").write_bytes(b"".join([*rows[:3], rows[3][:-9] + b"\n", *rows[4:]]))
 
     def run(*arguments: str) -> tuple[int, str]:
         command = [sys.executable, "-S", "-E", "compact_checker.py", *arguments]
@@ -319,4 +350,8 @@ def test_two_files_are_enough_to_check(written: bytes, tmp_path: Path) -> None:
     assert run("bad.txt")[0] == 1
     assert run("none.txt")[0] == 3
     assert run()[0] == 2
-    assert run("good.txt", "x")[0] == 2
+    for workers in ("x", "", "-1", "\u0662", "9" * 5000):
+        assert run("good.txt", workers)[0] == 2
+    # Whichever comes first in the file is what is said, however many look at it.
+    assert run("both.txt") == run("both.txt", "2")
+    assert run("both.txt")[0] == 1
