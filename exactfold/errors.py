@@ -99,6 +99,10 @@ class ForeignJournalError(InputError):
     """A file to be resumed belongs to another pattern or version, or is no compact certificate."""
 
 
+class JournalInUseError(InputError):
+    """Another run is writing the file; this one has left it alone."""
+
+
 # --- patterns ------------------------------------------------------------------------------------
 
 

@@ -90,6 +90,7 @@ class Streaming:
                 self.file,
                 workers=self.workers or available_cores(),
                 resume=self.resume,
+                replace=False,
                 progress=partial(bar, "proving"),
                 verified=partial(bar, "verifying"),
                 engine=engine,

@@ -111,6 +111,7 @@ def count_streaming(
     *,
     workers: int = 1,
     resume: bool = False,
+    replace: bool = True,
     progress: Progress | None = None,
     verified: Progress | None = None,
     engine: Engine | None = None,
@@ -124,12 +125,13 @@ def count_streaming(
 
     Up to `workers` processes share the blocks, fewer if there is little to do; a script that asks
     for several needs the usual `if __name__ == "__main__"`. With `resume`, a file left by an
-    interrupted run is verified and continued; otherwise it is replaced. `progress(done, total)`
-    counts sign vectors, and `verified` those taken over. An `engine`, such as `dask_engine`, takes
-    the place of the `workers`.
+    interrupted run is verified and continued; otherwise it is replaced, or refused without
+    `replace`. `progress(done, total)` counts sign vectors, and `verified` those taken over. An
+    `engine`, such as `dask_engine`, takes the place of the `workers`.
 
     Raises `NotApplicableError` unless D = 1 and some vertex is foldable, `ForeignJournalError`,
-    `UnwritableFileError`, `WorkerDiedError`. An interruption leaves a file that can be resumed.
+    `JournalInUseError` while another run writes the file, `UnwritableFileError`, `UsageError`,
+    `WorkerDiedError`. An interruption leaves a file that can be resumed.
 
     >>> import os, tempfile
     >>> from exactfold.pattern.random_squares import random_square
@@ -153,7 +155,7 @@ def count_streaming(
 
         journal = Journal.resumed(path, header, refusal)
     else:
-        journal = Journal(path, header)
+        journal = Journal(path, header, replace=replace)
     resumed = journal.blocks
     left = range(resumed, chambers.blocks)
     with closing(journal), closing((engine or _processes(workers))(chambers, left)) as blocks:
@@ -164,6 +166,8 @@ def count_streaming(
                 progress(journal.blocks * chambers.block_size, total)
         if not tally.unproved:
             journal.finish(claims_line(chambers))
+        else:
+            journal.sync()
     proved = journal.complete
     return StreamedCount(
         pattern,
