@@ -37,7 +37,7 @@ else:
 
 FORMAT, VERSION = "exactfold compact certificate", 1
 MOST_BITS, MOST_WIDTH, MOST_BLOCK, MOST_UNKNOWNS = 52, 8, 1 << 16, 40
-MOST_LINE, MOST_DIGITS = 1 << 26, 4000  # bounds on the memory and the work one line can ask for
+MOST_LINE, MOST_DIGITS = 1 << 25, 4000  # bounds on the memory and the work one line can ask for
 UNPROVED = 255  # radius byte of a root given under "exact"
 COUNTS = "distinct with_multiplicity real nonreal true_branches"
 MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
