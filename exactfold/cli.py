@@ -22,6 +22,7 @@ from exactfold.commands.shell import (
     Snap,
     apart,
     not_a_dash,
+    one_thread,
     output_failed,
     reported,
     standard_input,
@@ -309,6 +310,7 @@ def _options(
 
 def main() -> None:
     """Entry point of the `exactfold` command."""
+    one_thread()
     if sys.stdout is None:  # it was closed before the start
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
     if isinstance(sys.stdout, io.TextIOWrapper):  # names of files that the terminal cannot show

@@ -638,6 +638,21 @@ def test_full_disk(option):
     assert result.stderr == "exactfold: cannot write the output: No space left on device\n"
 
 
+def test_one_thread_unless_the_environment_says_otherwise():
+    script = (
+        "import atexit, os; from exactfold.cli import main\n"
+        "atexit.register(lambda: print(os.environ['OPENBLAS_NUM_THREADS']))\n"
+        "main()"
+    )
+    for given, expected in (({}, "1"), ({"OPENBLAS_NUM_THREADS": "3"}, "3")):
+        environment = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"} | given
+        command = [sys.executable, "-c", script, "--version"]
+        result = subprocess.run(
+            command, capture_output=True, text=True, check=False, env=environment
+        )
+        assert result.stdout.splitlines()[-1] == expected
+
+
 def test_closed_standard_output(two_vertex):
     script = "import sys; sys.stdout = None; from exactfold.cli import main; main()"
     command = [sys.executable, "-c", script, "count", str(two_vertex)]
