@@ -29,7 +29,7 @@ from exactfold.verdict import PROVED, UNDECIDED
 ADVISED = 12
 """Foldable vertices from which plain `count` takes ten times as long, and doubles with each."""
 
-HANDED_OVER = 10
+HANDED_OVER = 12
 """Most foldable vertices of a pattern with open sign vectors that is also counted otherwise."""
 
 
@@ -116,7 +116,7 @@ def streamed_count(streamed: StreamedCount) -> BranchCount:
         streamed.pattern,
         streamed.status,
         "streaming",
-        streamed.reason,
+        streamed.reason if proved else f"{streamed.reason}; {_culprits(streamed)}",
         why="a block of sign vectors at a time",
         distinct=streamed.distinct,
         with_multiplicity=streamed.with_multiplicity,
@@ -128,6 +128,20 @@ def streamed_count(streamed: StreamedCount) -> BranchCount:
         open_questions=tuple(_questions(streamed)),
         seconds=streamed.elapsed,
     )
+
+
+def _culprits(streamed: StreamedCount) -> str:
+    """What keeps the other sign vectors from being proved, and what else can be tried."""
+    names = streamed.pattern.foldable_vertices
+    zeros = {k for root in streamed.open_roots for k, s in enumerate(root.limit) if s == "0"}
+    if not zeros:
+        return "for each other the reason is below"
+    flat = ", ".join(str(names[k]) for k in sorted(zeros))
+    several = "vertices" if len(zeros) > 1 else "vertex"
+    text = f"on the others {several} {flat} look{'' if len(zeros) > 1 else 's'} flat"
+    if streamed.foldable > HANDED_OVER:
+        text += ": count without --stream also looks for multiple roots"
+    return text
 
 
 def _questions(streamed: StreamedCount) -> Iterator[str]:

@@ -94,11 +94,8 @@ class Settler:
     def _multiple(self, flat: tuple[int, ...], precision: str) -> OpenEnd:
         interior = self.functionals.chart.branch_system.pattern.interior
         names = ", ".join(str(self.labels[interior[k]]) for k in flat)
-        return OpenEnd(
-            f"vertex {names} flat {precision}: {1 << len(flat)} paths seem to meet in a "
-            "multiple root",
-            flat,
-        )
+        which = f"{'vertex' if len(flat) == 1 else 'vertices'} {names} flat {precision}"
+        return OpenEnd(f"{which}: {1 << len(flat)} paths seem to meet in a multiple root", flat)
 
     def _classified(self, signs: Sequence[int], box: IsolatingBox) -> ExactRoot | str:
         """The box with its folds if they are decided and its vertex signs are those asked for."""

@@ -106,6 +106,10 @@ def test_what_stays_open_is_undecided(tmp_path: Path, monkeypatch: pytest.Monkey
     assert "nothing is proved" in result.stderr
     data = json.loads(run(*given, "--resume", "--json").stdout)
     assert data["status"] == "undecided"
+    assert data["reason"] == (
+        "2 of 4 solutions isolated; on the others vertex 5 looks flat: "
+        "count without --stream also looks for multiple roots"
+    )
     assert data["distinct"] is data["real"] is data["nonreal"] is data["degree"] is None
     assert data["stream"]["groups"] == {"+0": ["++", "+-"]}
     assert [root["signs"] for root in data["stream"]["open"]] == ["++", "+-"]
