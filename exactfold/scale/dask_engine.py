@@ -65,6 +65,8 @@ def dask_engine(
                         n_workers=workers or available_cores(),
                         threads_per_worker=1,
                         dashboard_address=None,
+                        # Any free port: two runs at once would want the same one, and say so.
+                        scheduler_kwargs={"dashboard_address": "127.0.0.1:0", "dashboard": False},
                         silence_logs=logging.CRITICAL,
                     )
                     address = stack.enter_context(cluster).scheduler_address

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import socket
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -125,7 +127,11 @@ def test_a_local_cluster_by_command(tmp_path: Path) -> None:
     write_fold(pattern, fold)
     command = [sys.executable, "-c", "from exactfold.cli import main; main()", "count", str(fold)]
     options = ["--stream", str(file), "--dask", "local", "--workers", "1", "--json"]
-    run = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
+    with socket.socket() as other:
+        with suppress(OSError):  # the port of dask's dashboard is taken, by us or by others
+            other.bind(("127.0.0.1", 8787))
+            other.listen()
+        run = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
     assert (run.returncode, run.stderr) == (0, "")
     assert json.loads(run.stdout)["distinct"] == 2048
     count_streaming(pattern, tmp_path / "whole.txt")
