@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from fractions import Fraction
@@ -175,6 +176,21 @@ def test_snap_records_the_move(tmp_path):
     exact = CreasePattern([*CORNERS[:4], ("1/2", "1/4")], FACES)
     assert snapped["pattern"]["sha256"] == exact.sha256 != plain["pattern"]["sha256"]
     assert "moved by up to 0.0001" in run("count", path, "--snap", 100).stdout
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="signals of POSIX")
+def test_the_line_of_progress_leaves_interrupts_to_the_main_thread(monkeypatch):
+    """Otherwise one that the main thread holds back would be delivered all the same."""
+    masks = []
+
+    def masked(self):
+        masks.append(signal.pthread_sigmask(signal.SIG_BLOCK, ()))
+
+    monkeypatch.setattr(Bar, "show", masked)
+    with Bar("reading", delay=0) as bar:
+        bar.timer.join()
+    assert masks == [{signal.SIGINT, signal.SIGTERM}]
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
 def test_no_progress_off_a_terminal():

@@ -111,6 +111,20 @@ def interruptible() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
+@contextmanager
+def _masked() -> Iterator[None]:
+    """Threads started in this block, and those they start, leave signals to the main thread."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    held = {signal.SIGINT, signal.SIGTERM}
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, held)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 class Bar:
     """Progress on stderr, shown once the work has taken a second; silent off a terminal.
 
@@ -124,7 +138,8 @@ class Bar:
         self.display: Display | None = None
         self.timer = threading.Timer(delay, self.show)
         self.timer.daemon = True
-        self.timer.start()
+        with _masked():  # a thread that takes Ctrl-C would undo `held_interrupts` in the main one
+            self.timer.start()
 
     def __enter__(self) -> Bar:
         return self
