@@ -23,10 +23,10 @@ def proved(error: float, flat: Sequence[int], emptied: bool) -> str:
         what = f"the signs shown, 0 at {named(flat)}, where it is flat"
         kind = f"solution of multiplicity {2 ** len(flat) if len(flat) < 10 else f'2^{len(flat)}'}"
     inside = " of the pattern with its triangulated triangles emptied" if emptied else ""
-    where = f"within {error:.1g} of the heights given, in the norm of gradients"
+    where = f" within {error:.1g} of the heights given, in the norm of gradients"
     if not error:
-        where = "with exactly the heights given"
-    return f"exactly one branch has {what}; it is a {kind}{inside} {where}"
+        where = ", and the heights given are exact"
+    return f"exactly one branch has {what}; it is a {kind}{inside}{where}"
 
 
 def undecided(error: float, loose: Sequence[int]) -> str:
