@@ -1250,10 +1250,7 @@ def check_branches(
         allowed = {1: (seen,), -1: (mirror,)}.get(side or 0, (seen, mirror))
         require(
             any(
-                branch["vertex_signs"] == up_down
-                and isinstance(branch["assignment"], str)
-                and len(branch["assignment"]) == len(letters)
-                and all(a in (b, "U") for a, b in zip(branch["assignment"], letters, strict=True))
+                branch["vertex_signs"] == up_down and agrees(text_of(branch["assignment"]), letters)
                 for up_down, letters in allowed
             )
             and branch["representative"] == ("saddle" if side else "either"),
@@ -1270,6 +1267,13 @@ def check_branches(
     for (up_down, letters), (root, _) in zip(texts, roots, strict=True):
         key = (up_down, "".join(letters[k] for k in known))
         require(kinds.setdefault(key, root.kind) == root.kind, "a root may be counted twice")
+
+
+def agrees(claimed: str, letters: str) -> bool:
+    """Whether every letter claimed is right; U claims nothing."""
+    return len(claimed) == len(letters) and all(
+        a in (b, "U") for a, b in zip(claimed, letters, strict=True)
+    )
 
 
 def digit(sign: int | None) -> int:

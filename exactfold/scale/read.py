@@ -1,9 +1,9 @@
-"""Branches out of compact certificates, or straight from the prover for small patterns."""
+"""Branches out of compact certificates."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from exactfold import checker, compact_checker
 from exactfold.branches.branch import Branch
@@ -13,12 +13,9 @@ from exactfold.certify.box import IsolatingBox
 from exactfold.errors import CertificateFormatError, ExactfoldError, UnreadableFileError
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.scale.chambers import Chambers, ProvedBlock
-from exactfold.scale.stream import OpenRoot, open_root
+from exactfold.scale.chambers import Chambers
 
-Progress = Callable[[int, int], None]
-
-_LETTERS = {"M": "V", "V": "M", "F": "F"}
+_LETTERS = {"M": "V", "V": "M", "F": "F", "U": "U"}
 
 
 def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
@@ -71,34 +68,6 @@ def _branches(found: Iterator[str]) -> Iterator[Branch]:
             yield maker.branch(block.first + j, box, letters)
 
 
-def branches_in_memory(
-    pattern: CreasePattern, *, progress: Progress | None = None
-) -> tuple[list[Branch], list[OpenRoot]]:
-    """All proved branches, sorted, and the sign vectors without one; both in memory.
-
-    If none is open, the branches are all there are, each a simple zero: 2^n in number. Raises
-    `NotApplicableError` like `count_streaming`, which is the function for large patterns.
-
-    >>> from exactfold.pattern.families import single_vertex
-    >>> branches, open_roots = branches_in_memory(single_vertex(4))
-    >>> [branch.sign_text for branch in branches], open_roots
-    (['-', '+'], [])
-    """
-    chambers = Chambers.of(pattern)
-    maker = _Maker(chambers)
-    branches: list[Branch] = []
-    unproved: list[OpenRoot] = []
-    for index in range(chambers.blocks):
-        block = chambers.prove(index)
-        branches += maker.branches(block)
-        first = index * chambers.block_size
-        unproved += [open_root(chambers, first + j, end) for j, end in block.open.items()]
-        if progress is not None:
-            progress(first + chambers.block_size, 1 << chambers.size)
-    branches.sort(key=Branch.sort_key)
-    return branches, unproved
-
-
 class _Maker:
     """Branches of one pattern from boxes, numbers and letters."""
 
@@ -128,18 +97,3 @@ class _Maker:
             "saddle" if side else "either",
             self.rows,
         )
-
-    def branches(self, block: ProvedBlock) -> Iterator[Branch]:
-        """All proved branches of a block."""
-        first = block.index * self.chambers.block_size
-        boxes = block.boxes
-        centers, exponents = boxes.centers.tolist(), boxes.exponents.tolist()
-        proved, valleys = boxes.proved.tolist(), block.valleys.tolist()
-        for j, center in enumerate(centers):
-            if proved[j]:
-                box = IsolatingBox(tuple(center), (), 1 << exponents[j], boxes.bits)
-                letters = "".join("V" if valley else "M" for valley in valleys[j])
-                yield self.branch(first + j, box, letters)
-            elif j in block.exact:
-                root = block.exact[j]
-                yield self.branch(first + j, root.box, root.assignment)

@@ -23,7 +23,10 @@ _FAR = 1e100
 
 @dataclass(frozen=True)
 class ExactRoot:
-    """An isolating box of a zero with the signs asked for, and the letters of its folds."""
+    """An isolating box of a zero with the signs asked for, and the letters of its folds.
+
+    "U" where a fold is not decided: flat, or nearly so.
+    """
 
     box: IsolatingBox
     assignment: str
@@ -98,14 +101,11 @@ class Settler:
         return OpenEnd(f"{which}: {1 << len(flat)} paths seem to meet in a multiple root", flat)
 
     def _classified(self, signs: Sequence[int], box: IsolatingBox) -> ExactRoot | str:
-        """The box with its folds if they are decided and its vertex signs are those asked for."""
+        """The box, perhaps sharper, and its folds if its vertex signs are those asked for."""
         labels = self.labels
         root, found, folds = decide_signs(self.functionals.chart, self.functionals, BoxRoot(box))
         for wanted, (vertex, sign) in zip(signs, found.items(), strict=True):
             if sign != wanted:
                 state = "undecided" if sign is None else "another"
                 return f"the sign of vertex {labels[vertex]} is {state}"
-        unknown = [f"{labels[i]}-{labels[j]}" for (i, j), sign in folds.items() if sign is None]
-        if unknown:
-            return f"fold {', '.join(unknown)} undecided"
         return ExactRoot(root.box, "".join(LETTERS[sign] for _, sign in sorted(folds.items())))
