@@ -24,39 +24,9 @@ from math import isqrt, lcm
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING or __package__:
-    from exactfold.checker import (
-        CertificateError,
-        FormatError,
-        Sheet,
-        close_flat,
-        items,
-        keys,
-        natural,
-        parse_integer,
-        parse_rational,
-        plain,
-        read_json,
-        read_sheet,
-        require,
-        turn,
-    )
+    from exactfold import checker
 else:
-    from checker import (
-        CertificateError,
-        FormatError,
-        Sheet,
-        close_flat,
-        items,
-        keys,
-        natural,
-        parse_integer,
-        parse_rational,
-        plain,
-        read_json,
-        read_sheet,
-        require,
-        turn,
-    )
+    import checker
 
 FORMAT, VERSION = "exactfold branch", 1
 MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
@@ -66,13 +36,8 @@ Heights = Mapping[int, int]
 
 def load(text: str) -> dict[str, Any]:
     """The JSON object of a certificate of one branch; raises `FormatError`."""
-    data = read_json(text)
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise FormatError(f'not a certificate of one branch: "format" is not "{FORMAT}"')
-    if type(data.get("version")) is not int or data["version"] != VERSION:
-        raise FormatError(f"version {data.get('version')!a} is not known to this checker")
-    keys(data, "format version pattern claims evidence", "certificate", FormatError)
-    return data
+    names = "format version pattern claims evidence"
+    return checker.read_document(text, FORMAT, VERSION, names)
 
 
 def check(data: dict[str, Any]) -> dict[str, Any]:
@@ -86,14 +51,16 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     try:
         return _check(data)
     except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
+        raise checker.CertificateError(
+            f"malformed: {type(error).__name__} while checking"
+        ) from error
 
 
 def _check(data: dict[str, Any]) -> dict[str, Any]:
-    given, digest = read_sheet(data["pattern"])
+    given, digest = checker.read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
-    keys(claims, "gauge vertex_signs assignment squared_distance", "claims")
-    keys(evidence, "emptied heights denominator", "evidence")
+    checker.keys(claims, "gauge vertex_signs assignment squared_distance", "claims")
+    checker.keys(evidence, "emptied heights denominator", "evidence")
     unit = lcm(*(x.denominator for point in given.points.values() for x in point))
     points: dict[int, Any] = {
         v: (int(x * unit), int(y * unit)) for v, (x, y) in given.points.items()
@@ -101,20 +68,20 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     sheet, removed = _emptied(given, points, evidence["emptied"])
     corner = None
     if claims["gauge"] != "rim":
-        require(claims["gauge"] == "saddle", "the gauge is neither saddle nor rim")
-        require(len(sheet.boundary) == 4, "there are not four boundary vertices")
+        checker.require(claims["gauge"] == "saddle", "the gauge is neither saddle nor rim")
+        checker.require(len(sheet.boundary) == 4, "there are not four boundary vertices")
         sheet, corner = _closed(sheet)
     _check_convex(sheet)
-    texts = items(evidence["heights"], "heights", len(points))
-    require(all((texts[v] is None) == (v in removed) for v in points), "heights do not fit")
-    heights = {v: parse_integer(texts[v]) for v in points if v not in removed}
-    q = parse_integer(evidence["denominator"])
-    require(q > 0, "the denominator is not positive")
+    texts = checker.items(evidence["heights"], "heights", len(points))
+    checker.require(all((texts[v] is None) == (v in removed) for v in points), "heights do not fit")
+    heights = {v: checker.parse_integer(texts[v]) for v in points if v not in removed}
+    q = checker.parse_integer(evidence["denominator"])
+    checker.require(q > 0, "the denominator is not positive")
     if claims["gauge"] == "saddle":
         _check_gauge(sheet, heights, corner)
     proof = _Proof(sheet, heights, q, corner)
-    require(
-        proof.squared_distance <= parse_rational(claims["squared_distance"]),
+    checker.require(
+        proof.squared_distance <= checker.parse_rational(claims["squared_distance"]),
         "the distance is larger than claimed",
     )
     _check_signs(given, claims["vertex_signs"], proof, removed)
@@ -125,54 +92,69 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
 # --- the sheet -----------------------------------------------------------------------------------
 
 
-def _emptied(given: Sheet, points: dict[int, Any], evidence: Any) -> tuple[Sheet, set[int]]:
+def _emptied(
+    given: checker.Sheet, points: dict[int, Any], evidence: Any
+) -> tuple[checker.Sheet, set[int]]:
     """The sheet in integer coordinates without the vertices inside the 3-cycles of the list."""
     removed: set[int] = set()
     added: list[tuple[int, ...]] = []
     edges = set(given.edges)
-    for entry in items(evidence, "emptied"):
-        keys(entry, "corners inside", "3-cycle")
-        a, b, c = (natural(v, "corner") for v in items(entry["corners"], "corners", 3))
+    for entry in checker.items(evidence, "emptied"):
+        checker.keys(entry, "corners inside", "3-cycle")
+        a, b, c = (
+            checker.natural(v, "corner") for v in checker.items(entry["corners"], "corners", 3)
+        )
         for i, j in ((a, b), (b, c), (a, c)):
-            require((min(i, j), max(i, j)) in edges, f"{i}-{j} is no edge")
-        for v in (natural(v, "vertex inside") for v in items(entry["inside"], "inside")):
-            sides = [turn(points[i], points[j], points[v]) for i, j in ((a, b), (b, c), (c, a))]
-            require(min(sides) > 0, f"vertex {v} is not inside {(a, b, c)}")
+            checker.require((min(i, j), max(i, j)) in edges, f"{i}-{j} is no edge")
+        for v in (
+            checker.natural(v, "vertex inside") for v in checker.items(entry["inside"], "inside")
+        ):
+            sides = [
+                checker.turn(points[i], points[j], points[v]) for i, j in ((a, b), (b, c), (c, a))
+            ]
+            checker.require(min(sides) > 0, f"vertex {v} is not inside {(a, b, c)}")
             removed.add(v)
         added.append((a, b, c))
     kept = [given.face(t) for t in given.triangles if removed.isdisjoint(t)]
     # What is left is verified again: a disk of positive faces with a simple boundary.
     rest = {v: p for v, p in points.items() if v not in removed}
-    return Sheet(rest, [*kept, *added]), removed
+    return checker.Sheet(rest, [*kept, *added]), removed
 
 
-def _closed(sheet: Sheet) -> tuple[Sheet, int | None]:
+def _closed(sheet: checker.Sheet) -> tuple[checker.Sheet, int | None]:
     """The sheet with the notch at its reflex corner closed, and that corner."""
     cycle = sheet.boundary
     for k, v in enumerate(cycle):
         before, after = cycle[k - 1], cycle[(k + 1) % len(cycle)]
-        if turn(*(sheet.points[u] for u in (before, v, after))) < 0:
+        if checker.turn(*(sheet.points[u] for u in (before, v, after))) < 0:
             faces = [sheet.face(t) for t in sheet.triangles]
-            return Sheet(sheet.points, [*faces, (before, after, v)]), v
+            return checker.Sheet(sheet.points, [*faces, (before, after, v)]), v
     return sheet, None
 
 
-def _check_convex(sheet: Sheet) -> None:
+def _check_convex(sheet: checker.Sheet) -> None:
     cycle = sheet.boundary
     for k, v in enumerate(cycle):
         corner = (cycle[k - 1], v, cycle[(k + 1) % len(cycle)])
-        require(turn(*(sheet.points[u] for u in corner)) >= 0, "the boundary is not convex")
+        checker.require(
+            checker.turn(*(sheet.points[u] for u in corner)) >= 0, "the boundary is not convex"
+        )
 
 
-def _check_gauge(sheet: Sheet, heights: Heights, corner: int | None) -> None:
+def _check_gauge(sheet: checker.Sheet, heights: Heights, corner: int | None) -> None:
     if corner is not None:
-        require(all(heights[v] == 0 for v in sheet.boundary), "the rim is not flat")
+        checker.require(all(heights[v] == 0 for v in sheet.boundary), "the rim is not flat")
         return
     a, b, c, d = sheet.boundary
     p, q, r, s = (sheet.points[v] for v in sheet.boundary)
-    weights = (turn(q, r, s), -turn(p, r, s), turn(p, q, s), -turn(p, q, r))
+    weights = (
+        checker.turn(q, r, s),
+        -checker.turn(p, r, s),
+        checker.turn(p, q, s),
+        -checker.turn(p, q, r),
+    )
     saddle = sum(w * heights[v] for w, v in zip(weights, (a, b, c, d), strict=True))
-    require(saddle * next(w for w in weights if w) > 0, "the saddle is not positive")
+    checker.require(saddle * next(w for w in weights if w) > 0, "the saddle is not positive")
 
 
 # --- the proof -----------------------------------------------------------------------------------
@@ -184,7 +166,7 @@ class _Proof:
     `corner` has the target K = 1 / size^2, all other interior vertices 0.
     """
 
-    def __init__(self, sheet: Sheet, heights: Heights, q: int, corner: int | None) -> None:
+    def __init__(self, sheet: checker.Sheet, heights: Heights, q: int, corner: int | None) -> None:
         self.sheet, self.heights, self.q, self.corner = sheet, heights, q, corner
         xs, ys = zip(*sheet.points.values(), strict=True)
         self.size = int(max(max(xs) - min(xs), max(ys) - min(ys)))
@@ -234,7 +216,7 @@ class _Proof:
         is a mountain on all spokes. On a solution, K_v(t, .) is 0 only where the star is flat.
         """
         positive = self.exact or self.form(v, self.heights, self.heights)[0] > 0
-        require(positive, f"K is not positive at vertex {v}")
+        checker.require(positive, f"K is not positive at vertex {v}")
         x, y = self.sheet.points[v]
         bits = 8
         while True:
@@ -249,7 +231,7 @@ class _Proof:
         if self.exact and low <= 0 <= high:
             side = self.exact_form(v, cone, self.heights)
             return (side > 0) - (side < 0)
-        require(low > 0 or high < 0, f"the side of vertex {v} is not certain")
+        checker.require(low > 0 or high < 0, f"the side of vertex {v} is not certain")
         return 1 if low > 0 else -1
 
     def _distance(self, x: int, y: int) -> Fraction:
@@ -280,7 +262,7 @@ class _Proof:
         i, j = fold
         left, right = self.sheet.next[i][j], self.sheet.next[j][i]
         p, q, r, s = (self.sheet.points[v] for v in (i, j, left, right))
-        c, d = turn(p, q, r), turn(q, p, s)
+        c, d = checker.turn(p, q, r), checker.turn(q, p, s)
         length = (q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2
         # |omega| L > (squared_distance (2/c + 2/d))^(1/2) with omega = bend / (c d q)
         most = self.squared_distance * self.q**2 * 2 * (c + d) * c * d
@@ -291,32 +273,36 @@ class _Proof:
     def _letters(self) -> dict[tuple[int, int], str]:
         """The letters of all folds of the sheet, those left open closed where K_v = 0 can."""
         sides = {fold: self._side(fold) for fold in self.sheet.folds}
-        close_flat(self.sheet, sides, self.corner)
+        checker.close_flat(self.sheet, sides, self.corner)
         return {fold: "U" if s is None else "MFV"[s + 1] for fold, s in sides.items()}
 
 
-def _check_signs(given: Sheet, signs: Any, proof: _Proof, removed: set[int]) -> None:
+def _check_signs(given: checker.Sheet, signs: Any, proof: _Proof, removed: set[int]) -> None:
     if proof.corner is not None:
-        require(proof.signs[proof.corner] == 1, "the reflex corner does not pop up")
+        checker.require(proof.signs[proof.corner] == 1, "the reflex corner does not pop up")
     seen: dict[int, set[str]] = {v: set() for v in proof.sheet.points}
     for fold, letter in proof.letters.items():
         for v in fold:
             seen[v].add(letter)
-    values = items(signs, "vertex_signs", len(given.interior))
+    values = checker.items(signs, "vertex_signs", len(given.interior))
     for v, sign in zip(given.interior, values, strict=True):
         expected = 0
         if v not in removed and seen[v] != {"F"}:
-            require(seen[v] & {"M", "V"}, f"vertex {v} may be flat")
+            checker.require(seen[v] & {"M", "V"}, f"vertex {v} may be flat")
             expected = proof.signs[v]
-        require(type(sign) is int and sign == expected, f"vertex {v} has another sign")
+        checker.require(type(sign) is int and sign == expected, f"vertex {v} has another sign")
 
 
-def _check_letters(given: Sheet, letters: Any, proof: _Proof, removed: set[int]) -> None:
-    require(isinstance(letters, str) and len(letters) == len(given.folds), "letters do not fit")
+def _check_letters(given: checker.Sheet, letters: Any, proof: _Proof, removed: set[int]) -> None:
+    checker.require(
+        isinstance(letters, str) and len(letters) == len(given.folds), "letters do not fit"
+    )
     for fold, letter in zip(given.folds, letters, strict=True):
         rigid = not removed.isdisjoint(fold)
         expected = "F" if rigid else proof.letters[fold]
-        require(letter == expected or letter == "U", f"fold {fold} is not known to be {letter!a}")
+        checker.require(
+            letter == expected or letter == "U", f"fold {fold} is not known to be {letter!a}"
+        )
 
 
 # --- the command ---------------------------------------------------------------------------------
@@ -341,11 +327,11 @@ def main(arguments: list[str]) -> int:
     try:
         with open(arguments[0], encoding="utf-8") as stream:
             claims = check(load(stream.read()))
-    except CertificateError as error:
-        print(f"INVALID: {plain(error)}")
+    except checker.CertificateError as error:
+        print(f"INVALID: {checker.plain(error)}")
         return 1
-    except (FormatError, OSError, UnicodeDecodeError) as error:
-        print(f"not a certificate: {plain(error)}", file=sys.stderr)
+    except (checker.FormatError, OSError, UnicodeDecodeError) as error:
+        print(f"not a certificate: {checker.plain(error)}", file=sys.stderr)
         return 3
     print(summary(claims))
     return 0

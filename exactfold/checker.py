@@ -113,15 +113,20 @@ def read_json(text: str) -> Any:
         raise FormatError(f"not JSON, or cut off: {error}") from None
 
 
+def read_document(text: str, form: str, version: int, names: str) -> dict[str, Any]:
+    """The JSON object of a file of the given format and version with the keys `names`."""
+    data = read_json(text)
+    if not isinstance(data, dict) or data.get("format") != form:
+        raise FormatError(f'the object has no "format": "{form}"')
+    if type(data.get("version")) is not int or data["version"] != version:
+        raise FormatError(f"version {data.get('version')!a} is not known to this checker")
+    keys(data, names, "the object", FormatError)
+    return data
+
+
 def load(text: str) -> dict[str, Any]:
     """The JSON object of a certificate; raises `FormatError`."""
-    data = read_json(text)
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise FormatError(f'not a certificate: "format" is not "{FORMAT}"')
-    if type(data.get("version")) is not int or data["version"] != VERSION:
-        raise FormatError(f"version {data.get('version')!a} is not known to this checker")
-    keys(data, "format version pattern claims evidence provenance", "certificate", FormatError)
-    return data
+    return read_document(text, FORMAT, VERSION, "format version pattern claims evidence provenance")
 
 
 def keys(value: Any, names: str, what: str, error: type[Exception] = CertificateError) -> None:

@@ -20,7 +20,6 @@ from __future__ import annotations
 import base64
 import binascii
 import hashlib
-import json
 import sys
 import traceback
 from collections import deque
@@ -28,7 +27,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
 from contextlib import ExitStack
 from multiprocessing import get_context
-from typing import IO, TYPE_CHECKING, Any, NamedTuple, NoReturn
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING or __package__:
     from exactfold import checker
@@ -67,30 +66,10 @@ def lines(stream: IO[bytes]) -> Iterator[str]:
 
 def read_object(text: str, what: str) -> dict[str, Any]:
     """One JSON object without floats or repeated keys."""
-
-    def refuse(number: str) -> NoReturn:
-        raise checker.FormatError(f"{what} holds a float: {number[:40]}")
-
-    def integer(number: str) -> int:
-        if len(number) > MOST_DIGITS:
-            raise checker.FormatError(f"{what} holds a long integer: {number[:40]}...")
-        return int(number)
-
-    def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        if len({key for key, _ in pairs}) != len(pairs):
-            raise checker.FormatError(f"{what}: a key appears twice in one object")
-        return dict(pairs)
-
     try:
-        data = json.loads(
-            text,
-            parse_float=refuse,
-            parse_constant=refuse,
-            parse_int=integer,
-            object_pairs_hook=unique,
-        )
-    except (ValueError, RecursionError) as error:
-        raise checker.FormatError(f"{what} is not JSON: {error}") from None
+        data = checker.read_json(text)
+    except checker.FormatError as error:
+        raise checker.FormatError(f"{what}: {error}") from None
     if not isinstance(data, dict):
         raise checker.FormatError(f"{what} is not an object")
     return data
@@ -98,13 +77,8 @@ def read_object(text: str, what: str) -> dict[str, Any]:
 
 def read_header(text: str) -> dict[str, Any]:
     """The first line, if it is that of a compact certificate."""
-    data = read_object(text, "the first line")
-    if data.get("format") != FORMAT:
-        raise checker.FormatError(f'not a compact certificate: "format" is not "{FORMAT}"')
-    if type(data.get("version")) is not int or data["version"] != VERSION:
-        raise checker.FormatError(f"version {data.get('version')!a} is not known to this checker")
-    checker.keys(data, "format version pattern evidence provenance", "header", checker.FormatError)
-    return data
+    names = "format version pattern evidence provenance"
+    return checker.read_document(text, FORMAT, VERSION, names)
 
 
 # --- the sheet and its tests ---------------------------------------------------------------------
