@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
+from exactfold.branches.named import NamedBranch
 from exactfold.branches.roots import Root
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import Edge
 
 
 @dataclass(frozen=True)
-class Branch:
+class Branch(NamedBranch):
     """One branch of a pattern with D = 1, shown by its ray of positive boundary saddle.
 
     `vertex_signs`: interior vertex -> +1 popped up, -1 popped down, 0 proved flat. `assignment`:
@@ -43,16 +44,6 @@ class Branch:
     def sort_key(self) -> tuple[list[int], str]:
         """Vertex signs in the order of the vertices, -1 before 0 before +1, then the folds."""
         return [s for _, s in sorted(self.vertex_signs.items())], self.assignment_text
-
-    @property
-    def sign_text(self) -> str:
-        """Vertex signs in the order of the vertices, as in "+-0"."""
-        return "".join("-0+"[self.vertex_signs[v] + 1] for v in sorted(self.vertex_signs))
-
-    @property
-    def assignment_text(self) -> str:
-        """Mountain-valley letters in the order of the folds, as in "MVVF"."""
-        return "".join(self.assignment[fold] for fold in sorted(self.assignment))
 
     def to_dict(self) -> dict[str, object]:
         """The branch as in `exactfold count --json`."""

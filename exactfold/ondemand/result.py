@@ -8,13 +8,14 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+from exactfold.branches.named import NamedBranch
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.verdict import Verdict
 
 
 @dataclass(frozen=True)
-class SignedBranch:
+class SignedBranch(NamedBranch):
     """The branch with given vertex signs.
 
     `status` is PROVED if exactly one branch has the signs `vertex_signs` (in the gauge below): +1
@@ -67,16 +68,6 @@ class SignedBranch:
     def undecided_folds(self) -> tuple[Edge, ...]:
         """The folds whose letter is not decided, in order."""
         return tuple(fold for fold, letter in sorted(self.assignment.items()) if letter == "U")
-
-    @property
-    def sign_text(self) -> str:
-        """Vertex signs in the order of the vertices, as in "+-0"."""
-        return "".join("-0+"[self.vertex_signs[v] + 1] for v in sorted(self.vertex_signs))
-
-    @property
-    def assignment_text(self) -> str:
-        """Mountain-valley letters in the order of the folds, as in "MVVF"."""
-        return "".join(self.assignment[fold] for fold in sorted(self.assignment))
 
     def to_dict(self) -> dict[str, Any]:
         """The object printed by `exactfold branch --json`."""
