@@ -70,6 +70,8 @@ def dask_engine(
                         silence_logs=logging.CRITICAL,
                     )
                     address = stack.enter_context(cluster).scheduler_address
+                else:
+                    _require_address(address)
                 client = stack.enter_context(
                     distributed.Client(address, timeout=timeout, set_as_default=False)
                 )
@@ -85,6 +87,20 @@ def dask_engine(
             return _blocks(client, chambers, left)
 
         yield engine
+
+
+def _require_address(address: str) -> None:
+    """Raise `ValueError` unless an address has a scheme and a port: a client never gives up then.
+
+    Its constructor fails, and what it left hangs when it is collected.
+    """
+    from distributed.comm import get_address_host_port
+
+    if address.startswith("inproc://"):  # of this process; it has no port
+        return
+    _, port = get_address_host_port(address if "://" in address else f"tcp://{address}", True)
+    if not 0 < int(port) < 1 << 16:
+        raise ValueError(f"{port} is not a port")
 
 
 def _blocks(

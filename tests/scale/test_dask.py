@@ -145,6 +145,17 @@ def test_a_scheduler_that_does_not_answer_is_bad_input(tmp_path: Path) -> None:
             raise AssertionError("no engine should be there")
 
 
+@pytest.mark.parametrize("address", ["nonsense", "foo://x:1", "tcp://x", "host:99999", ""])
+def test_what_is_no_address_is_bad_input_at_once(tmp_path: Path, address: str) -> None:
+    """In a process of its own: the client that dask would make of it hangs at the end."""
+    command = [sys.executable, "-m", "exactfold", "count", str(example_path("random-8"))]
+    command += ["--stream", str(tmp_path / "c.txt"), "--dask", address]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 3
+    assert done.stderr.startswith(f"exactfold: ClusterError: no scheduler at {address}: ")
+    assert done.stderr.count("\n") == 1
+
+
 def test_without_dask_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(DaskMissingError, match=r"exactfold\[dask\]"), dask_engine("local"):
