@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import random
 import sys
+from collections.abc import Callable
 from fractions import Fraction
+from functools import cache
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -18,6 +20,7 @@ from sympy.polys.fields import field
 
 from exactfold import (
     BranchCount,
+    BranchSystem,
     CreasePattern,
     curvature_form,
     definite_stress,
@@ -29,7 +32,7 @@ from exactfold.branches.functionals import Functionals
 from exactfold.branches.roots import BoxRoot
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.rigidity.definite_stress import disk_multipliers
-from exactfold.system.branch_system import notch_chart
+from exactfold.system.branch_system import Chart, notch_chart
 from exactfold.verdict import PROVED
 from proofs.chambers import corner_sign, counted, solve
 from proofs.framework import Proof, Ruling, Script, run
@@ -119,7 +122,7 @@ def _corner_identity(script: Script) -> None:
     )
     r, angle = sympy.Function("r"), sympy.Symbol("theta")
     slope = sympy.Symbol("g1") * sympy.cos(angle) + sympy.Symbol("g2") * sympy.sin(angle)
-    primitive = -slope * sympy.diff(slope, angle)
+    primitive = script.alter("sign of the primitive", -1, 1) * slope * sympy.diff(slope, angle)
     difference = slope**2 - sympy.diff(slope, angle) ** 2 - sympy.diff(primitive, angle)
     script.identity(
         "rho^2 - rho'^2 = (-rho rho')' for rho = g . e(theta)",
@@ -134,31 +137,40 @@ def _corner_identity(script: Script) -> None:
     )
 
 
-def _face_identities(script: Script) -> None:
-    """(2) and (3) for a general triangle and any gradient; the centre c is the origin."""
+@cache
+def _face_sums() -> tuple[list[Any], Any, Any, Any]:
+    """Of a general triangle and gradient: all k, sum |U_v|^2 k, 2 |T| |g|^2, and the edge terms."""
     _, *x = field("a1 a2 b1 b2 p1 p2 g1 g2", QQ)
     corners, g = [(x[0], x[1]), (x[2], x[3]), (x[4], x[5])], (x[6], x[7])
-    halves = script.alter("area halved", 2, 4)
-    sign = script.alter("sign of the edge term", 1, -1)
-    total, moment, edges = 0 * x[0], 0 * x[0], 0 * x[0]
+    parts, moment, edges = [], 0 * x[0], 0 * x[0]
     for k in range(3):
         at, after, before = corners[k], corners[(k + 1) % 3], corners[k - 1]
         part = _corner(_minus(after, at), _minus(before, at), g)
-        total += part
+        parts.append(part)
         moment += _dot(at, at) * part
         side = _minus(after, at)
         twice_middle = (after[0] + at[0], after[1] + at[1])
         edges += _dot(g, side) ** 2 * _dot(twice_middle, _turned(side)) / (2 * _dot(side, side))
     u, v = _minus(corners[1], corners[0]), _minus(corners[2], corners[0])
-    area = _dot(_turned(u), v) / halves
-    script.identity("(2): the three corners of a face add up to 0", total)
+    return parts, moment, _dot(_turned(u), v) * _dot(g, g), edges
+
+
+def _face_identities(script: Script) -> None:
+    """(2) and (3) for a general triangle and any gradient; the centre c is the origin."""
+    halves = script.alter("area halved", 2, 4)
+    sign = script.alter("sign of the edge term", 1, -1)
+    parts, moment, area, edges = _face_sums()
+    count = script.alter("a corner left out", 3, 2)
+    script.identity("(2): the three corners of a face add up to 0", sum(parts[:count]))
     script.identity(
         "(3): sum |U_v - c|^2 k + |T| |g|^2 + sum (g.d)^2 ((M - c).Jd)/|d|^2 = 0",
-        moment + area * _dot(g, g) + sign * edges,
+        moment + area / halves + sign * edges,
     )
-    d, m = (x[0], x[1]), (x[2], x[3])
-    there = _dot(g, d) ** 2 * _dot(m, _turned(d))
-    back = _dot(g, (-d[0], -d[1])) ** 2 * _dot(m, _turned((-d[0], -d[1])))
+    _, *x = field("d1 d2 m1 m2 g1 g2", QQ)
+    d, m, g = (x[0], x[1]), (x[2], x[3]), (x[4], x[5])
+    power = script.alter("slope along the edge not squared", 2, 1)
+    there = _dot(g, d) ** power * _dot(m, _turned(d))
+    back = _dot(g, (-d[0], -d[1])) ** power * _dot(m, _turned((-d[0], -d[1])))
     script.identity("the edge term changes sign with the direction of the edge", there + back)
 
 
@@ -198,7 +210,9 @@ def _wirtinger(script: Script) -> None:
     )
     script.identity(
         "D_1 = cot a_1 + cot a_2 = sin(a_1 + a_2) csc a_1 csc a_2",
-        ca / sa + cb / sb - (sa * cb + ca * sb) / (sa * sb),
+        ca / sa
+        + cb / sb
+        - (sa * cb + script.alter("sine of the difference", 1, -1) * ca * sb) / (sa * sb),
     )
 
 
@@ -227,12 +241,17 @@ def _theorem_1_on_patterns(script: Script) -> None:
     )
     script.cases(
         "Key lemma: the disk multipliers give a definite stress (exact elimination)",
-        (definite_stress(pattern) is not None for pattern in hostile_patterns(24)),
+        (
+            definite_stress(pattern) is not None
+            for pattern in [*hostile_patterns(24), *script.alter("a reflex sheet", (), (SPIKY,))]
+        ),
     )
     hub = {v: Fraction(int(v == 4)) for v in range(5)}
+    convex = CreasePattern([(4, -4), (5, 0), *SPIKY.vertices[2:]], SPIKY.triangles)
+    sheet = script.alter("the notch pushed out", SPIKY, convex)
     script.counterexample(
         "convexity is needed: hub (0,0) in (4,-4), (1/10,0), (4,4), (-4,0) has K(hub) < 0",
-        curvature_form(SPIKY, 4)(hub) < 0 and definite_stress(SPIKY) is None,
+        curvature_form(sheet, 4)(hub) < 0 and definite_stress(sheet) is None,
     )
 
 
@@ -282,6 +301,7 @@ def _conclusions_on_patterns(script: Script) -> None:
         (all_real(pattern) for pattern in [*squares, *quadrilaterals(12)]),
     )
     saddle_only = script.alter("the saddle as the label of a reflex sheet", False, True)
+    by_vertex = script.alter("ends told apart by the first vertex", False, True)
 
     def one_each(result: BranchCount) -> bool:
         """Each sign vector once, with saddle +1 (convex) or the reflex corner up (closed sheet)."""
@@ -289,7 +309,8 @@ def _conclusions_on_patterns(script: Script) -> None:
         for branch in result.branches:
             plain = result.pattern.is_convex or saddle_only
             side = 1 if plain else corner_sign(result.pattern, branch) or 0
-            vectors.add(tuple(side * s for _, s in sorted(branch.vertex_signs.items())))
+            signs = [s for _, s in sorted(branch.vertex_signs.items())]
+            vectors.add(tuple((signs[0] if by_vertex else side) * s for s in signs))
         return vectors == set(product((1, -1), repeat=result.pattern.Vi))
 
     everything = [DART, *squares, *quadrilaterals(16), *darts(40)]
@@ -306,29 +327,34 @@ def _conclusions_on_patterns(script: Script) -> None:
         "in the closed sheet",
         (one_each(r) for r in reflex),
     )
+    chart = script.alter("the chart of the saddle", notch_chart, lambda p: BranchSystem(p).chart)
     script.cases(
         "the same in the chart K_r(t, h) = 1 of the closed sheet: 2^Vi boxes, all sign vectors",
-        (_one_each_in_notch_chart(r.pattern) for r in reflex),
+        (_one_each(chart, r.pattern) for r in reflex),
     )
     both = counted(DART).branches
+    other = script.alter("the hub up on the other branch", "-", "+")
     script.counterexample(
         "the saddle is no label of a reflex sheet: hub (0,0) in (4,-4), (1,0), (4,4), (-4,0) has "
         "two branches, both with saddle + and the hub down",
-        [(b.representative, b.sign_text) for b in both] == 2 * [("saddle", "-")],
+        [(b.representative, b.sign_text) for b in both] == [("saddle", "-"), ("saddle", other)],
     )
     result = counted(flat_vertex_square())
     script.counterexample(
         "a flat vertex star: three branches, of multiplicities 1, 1, 2, instead of four",
-        sorted(b.multiplicity for b in result.branches) == [1, 1, 2],
+        sorted(b.multiplicity for b in result.branches)
+        == script.alter("four simple branches", [1, 1, 2], [1, 1, 1, 1]),
     )
+    sign = script.alter("negative curvatures", 1, -1)
     script.cases(
         "(d): for positive curvatures one real solution for each sign vector, any boundary",
-        (solve(p, seed).is_one_each for seed, p in enumerate(hostile_patterns(8, 4))),
+        (solve(p, seed, sign).is_one_each for seed, p in enumerate(hostile_patterns(8, 4))),
     )
 
 
-def _one_each_in_notch_chart(pattern: CreasePattern) -> bool:
-    chart = notch_chart(pattern)
+@cache
+def _one_each(chart_of: Callable[[CreasePattern], Chart], pattern: CreasePattern) -> bool:
+    chart = chart_of(pattern)
     found = isolate(chart.system, homotopy(chart.system))
     rows = Functionals(chart).vertices.values()
     signs = {tuple(BoxRoot(box).sign(row) for row in rows) for box in found.boxes if box.is_real}

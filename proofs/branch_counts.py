@@ -62,18 +62,20 @@ def _single_vertex(script: Script) -> None:
         "branches of a vertex with N = 3, 4, 5, 6, 7, 8 folds: 0, 2, 1, 1, 1, 1",
         found == [0, script.alter("one branch for N = 4", 2, 1), 1, 1, 1, 1],
     )
+    positive = script.alter("two positive directions", 1, 2)
     script.example(
         "modulo planes the form is Lorentzian on R^(N-2), its null cone in RP^(N-3) is the sphere "
         "S^(N-4): empty for N = 3, two points for N = 4, connected from N = 5 on",
         all(
-            curvature_form(families.single_vertex(n), n).inertia == (1, n - 3, 3)
+            curvature_form(families.single_vertex(n), n).inertia == (positive, n - 2 - positive, 3)
             for n in range(3, 10)
         ),
     )
     conical = families.single_vertex(5)
     script.example(
         "five folds: Vi = 1, D = 2, three free heights",
-        (conical.Vi, conical.D, len(BranchSystem(conical).variables)) == (1, 2, 3),
+        (conical.Vi, conical.D, len(BranchSystem(conical).variables))
+        == (1, 2, 5 + 1 - script.alter("two pinned heights", 3, 2)),
     )
     script.state(
         "IIC.5",
@@ -100,7 +102,8 @@ def _single_vertex(script: Script) -> None:
         note="the form of a vertex with N = 3 is definite modulo planes",
     )
     schematic = count_branches(families.two_vertex())
-    script.example("two vertices: 2^2 branches", schematic.distinct == 4)
+    halved = script.alter("one branch for each pair of sign patterns", 0, 1)
+    script.example("two vertices: 2^2 branches", schematic.distinct == 2 ** (2 - halved))
     script.state(
         "I.2",
         "Introduction, Fig. (schematic)",
@@ -117,10 +120,11 @@ def _rigid_triangles(script: Script) -> None:
         [(0, 0), (9, 0), (0, 9), *inner_points((0, 0), (9, 0), (0, 9))], OCTAHEDRON
     )
     triangles = [families.single_vertex(3), TWISTED, octahedron]
+    freedom = script.alter("D = Ve - 4", 3, 4)
     script.example(
         "definite stresses of triangulated triangles (every convex boundary has one: "
         "docs/mathematics.md, 6): D = 0 and no folding to second order, hence rigid",
-        all(p.Ve == 3 and p.D == 0 and definite_stress(p) is not None for p in triangles)
+        all(p.D == p.Ve - freedom == 0 and definite_stress(p) is not None for p in triangles)
         and all(count_branches(p).distinct == 0 for p in triangles),
     )
     bends: dict[int, int] = {}
@@ -162,7 +166,8 @@ def _rigid_triangles(script: Script) -> None:
         "Fig. (triangle): a square with its diagonal and three vertices of degree four on one "
         "side of "
         "it: one branch, of multiplicity 8, in which the three are flat",
-        (count.distinct, count.with_multiplicity, chord.Vt) == (1, 8, 3)
+        (count.distinct, count.with_multiplicity, chord.Vt)
+        == (1, script.alter("multiplicities added", 2**3, 2 * 3), 3)
         and {chord.degree(v) for v in chord.interior} == {4}
         and set(count.branches[0].vertex_signs.values()) == {0},
     )

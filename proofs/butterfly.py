@@ -81,14 +81,15 @@ def _butterfly(script: Script) -> None:
         "from pi to 2 pi",
         sympy.simplify(slope - expected * 8 * p * q * tau / (1 + tau**2) ** 2) == 0,
     )
-    limits = (sympy.limit(square, tau, 0), sympy.limit(square, tau, sympy.oo))
+    ends = script.alter("theta measured from the unfolded state", (0, sympy.oo), (sympy.oo, 0))
+    limits = [sympy.limit(square, tau, end) for end in ends]
     script.identity(
         "d_min^2 = (a - b)^2 + (p - q)^2 when folded flat, d_max^2 = (a - b)^2 + (p + q)^2 "
         "unfolded",
         limits[0] - (a - b) ** 2 - (p - q) ** 2,
         limits[1] - (a - b) ** 2 - (p + q) ** 2,
     )
-    mirrored = other.subs(tau, -tau)
+    mirrored = other.subs(tau, script.alter("theta and theta + pi", -tau, -1 / tau))
     script.identity(
         "theta and 2 pi - theta have the same d and differ by the reflection in the plane of a "
         "wing",
@@ -135,7 +136,7 @@ def _doubling(script: Script) -> None:
     )
     script.identity(
         "cot beta_1 + cot beta_2 = sin(beta_1 + beta_2) / (sin beta_1 sin beta_2)",
-        cot1 + cot2 - sine / (sin1 * sin2),
+        cot1 + script.alter("difference of cotangents", 1, -1) * cot2 - sine / (sin1 * sin2),
     )
     turned = script.alter("closing sector not reversed", -1, 1)
     script.identity(
@@ -151,7 +152,7 @@ def _doubling(script: Script) -> None:
         sector(r, m, t) + sector(m, s, u) + sector(r, s, -whole) + weight * delta**2,
     )
     h1 = families.sample_h1_sequence(3, seed=1)
-    v1, v2, v3, w = h1.moves[-1]
+    v1, v2, v3, w = h1.moves[script.alter("first move for last", -1, 0)]
     only = [v for v in h1.pattern.interior if w in curvature_form(h1.pattern, v).labels]
     script.example(
         "only K_{v2} contains the height of w (an H1 sequence; v1 and v3 are boundary vertices), "
@@ -171,7 +172,7 @@ def _reflex(script: Script) -> None:
         "(discriminant < 0), and it is folded at v2",
         b * b - 4 * a * c < 0 and bool(heights[1] * bend),
     )
-    closed = DART.with_notch_closed()
+    closed = script.alter("the notch left open", DART.with_notch_closed(), DART)
     script.example(
         "four boundary vertices, A > pi: closing T at v2 gives a triangulated triangle, whose "
         "definite "

@@ -135,7 +135,7 @@ def _lines_of_zeros(script: Script) -> None:
     axis = [[0, 0, 0], [0, 1, 0], [0, 0, 0]]
     system = QuadraticSystem.from_rational([parabola, axis])
     (root,) = groebner(system).classes
-    dual = dual_space(system, root, 10)
+    dual = dual_space(system, root, script.alter("dual space cut off", 10, 3))
     script.example(
         "x^2 = y, y^2 = 0: the dual space at 0 has dimension 4 = 2^2 and is complete",
         dual.dimension == 4 and dual.is_complete,

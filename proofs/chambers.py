@@ -72,8 +72,8 @@ class Solutions:
 
 
 @lru_cache(maxsize=128)
-def solve(pattern: CreasePattern, seed: int) -> Solutions:
-    """All solutions of K_v(h) = k_v, with random k_v > 0 and random boundary heights.
+def solve(pattern: CreasePattern, seed: int, sign: int = 1) -> Solutions:
+    """All solutions of K_v(h) = sign k_v, with random k_v > 0 and random boundary heights.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> solve(single_vertex(5), 0).is_one_each
@@ -91,7 +91,7 @@ def solve(pattern: CreasePattern, seed: int) -> Solutions:
             for b, weight in zip(form.labels, line, strict=True):
                 i, j = position.get(a, n), position.get(b, n)
                 matrix[i][j] += weight * fixed.get(a, Fraction(1)) * fixed.get(b, Fraction(1))
-        matrix[n][n] -= Fraction(source.randint(1, 9), source.randint(1, 9))
+        matrix[n][n] -= sign * Fraction(source.randint(1, 9), source.randint(1, 9))
         matrices.append(matrix)
         row = [Fraction(0)] * (n + 1)
         for u, c in sign_functionals(pattern)[v].items():
@@ -106,7 +106,7 @@ def solve(pattern: CreasePattern, seed: int) -> Solutions:
         for box in boxes
     )
     signs = tuple(tuple(BoxRoot(box).sign(row) for row in rows) for box in boxes)
-    radius = max(Fraction(box.radius, 1 << box.bits) for box in boxes)
+    radius = max((Fraction(box.radius, 1 << box.bits) for box in boxes), default=Fraction(0))
     return Solutions(pattern, points, signs, radius, found.complete)
 
 

@@ -34,7 +34,8 @@ def prove(change: str | None = None) -> Proof:
 def _freedom(script: Script) -> None:
     Vi, Ve = sympy.symbols("V_i V_e")
     E, F = sympy.symbols("E F")
-    euler = sympy.solve([Vi + Ve - E + F - 1, 3 * F + Ve - 2 * E], [E, F])
+    disk = script.alter("Euler characteristic of a sphere", 1, 2)
+    euler = sympy.solve([Vi + Ve - E + F - disk, 3 * F + Ve - 2 * E], [E, F])
     folds = euler[E] - Ve
     pins = script.alter("two pinned heights", 3, 2)
     D = Ve - 3
@@ -56,10 +57,12 @@ def _freedom(script: Script) -> None:
         (a - 3) + (b - 3) + script.alter("the chord does not turn", 1, 0) - (a + b - 2 - 3),
     )
     systems = [BranchSystem(p) for p in (families.waterbomb(), families.hypar(2))]
+    scaled = script.alter("the scale of the heights fixed", 0, 1)
     script.cases(
         "the branch system has Vi quadrics in Vi + D heights",
         (
-            len(s.quadrics) == s.pattern.Vi and len(s.variables) == s.pattern.Vi + s.pattern.D
+            len(s.quadrics) == s.pattern.Vi
+            and len(s.variables) == s.pattern.Vi + s.pattern.D - scaled
             for s in systems
         ),
     )
@@ -111,8 +114,11 @@ def _freedom(script: Script) -> None:
         "K_v(lambda h) = lambda^2 K_v(h), sector by sector",
         sector(lam * rho, lam * sigma, t) - lam**degree * sector(rho, sigma, t),
     )
+    lines = script.alter("points, not lines, of R^(Vi + D)", 1, 0)
     script.identity(
-        "Vi equations in RP^(Vi + D - 1) leave D - 1 dimensions", Vi + D - 1 - Vi - D + 1
+        "Vi equations for the lines in the Vi + Ve - 3 heights, the points of RP^(Vi + D - 1), "
+        "leave D - 1 dimensions",
+        (Vi + Ve - 3 - lines) - Vi - (D - 1),
     )
     script.identity(
         "an H1 move adds one vertex and three edges: 3 V - 6 - E does not change",
@@ -174,7 +180,7 @@ def _folds(script: Script) -> None:
     emptied, _ = families.flat_octahedron_in_square().emptied()
     script.example(
         "the same for the emptied square around a flat octahedron (n = 3)",
-        len(emptied.folds) == 3 * (6 - 3) + 1,
+        len(emptied.folds) == 3 * script.alter("vertices of the octahedron counted", 3, 6) + 1,
     )
     exponent = script.alter("printed exponent n - 1", n, n - 1)
     script.identity(

@@ -57,7 +57,8 @@ def _table(script: Script) -> None:
         "MV duplicates for Vi = 5 to 8: 17, 28, 17, 8 do not increase, their fractions do",
         sorted(checked) == checked and sorted(duplicates) != duplicates,
     )
-    total, special = (sum(row[k] for row in TABLE.values()) for k in (0, 1))
+    column = script.alter("column of the duplicates", 1, 2)
+    total, special = (sum(row[k] for row in TABLE.values()) for k in (0, column))
     script.certificate(
         "4 of 8450 patterns have triangulated triangles, 4 of the 3350 with Vi >= 4",
         (total, special) == (8450, 4) and sum(TABLE[v][0] for v in range(4, 9)) == 3350,
@@ -149,6 +150,7 @@ def _orthogonality(script: Script) -> None:
     """Gradients orthogonal to all branches but one."""
     branches = count_branches(families.two_vertex()).branches
     rows = [[h for _, h in sorted(b.heights.items()) if any(h)] for b in branches]
+    rows[3] = rows[script.alter("one branch counted twice", 3, 0)]
     triples = [[rows[i] for i in range(4) if i != k] for k in range(4)]
     script.example(
         "two vertices: any three of the four branches span R^3 (determinants of enclosures), so a "
@@ -234,18 +236,20 @@ def _appendix(script: Script) -> None:
         "2^(V+1) vectors, (2^(V+1))^2 = 4^(V+1) ordered pairs, each with itself included",
         sympy.powsimp((2 ** (V + 1)) ** square / 4 ** (V + 1), force=True) - 1,
     )
-    pairs = {v: TABLE[v][0] * 4 ** (v + 1) for v in TABLE}
+    square = script.alter("vectors instead of pairs", 2, 1)
+    pairs = {v: TABLE[v][0] * 2 ** (square * (v + 1)) for v in TABLE}
     script.certificate(
         "angle pairs for Vi = 8: 2/3 of those for Vi = 7 and 4/5 of those for Vi = 6",
         Fraction(pairs[8], pairs[7]) == Fraction(2, 3)
         and Fraction(pairs[8], pairs[6]) == Fraction(4, 5),
     )
+    folds = script.alter("printed number of folds", 1, 3)
     outcomes = []
     for pattern in (families.two_vertex(), families.hypar(1), families.h1_sequence(5)):
         rows = [fold_functional(pattern, f) for f in pattern.folds]
         size = len(pattern.vertices)
         bends = rank([[row.get(v, 0) for v in range(size)] for row in rows])
-        outcomes.append((len(rows), bends) == (3 * pattern.Vi + 1, pattern.Vi + 1))
+        outcomes.append((len(rows), bends) == (3 * pattern.Vi + folds, pattern.Vi + 1))
     script.cases("3 Vi + 1 folds; the bends span a (Vi + 1)-dimensional space", outcomes)
     state = script.state
     place = "Appendix D"
@@ -275,11 +279,12 @@ def _appendix(script: Script) -> None:
         r"\text{one of the two; the source does not say which}",
         "nothing depends on it. V=6 in the text and V=2 -- 8 in a caption are values of Vi",
     )
-    a, b, norms = sympy.symbols("a b norms", positive=True)
-    turned = script.alter("angle with the other end not turned", -1, 1)
+    a, b = sympy.Matrix(sympy.symbols("a1:3")), sympy.Matrix(sympy.symbols("b1:3"))
+    other = script.alter("angle with the other end not turned", -a, a)
     script.identity(
         "cos of the angle with the other end of a branch is minus the cosine: theta and pi - theta",
-        turned * (a * b / norms) + a * b / norms,
+        other.dot(b) / sympy.sqrt(other.dot(other) * b.dot(b))
+        + a.dot(b) / sympy.sqrt(a.dot(a) * b.dot(b)),
     )
     state(
         "D.6",

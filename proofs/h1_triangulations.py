@@ -127,13 +127,14 @@ def _enumeration(script: Script) -> list[set[Triangulation]]:
                 if degrees(larger)[4 + n] <= faces
             }
         )
+    total = script.alter("twelve, as for a sphere", 6, 12)
     script.example(
         "sum over interior vertices of (6 - d) plus sum over boundary vertices of (4 - d) is 6. "
         "Without chords boundary degrees are at least 3: the first sum is at least 2 (3 for a "
         "triangle), so some interior vertex has degree at most 5; a chord leaves two triangles",
         all(
             sum(6 - d for v, d in degrees(t).items() if v > 3)
-            == 6 - sum(4 - d for v, d in degrees(t).items() if v <= 3)
+            == total - sum(4 - d for v, d in degrees(t).items() if v <= 3)
             for level in levels
             for t in level
         ),
@@ -231,10 +232,12 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         not any(flat) and bool(flat),
     )
     sample = families.sample_h1_sequence(5, seed=2)
+    middle = script.alter("the vertex attached, not v2", 1, 3)
     script.example(
         "families.sample_h1_sequence makes H1 triangulations: Ve = 4, degrees of all v2 at least 4",
         sample.pattern.Ve == 4
         and sample.pattern.Vi == len(sample.moves) == 5
+        and all(sample.pattern.degree(move[middle]) >= 4 for move in sample.moves)
         and is_h1(frozenset(sample.pattern.triangles))
         and sample.pattern.Vt == 0,
     )

@@ -100,7 +100,9 @@ def _bends(script: Script) -> None:
     )
     u = sympy.Symbol("u")
     whole = (t + u) / (1 - t * u)  # tangent of half the sum of the angles
-    inside = (r * 2 * u / (1 + u**2) + s * sine) / (2 * whole / (1 + whole**2))
+    near, far = script.alter("weights of the neighbours exchanged", (u, t), (t, u))
+    weights = 2 * near / (1 + near**2), 2 * far / (1 + far**2)
+    inside = (r * weights[0] + s * weights[1]) / (2 * whole / (1 + whole**2))
     script.identity(
         "a spoke drawn into a sector, with the slope of the plane there, changes no K and bends 0",
         sector(r, s, whole) - sector(r, inside, t) - sector(inside, s, u),
@@ -124,10 +126,12 @@ def _inequality(script: Script) -> None:
         2 * (1 + s * x.dot(y)) - (x - y).dot(x - y) - (1 - x.dot(x)) - (1 - y.dot(y)),
     )
     t = sympy.Symbol("t")
+    slope = script.alter("the sheet bent down", 1, -1) * 2 * t / (1 + t**2)  # at the angle of t
     script.identity(
         "the line fold g = |y|: slopes 0 where it bends (along the line), so K(g) = 0; there "
         "each half contributes the bend 1 > 0: a valley, popped down",
-        half_bend(0, 2 * t / (1 + t**2), t) - 1,
+        sector(0, slope, t) + sector(slope, 0, 1 / t),
+        half_bend(0, slope, t) - 1,
     )
     # b |y| = b y for y >= 0, and b |y| = b y + 2 b |y| for y < 0, where b <= 0
     b, w = sympy.symbols("b w", positive=True)

@@ -13,8 +13,8 @@ from typing import Any
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from exactfold import curvature_form, rigidity_matrix, wheel_stress
-from exactfold.exact.linalg import rank
+from exactfold import CreasePattern, curvature_form, rigidity_matrix, wheel_stress
+from exactfold.exact.linalg import inertia, rank
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity.kapovich_millson import kapovich_millson
 from proofs.framework import Proof, Ruling, Script, run
@@ -121,11 +121,12 @@ def _all_angles(script: Script) -> None:
         code="curvature_form, QuadraticForm.inertia",
     )
     _matrix(script)
-    matrix_inertia = curvature_form(single_vertex(5), 5).inertia
+    wheel = single_vertex(5)
+    sign = script.alter("sign of Appendix C", 1, -1)
     script.counterexample(
-        "with Eqs. (compat), (wheelstress) as printed a five-fold star has inertia (1, 2, 3): two "
-        "negative eigenvalues",
-        matrix_inertia == (1, 2, 3),
+        "with Eqs. (compat), (wheelstress) as printed the matrix Q of a five-fold star has inertia "
+        "(1, 2, 3): two negative eigenvalues",
+        inertia([[sign * q for q in row] for row in _stress_matrix(wheel, 5)]) == (1, 2, 3),
     )
     script.state(
         "IIB.21",
@@ -140,6 +141,20 @@ def _all_angles(script: Script) -> None:
     )
 
 
+def _stress_matrix(wheel: CreasePattern, hub: int) -> list[list[Any]]:
+    """Q_nm of Eq. (stressmatrix) for the wheel stress, in the order of the curvature form."""
+    stress, labels = wheel_stress(wheel, hub), curvature_form(wheel, hub).labels
+    return [
+        [
+            sum(d for edge, d in stress.items() if a in edge)
+            if a == b
+            else -stress.get((min(a, b), max(a, b)), Fraction(0))
+            for b in labels
+        ]
+        for a in labels
+    ]
+
+
 def _matrix(script: Script) -> None:
     """Q_nm of Eq. (stressmatrix) from the stress densities w = sigma/|U_n - U_m|."""
     w, h, k = symbols("w h k")
@@ -148,16 +163,12 @@ def _matrix(script: Script) -> None:
         "each edge adds w to Q_nn and Q_mm and -w to Q_nm and Q_mn: w (h_n - h_m)^2",
         w * (h - k) ** 2 - (w * h**2 + w * k**2 + 2 * sign * w * h * k),
     )
+    factor = script.alter("factor two dropped", 2, 1)
     differences = []
     for n in (3, 4):
         wheel = free_wheel(n)
-        stress, form = wheel_stress(wheel, n), curvature_form(wheel, n)
-        for i, a in enumerate(form.labels):
-            for j, b in enumerate(form.labels):
-                entry = -stress.get((min(a, b), max(a, b)), 0)
-                if a == b:
-                    entry = sum(d for edge, d in stress.items() if a in edge)
-                differences.append(entry - 2 * form.matrix[i][j])
+        pairs = zip(_stress_matrix(wheel, n), curvature_form(wheel, n).matrix, strict=True)
+        differences += [entry - factor * k for row in pairs for entry, k in zip(*row, strict=True)]
     script.identity(
         "over the field of all spokes, N = 3, 4: with the wheel stress this Q is 2 K_v",
         *differences,
@@ -181,10 +192,11 @@ def _signature(script: Script) -> None:
         "p x^2 + 2 g x y + f y^2 = p (x + g y/p)^2 + (f - g^2/p) y^2: the new pivot is f - g^2/p",
         p * x**2 + 2 * g * x * y + f * y**2 - square - (f + sign * g**2 / p) * y**2,
     )
+    sign = script.alter("sign in the continuant", -1, 1)
     # Delta_{j-1} = p Delta_{j-2}; the continuant Delta_j = f Delta_{j-1} - g^2 Delta_{j-2}
     script.identity(
         "and the next minor is the product of the pivots: Delta_j / Delta_{j-1} = f - g^2/p",
-        (f * p * before - g**2 * before) / (p * before) - (f - g**2 / p),
+        (f * p * before + sign * g**2 * before) / (p * before) - (f - g**2 / p),
     )
     script.state(
         "C.22",
@@ -217,7 +229,10 @@ def _three_folds(script: Script) -> None:
         2 * curvature - lift**2 / product * script.alter("factor of the rank one form", 1, 2),
     )
     pattern = single_vertex(3)
-    lengths = rank(rigidity_matrix(pattern))  # first-order changes do not see the heights
+    # first-order changes do not see the heights; the wheel stress makes one length dependent
+    lengths = script.alter(
+        "all lengths independent", rank(rigidity_matrix(pattern)), len(pattern.edges)
+    )
     script.example(
         "N = 3: the star has one height motion that is no rigid motion, and its lengths are kept "
         "to first order, so it is not infinitesimally rigid in the usual (first-order) sense",
@@ -236,19 +251,22 @@ def _three_folds(script: Script) -> None:
 
 
 def _cone(script: Script) -> None:
+    motions = script.alter("two rigid motions", 3, 2)
     script.example(
         "N + 1 heights less 3 rigid motions leave N - 2; the form there is nondegenerate (chi(N) "
         "is not 0), so its null cone is a hypersurface, smooth but for 0: dimension N - 3",
         all(
-            (n + 1) - 3 == sum(curvature_form(single_vertex(n), n).inertia[:2]) for n in range(3, 9)
+            (n + 1) - motions == sum(curvature_form(single_vertex(n), n).inertia[:2])
+            for n in range(3, 9)
         ),
     )
     t, y1, y2, s = symbols("t y1 y2 s")
+    all_axes = script.alter("one axis not rescaled", s, s**0)
     script.identity(
         "in axes of the form, K = t^2 - y_1^2 - ... - y_{N-3}^2: each nappe is t = +-|y|, a graph "
         "over R^{N-3}; rescaling by s > 0 keeps it, so it is the cone over |y| = 1, a sphere of "
         "dimension N-4",
-        (s * t) ** 2 - (s * y1) ** 2 - (s * y2) ** 2 - s**2 * (t**2 - y1**2 - y2**2),
+        (s * t) ** 2 - (s * y1) ** 2 - (all_axes * y2) ** 2 - s**2 * (t**2 - y1**2 - y2**2),
     )
     script.state(
         "IIB.22",

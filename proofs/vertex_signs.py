@@ -16,6 +16,7 @@ from exactfold.exact.linalg import rank
 from exactfold.pattern.families import flat_octahedron_in_square
 from exactfold.rigidity.timelike import vertex_sign_functional
 from proofs.framework import Proof, Ruling, Script, run
+from proofs.patterns import SPIKY
 from proofs.vertex_forms import cot, csc, dot, star, symbols, unit
 
 NAME = "vertex_signs"
@@ -49,7 +50,8 @@ def _popping(script: Script) -> None:
         polar + script.alter("factor one half", 1, 2) * integral / 2,
     )
     # The area above the trace z = eps rho(theta) + ... on the sphere is 2 pi - eps int rho + ...
-    ring = [(5, 0, 0), (0, 3, 4), (-5, 0, 0), (0, -3, 4)]  # times 5
+    opposite = script.alter("the straight line bent, too", (-5, 0, 0), (-4, 0, 3))
+    ring = [(5, 0, 0), (0, 3, 4), opposite, (0, -3, 4)]  # times 5
     script.counterexample(
         "four spokes at right angles, folded along a straight line: unit vectors (1,0,0), "
         "(0,3/5,4/5), (-1,0,0), (0,-3/5,4/5) keep the angles and hold two antipodes, which lie in "
@@ -95,7 +97,8 @@ def _hemispheres(script: Script) -> None:
         polar + weight * (x + y) / 2,
     )
     level = {0: 2, 1: 1, 2: 2, 3: 1, 4: 0}
-    tilted = {v: h + 3 * (1, 0, -1, 0, 0)[v] for v, h in level.items()}
+    plane = script.alter("folded, not rotated", (1, 0, -1, 0, 0), (1, 0, 1, 0, 0))
+    tilted = {v: h - 3 * plane[v] for v, h in level.items()}
     functional = vertex_sign_functional(star((1, 0), (0, 1), (-1, 0), (0, -1)), 4)
     signs = [sum(w * heights[v] for v, w in functional.items()) for heights in (level, tilted)]
     script.example(
@@ -129,13 +132,13 @@ def _chambers(script: Script) -> None:
         "principle)",
         weight - before - script.alter("mean value weights", after, -after),
     )
+    squares = [random_square(5, k) for k in range(3)]
+    reflex = script.alter("a reflex sheet", (), (SPIKY,))
     script.cases(
         "these functionals have rank Vi on the interior heights, and sum m_v K_v, m_v > 0, is "
         "positive definite there: heights with K_v(e_v, h) = 0, hence K_v(h) <= 0, at every v "
         "vanish",
-        map(
-            _is_independent, [*(random_square(5, k) for k in range(3)), flat_octahedron_in_square()]
-        ),
+        map(_is_independent, [*squares, flat_octahedron_in_square(), *reflex]),
     )
     script.state(
         "IIIB.2",
