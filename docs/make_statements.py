@@ -148,12 +148,14 @@ def pages() -> dict[str, str]:
     summary = ", ".join(f"{number} {names[ruling]}" for ruling, number in counts.items())
     steps = [step for proof in proofs for step in proof.steps]
     tested = sum(step.how is How.CASES for step in steps)
+    mistakes = sum(len(proof.changes) for proof in proofs)
     head = (
         "# The paper, statement by statement\n\n"
         'Chen & Santangelo, "Branches of triangulated origami near the unfolded state". '
         f"{len(stated)} statements: {summary}. Each is settled by a script that a machine runs "
         f"(`python -m proofs`, {len(steps)} steps; {tested} of them test exact cases rather than "
-        "prove, and say so). Written by `python docs/make_statements.py`.\n"
+        f"prove, and say so). Each step refuses at least one of {mistakes} deliberate mistakes "
+        "(`tests/proofs`). Written by `python docs/make_statements.py`.\n"
     )
     body, errata, section = head, ERRATA, ""
     for statement, proof in stated:

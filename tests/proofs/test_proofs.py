@@ -4,6 +4,7 @@ import importlib
 import json
 import runpy
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -11,35 +12,47 @@ import pytest
 from exactfold.verdict import PROVED, REFUTED
 from proofs import MODULES
 from proofs.__main__ import load, main
-from proofs.framework import Ruling
+from proofs.framework import Proof, Ruling
 
 ROOT = Path(__file__).parent.parent.parent
 
 
+@cache
+def proof_of(name: str) -> Proof:
+    return load(name)
+
+
 @pytest.mark.parametrize("name", MODULES)
 def test_is_proved(name: str) -> None:
-    proof = load(name)
+    proof = proof_of(name)
     assert [step.text for step in proof.steps if not step.holds] == []
     assert proof.verdict is PROVED
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_every_change_is_refused(name: str) -> None:
-    module = importlib.import_module(f"proofs.{name}")
-    changes = load(name).changes
-    assert changes, "a proof that cannot be broken proves nothing"
-    for change in changes:
-        assert module.prove(change).verdict is REFUTED, change
+def test_every_change_is_refused_and_every_step_refuses_one(name: str) -> None:
+    module, proof = importlib.import_module(f"proofs.{name}"), proof_of(name)
+    assert proof.changes, "a proof that cannot be broken proves nothing"
+    assert len(set(proof.changes)) == len(proof.changes)
+    never_failed = dict(enumerate(step.text for step in proof.steps))
+    for change in proof.changes:
+        changed = module.prove(change)
+        assert changed.verdict is REFUTED, change
+        assert len(changed.steps) == len(proof.steps), change
+        for k, step in enumerate(changed.steps):
+            if not step.holds:
+                never_failed.pop(k, None)
+    assert list(never_failed.values()) == [], "steps that no deliberate mistake breaks"
 
 
 @pytest.mark.parametrize("name", MODULES)
 def test_corrections_are_stated(name: str) -> None:
-    for statement in load(name).statements:
+    for statement in proof_of(name).statements:
         assert bool(statement.corrected) == (statement.ruling is not Ruling.AS_PRINTED)
 
 
 def test_keys_are_unique() -> None:
-    keys = [statement.key for name in MODULES for statement in load(name).statements]
+    keys = [statement.key for name in MODULES for statement in proof_of(name).statements]
     assert len(set(keys)) == len(keys)
 
 
@@ -63,4 +76,4 @@ def test_runs_alone(
 def test_json_lists_every_step(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([MODULES[0], "--json"]) == 0
     (proof,) = json.loads(capsys.readouterr().out)["proofs"]
-    assert len(proof["steps"]) == len(load(MODULES[0]).steps)
+    assert len(proof["steps"]) == len(proof_of(MODULES[0]).steps)
