@@ -164,7 +164,7 @@ class Sheet:
         self.points = points
         self.next: dict[int, dict[int, int]] = {v: {} for v in points}
         for a, b, c in triangles:
-            require(len({a, b, c}) == 3 and {a, b, c} <= set(points), f"bad face {(a, b, c)}")
+            require(len({a, b, c}) == 3 and {a, b, c} <= points.keys(), f"bad face {(a, b, c)}")
             require(turn(points[a], points[b], points[c]) > 0, f"face {(a, b, c)} is not positive")
             for i, j, k in ((a, b, c), (b, c, a), (c, a, b)):
                 require(j not in self.next[i], f"two faces on one side of edge {i}-{j}")
@@ -206,10 +206,17 @@ class Sheet:
                 seen |= {a, b}
         require(euler == 1 and len(seen) == len(self.points), "the sheet is not one disk")
         self.boundary = cycle
-        sides = list(zip(cycle, cycle[1:] + cycle[:1], strict=True))
-        for k, first in enumerate(sides):
-            for second in sides[:k]:
-                require(not self._meet(first, second), f"boundary edges {first}, {second} meet")
+        self._check_simple(list(zip(cycle, cycle[1:] + cycle[:1], strict=True)))
+
+    def _check_simple(self, sides: list[Edge]) -> None:
+        """No two sides meet; compared only where their intervals of x do."""
+        spans = {side: sorted(self.points[v][0] for v in side) for side in sides}
+        active: list[Edge] = []
+        for side in sorted(sides, key=lambda side: spans[side]):
+            active = [other for other in active if spans[other][1] >= spans[side][0]]
+            for other in active:
+                require(not self._meet(side, other), f"boundary edges {side}, {other} meet")
+            active.append(side)
 
     def _meet(self, first: Edge, second: Edge) -> bool:
         shared = set(first) & set(second)
@@ -314,9 +321,10 @@ def inertia(matrix: list[list[Fraction]]) -> tuple[int, int, int]:
                 work[r][k] += work[r][j]
         counts[work[k][k] < 0] += 1
         live.remove(k)
-        for i in live:
+        beside = [c for c in live if work[k][c]]
+        for i in beside:
             factor = work[i][k] / work[k][k]
-            for c in live if factor else ():
+            for c in beside:
                 work[i][c] -= factor * work[k][c]
     return counts[0], counts[1], len(matrix) - sum(counts)
 
@@ -328,7 +336,7 @@ def matrix_of(form: Form, labels: list[int]) -> list[list[Fraction]]:
 
 def check_lorentzian(sheet: Sheet, vertex: int) -> None:
     """The curvature form of a flat vertex of degree N has inertia (1, N - 3, 3)."""
-    labels = [vertex, *sheet.star(vertex)]
+    labels = [*sheet.star(vertex), vertex]  # in this order elimination fills in two columns only
     expected = (1, len(labels) - 4, 3)
     require(
         inertia(matrix_of(sheet.curvature(vertex), labels)) == expected,
@@ -1134,7 +1142,7 @@ def digits(n: int) -> str:
     """Decimal text of an integer of any length."""
     if n < 0:
         return "-" + digits(-n)
-    if n < 10**4000:
+    if n.bit_length() < 13000:  # fewer than 4000 digits, which Python prints
         return str(n)
     half = n.bit_length() * 3 // 20
     high, low = divmod(n, 10**half)

@@ -1,10 +1,12 @@
 """The checker runs alone as a file, and refuses sheets and evidence that prove nothing."""
 
 import json
+import random
 import shutil
 import subprocess
 import sys
 from fractions import Fraction
+from itertools import combinations
 from pathlib import Path
 
 import pytest
@@ -316,6 +318,27 @@ def test_bad_sheet_is_refused(points, faces, message):
     exact = {k: (Fraction(x), Fraction(y)) for k, (x, y) in enumerate(points)}
     with pytest.raises(checker.CertificateError, match=message):
         checker.Sheet(exact, faces)
+
+
+def test_sides_that_meet_are_found_as_by_comparing_all_pairs():
+    """On random polygons of a small grid, many of them simple, many touching themselves."""
+    rng = random.Random(1)
+    seen = set()
+    for _ in range(2000):
+        count = rng.randint(3, 7)
+        grid = [(Fraction(x), Fraction(y)) for x in range(4) for y in range(4)]
+        sheet = checker.Sheet.__new__(checker.Sheet)
+        sheet.points = dict(enumerate(rng.sample(grid, count)))
+        sides = [(k, (k + 1) % count) for k in range(count)]
+        simple = not any(sheet._meet(a, b) for a, b in combinations(sides, 2))
+        seen.add(simple)
+        try:
+            sheet._check_simple(sides)
+        except checker.CertificateError:
+            assert not simple
+        else:
+            assert simple
+    assert seen == {True, False}
 
 
 def test_boundary_edges_on_one_line_need_not_meet():
