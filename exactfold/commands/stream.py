@@ -26,7 +26,7 @@ from exactfold.scale.dask_engine import LOCAL, dask_engine
 from exactfold.scale.stream import StreamedCount, available_cores, count_streaming
 from exactfold.verdict import PROVED, UNDECIDED
 
-ADVISED = 12
+ADVISED = 14
 """Foldable vertices from which plain `count` takes ten times as long, and doubles with each."""
 
 HANDED_OVER = 12
