@@ -109,7 +109,8 @@ def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
     boxes = [branch.root.box for branch in branches if isinstance(branch.root, BoxRoot)]
     return attempt.proved(
         result,
-        f"{attempt.total} solutions isolated; by refined Bezout there are no others",
+        f"{attempt.total} solution{'s' * (attempt.total > 1)} isolated; by refined Bezout there "
+        "are no others",
         {"kind": "isolated", "roots": [box_entry(box) for box in boxes]},
         distinct=isolation.real + isolation.nonreal,
         real=isolation.real,
