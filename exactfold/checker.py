@@ -1069,11 +1069,12 @@ def flat_at(
     if len(basis) == 2:
         u, v = basis
         a, b, c = polar(u, u), polar(u, v), polar(v, v)
-        root = rational_sqrt(b * b - a * c) if b * b > a * c else None
-        if b * b >= a * c and root is None:
+        square = b * b - a * c
+        root = rational_sqrt(square) if square >= 0 else None
+        if (square >= 0 and root is None) or not (a or b or c):
             return []
         if root is not None:
-            pairs = [(-b + root, a), (-b - root, a)] if a else [(root / root, 0 * b), (-c, 2 * b)]
+            pairs = [(-b + root, a), (-b - root, a)] if a else [(Fraction(1), 0 * b), (-c, 2 * b)]
             lines = [[s * x + t * y for x, y in zip(u, v, strict=True)] for s, t in pairs]
     vectors = [
         [sum((r * h for r, h in zip(row, line, strict=True)), Fraction(0)) for row in rows]

@@ -1,11 +1,12 @@
 """Folds deduced to be flat: everything deduced is true, and crosses are settled."""
 
 from fractions import Fraction
+from itertools import product
 
 import pytest
 from sheets import dart, random_wheel, wheel, with_point
 
-from exactfold import count_branches, random_square
+from exactfold import checker, count_branches, random_square
 from exactfold.branches.flat_folds import flat_folds
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, hypar, single_vertex, two_vertex
@@ -32,6 +33,30 @@ def test_cross_with_one_line_flat_says_nothing_of_the_other():
     """With both folds of one line known flat the other may bend or not: the form vanishes."""
     known = dict(zip(SPOKES, (0, None, 0, None), strict=True))
     assert flat_folds(CROSS, known) == {(0, 4), (2, 4)}
+
+
+def test_flat_fold_beside_a_straight_crease_makes_the_folds_across_flat():
+    """Two folds on one side of a line, one flat fold on the other: the form is minus a square."""
+    pattern = wheel([(2, 0), (1, 2), (-1, 3), (-2, 0), (0, -2)])
+    known = dict.fromkeys(pattern.folds) | {(4, 5): 0}
+    assert flat_folds(pattern, known) == {(1, 5), (2, 5), (4, 5)}
+
+
+@pytest.mark.parametrize("spokes", [4, 5])
+def test_the_checker_deduces_as_much(spokes):
+    """By code of its own, on wheels of small integers, where creases are often collinear."""
+    deduced = 0
+    for seed in range(8):
+        pattern = random_wheel(seed, spokes, reach=2)
+        sheet = checker.Sheet(dict(enumerate(pattern.vertices)), pattern.triangles)
+        for values in product((None, 1), repeat=spokes - 1):
+            for flat in range(spokes):
+                signs = dict(zip(pattern.folds, (*values[:flat], 0, *values[flat:]), strict=True))
+                found = flat_folds(pattern, signs)
+                checker.close_flat(sheet, signs)
+                assert {fold for fold, sign in signs.items() if sign == 0} == found
+                deduced += len(found) > 1
+    assert deduced > 100
 
 
 def test_three_flat_folds_at_a_vertex_make_the_fourth_flat():
