@@ -116,6 +116,7 @@ def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
         real=isolation.real,
         nonreal=isolation.nonreal,
         true_branches=PROVED,
+        open_questions=_signs(open_signs),  # what a solver lost was found all the same
     )
 
 
@@ -153,12 +154,15 @@ def solved_exactly(attempt: Attempt) -> BranchCount:
             "the branch system has infinitely many solutions: dimension "
             f"{solution.krull_dimension}, degree {solution.degree}"
         )
+    proved = None
     if solution.distinct == attempt.total:
         with suppress(OverflowError):  # zeros beyond floats are proved as they are
             result = isolated(attempt, solution.candidates)
-            if result.status is PROVED and not result.undecided_folds:
-                return result
-    return _algebraic(attempt, Zeros(list(solution.classes)), dict(solution.settings))
+            proved = result if result.status is PROVED else None
+    if proved is not None and not proved.undecided_folds:
+        return proved
+    exactly = _algebraic(attempt, Zeros(list(solution.classes)), dict(solution.settings))
+    return exactly if proved is None or exactly.status is PROVED else proved
 
 
 def _algebraic(attempt: Attempt, found: Zeros, settings: Mapping[str, int | str]) -> BranchCount:
