@@ -8,7 +8,7 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from exactfold.exact.numbers import format_rational
+from exactfold.exact.numbers import decimal_above, format_rational
 from exactfold.verdict import PROVED, UNDECIDED
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def count_report(
     if pattern.Vt:
         rows.append(("rigid inside", f"{pattern.Vt} vertices in triangulated triangles stay flat"))
     if result.snapped:
-        rows.append(("snapped", f"coordinates moved by up to {float(result.snapped):.3g}"))
+        rows.append(("snapped", f"coordinates moved by up to {decimal_above(result.snapped, 3)}"))
     rows.append(("status", f"{str(result.status).upper()} ({result.reason})"))
     if result.status is PROVED:
         rows += [
@@ -152,7 +152,9 @@ def branch_report(result: SignedBranch) -> Group:
         undecided = len(result.undecided_folds)
         decided = f"{len(result.assignment) - undecided} of {len(result.assignment)} folds"
         rows.append(("letters decided", decided))
-        rows.append(("heights", f"each within {float(result.radius):.2g} (--json lists them)"))
+        rows.append(
+            ("heights", f"each within {decimal_above(result.radius, 2)} (--json lists them)")
+        )
     rows.append(("method", f"{result.steps} Newton steps, {result.seconds:.2f} s"))
     return Group(_facts_table(rows))
 

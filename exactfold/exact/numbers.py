@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from decimal import Decimal
+from decimal import ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 from math import lcm
 from numbers import Rational
@@ -150,6 +150,17 @@ def format_rational(value: Fraction) -> str:
     if value.denominator == 1:
         return numerator
     return f"{numerator}/{format_integer(value.denominator)}"
+
+
+def decimal_above(value: Fraction, digits: int) -> str:
+    """The least decimal number with so many significant digits that is at least `value` >= 0.
+
+    >>> decimal_above(Fraction(1, 3), 1), decimal_above(Fraction(1, 3 * 10**400), 2)
+    ('0.4', '3.4e-401')
+    """
+    rounding = Context(digits, ROUND_CEILING)
+    above = rounding.divide(Decimal(value.numerator), Decimal(value.denominator))
+    return f"{above.normalize():g}"
 
 
 def over_common_denominator(values: Iterable[Fraction]) -> tuple[list[int], int]:

@@ -303,7 +303,7 @@ class BranchFinder:
         }
         loose = tuple(labels[v] for v in proof.loose)
         flat = tuple(labels[v] for v in proof.flat_vertices)
-        error = float(root_above(squared)) if squared else 0.0
+        error = root_above(squared) if squared else Fraction(0)
         reason = words.proved(error, flat, self.pattern.Vt > 0)
         letters = {
             (labels[i], labels[j]): "F" if k in proof.flat_folds else "UVM"[proof.letters[k]]

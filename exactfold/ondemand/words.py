@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
+
+from exactfold.exact.numbers import decimal_above
 
 
 def named(vertices: Sequence[int]) -> str:
@@ -16,22 +19,23 @@ def named(vertices: Sequence[int]) -> str:
     return f"{'vertex' if len(vertices) == 1 else 'vertices'} {names}{more}"
 
 
-def proved(error: float, flat: Sequence[int], emptied: bool) -> str:
+def proved(error: Fraction, flat: Sequence[int], emptied: bool) -> str:
     """Of a branch whose signs are all proved; `flat` have another sign than the one asked for."""
     what, kind = "these signs", "simple solution"
     if flat:
         what = f"the signs shown, 0 at {named(flat)}, where it is flat"
         kind = f"solution of multiplicity {2 ** len(flat) if len(flat) < 10 else f'2^{len(flat)}'}"
     inside = " of the pattern with its triangulated triangles emptied" if emptied else ""
-    where = f" within {error:.1g} of the heights given, in the norm of gradients"
+    where = f" within {decimal_above(error, 1)} of the heights given, in the norm of gradients"
     if not error:
         where = ", and the heights given are exact"
     return f"exactly one branch has {what}; it is a {kind}{inside}{where}"
 
 
-def undecided(error: float, loose: Sequence[int]) -> str:
+def undecided(error: Fraction, loose: Sequence[int]) -> str:
     """Of a solution that may be flat at some vertices."""
-    return f"the only solution with these signs is flat to within {error:.1g} at {named(loose)}"
+    within = decimal_above(error, 1)
+    return f"the only solution with these signs is flat to within {within} at {named(loose)}"
 
 
 def not_found(failed: Sequence[int]) -> str:

@@ -170,6 +170,16 @@ def test_exact_heights_have_no_error() -> None:
     assert all(curvature(found.pattern, found.centres, v) == 0 for v in found.pattern.interior)
 
 
+def test_errors_below_the_range_of_floats_are_still_told() -> None:
+    pattern = random_square(3, seed=0)
+    rim = {v: Fraction(v * v + 1, 10**400) for v in pattern.boundary}
+    found = find_branch(pattern, "+-+", rim=rim)
+    assert found.status is PROVED
+    assert found.squared_distance
+    shown = found.reason.split("within ")[1].split()[0]
+    assert found.squared_distance <= Fraction(shown) ** 2 < 100 * found.squared_distance
+
+
 def test_what_is_flat_for_no_rational_reason_is_undecided() -> None:
     found = find_branch(degenerate.ringed_square(4), "+++++")
     assert found.status is UNDECIDED
