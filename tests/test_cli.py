@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 from fractions import Fraction
@@ -695,6 +696,17 @@ def test_dash_is_standard_input(tmp_path, two_vertex, certificate):
     for file in (certificate, stream):
         checked = process("check", "-", input=file.read_text())
         assert (checked.returncode, checked.stdout[:6]) == (PROVED, "VALID:")
+
+
+@pytest.mark.skipif(not hasattr(socket, "AF_UNIX"), reason="no such sockets here")
+def test_what_cannot_be_opened_is_bad_input(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with socket.socket(socket.AF_UNIX) as listener:
+        listener.bind("s")
+        for command in ("check", "count"):
+            result = run(command, "s")
+            assert result.exit_code == BAD_INPUT
+            assert "UnreadableFileError: cannot read s" in result.stderr
 
 
 def test_dash_as_an_output(tmp_path, monkeypatch, two_vertex):

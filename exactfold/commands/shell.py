@@ -17,7 +17,13 @@ from typing import TYPE_CHECKING, Annotated, NoReturn, ParamSpec, TypeVar
 
 import typer
 
-from exactfold.errors import ExactfoldError, InputError, UsageError, WorkerDiedError
+from exactfold.errors import (
+    ExactfoldError,
+    InputError,
+    UnreadableFileError,
+    UsageError,
+    WorkerDiedError,
+)
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
 if TYPE_CHECKING:
@@ -197,13 +203,20 @@ def not_a_dash(path: Path | None) -> Path | None:
 
 @contextmanager
 def regular(path: Path) -> Iterator[Path]:
-    """The path, or for a pipe that of a copy: what reads it may read it more than once."""
+    """The path, or for a pipe that of a copy: what reads it may read it more than once.
+
+    Raises `UnreadableFileError` for what cannot be opened, such as a socket.
+    """
     if not _is_special(path):
         yield path
         return
     with tempfile.TemporaryDirectory(prefix="exactfold-") as folder:
         copy = Path(folder, "stdin" if str(path) == "/dev/stdin" else path.name)
-        with open(path, "rb") as source, open(copy, "wb") as target:
+        try:
+            source = open(path, "rb")  # noqa: SIM115 - closed below
+        except OSError as error:
+            raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
+        with source, open(copy, "wb") as target:
             shutil.copyfileobj(source, target)
         yield copy
 

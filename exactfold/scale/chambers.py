@@ -14,6 +14,7 @@ from exactfold.branches.functionals import Functionals
 from exactfold.certify.certificate import Document, chart_evidence, triangle_evidence
 from exactfold.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
 from exactfold.certify.rigid_triangles import RigidTriangle, certify_rigid_triangles
+from exactfold.compact_checker import MOST_UNKNOWNS
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.scale.settle import ExactRoot, OpenEnd, Settler
@@ -64,7 +65,7 @@ class Chambers:
     def of(cls, pattern: CreasePattern, block_size: int | None = None) -> Chambers:
         """Blocks of `block_size` sign vectors, a power of two, 1024 by default.
 
-        Raises `NotApplicableError` unless D = 1 and some vertex is foldable.
+        Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most.
 
         >>> from exactfold.pattern.random_squares import random_square
         >>> chambers = Chambers.of(random_square(3, seed=0))
@@ -79,6 +80,8 @@ class Chambers:
             raise NotApplicableError("no definite stress was found for a triangulated triangle")
         if not emptied.interior:
             raise NotApplicableError("no vertex of the pattern is foldable")
+        if emptied.Vi > MOST_UNKNOWNS:
+            raise NotApplicableError(f"2^{emptied.Vi} branches are too many to list")
         size = min(block_size or BLOCK, 1 << emptied.Vi)
         return cls(pattern, triangles, emptied, labels, chart, size)
 

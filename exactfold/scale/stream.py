@@ -129,9 +129,10 @@ def count_streaming(
     `replace`. `progress(done, total)` counts sign vectors, and `verified` those taken over. An
     `engine`, such as `dask_engine`, takes the place of the `workers`.
 
-    Raises `NotApplicableError` unless D = 1 and some vertex is foldable, `ForeignJournalError`,
-    `JournalInUseError` while another run writes the file, `UnwritableFileError`, `UsageError`,
-    `WorkerDiedError`. An interruption leaves a file that can be resumed.
+    Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most,
+    `ForeignJournalError`, `JournalInUseError` while another run writes the file,
+    `UnwritableFileError`, `UsageError`, `WorkerDiedError`. An interruption leaves a file that can
+    be resumed.
 
     >>> import os, tempfile
     >>> from exactfold.pattern.random_squares import random_square

@@ -17,6 +17,7 @@ from exactfold.data import example_path
 from exactfold.errors import ForeignJournalError, NotApplicableError, UnwritableFileError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import straight_path
+from exactfold.pattern.random_squares import sample_random_square
 from exactfold.scale import chambers as chambers_module
 from exactfold.scale.chambers import Chambers
 from exactfold.scale.check import CertificateError, check_compact
@@ -175,7 +176,8 @@ def test_unwritable_files_and_other_patterns_are_refused(tmp_path: Path) -> None
         count_streaming(random_square(3, seed=1), tmp_path / "none" / "c.txt")
     with pytest.raises(UnwritableFileError):
         count_streaming(random_square(3, seed=1), tmp_path, resume=True)
-    for sheet in (families.single_vertex(5), families.single_vertex(3)):
+    large = sample_random_square(41, 1, 1 << 20, redraw=True).pattern
+    for sheet in (families.single_vertex(5), families.single_vertex(3), large):
         with pytest.raises(NotApplicableError):
             Chambers.of(sheet)
 
