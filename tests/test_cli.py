@@ -679,8 +679,8 @@ def test_closed_standard_output(two_vertex):
 
 def test_a_name_that_the_terminal_cannot_show(tmp_path, two_vertex):
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
-    out = tmp_path / "z\u00e4hlung.json"
-    result = process("count", two_vertex, "--certificate", out, env=environment)
+    arguments = ["count", two_vertex.absolute(), "--certificate", "z\u00e4hlung.json"]
+    result = process(*arguments, env=environment, cwd=tmp_path)
     assert (result.returncode, result.stderr) == (PROVED, "")
     assert "z\\xe4hlung.json" in result.stdout
 
