@@ -147,6 +147,7 @@ def test_a_scheduler_that_does_not_answer_is_bad_input(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("address", ["nonsense", "foo://x:1", "tcp://x", "host:99999", ""])
 def test_what_is_no_address_is_bad_input_at_once(tmp_path: Path, address: str) -> None:
+    pytest.importorskip("distributed")
     """In a process of its own: the client that dask would make of it hangs at the end."""
     command = [sys.executable, "-m", "exactfold", "count", str(example_path("random-8"))]
     command += ["--stream", str(tmp_path / "c.txt"), "--dask", address]
