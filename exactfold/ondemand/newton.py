@@ -14,6 +14,7 @@ _HALVINGS = 30
 _DECREASE = 0.1
 _CONVERGED = 1e-10
 _NOISE = 1e-6
+_APEX = 1e-14
 
 
 @dataclass(frozen=True)
@@ -56,15 +57,20 @@ def equations(
     where l_v and e_v r nearly agree:
 
         g = E / (l + e r),   dg = -E / (r (r + e l)) dl + e / (2 r) dK      where e l > 0.
+
+    Where r is lost in rounding, as on a regular cone, its gradient is noise: dg = dl is taken,
+    which is as good (docs/mathematics.md, 12, with u_v = 0).
     """
     lines, excess = point.lines, point.excess
-    root = np.sqrt(np.maximum(lines * lines - excess, 0.0))
+    squared = lines * lines
+    apex = squared - excess <= _APEX * squared
+    root = np.sqrt(np.maximum(squared - excess, 0.0))
     root = np.maximum(root, 1e-150)
     same = signs * lines > 0.0
     total = np.where(same, lines + signs * root, 1.0)
     value = np.where(same, excess / total, lines - signs * root)
     of_lines = np.where(same, -signs * excess / (root * total), 1.0 - signs * lines / root)
-    return value, of_lines, signs / (2.0 * root)
+    return value, np.where(apex, 1.0, of_lines), np.where(apex, 0.0, signs / (2.0 * root))
 
 
 def solve(
