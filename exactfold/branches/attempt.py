@@ -11,6 +11,7 @@ from typing import Any
 from exactfold.branches.branch import Branch
 from exactfold.branches.classify import Undecided, classify
 from exactfold.branches.multiple_roots import Zeros, recognised, solve_flat
+from exactfold.branches.named import UPSIDE_DOWN
 from exactfold.branches.result import BranchCount
 from exactfold.branches.roots import AlgebraicRoot, BoxRoot, FlatBoxRoot, Root
 from exactfold.certify.algebraic import (
@@ -32,8 +33,6 @@ from exactfold.system.branch_system import Chart
 from exactfold.verdict import PROVED, UNDECIDED
 
 Progress = Callable[[str, int, int], None]
-
-_UPSIDE_DOWN = str.maketrans("+-MV", "-+VM")
 
 
 @dataclass(frozen=True)
@@ -227,7 +226,7 @@ def _told_apart(branches: Sequence[Branch]) -> bool:
         root = branch.root
         kind = root.sheets.vertices if isinstance(root, FlatBoxRoot) else type(root)
         seen = (branch.sign_text, "".join(text[k] for k in decided))
-        mirrored = (seen[0].translate(_UPSIDE_DOWN), seen[1].translate(_UPSIDE_DOWN))
+        mirrored = (seen[0].translate(UPSIDE_DOWN), seen[1].translate(UPSIDE_DOWN))
         for letters in (seen, mirrored):
             if kinds.setdefault(letters, kind) != kind:
                 return False

@@ -2,9 +2,9 @@
 
 At a vertex with some folds known to be flat, the bends of the others span a space of dimension d.
 If the curvature form is definite there (always for d = 1 unless it vanishes), all are flat. If
-d = 2 and the form splits into two rational lines, the branch lies on one of them; when the known
-signs exclude the other, the bends are proportional to a known vector, whose zeros are flat folds.
-This settles the crosses (collinear folds at a vertex of degree 4) and what follows from them.
+d = 2 and the form vanishes on one or two rational lines, the branch lies on one of them; folds
+that do not bend on any line that agrees with the known signs are flat. This settles the crosses
+(collinear folds at a vertex of degree 4) and what follows from them.
 """
 
 from __future__ import annotations

@@ -6,6 +6,9 @@ from collections.abc import Mapping
 
 from exactfold.pattern.crease_pattern import Edge
 
+UPSIDE_DOWN = str.maketrans("+-MV", "-+VM")
+"""For `str.translate`: signs and letters seen from the other side of the sheet."""
+
 
 class NamedBranch:
     """Signs by interior vertex (1, -1, 0) and letters by fold, spelled in their order."""

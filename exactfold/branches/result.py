@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 from exactfold.branches.branch import Branch
+from exactfold.branches.named import UPSIDE_DOWN
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.verdict import UNDECIDED, Verdict
@@ -83,7 +84,7 @@ class BranchCount:
         counts: Counter[str] = Counter()
         for branch in self.branches:
             text = branch.sign_text
-            counts[min(text, text.translate(str.maketrans("+-", "-+")))] += 1
+            counts[min(text, text.translate(UPSIDE_DOWN))] += 1
         return counts
 
     @property
@@ -107,7 +108,7 @@ class BranchCount:
             text = branch.assignment_text
             if "U" in text:
                 return None
-            counts[min(text, text.translate(str.maketrans("MV", "VM")))] += 1
+            counts[min(text, text.translate(UPSIDE_DOWN))] += 1
         return sum(count for count in counts.values() if count > 1)
 
     def __repr__(self) -> str:

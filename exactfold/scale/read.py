@@ -8,14 +8,13 @@ from collections.abc import Iterator
 from exactfold import checker, compact_checker
 from exactfold.branches.branch import Branch
 from exactfold.branches.classify import vertex_height_rows
+from exactfold.branches.named import UPSIDE_DOWN
 from exactfold.branches.roots import BoxRoot, Root
 from exactfold.certify.box import IsolatingBox
 from exactfold.errors import CertificateFormatError, ExactfoldError, UnreadableFileError
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.scale.chambers import Chambers
-
-_LETTERS = {"M": "V", "V": "M", "F": "F", "U": "U"}
 
 
 def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
@@ -57,6 +56,7 @@ def _branches(found: Iterator[str]) -> Iterator[Branch]:
         for j in range(known.block):
             if j in block.exact:
                 root, letters = block.exact[j]
+                checker.require(set(letters) <= set("MVFU"), f"root {block.first + j}: no letters")
                 box = IsolatingBox(tuple(root.center), (), root.radius, root.bits)
             else:
                 checker.require(
@@ -88,7 +88,7 @@ class _Maker:
         signs = [-1 if number >> k & 1 else 1 for k in range(self.chambers.size)]
         if side == -1:
             root, signs = root.mirrored(), [-s for s in signs]
-            letters = "".join(_LETTERS[letter] for letter in letters)
+            letters = letters.translate(UPSIDE_DOWN)
         return Branch(
             self.rigid | dict(zip(self.vertices, signs, strict=True)),
             self.flat | dict(zip(self.folds, letters, strict=True)),

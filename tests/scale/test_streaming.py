@@ -257,6 +257,10 @@ def test_a_fold_that_stays_open_costs_its_letter_only(
         entry["assignment"] = text.replace("U", letter, 1)
         refused(chained(lines), path, "folds are")
         entry["assignment"] = text
+    entry["assignment"] = text.replace("U", "?")
+    path.write_bytes(chained(lines))
+    with pytest.raises(CertificateError, match="no letters"):
+        list(read_branches(path))
 
 
 def test_the_environment_is_restored(monkeypatch: pytest.MonkeyPatch) -> None:
