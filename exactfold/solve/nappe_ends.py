@@ -17,7 +17,7 @@ _BLOCK = 1024
 
 
 def nappe_ends(chart: Chart, *, progress: Progress | None = None) -> Candidates:
-    """Candidates for all 2^Vi branches of a pattern with four boundary vertices.
+    """Candidates for all 2^Vi branches (Ve = 4), each by Newton's method on the nappes.
 
     For each vector e of vertex signs the equations l_v = e_v |A_v h| of `NappeSystem` have one
     solution (docs/mathematics.md, 12), found by damped Newton steps, a block of sign vectors at a

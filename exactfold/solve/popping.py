@@ -26,7 +26,7 @@ _MIN_STEP = 1e-12
 
 
 def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
-    """Candidates for all 2^Vi branches of a pattern with four boundary vertices.
+    """Candidates for all 2^Vi branches (Ve = 4), each by following its popping path.
 
     With the round cone t_v, l_v(h) = K_v(t_v, h) scaled to hub coefficient 1 and K_v scaled so that
     l_v^2 - K_v >= 0, each sign vector e is followed along

@@ -2,7 +2,7 @@
 
 Where vertex stars are flat the system degenerates, but its zeros lie in a known linear subspace. On
 it the quadrics of the flat vertices vanish, others come to depend on each other, and what is left
-is a small system with regular zeros. The popping paths say which vertices to try.
+is a small system with regular zeros. The candidates say which vertices to try.
 """
 
 from __future__ import annotations
