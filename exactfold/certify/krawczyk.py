@@ -251,9 +251,10 @@ class _Kernel:
 
     def _attempt(self, m: list[int], bits: int, entries: list[int], q: int) -> IsolatingBox | str:
         """Newton steps with a fixed Y = entries / 2^q from floating point, then the test."""
-        n = self.system.size
-        y = fmpz_mat(n, n, entries)
+        y = fmpz_mat(self.system.size, self.system.size, entries)
         shift = q + self.shifted[1]
+        if shift + bits < 0:
+            return f"the inverse of the Jacobian is too large at {bits} bits"
         jacobian, values = self._evaluate(m, bits)
         for _ in range(_NEWTON_STEPS):
             step = self._step(values, bits, y, shift)

@@ -234,7 +234,7 @@ DOUBLE: list[tuple[list[list[list[Any]]], list[float]]] = [
 
 
 @every
-@pytest.mark.parametrize("offset", [0.0, 1e-12, 1e-5, 1e-3 + 1e-3j, 1e-9j])
+@pytest.mark.parametrize("offset", [0.0, 1e-300, 1e-40, 1e-12, 1e-5, 1e-3 + 1e-3j, 1e-9j])
 @pytest.mark.parametrize("case", range(5))
 def test_multiple_zero_is_refused(certify: Certifier, case: int, offset: complex) -> None:
     matrices, point = DOUBLE[case]
