@@ -70,8 +70,8 @@ class Chambers:
         >>> from exactfold.pattern.random_squares import random_square
         >>> chambers = Chambers.of(random_square(3, seed=0))
         >>> block = chambers.prove(0)
-        >>> block.boxes.proved.all(), len(block.open)
-        (np.True_, 0)
+        >>> bool(block.boxes.proved.all()), len(block.open)
+        (True, 0)
         """
         emptied, labels = pattern.emptied()
         chart = chamber_chart(emptied)

@@ -171,8 +171,8 @@ class NappeSystem:
         >>> from exactfold.pattern.families import single_vertex
         >>> system = NappeSystem(chamber_chart(single_vertex(4)))
         >>> found = system.ends(sign_vectors(0, 2, 1))
-        >>> found.points.shape, found.converged.all()
-        ((2, 1), np.True_)
+        >>> found.points.shape, bool(found.converged.all())
+        ((2, 1), True)
         """
         return self._ends(*self.unknowns(self.full_signs(signs)))
 
