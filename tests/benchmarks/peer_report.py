@@ -209,7 +209,8 @@ that of the chart *boundary saddle = 1*, `Vi` quadrics in `Vi` unknowns with int
 and the same for everybody. Every program is a process of its own with one thread. The machine was
 shared with other work, so that what counts is **processor time** of the process and its children,
 not the clock; read ratios rather than seconds. Starting Python and loading every library used
-here takes {start} s, which is most of exactfold's time at small sizes and is included.
+here takes {start} s. exactfold loads what it needs; that is most of its time at small sizes, and is
+included.
 
 ## All solutions
 
