@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.solve.msolve import find_msolve
 from exactfold.system.branch_system import BranchSystem
 from exactfold.system.export import (
     chart_names,
@@ -239,6 +240,6 @@ def test_msolve_finds_every_solution(tmp_path):
     chart = BranchSystem(PATTERN).chart
     file, output = tmp_path / "system.ms", tmp_path / "solutions"
     file.write_text(to_msolve(chart.system, chart_names(chart)))
-    run("msolve", "-f", str(file), "-o", str(output), "-t", "1")
+    run(find_msolve() or "msolve", "-f", str(file), "-o", str(output), "-t", "1")
     boxes = re.findall(r"\[[^\[\]]*/[^\[\]]*\]", output.read_text())
     assert len(boxes) == 8 * chart.system.size
