@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from exactfold import PROVED, BranchSystem, homotopy, isolate, random_square
 from exactfold.branches.functionals import Functionals
 from exactfold.branches.roots import BoxRoot
-from exactfold.system.perturbed import perturbed
+from exactfold.problem.perturbed import perturbed
 
 SIZES = ("0", "1/100", "1/10", "1/2")
 HEAD = (

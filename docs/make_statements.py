@@ -106,9 +106,13 @@ def code_links(names: str) -> str:
 
 @cache
 def definitions() -> dict[str, str]:
-    """Path in the repository by name of a class, a function or a module of exactfold."""
+    """Path in the repository by name of a class, a function or a module of exactfold.
+
+    Dual spaces, which only proofs need, are in `proofs`.
+    """
     found: dict[str, str] = {}
-    for path in sorted((HERE.parent / "exactfold").rglob("*.py")):
+    root = HERE.parent
+    for path in [*sorted(root.glob("proofs/dual_*.py")), *sorted(root.glob("exactfold/**/*.py"))]:
         where = path.relative_to(HERE.parent).as_posix()
         names = re.findall(r"^(?:class|def) (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE)
         found |= dict.fromkeys(names, where)

@@ -18,71 +18,71 @@ from exactfold.errors import ExactfoldError, InputError
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 if TYPE_CHECKING:
+    from exactfold.algebra.degree_four import split_form
+    from exactfold.algebra.from_roots import parametrisation_from_roots
+    from exactfold.algebra.groebner import groebner, quotient_algebra
+    from exactfold.algebra.hermite import hermite_counts
     from exactfold.branches.branch import Branch
-    from exactfold.branches.claims import certificate
     from exactfold.branches.result import BranchCount
-    from exactfold.certify.arb_krawczyk import arb_krawczyk
-    from exactfold.certify.certificate import write_certificate
-    from exactfold.certify.interval_newton import interval_newton
-    from exactfold.certify.isolation import isolate
-    from exactfold.certify.krawczyk import krawczyk
-    from exactfold.count import METHODS, count_branches
-    from exactfold.data import EXAMPLES, example_path
-    from exactfold.exact.factor_degrees import factor_degrees
-    from exactfold.exact.forms import QuadraticForm
-    from exactfold.exact.numbers import as_rational
-    from exactfold.ondemand.find import BranchFinder, find_branch, find_branches, neighbours
-    from exactfold.ondemand.result import SignedBranch
-    from exactfold.pattern import degenerate, families
-    from exactfold.pattern.crease_pattern import CreasePattern
-    from exactfold.pattern.delaunay import delaunay
-    from exactfold.pattern.fold import FoldFile, load_fold, read_fold
-    from exactfold.pattern.fold_writing import write_fold
-    from exactfold.pattern.random_squares import random_square
-    from exactfold.rigidity.all_real import decide_all_branches_real
-    from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stress
-    from exactfold.rigidity.definite_stress import definite_stress
-    from exactfold.rigidity.facts import pattern_facts
-    from exactfold.rigidity.framework import rigidity_matrix, self_stresses
-    from exactfold.scale.check import check_compact
-    from exactfold.scale.dask_engine import dask_engine
-    from exactfold.scale.read import read_branches
-    from exactfold.scale.stream import StreamedCount, count_streaming
-    from exactfold.solve.from_roots import parametrisation_from_roots
-    from exactfold.solve.groebner import groebner, quotient_algebra
-    from exactfold.solve.hermite import hermite_counts
-    from exactfold.solve.homotopy import homotopy
-    from exactfold.solve.methods import find_candidates
-    from exactfold.solve.nappe_ends import nappe_ends
-    from exactfold.solve.popping import popping
-    from exactfold.solve.splitting import split_form
-    from exactfold.system.branch_system import BranchSystem, Chart
-    from exactfold.system.export import (
+    from exactfold.branches.signed import SignedBranch
+    from exactfold.bridges.export import (
         to_homotopy_continuation,
         to_macaulay2,
         to_msolve,
         to_singular,
         to_sympy,
     )
-    from exactfold.system.perturbed import perturbed
-    from exactfold.system.quadratic import QuadraticSystem
+    from exactfold.certify.arb_krawczyk import arb_krawczyk
+    from exactfold.certify.interval_newton import interval_newton
+    from exactfold.certify.isolation import isolate
+    from exactfold.certify.krawczyk import krawczyk
+    from exactfold.count.collect import METHODS, count_branches
+    from exactfold.count.dask_engine import dask_engine
+    from exactfold.count.find import BranchFinder, find_branch, find_branches, neighbours
+    from exactfold.count.methods import find_candidates
+    from exactfold.count.stream import StreamedCount, count_streaming
+    from exactfold.data import EXAMPLES, example_path
+    from exactfold.evidence.check import check_compact
+    from exactfold.evidence.entries import write_certificate
+    from exactfold.evidence.listing import certificate
+    from exactfold.evidence.read import read_branches
+    from exactfold.exact.factor_degrees import factor_degrees
+    from exactfold.exact.forms import QuadraticForm
+    from exactfold.exact.numbers import as_rational
+    from exactfold.pattern import degenerate, families
+    from exactfold.pattern.crease_pattern import CreasePattern
+    from exactfold.pattern.delaunay import delaunay
+    from exactfold.pattern.fold import FoldFile, load_fold, read_fold
+    from exactfold.pattern.fold_writing import write_fold
+    from exactfold.pattern.random_squares import random_square
+    from exactfold.problem.branch_system import BranchSystem, Chart
+    from exactfold.problem.perturbed import perturbed
+    from exactfold.problem.quadratic import QuadraticSystem
+    from exactfold.rigidity.all_real import decide_all_branches_real
+    from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stress
+    from exactfold.rigidity.definite_stress import definite_stress
+    from exactfold.rigidity.facts import pattern_facts
+    from exactfold.rigidity.self_stress import rigidity_matrix, self_stresses
+    from exactfold.solve.homotopy import homotopy
+    from exactfold.solve.newton_ends import nappe_ends
+    from exactfold.solve.popping import popping
 
 _HOMES = {
     "exactfold.branches.branch": ("Branch",),
-    "exactfold.branches.claims": ("certificate",),
+    "exactfold.evidence.listing": ("certificate",),
     "exactfold.branches.result": ("BranchCount",),
     "exactfold.certify.arb_krawczyk": ("arb_krawczyk",),
-    "exactfold.certify.certificate": ("write_certificate",),
+    "exactfold.evidence.entries": ("write_certificate",),
     "exactfold.certify.interval_newton": ("interval_newton",),
     "exactfold.certify.isolation": ("isolate",),
     "exactfold.certify.krawczyk": ("krawczyk",),
-    "exactfold.count": ("METHODS", "count_branches"),
+    "exactfold.count.collect": ("METHODS", "count_branches"),
     "exactfold.data": ("EXAMPLES", "example_path"),
     "exactfold.exact.factor_degrees": ("factor_degrees",),
     "exactfold.exact.forms": ("QuadraticForm",),
     "exactfold.exact.numbers": ("as_rational",),
-    "exactfold.ondemand.find": ("BranchFinder", "find_branch", "find_branches", "neighbours"),
-    "exactfold.ondemand.result": ("SignedBranch",),
+    "exactfold.count.find": ("BranchFinder", "find_branch", "find_branches", "neighbours"),
+    "exactfold.branches.signed": ("SignedBranch",),
     "exactfold.pattern": ("degenerate", "families"),
     "exactfold.pattern.crease_pattern": ("CreasePattern",),
     "exactfold.pattern.delaunay": ("delaunay",),
@@ -93,29 +93,29 @@ _HOMES = {
     "exactfold.rigidity.curvature": ("curvature_form", "stress_form", "wheel_stress"),
     "exactfold.rigidity.definite_stress": ("definite_stress",),
     "exactfold.rigidity.facts": ("pattern_facts",),
-    "exactfold.rigidity.framework": ("rigidity_matrix", "self_stresses"),
-    "exactfold.scale.check": ("check_compact",),
-    "exactfold.scale.dask_engine": ("dask_engine",),
-    "exactfold.scale.read": ("read_branches",),
-    "exactfold.scale.stream": ("StreamedCount", "count_streaming"),
-    "exactfold.solve.from_roots": ("parametrisation_from_roots",),
-    "exactfold.solve.groebner": ("groebner", "quotient_algebra"),
-    "exactfold.solve.hermite": ("hermite_counts",),
+    "exactfold.rigidity.self_stress": ("rigidity_matrix", "self_stresses"),
+    "exactfold.evidence.check": ("check_compact",),
+    "exactfold.count.dask_engine": ("dask_engine",),
+    "exactfold.evidence.read": ("read_branches",),
+    "exactfold.count.stream": ("StreamedCount", "count_streaming"),
+    "exactfold.algebra.from_roots": ("parametrisation_from_roots",),
+    "exactfold.algebra.groebner": ("groebner", "quotient_algebra"),
+    "exactfold.algebra.hermite": ("hermite_counts",),
     "exactfold.solve.homotopy": ("homotopy",),
-    "exactfold.solve.methods": ("find_candidates",),
-    "exactfold.solve.nappe_ends": ("nappe_ends",),
+    "exactfold.count.methods": ("find_candidates",),
+    "exactfold.solve.newton_ends": ("nappe_ends",),
     "exactfold.solve.popping": ("popping",),
-    "exactfold.solve.splitting": ("split_form",),
-    "exactfold.system.branch_system": ("BranchSystem", "Chart"),
-    "exactfold.system.export": (
+    "exactfold.algebra.degree_four": ("split_form",),
+    "exactfold.problem.branch_system": ("BranchSystem", "Chart"),
+    "exactfold.bridges.export": (
         "to_homotopy_continuation",
         "to_macaulay2",
         "to_msolve",
         "to_singular",
         "to_sympy",
     ),
-    "exactfold.system.perturbed": ("perturbed",),
-    "exactfold.system.quadratic": ("QuadraticSystem",),
+    "exactfold.problem.perturbed": ("perturbed",),
+    "exactfold.problem.quadratic": ("QuadraticSystem",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -22,16 +22,16 @@ from exactfold.commands.shell import (
     Snap,
     apart,
     not_a_dash,
-    one_thread,
     output_failed,
     reported,
     standard_input,
 )
 from exactfold.errors import UsageError
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.workers import one_thread
 
 if TYPE_CHECKING:
-    from exactfold.scale.stream import StreamedCount
+    from exactfold.count.stream import StreamedCount
 
 # Each command imports what it needs: loading everything takes longer than most of the work.
 
@@ -46,7 +46,7 @@ app = typer.Typer(
 
 
 class Method(StrEnum):
-    """The names of `exactfold.count.METHODS`."""
+    """The names of `exactfold.count.collect.METHODS`."""
 
     auto = "auto"
     nappes = "nappes"
@@ -111,10 +111,10 @@ def count(
     With --stream, Ctrl-C loses one block at most and prints how to go on.
     """
     from exactfold import report
-    from exactfold.branches.claims import certificate as certificate_of
-    from exactfold.certify.certificate import write_certificate
     from exactfold.commands.stream import Streaming, advice
-    from exactfold.count import count_branches
+    from exactfold.count.collect import count_branches
+    from exactfold.evidence.entries import write_certificate
+    from exactfold.evidence.listing import certificate as certificate_of
     from exactfold.pattern.fold import load_fold
 
     apart(certificate, pattern, stream)

@@ -13,9 +13,9 @@ from exactfold.verdict import PROVED, UNDECIDED
 
 if TYPE_CHECKING:
     from exactfold.branches.result import BranchCount
-    from exactfold.ondemand.result import SignedBranch
+    from exactfold.branches.signed import SignedBranch
+    from exactfold.count.stream import StreamedCount
     from exactfold.rigidity.facts import PatternFacts
-    from exactfold.scale.stream import StreamedCount
 
 SHOWN = 32
 """Branches and open questions listed unless all are asked for."""

@@ -31,8 +31,8 @@ from exactfold import (
 from exactfold.branches.functionals import Functionals
 from exactfold.branches.roots import BoxRoot
 from exactfold.pattern.families import flat_vertex_square
+from exactfold.problem.branch_system import Chart, notch_chart
 from exactfold.rigidity.definite_stress import disk_multipliers
-from exactfold.system.branch_system import Chart, notch_chart
 from exactfold.verdict import PROVED
 from proofs.chambers import corner_sign, counted, solve
 from proofs.framework import Proof, Ruling, Script, run

@@ -14,9 +14,9 @@ from sympy import QQ
 from sympy.polys.rings import ring
 
 from exactfold import QuadraticSystem, krawczyk
+from exactfold.algebra.groebner import groebner
 from exactfold.certify.box import IsolatingBox
-from exactfold.certify.dual_space import dual_space
-from exactfold.solve.groebner import groebner
+from proofs.dual_space import dual_space
 from proofs.framework import Proof, Ruling, Script, run
 
 NAME = "certification"

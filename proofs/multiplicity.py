@@ -27,14 +27,14 @@ from sympy import QQ
 from sympy.polys.fields import field
 
 from exactfold import BranchSystem, CreasePattern, QuadraticSystem, families, groebner
+from exactfold.algebra.exact_solution import ExactSolution, RootClass
 from exactfold.branches.functionals import Functionals
-from exactfold.certify.dual_space import dual_space, taylor_expansions, unit_rank
 from exactfold.exact.linalg import inertia, nullspace
+from exactfold.problem.branch_system import Chart, notch_chart
 from exactfold.rigidity.definite_stress import disk_multipliers
-from exactfold.solve.exact_solution import ExactSolution, RootClass
-from exactfold.system.branch_system import Chart, notch_chart
 from proofs.branch_counts import OCTAHEDRON, SQUARE, TWISTED, gram, inner_points, restricted
 from proofs.chambers import jacobian
+from proofs.dual_space import dual_space, taylor_expansions, unit_rank
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.patterns import degenerate_patterns, grid_quadrilaterals
 from proofs.potential import corner_polar

@@ -27,19 +27,19 @@ from sheets import (
 )
 
 from exactfold import PROVED, certificate, checker, count_branches, random_square
+from exactfold.algebra.groebner import groebner
 from exactfold.branches.classify import classify
 from exactfold.branches.roots import AlgebraicRoot
-from exactfold.certify.algebraic import algebraic_evidence, class_entry, prove_algebraic
-from exactfold.certify.certificate import document as assemble
-from exactfold.certify.certificate import write_certificate
+from exactfold.certify.algebraic import prove_algebraic
 from exactfold.errors import NotApplicableError
+from exactfold.evidence.entries import algebraic_evidence, class_entry, write_certificate
+from exactfold.evidence.entries import document as assemble
 from exactfold.exact.linalg import inertia, nullspace
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES, hypar, two_vertex
+from exactfold.problem.branch_system import BranchSystem
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import fold_functional
-from exactfold.solve.groebner import groebner
-from exactfold.system.branch_system import BranchSystem
 
 SHEETS = {
     **{name: build() for name, build in FAMILIES.items()},

@@ -143,7 +143,7 @@ def test_undecided_exits_4(tmp_path):
 def test_undecided_table_lists_what_is_open(tmp_path, monkeypatch):
     path = tmp_path / "flat.fold"
     write_fold(FAMILIES["flat-vertex"](), path)
-    monkeypatch.setattr("exactfold.branches.attempt.flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr("exactfold.count.attempt.flat_vertices", lambda chart, points: iter(()))
     result = run("count", path, "--method", "popping")
     assert result.exit_code == UNDECIDED
     assert "UNDECIDED" in result.stdout
@@ -757,7 +757,7 @@ HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
         (["--help"], ("numpy", "flint", "multiprocessing", *HEAVY)),
         (["random", "--interior", "3", "--seed", "1"], ("numpy", "flint", "rich", *HEAVY)),
         (["info"], ("numpy", "multiprocessing", *HEAVY)),
-        (["branch", "--up", "4"], ("flint", "multiprocessing", "exactfold.solve", *HEAVY)),
+        (["branch", "--up", "4"], ("flint", "multiprocessing", "exactfold.algebra", *HEAVY)),
         (["count"], HEAVY),
     ],
     ids=lambda value: value[0],

@@ -30,6 +30,11 @@ from exactfold import (
     isolate,
     random_square,
 )
+from exactfold.algebra import groebner as engine
+from exactfold.algebra.exact_solution import ExactSolution
+from exactfold.algebra.hermite import hermite_counts
+from exactfold.algebra.msolve import find_msolve, msolve_classes
+from exactfold.algebra.quotient import QuotientAlgebra, from_groebner_basis
 from exactfold.certify.arb_krawczyk import arb_krawczyk
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.interval_newton import interval_newton
@@ -53,14 +58,9 @@ from exactfold.pattern.families import (
     h1_sequence,
     two_vertex,
 )
-from exactfold.solve import groebner as engine
+from exactfold.problem.branch_system import BranchSystem, notch_chart
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.candidates import Candidates
-from exactfold.solve.exact_solution import ExactSolution
-from exactfold.solve.hermite import hermite_counts
-from exactfold.solve.msolve import find_msolve, msolve_classes
-from exactfold.solve.quotient import QuotientAlgebra, from_groebner_basis
-from exactfold.system.branch_system import BranchSystem, notch_chart
-from exactfold.system.quadratic import QuadraticSystem
 
 BITS = 160
 

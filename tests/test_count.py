@@ -38,20 +38,22 @@ from exactfold import (
     random_square,
     read_fold,
 )
-from exactfold import count as module
-from exactfold.branches import attempt, classify, multiple_roots
-from exactfold.branches.claims import certificate
-from exactfold.certify import algebraic, rigid_triangles
+from exactfold.algebra.groebner import groebner
+from exactfold.branches import classify
+from exactfold.certify import algebraic
+from exactfold.count import attempt, multiple_roots
+from exactfold.count import collect as module
+from exactfold.count.methods import SOLVERS
 from exactfold.errors import NoInteriorVertexError, UsageError
+from exactfold.evidence.listing import certificate
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import FAMILIES, h1_sequence, hypar, single_vertex, two_vertex
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity import rigid_triangles
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.solve.candidates import Candidates
-from exactfold.solve.groebner import groebner
-from exactfold.solve.methods import SOLVERS
 from exactfold.solve.popping import popping
-from exactfold.system.branch_system import BranchSystem
-from exactfold.system.quadratic import QuadraticSystem
 
 # (distinct, with multiplicity); None where D > 1 or flat vertices make it other than a power of 2.
 EXPECTED = {

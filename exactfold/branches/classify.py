@@ -8,13 +8,13 @@ from fractions import Fraction
 from typing import TypeVar
 
 from exactfold.branches.branch import Branch
-from exactfold.branches.flat_folds import flat_folds
 from exactfold.branches.functionals import Functionals, Row
 from exactfold.branches.roots import BoxRoot, FlatBoxRoot, Root
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.krawczyk import krawczyk_at
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.system.branch_system import Chart
+from exactfold.problem.branch_system import Chart
+from exactfold.rigidity.flat_folds import flat_folds
 
 K = TypeVar("K")
 R = TypeVar("R", bound=Root)

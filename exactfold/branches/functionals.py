@@ -9,12 +9,12 @@ from functools import cached_property
 
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.pattern.crease_pattern import Edge
+from exactfold.problem.branch_system import Chart
 from exactfold.rigidity.timelike import (
     fold_functional,
     saddle_functional,
     vertex_sign_functional,
 )
-from exactfold.system.branch_system import Chart
 
 Row = tuple[int, ...]
 

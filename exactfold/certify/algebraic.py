@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
+from exactfold.algebra.exact_solution import RootClass
+from exactfold.algebra.flat_zeros import FlatSheets, flat_equations
 from exactfold.certify.box import IsolatingBox
-from exactfold.certify.certificate import box_entry
-from exactfold.exact.numbers import format_integer, format_rational
+from exactfold.problem.branch_system import Chart
 from exactfold.rigidity.definite_stress import definite_stress
-from exactfold.solve.exact_solution import RootClass
-from exactfold.solve.strata import FlatSheets, flat_equations
-from exactfold.system.branch_system import Chart
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 FlatBox = tuple[FlatSheets, IsolatingBox]
@@ -91,39 +88,3 @@ def prove_algebraic(
     return AlgebraicProof(
         tuple(proved), tuple(boxes), tuple(flat_boxes), multipliers, verdict, reason
     )
-
-
-def algebraic_evidence(
-    proof: AlgebraicProof, roots: Sequence[dict[str, Any]], labels: Sequence[int]
-) -> dict[str, Any]:
-    """The proof as certificate evidence; `roots` holds an entry for each branch, in their order.
-
-    `labels` names the vertices in the certificate.
-    """
-    return {
-        "multipliers": [format_rational(m) for m in proof.multipliers],
-        "separating": list(proof.classes[0][0].separating) if proof.classes else [],
-        "classes": [
-            {
-                "polynomial": [format_integer(c) for c in root_class.polynomial],
-                "numerators": [[format_rational(c) for c in w] for w in root_class.numerators],
-                "flat": [labels[v] for v in flat],
-            }
-            for root_class, flat in proof.classes
-        ],
-        "roots": list(roots),
-    }
-
-
-def flat_box_entry(sheets: FlatSheets, box: IsolatingBox, labels: Sequence[int]) -> dict[str, Any]:
-    """A root in a box on flat sheets."""
-    return {"flat": sorted(labels[v] for v in sheets.vertices), **box_entry(box)}
-
-
-def class_entry(
-    proof: AlgebraicProof, root_class: RootClass, index: int, bits: int = 64
-) -> dict[str, Any]:
-    """The `index`-th real root of a class of the proof."""
-    number = next(k for k, (c, _) in enumerate(proof.classes) if c is root_class)
-    interval = root_class.real_roots(bits)[index]
-    return {"class": number, "interval": [format_rational(x) for x in interval]}

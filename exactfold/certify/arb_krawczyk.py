@@ -19,7 +19,7 @@ from exactfold.certify.points import (
     exact_candidates,
     is_within_reach,
 )
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 _PRECISIONS = (106, 212, 424, 848, 1696)

@@ -29,7 +29,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import QuadraticSystem
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

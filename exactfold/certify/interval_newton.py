@@ -15,7 +15,7 @@ from mpmath.libmp import from_man_exp, to_rational
 
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.certify.points import REACH, Candidate, Point, Points, exact_candidates
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 _PRECISIONS = (106, 212, 424, 848, 1696)

@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.certify.krawczyk import krawczyk
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.candidates import Candidates
-from exactfold.system.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 ComplexRow = npt.NDArray[np.complex128]

@@ -21,7 +21,7 @@ from exactfold.certify.points import (
     exact_candidates,
     is_within_reach,
 )
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 FloatArray = npt.NDArray[np.float64]

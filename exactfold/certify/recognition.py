@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from exactfold.algebra.exact_solution import RootClass
+from exactfold.algebra.from_roots import parametrisation_of_some
 from exactfold.certify.box import IsolatingBox
-from exactfold.solve.exact_solution import RootClass
-from exactfold.solve.from_roots import parametrisation_of_some
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import QuadraticSystem
 
 
 def recognise(system: QuadraticSystem, boxes: Sequence[IsolatingBox]) -> list[RootClass] | None:

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from exactfold.branches.signed import SignedBranch
 from exactfold.commands.shell import Bar
+from exactfold.count.find import BranchFinder
 from exactfold.errors import UnreadableFileError, UsageError
-from exactfold.ondemand.find import BranchFinder
-from exactfold.ondemand.result import SignedBranch
 from exactfold.pattern.fold import load_fold
 from exactfold.verdict import PROVED
 
@@ -80,8 +80,8 @@ class Asked:
         if self.certificate is None:
             return
         if result.status is PROVED:
-            from exactfold.certify.certificate import write_certificate
-            from exactfold.ondemand.evidence import branch_certificate
+            from exactfold.evidence.entries import write_certificate
+            from exactfold.evidence.single import branch_certificate
 
             with Bar("writing"):
                 write_certificate(branch_certificate(result), self.certificate)

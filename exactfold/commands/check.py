@@ -35,8 +35,10 @@ def _verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, s
         raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
     try:
         if _is_compact(first):
-            from exactfold.scale.check import check_compact  # needs NumPy, as no other kind does
-            from exactfold.scale.stream import available_cores
+            from exactfold.evidence.check import (
+                check_compact,  # needs NumPy, as no other kind does
+            )
+            from exactfold.workers import available_cores
 
             claims = check_compact(path, workers=workers or available_cores())
             return claims, checker.summary(claims)

@@ -34,13 +34,6 @@ USAGE, BAD_INPUT = 2, 3
 INTERNAL, OUTPUT_FAILED = 70, 74
 INTERRUPTED = 130
 
-_THREADS = (
-    "OPENBLAS_NUM_THREADS",
-    "MKL_NUM_THREADS",
-    "OMP_NUM_THREADS",
-    "VECLIB_MAXIMUM_THREADS",
-)
-
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -86,16 +79,6 @@ def output_failed(error: OSError) -> None:
     if not isinstance(error, BrokenPipeError):
         print(f"exactfold: cannot write the output: {error.strerror}", file=sys.stderr)
     sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
-
-
-def one_thread() -> None:
-    """Keep NumPy, which is not loaded yet, from starting threads unless the environment says so.
-
-    Dense matrices here have at most some hundred rows: threads that wait for each other cost more
-    than they save, above all where other programs run.
-    """
-    for name in _THREADS:
-        os.environ.setdefault(name, "1")
 
 
 def stopped(advice: str = "") -> NoReturn:

@@ -12,7 +12,9 @@ from pathlib import Path
 from exactfold.branches.result import BranchCount
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
 from exactfold.compact_checker import MOST_UNKNOWNS
-from exactfold.count import count_branches
+from exactfold.count.collect import count_branches
+from exactfold.count.dask_engine import LOCAL, dask_engine
+from exactfold.count.stream import StreamedCount, count_streaming
 from exactfold.errors import (
     NoInteriorVertexError,
     NotApplicableError,
@@ -22,9 +24,8 @@ from exactfold.errors import (
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold import load_fold
-from exactfold.scale.dask_engine import LOCAL, dask_engine
-from exactfold.scale.stream import StreamedCount, available_cores, count_streaming
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.workers import available_cores
 
 ADVISED = 14
 """Foldable vertices from which plain `count` takes ten times as long, and doubles with each."""

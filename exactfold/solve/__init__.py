@@ -1,1 +1,1 @@
-"""Candidates for the zeros of the branch system, exact or approximate."""
+"""Candidates for the branches, in floating point; nothing here is proved."""

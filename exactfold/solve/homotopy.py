@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from exactfold.errors import UsageError
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.candidates import Candidates, ComplexArray
-from exactfold.system.quadratic import QuadraticSystem
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

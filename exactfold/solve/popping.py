@@ -10,11 +10,11 @@ import numpy.typing as npt
 
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.problem.branch_system import Chart
+from exactfold.problem.chart_change import pattern_size, to_chart
 from exactfold.rigidity.curvature import curvature_form, spokes
 from exactfold.rigidity.timelike import saddle_functional
 from exactfold.solve.candidates import Candidates
-from exactfold.solve.gauge import pattern_size, to_chart
-from exactfold.system.branch_system import Chart
 
 FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -44,7 +44,7 @@ def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
     Raises `NotApplicableError` unless the pattern has four boundary vertices.
 
     >>> from exactfold.pattern.families import single_vertex
-    >>> from exactfold.system.branch_system import BranchSystem
+    >>> from exactfold.problem.branch_system import BranchSystem
     >>> popping(BranchSystem(single_vertex(4)).chart).points.shape
     (2, 1)
     """

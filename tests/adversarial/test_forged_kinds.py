@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from exactfold import certificate, checker, count_branches
-from exactfold.branches import multiple_roots
+from exactfold.count import multiple_roots
 from exactfold.pattern.degenerate import DEGENERATE
 
 

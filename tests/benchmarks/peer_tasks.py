@@ -22,18 +22,18 @@ import numpy.typing as npt
 from peer_programs import PEERS, decimals, macaulay2_input, phcpack_input
 
 from exactfold import certificate, count_branches, find_branch
+from exactfold.algebra.from_roots import parametrisation_from_roots
+from exactfold.algebra.lifting import lifted_classes
 from exactfold.branches.roots import BoxRoot
+from exactfold.bridges.export import to_msolve
+from exactfold.count.stream import count_streaming
+from exactfold.evidence.check import check_compact
 from exactfold.pattern.fold import read_fold
 from exactfold.pattern.fold_writing import write_fold
 from exactfold.pattern.random_squares import sample_random_square
-from exactfold.scale.check import check_compact
-from exactfold.scale.stream import count_streaming
-from exactfold.solve.from_roots import parametrisation_from_roots
-from exactfold.solve.lifting import lifted_classes
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.popping import popping
-from exactfold.system.branch_system import BranchSystem
-from exactfold.system.export import to_msolve
-from exactfold.system.quadratic import QuadraticSystem
 
 Found = dict[str, Any]
 FloatArray = npt.NDArray[np.float64]

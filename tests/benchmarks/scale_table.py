@@ -25,7 +25,7 @@ from typing import Any
 COUNT = """
 import json, sys
 from exactfold.pattern.random_squares import random_square
-from exactfold.scale.stream import count_streaming
+from exactfold.count.stream import count_streaming
 if __name__ == "__main__":
     n, seed, workers = map(int, sys.argv[2:])
     result = count_streaming(random_square(n, seed=seed), sys.argv[1], workers=workers)
@@ -36,7 +36,7 @@ if __name__ == "__main__":
 """
 CHECK = """
 import sys
-from exactfold.scale.check import check_compact
+from exactfold.evidence.check import check_compact
 if __name__ == "__main__":
     print(check_compact(sys.argv[1], workers=int(sys.argv[2]), fast=sys.argv[3] == "fast")["real"])
 """

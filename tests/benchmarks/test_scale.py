@@ -7,9 +7,9 @@ import pytest
 
 from exactfold import random_square
 from exactfold.certify.float_krawczyk import FloatKrawczyk
-from exactfold.scale.check import check_compact
-from exactfold.scale.stream import count_streaming
-from exactfold.solve.nappes import NappeSystem, chamber_chart, sign_vectors
+from exactfold.count.stream import count_streaming
+from exactfold.evidence.check import check_compact
+from exactfold.solve.dense_newton import NappeSystem, chamber_chart, sign_vectors
 
 SIZES = [4, 8]
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from exactfold import BranchSystem, certificate, checker, count_branches, isolate, random_square
-from exactfold.solve.from_roots import parametrisation_from_roots
+from exactfold.algebra.from_roots import parametrisation_from_roots
 from exactfold.solve.homotopy import homotopy
 from exactfold.solve.popping import popping
 

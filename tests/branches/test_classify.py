@@ -15,9 +15,9 @@ from exactfold.branches.roots import AlgebraicRoot, BoxRoot
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.krawczyk import krawczyk_at
 from exactfold.pattern.families import flat_vertex_square, h1_sequence, hypar, two_vertex
+from exactfold.problem.branch_system import BranchSystem
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
-from exactfold.system.branch_system import BranchSystem
 
 PATTERNS = {
     "two vertices": two_vertex(),

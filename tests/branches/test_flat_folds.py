@@ -7,10 +7,10 @@ import pytest
 from sheets import dart, random_wheel, wheel, with_point
 
 from exactfold import checker, count_branches, random_square
-from exactfold.branches.flat_folds import flat_folds
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, hypar, single_vertex, two_vertex
 from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.flat_folds import flat_folds
 from exactfold.rigidity.timelike import fold_functional
 
 CROSS = wheel([(2, 0), (0, 3), (-2, 0), (0, -1)])

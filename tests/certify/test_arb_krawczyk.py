@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from exactfold.certify import arb_krawczyk as module
 from exactfold.certify.arb_krawczyk import arb_krawczyk, decide_contains_one_zero
 from exactfold.certify.box import IsolatingBox, Uncertified
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED
 
 SQRT2 = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])

@@ -19,7 +19,7 @@ from exactfold.certify.float_krawczyk import (
     scaled_rows,
 )
 from exactfold.checker import CertificateError, Krawczyk
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import QuadraticSystem
 
 
 def forms(system: QuadraticSystem) -> list[dict[tuple[int, int], int]]:

@@ -18,7 +18,7 @@ from exactfold.certify import interval_newton as module
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.certify.interval_newton import interval_newton
 from exactfold.errors import UsageError
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import QuadraticSystem
 
 SQRT2 = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
 OPERATIONS = [operator.add, operator.sub, operator.mul, operator.truediv]

@@ -5,14 +5,14 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold.certify.dual_space import DualSpace, dual_space
-from exactfold.certify.multiplicity import check_complete, check_dual_space
+from exactfold.algebra.exact_solution import RootClass
+from exactfold.algebra.groebner import groebner
 from exactfold.errors import DualSpaceError, ParametrisationError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.solve.exact_solution import RootClass
-from exactfold.solve.groebner import groebner
-from exactfold.system.branch_system import BranchSystem
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.quadratic import QuadraticSystem
+from proofs.dual_multiplicity import check_complete, check_dual_space
+from proofs.dual_space import DualSpace, dual_space
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
 FLAT_STAR = CreasePattern(

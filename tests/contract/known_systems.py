@@ -10,7 +10,7 @@ from flint import fmpq_mat
 
 from exactfold.certify.box import IsolatingBox
 from exactfold.exact.linalg import from_fmpq, to_flint
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import QuadraticSystem
 
 Form = tuple[Fraction, ...]  # coefficients of x_1, ..., x_n, 1
 ComplexForm = tuple[Form, Form]  # a + i b

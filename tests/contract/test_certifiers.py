@@ -36,7 +36,7 @@ from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.certify.interval_newton import interval_newton
 from exactfold.certify.krawczyk import krawczyk
 from exactfold.errors import UsageError
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 Certifier = Callable[..., list[IsolatingBox | Uncertified]]

@@ -18,17 +18,17 @@ from known_systems import (
     system_of,
 )
 
+from exactfold.algebra.groebner import groebner
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.krawczyk import krawczyk
 from exactfold.pattern.families import h1_sequence, hypar, single_vertex, two_vertex
 from exactfold.pattern.random_squares import random_square
+from exactfold.problem.branch_system import BranchSystem, Chart
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.candidates import Candidates
-from exactfold.solve.groebner import groebner
 from exactfold.solve.homotopy import homotopy
-from exactfold.solve.nappe_ends import nappe_ends
+from exactfold.solve.newton_ends import nappe_ends
 from exactfold.solve.popping import popping
-from exactfold.system.branch_system import BranchSystem, Chart
-from exactfold.system.quadratic import QuadraticSystem
 
 SystemSolver = Callable[[QuadraticSystem], Candidates]
 

@@ -36,7 +36,7 @@ from exactfold.checker import CertificateError, FormatError
 from exactfold.cli import app
 from exactfold.data import example_path
 from exactfold.errors import UsageError
-from exactfold.ondemand.evidence import branch_certificate
+from exactfold.evidence.single import branch_certificate
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import gridded_square, ringed_square
 from exactfold.pattern.fold_writing import fold_text
@@ -263,7 +263,7 @@ def test_folds_are_not_flat_by_what_is_around_the_reflex_corner(
     # K is 1 there. With K = 0 at a vertex of degree 3 all its folds would be flat.
     pattern = wheel([(4, -4), ("1/10", 0), (4, 4), (-4, 0)], (0, "1/1000"))
     assert find_branch(pattern, "-").assignment_text == "VMVV"
-    monkeypatch.setattr("exactfold.ondemand.find._LEVELS", (6,))  # too rough for fold (1, 4)
+    monkeypatch.setattr("exactfold.count.find._LEVELS", (6,))  # too rough for fold (1, 4)
     document = branch_certificate(find_branch(pattern, "-"))
     assert document["claims"]["assignment"] == "VUVV"
     branch_checker.check(document)

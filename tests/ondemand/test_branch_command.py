@@ -9,8 +9,8 @@ from typer.testing import CliRunner, Result
 
 from exactfold.cli import app
 from exactfold.commands import branch
+from exactfold.count.find import BranchFinder, find_branch
 from exactfold.data import example_path
-from exactfold.ondemand.find import BranchFinder, find_branch
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.fold import read_fold
 from exactfold.pattern.fold_writing import fold_text

@@ -10,7 +10,7 @@ import pytest
 from independent import big_square, curvature, dirichlet, signs_of
 from sheets import SQUARE, dart, reflex_corners, scrambled
 
-from exactfold.ondemand.enclosure import (
+from exactfold.certify.enclosure import (
     Enclosure,
     curvatures,
     enclose,
@@ -18,13 +18,13 @@ from exactfold.ondemand.enclosure import (
     root_above,
     round_up,
 )
-from exactfold.ondemand.find import BranchFinder
-from exactfold.ondemand.floats import FloatSheet
-from exactfold.ondemand.newton import solve
-from exactfold.ondemand.refine import Heights, exact, refine
-from exactfold.ondemand.sheet import Sheet
+from exactfold.certify.refinement import Heights, exact, refine
+from exactfold.count.find import BranchFinder
 from exactfold.pattern.random_squares import random_square
+from exactfold.problem.sheet import Sheet
 from exactfold.rigidity.timelike import fold_functional, vertex_sign_functional
+from exactfold.solve.sparse_newton import solve
+from exactfold.solve.sparse_sheet import FloatSheet
 
 SHEETS = {
     "random": random_square(6, seed=3),

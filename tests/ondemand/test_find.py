@@ -28,14 +28,14 @@ from sheets import (
 from exactfold import PROVED, UNDECIDED, count_branches, families, random_square
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.krawczyk import krawczyk
+from exactfold.count.find import BranchFinder, find_branch, find_branches, neighbours
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.ondemand.find import BranchFinder, find_branch, find_branches, neighbours
-from exactfold.ondemand.floats import FloatSheet
-from exactfold.ondemand.newton import Point, equations
-from exactfold.ondemand.sheet import Sheet
 from exactfold.pattern import degenerate
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.system.branch_system import BranchSystem
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.sheet import Sheet
+from exactfold.solve.sparse_newton import Point, equations
+from exactfold.solve.sparse_sheet import FloatSheet
 
 CONVEX = {
     "random": random_square(5, seed=2),

@@ -28,8 +28,8 @@ from exactfold.branches.roots import BoxRoot
 from exactfold.certify.isolation import isolate
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square
+from exactfold.problem.branch_system import BranchSystem, Chart
 from exactfold.solve.homotopy import homotopy
-from exactfold.system.branch_system import BranchSystem, Chart
 from exactfold.verdict import PROVED
 
 few = settings(max_examples=12, deadline=None)

@@ -14,8 +14,8 @@ from exactfold.certify.box import IsolatingBox
 from exactfold.certify.interval_newton import interval_newton
 from exactfold.certify.krawczyk import krawczyk
 from exactfold.exact.linalg import rank
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.homotopy import homotopy
-from exactfold.system.quadratic import QuadraticSystem
 
 Matrix = list[list[Fraction]]
 

@@ -3,7 +3,6 @@
 import pytest
 from sheets import HEXAGON, SQUARE, TRIANGLE, dart, nested_triangles, scrambled, straight_side
 
-from exactfold.certify.rigid_triangles import certify_rigid_triangles
 from exactfold.exact.linalg import inertia, inertia_by_elimination
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_octahedron_in_square, hypar, waterbomb
@@ -15,6 +14,7 @@ from exactfold.rigidity.definite_stress import (
     inside,
     is_definite,
 )
+from exactfold.rigidity.rigid_triangles import certify_rigid_triangles
 
 CONVEX = {
     **{f"random square {k}": random_square(k, seed=k) for k in (1, 3, 6, 9)},

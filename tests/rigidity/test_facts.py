@@ -19,7 +19,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import hypar, waterbomb
 from exactfold.pattern.random_squares import random_square, sample_random_square
 from exactfold.rigidity.facts import pattern_facts, rigidity_rank
-from exactfold.rigidity.framework import rigidity_matrix
+from exactfold.rigidity.self_stress import rigidity_matrix
 
 PATTERNS = {
     "random": random_square(6, seed=2),

@@ -22,7 +22,7 @@ from exactfold.pattern.delaunay import delaunay
 from exactfold.pattern.families import flat_vertex_square, hypar, waterbomb
 from exactfold.pattern.random_squares import random_square
 from exactfold.rigidity.curvature import wheel_stress
-from exactfold.rigidity.framework import rigidity_matrix, self_stresses
+from exactfold.rigidity.self_stress import rigidity_matrix, self_stresses
 
 
 def spike(height):

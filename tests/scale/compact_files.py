@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from exactfold import compact_checker
-from exactfold.scale.check import CertificateError, check_compact
+from exactfold.evidence.check import CertificateError, check_compact
 
 Lines = list[dict[str, Any]]
 

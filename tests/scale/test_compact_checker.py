@@ -13,11 +13,11 @@ from compact_files import Lines, bodies, chained, listed_exactly, put, raw, refu
 from sheets import nested_triangles, reflex_corners, scrambled
 
 from exactfold import compact_checker, random_square
+from exactfold.count import chambers as chambers_module
+from exactfold.count.stream import count_streaming
 from exactfold.errors import CertificateFormatError, UnreadableFileError
-from exactfold.scale import chambers as chambers_module
-from exactfold.scale.check import CertificateError, check_compact
-from exactfold.scale.read import read_branches
-from exactfold.scale.stream import count_streaming
+from exactfold.evidence.check import CertificateError, check_compact
+from exactfold.evidence.read import read_branches
 
 SIZE, BLOCK = 6, 16
 

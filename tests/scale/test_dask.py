@@ -14,12 +14,12 @@ from typer.testing import CliRunner
 
 from exactfold import example_path, random_square, write_fold
 from exactfold.cli import app
+from exactfold.count import dask_engine as engine_module
+from exactfold.count.chambers import Chambers
+from exactfold.count.dask_engine import dask_engine, prove_block
+from exactfold.count.stream import count_streaming
 from exactfold.errors import ClusterError, DaskMissingError
-from exactfold.scale import dask_engine as engine_module
-from exactfold.scale.chambers import Chambers
-from exactfold.scale.dask_engine import dask_engine, prove_block
-from exactfold.scale.lines import block_line
-from exactfold.scale.stream import count_streaming
+from exactfold.evidence.streamed import block_line
 
 TWO = example_path("two-vertex")
 
@@ -27,9 +27,9 @@ KILLED = """
 import logging, os, signal, sys
 from distributed import Client, LocalCluster
 from exactfold import random_square
-from exactfold.scale import chambers, stream
-from exactfold.scale.dask_engine import dask_engine
-from exactfold.scale.environment import worker_environment
+from exactfold.count import chambers, stream
+from exactfold.count.dask_engine import dask_engine
+from exactfold.workers import worker_environment
 
 def kill(done, total):
     dones.append(done)
@@ -58,8 +58,8 @@ import dask
 from distributed import Client, LocalCluster, WorkerPlugin
 from exactfold import random_square
 from exactfold.errors import WorkerDiedError
-from exactfold.scale import chambers, stream
-from exactfold.scale.dask_engine import dask_engine
+from exactfold.count import chambers, stream
+from exactfold.count.dask_engine import dask_engine
 
 class Deadly(WorkerPlugin):
     def setup(self, worker):

@@ -14,11 +14,11 @@ from typer.testing import CliRunner
 
 from exactfold import checker, compact_checker, random_square
 from exactfold.cli import app
+from exactfold.count.stream import count_streaming
 from exactfold.errors import CertificateFormatError
+from exactfold.evidence.check import CertificateError, check_compact
+from exactfold.evidence.read import read_branches
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.scale.check import CertificateError, check_compact
-from exactfold.scale.read import read_branches
-from exactfold.scale.stream import count_streaming
 
 
 def lines_of(pattern: CreasePattern, path: Path) -> Lines:

@@ -16,16 +16,16 @@ from typer.testing import CliRunner
 
 from exactfold import example_path, random_square
 from exactfold.cli import app
+from exactfold.count import chambers as chambers_module
+from exactfold.count.stream import count_streaming
 from exactfold.errors import (
     ForeignJournalError,
     JournalInUseError,
     UnwritableFileError,
     UsageError,
 )
-from exactfold.scale import chambers as chambers_module
-from exactfold.scale import durable, journal
-from exactfold.scale.journal import Journal
-from exactfold.scale.stream import count_streaming
+from exactfold.evidence import durable, journal
+from exactfold.evidence.journal import Journal
 from exactfold.verdict import PROVED
 
 TWO, SQUARE = example_path("two-vertex"), random_square(5, seed=1)
@@ -92,7 +92,8 @@ def test_a_file_that_appears_in_the_last_moment_is_left_alone(tmp_path: Path, wh
 KILLED = """
 import os, signal, sys
 from exactfold import random_square
-from exactfold.scale import chambers, journal, stream
+from exactfold.evidence import journal
+from exactfold.count import chambers, stream
 
 append = journal.Journal.append
 

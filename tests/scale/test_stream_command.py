@@ -15,11 +15,11 @@ from typer.testing import CliRunner, Result
 from exactfold import example_path, families, random_square, write_fold
 from exactfold.cli import app
 from exactfold.commands import stream as stream_command
+from exactfold.count import chambers as chambers_module
+from exactfold.count.stream import count_streaming
 from exactfold.errors import UnwritableFileError, WorkerDiedError
+from exactfold.evidence.journal import Journal
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.scale import chambers as chambers_module
-from exactfold.scale.journal import Journal
-from exactfold.scale.stream import count_streaming
 
 PROVED, INVALID, USAGE, BAD_INPUT, UNDECIDED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 TWO, FLAT = example_path("two-vertex"), example_path("flat-vertex")
@@ -116,8 +116,8 @@ def test_what_stays_open_is_undecided(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_both_methods_say_what_is_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("exactfold.branches.attempt.flat_vertices", lambda chart, points: iter(()))
-    monkeypatch.setattr("exactfold.count.GROEBNER_LIMIT", 0)
+    monkeypatch.setattr("exactfold.count.attempt.flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr("exactfold.count.collect.GROEBNER_LIMIT", 0)
     data = json.loads(run("count", FLAT, "--stream", tmp_path / "c.txt", "--json").stdout)
     assert data["status"] == "undecided"
     assert data["open_questions"][0].startswith("sign vectors ++, +- seem to meet at +0")
@@ -209,7 +209,8 @@ def test_a_dead_worker_is_no_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyP
 SIGNALLED = """
 import os, signal, sys
 from exactfold.cli import main
-from exactfold.scale import chambers, journal, stream
+from exactfold.evidence import journal
+from exactfold.count import chambers, stream
 
 append = journal.Journal.append
 
@@ -290,7 +291,7 @@ def test_every_command_ends_with_130_on_ctrl_c(monkeypatch: pytest.MonkeyPatch) 
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("exactfold.count.count_branches", stop)
+    monkeypatch.setattr("exactfold.count.collect.count_branches", stop)
     result = run("count", TWO)
     assert result.exit_code == INTERRUPTED
     assert result.stderr == "exactfold: interrupted\n"

@@ -13,18 +13,18 @@ from sheets import SQUARE, dart, nested_triangles, reflex_corners, scrambled
 
 from exactfold import Branch, checker, count_branches, families, random_square, read_fold
 from exactfold.branches import classify
+from exactfold.count import chambers as chambers_module
+from exactfold.count.chambers import Chambers
+from exactfold.count.stream import count_streaming
 from exactfold.data import example_path
 from exactfold.errors import ForeignJournalError, NotApplicableError, UnwritableFileError
+from exactfold.evidence.check import CertificateError, check_compact
+from exactfold.evidence.read import read_branches
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import straight_path
 from exactfold.pattern.random_squares import sample_random_square
-from exactfold.scale import chambers as chambers_module
-from exactfold.scale.chambers import Chambers
-from exactfold.scale.check import CertificateError, check_compact
-from exactfold.scale.environment import worker_environment
-from exactfold.scale.read import read_branches
-from exactfold.scale.stream import count_streaming
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.workers import worker_environment
 
 
 def gap(tiny: Fraction) -> CreasePattern:
@@ -186,7 +186,8 @@ WORKERS = """
 import multiprocessing, sys
 from exactfold import random_square
 from exactfold.errors import WorkerDiedError
-from exactfold.scale import chambers, check, stream
+from exactfold.evidence import check
+from exactfold.count import chambers, stream
 
 def seen(done, total):
     dones.append(done)

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from exactfold.algebra.exact_solution import RootClass
+from exactfold.algebra.groebner import groebner
+from exactfold.algebra.quotient import separating_forms
 from exactfold.errors import ParametrisationError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.solve.exact_solution import RootClass
-from exactfold.solve.groebner import groebner
-from exactfold.solve.quotient import separating_forms
-from exactfold.system.branch_system import BranchSystem
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.quadratic import QuadraticSystem
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
 FLAT_STAR = CreasePattern(

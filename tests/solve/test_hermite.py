@@ -10,23 +10,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sheets import with_point
 
-from exactfold.errors import UsageError
-from exactfold.exact.linalg import from_fmpq, inertia, inertia_by_elimination
-from exactfold.pattern import families
-from exactfold.pattern.random_squares import random_square
-from exactfold.rigidity.timelike import vertex_sign_functional
-from exactfold.solve.groebner import groebner, quotient_algebra
-from exactfold.solve.hermite import (
+from exactfold.algebra.groebner import groebner, quotient_algebra
+from exactfold.algebra.hermite import (
     hermite_counts,
     hermite_form,
     hermite_signs,
     rank_and_signature,
 )
+from exactfold.algebra.quotient import from_groebner_basis
+from exactfold.errors import UsageError
+from exactfold.exact.linalg import from_fmpq, inertia, inertia_by_elimination
+from exactfold.pattern import families
+from exactfold.pattern.random_squares import random_square
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.timelike import vertex_sign_functional
 from exactfold.solve.homotopy import homotopy
 from exactfold.solve.popping import popping
-from exactfold.solve.quotient import from_groebner_basis
-from exactfold.system.branch_system import BranchSystem
-from exactfold.system.quadratic import QuadraticSystem
 
 PATTERNS = {
     "single vertex": families.single_vertex(4),

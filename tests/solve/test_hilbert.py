@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.solve.groebner import groebner
-from exactfold.solve.hilbert import dimension_and_degree
-from exactfold.solve.quotient import divides
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.algebra.groebner import groebner
+from exactfold.algebra.hilbert import dimension_and_degree
+from exactfold.algebra.quotient import divides
+from exactfold.problem.quadratic import QuadraticSystem
 
 monomials = st.lists(st.tuples(*[st.integers(0, 3)] * 3), max_size=5)
 

@@ -10,10 +10,10 @@ from exactfold.certify.krawczyk import krawczyk
 from exactfold.errors import UsageError
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.pattern.random_squares import random_square
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve import homotopy as module
 from exactfold.solve.homotopy import homotopy
-from exactfold.system.branch_system import BranchSystem
-from exactfold.system.quadratic import QuadraticSystem
 
 
 def random_system(n: int, seed: int, size: int = 99) -> QuadraticSystem:

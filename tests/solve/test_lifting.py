@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sheets import with_point
 
+from exactfold.algebra import lifting
+from exactfold.algebra.groebner import groebner
 from exactfold.errors import NotApplicableError
 from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.solve import lifting
-from exactfold.solve.groebner import groebner
-from exactfold.system.branch_system import BranchSystem
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.quadratic import QuadraticSystem
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
 TWO_VERTICES = CreasePattern(

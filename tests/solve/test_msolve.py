@@ -5,6 +5,14 @@ import sysconfig
 import pytest
 from sheets import with_point
 
+from exactfold.algebra.groebner import groebner
+from exactfold.algebra.msolve import (
+    find_msolve,
+    msolve_classes,
+    parse_output,
+    run_msolve,
+    to_root_class,
+)
 from exactfold.errors import (
     MsolveFailedError,
     MsolveMissingError,
@@ -12,16 +20,8 @@ from exactfold.errors import (
     ParametrisationError,
 )
 from exactfold.pattern import families
-from exactfold.solve.groebner import groebner
-from exactfold.solve.msolve import (
-    find_msolve,
-    msolve_classes,
-    parse_output,
-    run_msolve,
-    to_root_class,
-)
-from exactfold.system.branch_system import BranchSystem
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.quadratic import QuadraticSystem
 
 # x0^2 = 2, x1^2 = 2: msolve 0.10.1 added the variable A with x0 + 2 x1 + A = 0.
 SQUARES = QuadraticSystem((((1, 0, 0), (0, 0, 0), (0, 0, -2)), ((0, 0, 0), (0, 1, 0), (0, 0, -2))))

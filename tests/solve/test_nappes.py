@@ -12,8 +12,7 @@ from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
-from exactfold.solve.nappe_refinement import refined_end
-from exactfold.solve.nappes import (
+from exactfold.solve.dense_newton import (
     Ends,
     NappeSystem,
     chamber_chart,
@@ -22,6 +21,7 @@ from exactfold.solve.nappes import (
     sum_of_squares,
 )
 from exactfold.solve.popping import popping
+from exactfold.solve.refined_newton import refined_end
 
 PATTERNS = {
     "random square": random_square(6, seed=3),

@@ -5,19 +5,19 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from exactfold.certify.dual_space import dual_space
-from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.families import flat_vertex_square, hypar, two_vertex
-from exactfold.solve.groebner import classes_of_ideal, groebner
-from exactfold.solve.popping import popping
-from exactfold.solve.strata import (
+from exactfold.algebra.flat_zeros import (
     common_parameter,
     flat_equations,
     flat_sheets,
     flat_vertices,
     zeros_flat_at,
 )
-from exactfold.system.branch_system import BranchSystem
+from exactfold.algebra.groebner import classes_of_ideal, groebner
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.families import flat_vertex_square, hypar, two_vertex
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.solve.popping import popping
+from proofs.dual_space import dual_space
 
 
 def cross_in_square() -> CreasePattern:

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from exactfold.algebra.groebner import groebner
 from exactfold.errors import CollinearPointsError, NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import single_vertex
+from exactfold.problem.branch_system import BranchSystem
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import saddle_functional
-from exactfold.solve.groebner import groebner
-from exactfold.system.branch_system import BranchSystem
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
 TWO_VERTICES = CreasePattern(

@@ -11,11 +11,8 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.errors import UsageError
-from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.solve.msolve import find_msolve
-from exactfold.system.branch_system import BranchSystem
-from exactfold.system.export import (
+from exactfold.algebra.msolve import find_msolve
+from exactfold.bridges.export import (
     chart_names,
     to_homotopy_continuation,
     to_macaulay2,
@@ -23,7 +20,10 @@ from exactfold.system.export import (
     to_singular,
     to_sympy,
 )
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.errors import UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.quadratic import QuadraticSystem
 
 PATTERN = CreasePattern(
     [(0, 0), (1, 0), (1, 1), (0, 1), ("1/3", "1/4"), ("3/4", "1/3"), ("1/2", "3/4")],

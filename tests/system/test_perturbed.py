@@ -22,8 +22,8 @@ from exactfold import (
 from exactfold.certify.arb_krawczyk import arb_krawczyk
 from exactfold.certify.box import IsolatingBox
 from exactfold.errors import FloatRefusedError, UsageError
-from exactfold.system.perturbed import perturbed
-from exactfold.system.quadratic import QuadraticSystem
+from exactfold.problem.perturbed import perturbed
+from exactfold.problem.quadratic import QuadraticSystem
 
 DOCS = Path(__file__).parents[2] / "docs"
 

@@ -1,0 +1,1 @@
+"""The same problem in the languages of other programs."""

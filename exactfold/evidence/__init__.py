@@ -1,0 +1,1 @@
+"""Evidence, written and read back: listings, streamed files, single branches."""

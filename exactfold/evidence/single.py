@@ -1,0 +1,55 @@
+"""Certificates of single branches, for `exactfold.branch_checker`."""
+
+from __future__ import annotations
+
+from math import lcm
+from typing import Any
+
+from exactfold.branches.signed import SignedBranch
+from exactfold.errors import UsageError
+from exactfold.evidence.entries import pattern_document
+from exactfold.exact.numbers import format_integer, format_rational
+from exactfold.verdict import PROVED
+
+FORMAT, VERSION = "exactfold branch", 1
+
+
+def branch_certificate(branch: SignedBranch) -> dict[str, Any]:
+    """The proof of a branch as a JSON object (docs/branch.md, 6).
+
+    Raises `UsageError` unless the branch is proved.
+
+    >>> from exactfold import branch_checker
+    >>> from exactfold.count.find import find_branch
+    >>> from exactfold.pattern.random_squares import random_square
+    >>> certificate = branch_certificate(find_branch(random_square(3, seed=0), "+-+"))
+    >>> branch_checker.check(certificate)["vertex_signs"]
+    [1, -1, 1]
+    """
+    if branch.status is not PROVED or branch.squared_distance is None:
+        raise UsageError("there is no certificate of a branch that is not proved")
+    pattern, rigid = branch.pattern, branch.pattern.rigid_vertices
+    heights = [None if v in rigid else h for v, h in sorted(branch.centres.items())]
+    denominator = lcm(*(h.denominator for h in heights if h is not None))
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "pattern": pattern_document(pattern),
+        "claims": {
+            "gauge": branch.gauge,
+            "vertex_signs": [branch.vertex_signs[v] for v in pattern.interior],
+            "assignment": branch.assignment_text,
+            "squared_distance": format_rational(branch.squared_distance),
+        },
+        "evidence": {
+            "emptied": [
+                {"corners": list(corners), "inside": list(inside)}
+                for corners, inside in pattern.triangulated_triangles
+            ],
+            "heights": [
+                None if h is None else format_integer(h.numerator * (denominator // h.denominator))
+                for h in heights
+            ],
+            "denominator": format_integer(denominator),
+        },
+    }

@@ -1,0 +1,183 @@
+"""The branch system of a pattern: pinned homogeneous quadrics, and its affine charts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from exactfold.errors import CollinearPointsError, NotApplicableError, UsageError
+from exactfold.exact.forms import QuadraticForm
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.timelike import saddle_functional, vertex_sign_functional
+
+
+@dataclass(frozen=True)
+class BranchSystem:
+    """K_v(h) = 0 for every interior vertex v, with three non-collinear vertices pinned at h = 0.
+
+    Vi homogeneous quadrics in the Vi + D heights of `variables` (docs/mathematics.md, 2). Pinning
+    removes the affine functions, on which all curvature forms vanish. By default the pinned
+    vertices lie on the boundary; for D = 1 they are the boundary vertices but the one whose height
+    the chart `saddle = 1` then fixes to 1.
+
+    Raises `CollinearPointsError` if the pinned vertices are collinear, `UsageError` if they are not
+    three different vertices.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> system = BranchSystem(single_vertex(4))
+    >>> system.pinned, system.variables
+    ((1, 2, 3), (0, 4))
+    """
+
+    pattern: CreasePattern
+    pinned: tuple[int, int, int]
+
+    def __init__(self, pattern: CreasePattern, pinned: Sequence[int] | None = None) -> None:
+        object.__setattr__(self, "pattern", pattern)
+        chosen = _default_pins(pattern) if pinned is None else tuple(sorted(pinned))
+        count = len(pattern.vertices)
+        if len(set(chosen)) != 3 or not all(0 <= v < count for v in chosen):
+            raise UsageError(f"pin three different vertices, not {tuple(chosen)}")
+        if _collinear(pattern, chosen):
+            raise CollinearPointsError(
+                f"the pinned vertices {tuple(chosen)} are collinear", vertices=chosen
+            )
+        object.__setattr__(self, "pinned", tuple(chosen))
+
+    @property
+    def variables(self) -> tuple[int, ...]:
+        """The vertices that are not pinned, in increasing order."""
+        return tuple(v for v in range(len(self.pattern.vertices)) if v not in self.pinned)
+
+    @cached_property
+    def quadrics(self) -> dict[int, QuadraticForm]:
+        """The curvature form of each interior vertex, restricted to the variables in its star."""
+        result = {}
+        for v in self.pattern.interior:
+            form = curvature_form(self.pattern, v)
+            keep = [k for k, label in enumerate(form.labels) if label not in self.pinned]
+            rows = tuple(tuple(form.matrix[i][j] for j in keep) for i in keep)
+            result[v] = QuadraticForm(tuple(form.labels[k] for k in keep), rows)
+        return result
+
+    @cached_property
+    def chart(self) -> Chart:
+        """For D = 1: the affine chart `boundary saddle = 1` (`saddle_functional`).
+
+        Raises `NotApplicableError` if D is not 1: the solutions are then not isolated points.
+        """
+        if self.pattern.degrees_of_freedom != 1:
+            raise NotApplicableError(
+                "a chart with isolated solutions needs four boundary vertices, "
+                f"not {self.pattern.Ve}"
+            )
+        functional = {v: c for v, c in saddle_functional(self.pattern).items() if c}
+        eliminated = next(v for v in functional if v not in self.pinned)
+        return Chart(self, functional, eliminated)
+
+
+def notch_chart(pattern: CreasePattern) -> Chart:
+    """For a quadrilateral with a reflex corner r: the chart `K_r(t, h) = 1` of the closed sheet.
+
+    With the notch closed by a triangle, K_r > 0 on every solution (docs/theorem.md, section 4), so
+    the sign functional of r vanishes on none: unlike the saddle, it leaves no branch at infinity.
+    Pinned are the other three corners. Raises `NotApplicableError` for other boundaries.
+    """
+    corner = pattern.reflex_corner
+    if corner is None or pattern.Ve != 4:
+        raise NotApplicableError(
+            "only a boundary of four vertices, one of them reflex, has a notch"
+        )
+    system = BranchSystem(pattern, [v for v in pattern.boundary if v != corner])
+    signs = vertex_sign_functional(pattern.with_notch_closed(), corner)
+    functional = {v: Fraction(c, abs(signs[corner])) for v, c in signs.items() if c}
+    return Chart(system, functional, corner)
+
+
+@dataclass(frozen=True)
+class Chart:
+    """The part of projective space where a linear functional of the heights is 1.
+
+    `eliminated` is the vertex whose height that equation expresses by the others; `variables` are
+    the remaining unknowns, and `system` the Vi affine quadrics in them. Zeros at infinity of the
+    chart are the branches on which the functional vanishes.
+    """
+
+    branch_system: BranchSystem
+    functional: Mapping[int, Fraction]
+    eliminated: int
+
+    @property
+    def variables(self) -> tuple[int, ...]:
+        """The unknowns of the chart, as vertex indices."""
+        return tuple(v for v in self.branch_system.variables if v != self.eliminated)
+
+    @cached_property
+    def eliminated_row(self) -> tuple[Fraction, ...]:
+        """(a_1, ..., a_n, b): the eliminated height is sum a_k x_k + b."""
+        lead = self.functional[self.eliminated]
+        slope = tuple(-self.functional.get(v, Fraction(0)) / lead for v in self.variables)
+        return (*slope, 1 / lead)
+
+    @cached_property
+    def system(self) -> QuadraticSystem:
+        """The quadrics K_v in the chart, in the order of the interior vertices."""
+        matrices = []
+        for form in self.branch_system.quadrics.values():
+            lifts = [self.row(v) for v in form.labels]
+            size = len(self.variables) + 1
+            matrix = [[Fraction(0)] * size for _ in range(size)]
+            for a, left in enumerate(lifts):
+                for b, right in enumerate(lifts):
+                    weight = form.matrix[a][b]
+                    if not weight:
+                        continue
+                    for i, x in left.items():
+                        for j, y in right.items():
+                            matrix[i][j] += weight * x * y
+            matrices.append(matrix)
+        return QuadraticSystem.from_rational(matrices)
+
+    def row(self, vertex: int) -> dict[int, Fraction]:
+        """Height of a vertex as an affine function of x: coefficient by position, n for 1."""
+        if vertex in self.branch_system.pinned:
+            return {}
+        if vertex == self.eliminated:
+            return {k: a for k, a in enumerate(self.eliminated_row) if a}
+        return {self.variables.index(vertex): Fraction(1)}
+
+    def heights(self, x: Sequence[Fraction]) -> dict[int, Fraction]:
+        """Heights of all vertices at a point of the chart."""
+        z = [*x, Fraction(1)]
+        return {
+            v: sum((a * z[k] for k, a in self.row(v).items()), Fraction(0))
+            for v in range(len(self.branch_system.pattern.vertices))
+        }
+
+    def restrict(self, functional: Mapping[int, int | Fraction]) -> list[Fraction]:
+        """A linear functional of the heights as (c_1, ..., c_n, c_0) on (x, 1)."""
+        row = [Fraction(0)] * (len(self.variables) + 1)
+        for v, weight in functional.items():
+            for k, a in self.row(v).items():
+                row[k] += weight * a
+        return row
+
+
+def _collinear(pattern: CreasePattern, vertices: Sequence[int]) -> bool:
+    (ax, ay), (bx, by), (cx, cy) = (pattern.vertices[v] for v in vertices)
+    return (bx - ax) * (cy - ay) == (by - ay) * (cx - ax)
+
+
+def _default_pins(pattern: CreasePattern) -> tuple[int, ...]:
+    boundary = pattern.boundary
+    if len(boundary) == 4:
+        saddle = saddle_functional(pattern)
+        unit = next(v for v in boundary if saddle[v])
+        return tuple(sorted(v for v in boundary if v != unit))
+    first, second = boundary[:2]
+    third = next(v for v in boundary[2:] if not _collinear(pattern, (first, second, v)))
+    return tuple(sorted((first, second, third)))

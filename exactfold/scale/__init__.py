@@ -1,1 +1,0 @@
-"""All branches at scale: blocks of sign vectors, proved in floats, streamed to a file."""

@@ -1,0 +1,57 @@
+"""Candidates by Newton's method on the nappes: the end of every popping path without the path."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from exactfold.problem.branch_system import Chart
+from exactfold.problem.chart_change import from_chart, to_chart
+from exactfold.solve.candidates import Candidates
+from exactfold.solve.dense_newton import NappeSystem, chamber_chart, sign_vectors
+
+Progress = Callable[[int, int], None]
+
+_BLOCK = 1024
+
+
+def nappe_ends(chart: Chart, *, progress: Progress | None = None) -> Candidates:
+    """Candidates for all 2^Vi branches (Ve = 4), each by Newton's method on the nappes.
+
+    For each vector e of vertex signs the equations l_v = e_v |A_v h| of `NappeSystem` have one
+    solution (docs/mathematics.md, 12), found by damped Newton steps, a block of sign vectors at a
+    time. Flat stars do not slow them down: where branches coincide, so do the candidates. Sign
+    vectors for which they did not converge are named in `lost`; their last point is still a
+    candidate. Floating point throughout: nothing here is proved.
+
+    Raises `NotApplicableError` unless the pattern has four boundary vertices.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.problem.branch_system import BranchSystem
+    >>> nappe_ends(BranchSystem(single_vertex(4)).chart).points.shape
+    (2, 1)
+    """
+    natural = chamber_chart(chart.branch_system.pattern)
+    system, size = NappeSystem(natural), natural.system.size
+    total = 1 << size
+    block = min(_BLOCK, total)
+    points, lost, steps = [], [], 0
+    for first in range(0, total, block):
+        ends = system.ends_of_block(first, block)
+        points.append(ends.points)
+        steps += ends.steps
+        for signs in sign_vectors(first, block, size)[~ends.converged]:
+            text = "".join("+" if e > 0 else "-" for e in signs)
+            lost.append(f"Newton's steps for the signs {text} did not converge")
+        if progress is not None:
+            progress(first + block, total)
+    found = np.concatenate(points)
+    if chart != natural:
+        found = to_chart(chart, from_chart(natural, found))
+    return Candidates(
+        method="nappes",
+        points=found.astype(np.complex128),
+        lost=tuple(lost),
+        settings={"ends": total, "steps": steps},
+    )

@@ -1,1 +1,0 @@
-"""The exact polynomial system with its gauge written down."""
