@@ -10,8 +10,8 @@ from collections import Counter
 from dataclasses import dataclass
 
 from exactfold import PROVED, BranchSystem, homotopy, isolate, random_square
-from exactfold.branches.functionals import Functionals
 from exactfold.branches.roots import BoxRoot
+from exactfold.problem.functionals import Functionals
 from exactfold.problem.perturbed import perturbed
 
 SIZES = ("0", "1/100", "1/10", "1/2")

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from exactfold.algebra.hermite import hermite_counts
     from exactfold.branches.branch import Branch
     from exactfold.branches.result import BranchCount
-    from exactfold.branches.signed import SignedBranch
     from exactfold.bridges.export import (
         to_homotopy_continuation,
         to_macaulay2,
@@ -40,7 +39,7 @@ if TYPE_CHECKING:
     from exactfold.count.dask_engine import dask_engine
     from exactfold.count.find import BranchFinder, find_branch, find_branches, neighbours
     from exactfold.count.methods import find_candidates
-    from exactfold.count.stream import StreamedCount, count_streaming
+    from exactfold.count.stream import StreamedCount, stream_branches
     from exactfold.data import EXAMPLES, example_path
     from exactfold.evidence.check import check_compact
     from exactfold.evidence.entries import write_certificate
@@ -82,7 +81,6 @@ _HOMES = {
     "exactfold.exact.forms": ("QuadraticForm",),
     "exactfold.exact.numbers": ("as_rational",),
     "exactfold.count.find": ("BranchFinder", "find_branch", "find_branches", "neighbours"),
-    "exactfold.branches.signed": ("SignedBranch",),
     "exactfold.pattern": ("degenerate", "families"),
     "exactfold.pattern.crease_pattern": ("CreasePattern",),
     "exactfold.pattern.delaunay": ("delaunay",),
@@ -97,7 +95,7 @@ _HOMES = {
     "exactfold.evidence.check": ("check_compact",),
     "exactfold.count.dask_engine": ("dask_engine",),
     "exactfold.evidence.read": ("read_branches",),
-    "exactfold.count.stream": ("StreamedCount", "count_streaming"),
+    "exactfold.count.stream": ("StreamedCount", "stream_branches"),
     "exactfold.algebra.from_roots": ("parametrisation_from_roots",),
     "exactfold.algebra.groebner": ("groebner", "quotient_algebra"),
     "exactfold.algebra.hermite": ("hermite_counts",),
@@ -136,7 +134,6 @@ __all__ = [
     "InputError",
     "QuadraticForm",
     "QuadraticSystem",
-    "SignedBranch",
     "StreamedCount",
     "Verdict",
     "arb_krawczyk",
@@ -144,7 +141,6 @@ __all__ = [
     "certificate",
     "check_compact",
     "count_branches",
-    "count_streaming",
     "curvature_form",
     "dask_engine",
     "decide_all_branches_real",
@@ -177,6 +173,7 @@ __all__ = [
     "rigidity_matrix",
     "self_stresses",
     "split_form",
+    "stream_branches",
     "stress_form",
     "to_homotopy_continuation",
     "to_macaulay2",

@@ -31,6 +31,7 @@ from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import one_thread
 
 if TYPE_CHECKING:
+    from exactfold.branches.result import BranchCount
     from exactfold.count.stream import StreamedCount
 
 # Each command imports what it needs: loading everything takes longer than most of the work.
@@ -118,12 +119,13 @@ def count(
     from exactfold.pattern.fold import load_fold
 
     apart(certificate, pattern, stream)
+    result: BranchCount
     streamed: StreamedCount | None = None
     if stream is not None:
         if method.value != "auto":
             raise UsageError("--stream has a method of its own: leave --method away")
         asked = Streaming(pattern, stream, resume, workers, dask, snap, seed, certificate)
-        result, streamed = asked.run()
+        result = streamed = asked.run()
     elif resume or workers is not None or dask is not None:
         raise UsageError("--resume, --workers and --dask go with --stream")
     else:
@@ -135,7 +137,7 @@ def count(
             result = count_branches(file.pattern, method=method.value, seed=seed, progress=bar)
         result = replace(result, snapped=file.snapped)
     written = None
-    in_stream = streamed is not None and result.evidence is None
+    in_stream = streamed is not None and result.proof is None
     if certificate is not None and result.status is PROVED and not in_stream:
         write_certificate(certificate_of(result), certificate)
         written = str(certificate)
@@ -144,8 +146,7 @@ def count(
     elif certificate is not None:
         print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
     if as_json:
-        more = {} if streamed is None else {"stream": streamed.to_dict()}
-        print(json.dumps(result.to_dict(written) | more))
+        print(json.dumps(result.to_dict(written)))
     else:
         shown = report.count_report(result, written, everything=everything, streamed=streamed)
         report.show(shown)

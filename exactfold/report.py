@@ -12,8 +12,8 @@ from exactfold.exact.numbers import decimal_above, format_rational
 from exactfold.verdict import PROVED, UNDECIDED
 
 if TYPE_CHECKING:
+    from exactfold.branches.branch import Branch
     from exactfold.branches.result import BranchCount
-    from exactfold.branches.signed import SignedBranch
     from exactfold.count.stream import StreamedCount
     from exactfold.rigidity.facts import PatternFacts
 
@@ -139,7 +139,7 @@ def _more(count: int) -> list[Text]:
     return [Text(f"... and {count} more (--all shows them)")] if count > 0 else []
 
 
-def branch_report(result: SignedBranch) -> Group:
+def branch_report(result: Branch) -> Group:
     """What `exactfold branch` prints for one branch."""
     pattern = result.pattern
     rows = [
@@ -162,7 +162,7 @@ def branch_report(result: SignedBranch) -> Group:
 Row = tuple[str, str, str, str]
 
 
-def branch_row(name: str, result: SignedBranch) -> Row:
+def branch_row(name: str, result: Branch) -> Row:
     """The row of a branch in `branches_report`."""
     return name, str(result.status), _cut(result.sign_text), _cut(result.assignment_text)
 
@@ -239,7 +239,7 @@ def expectation(facts: PatternFacts) -> str:
         return "rigid: 0 branches"
     if pattern.degrees_of_freedom == 1:
         return f"2^{pattern.Vi} solutions with multiplicity, 2^{free} branches if no star is flat"
-    if free == 1 and not pattern.emptied()[0].chords:
+    if free == 1 and not pattern.without_rigid_parts()[0].chords:
         return "one branch (single vertex)"
     return f"{UNDECIDED}: branches of dimension {pattern.degrees_of_freedom} are not counted"
 

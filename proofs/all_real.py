@@ -28,10 +28,10 @@ from exactfold import (
     isolate,
     random_square,
 )
-from exactfold.branches.functionals import Functionals
 from exactfold.branches.roots import BoxRoot
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.problem.branch_system import Chart, notch_chart
+from exactfold.problem.functionals import Functionals
 from exactfold.rigidity.definite_stress import disk_multipliers
 from exactfold.verdict import PROVED
 from proofs.chambers import corner_sign, counted, solve
@@ -342,7 +342,7 @@ def _conclusions_on_patterns(script: Script) -> None:
     result = counted(flat_vertex_square())
     script.counterexample(
         "a flat vertex star: three branches, of multiplicities 1, 1, 2, instead of four",
-        sorted(b.multiplicity for b in result.branches)
+        sorted(b.multiplicity or 0 for b in result.branches)
         == script.alter("four simple branches", [1, 1, 2], [1, 1, 1, 1]),
     )
     sign = script.alter("negative curvatures", 1, -1)

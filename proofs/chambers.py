@@ -19,10 +19,10 @@ from exactfold import (
     isolate,
 )
 from exactfold.branches.branch import Branch
-from exactfold.branches.functionals import integer_row
-from exactfold.branches.roots import BoxRoot
+from exactfold.branches.roots import BoxRoot, EnclosedRoot
 from exactfold.errors import NotApplicableError
 from exactfold.exact.linalg import Inertia, from_fmpq, inertia, to_flint
+from exactfold.exact.numbers import integer_row
 from exactfold.rigidity.timelike import vertex_sign_functional
 from exactfold.solve.homotopy import homotopy
 from exactfold.verdict import PROVED, Verdict
@@ -130,6 +130,8 @@ def corner_sign(pattern: CreasePattern, branch: Branch) -> int | None:
     weighted = [
         [c * x for x in branch.height_rows[v]] for v, c in sign_functionals(closed)[corner].items()
     ]
+    if branch.root is None or isinstance(branch.root, EnclosedRoot):
+        raise NotApplicableError("the branch has no root in a chart")
     return branch.root.sign(integer_row([sum(column) for column in zip(*weighted, strict=True)]))
 
 

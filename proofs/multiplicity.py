@@ -28,9 +28,9 @@ from sympy.polys.fields import field
 
 from exactfold import BranchSystem, CreasePattern, QuadraticSystem, families, groebner
 from exactfold.algebra.exact_solution import ExactSolution, RootClass
-from exactfold.branches.functionals import Functionals
 from exactfold.exact.linalg import inertia, nullspace
 from exactfold.problem.branch_system import Chart, notch_chart
+from exactfold.problem.functionals import Functionals
 from exactfold.rigidity.definite_stress import disk_multipliers
 from proofs.branch_counts import OCTAHEDRON, SQUARE, TWISTED, gram, inner_points, restricted
 from proofs.chambers import jacobian

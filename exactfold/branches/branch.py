@@ -3,50 +3,147 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
-from exactfold.branches.named import NamedBranch
-from exactfold.branches.roots import Root
+from exactfold.branches.letters import SIGNS, UPSIDE_DOWN
+from exactfold.branches.roots import EnclosedRoot, Root
 from exactfold.exact.numbers import format_rational
-from exactfold.pattern.crease_pattern import Edge
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.verdict import PROVED, Verdict
+
+Row = tuple[Fraction, ...]
+Bounds = tuple[Fraction, Fraction]
 
 
-@dataclass(frozen=True)
-class Branch(NamedBranch):
-    """One branch of a pattern with D = 1, shown by its ray of positive boundary saddle.
+@dataclass(frozen=True, repr=False)
+class Branch:
+    """One branch of a pattern, shown by one of its two rays.
 
     `vertex_signs`: interior vertex -> +1 popped up, -1 popped down, 0 proved flat. `assignment`:
-    fold (i, j) -> "M" mountain, "V" valley, "F" proved flat, "U" undecided, seen from +z.
-    `multiplicity` is that of the solution of the branch system. `representative` is "saddle", or
-    "either" if the saddle is not proved to differ from 0 (reflex boundaries only): then either side
-    may be shown. `heights` encloses the height of every vertex.
+    fold (i, j), i < j -> "M" mountain, "V" valley, "F" proved flat, "U" undecided, seen from +z.
+    `multiplicity` is that of the solution of the branch system of the whole pattern, None where it
+    is not known. `root` is where the branch is, proved; None if nothing is.
+
+    `status` is PROVED if exactly one branch has these vertex signs, and `reason` says what was
+    proved or what is missing. All branches of a proved count are PROVED. `undecided_vertices`: the
+    star is flat to within the error, so that the sign asked for may be 0.
+
+    A branch is a line; `gauge` says which of its points has the heights given. "saddle": one
+    boundary vertex has height 1 and the three others 0 (`saddle_functional` is 1). "notch", where
+    that is not known to be possible: the sign functional of the reflex corner is 1 in the closed
+    sheet. "corner", of a single branch: the curvature of the reflex corner is
+    `Gauge.corner_curvature` there. "rim": the rim that was given.
+    Heights are the values of `height_rows` at the root, over that of `unit_row` if there is one.
+    `saddle` is the proved sign of the boundary saddle, 0 if it is not proved or there are more than
+    four boundary vertices. In a count every branch is shown from the side of positive saddle where
+    that is proved. Opposite heights are the other ray, with all signs and letters reversed.
     """
 
+    pattern: CreasePattern
     vertex_signs: Mapping[int, int]
     assignment: Mapping[Edge, str]
-    multiplicity: int
-    root: Root
-    representative: str
-    height_rows: Mapping[int, tuple[Fraction, ...]]
+    root: Root | None
+    multiplicity: int | None
+    gauge: str
+    saddle: int
+    height_rows: Mapping[int, Row] = field(default_factory=dict)
+    unit_row: Row = ()
+    status: Verdict = PROVED
+    reason: str = ""
+    undecided_vertices: tuple[int, ...] = ()
+    steps: int = 0
+    seconds: float = 0.0
 
     @cached_property
-    def heights(self) -> dict[int, tuple[Fraction, Fraction]]:
-        """Rational bounds of the height of every vertex, in the gauge of the chart."""
-        return {v: self.root.enclose(row) for v, row in self.height_rows.items()}
+    def sign_text(self) -> str:
+        """Vertex signs in the order of the vertices, as in "+-0"."""
+        signs = self.vertex_signs
+        return "".join([SIGNS[signs[v]] for v in sorted(signs)])
+
+    @cached_property
+    def assignment_text(self) -> str:
+        """Mountain-valley letters in the order of the folds, as in "MVVF"."""
+        letters = self.assignment
+        return "".join([letters[fold] for fold in sorted(letters)])
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Signs and letters of the two rays: the smaller text of each, the same for both."""
+        signs, letters = self.sign_text, self.assignment_text
+        return (
+            min(signs, signs.translate(UPSIDE_DOWN)),
+            min(letters, letters.translate(UPSIDE_DOWN)),
+        )
+
+    @property
+    def undecided_folds(self) -> tuple[Edge, ...]:
+        """The folds whose letter is not decided, in order."""
+        return tuple(fold for fold, letter in sorted(self.assignment.items()) if letter == "U")
+
+    @property
+    def representative(self) -> str:
+        """ "saddle" if the saddle is positive here; "either" if its sign is not proved."""
+        return "saddle" if self.saddle else "either"
+
+    @cached_property
+    def heights(self) -> dict[int, Bounds]:
+        """Rational bounds of the height of every vertex, in `gauge`; empty if nothing is proved."""
+        if self.root is None:
+            return {}
+        if isinstance(self.root, EnclosedRoot):
+            return self.root.heights
+        heights = {v: self.root.enclose(row) for v, row in self.height_rows.items()}
+        if not self.unit_row:
+            return heights
+        unit = self.root.enclose(self.unit_row)
+        return {v: _quotient(bounds, unit) for v, bounds in heights.items()}
+
+    @property
+    def exact_heights(self) -> dict[int, Any] | None:
+        """The height of every vertex as an exact number, None where the root is known by bounds.
+
+        A `Fraction`, or a sympy number: in radicals where the height is of degree 2 over Q, else
+        the root of its minimal polynomial in an isolating interval (`CRootOf`).
+        """
+        if self.root is None:
+            return None
+        if isinstance(self.root, EnclosedRoot):
+            return self.root.exact_heights
+        unit = self.unit_row
+        found = {v: self.root.exact(row, unit) for v, row in self.height_rows.items()}
+        return None if None in found.values() else found
 
     @property
     def approx_heights(self) -> dict[int, float]:
         """Heights as floats, for pictures."""
         return {v: float((low + high) / 2) for v, (low, high) in self.heights.items()}
 
+    @property
+    def radius(self) -> Fraction | None:
+        """Bound of the error of each of `centres`; None unless found by `find_branch`."""
+        return self.root.radius if isinstance(self.root, EnclosedRoot) else None
+
+    @property
+    def squared_distance(self) -> Fraction | None:
+        """Bound of the integral of |grad(h - centres)|^2; None unless found by `find_branch`."""
+        return self.root.squared_distance if isinstance(self.root, EnclosedRoot) else None
+
+    @property
+    def centres(self) -> dict[int, Fraction]:
+        """The middle of the bounds of every height."""
+        if isinstance(self.root, EnclosedRoot):
+            return dict(self.root.centres)
+        return {v: (low + high) / 2 for v, (low, high) in self.heights.items()}
+
     def sort_key(self) -> tuple[list[int], str]:
         """Vertex signs in the order of the vertices, -1 before 0 before +1, then the folds."""
-        return [s for _, s in sorted(self.vertex_signs.items())], self.assignment_text
+        return [self.vertex_signs[v] for v in sorted(self.vertex_signs)], self.assignment_text
 
-    def to_dict(self) -> dict[str, object]:
-        """The branch as in `exactfold count --json`."""
+    def to_dict(self) -> dict[str, Any]:
+        """The branch as it is listed by `exactfold count --json`."""
         return {
             "vertex_signs": {str(v): s for v, s in sorted(self.vertex_signs.items())},
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(self.assignment.items())},
@@ -57,3 +154,43 @@ class Branch(NamedBranch):
                 for v, (low, high) in sorted(self.heights.items())
             },
         }
+
+    def report(self) -> dict[str, Any]:
+        """The object printed by `exactfold branch --json`."""
+        radius, squared = self.radius, self.squared_distance
+        return {
+            "pattern": {
+                "interior": self.pattern.Vi,
+                "boundary": self.pattern.Ve,
+                "folds": len(self.pattern.folds),
+                "sha256": self.pattern.sha256,
+            },
+            "status": str(self.status),
+            "reason": self.reason,
+            "vertex_signs": {str(v): s for v, s in sorted(self.vertex_signs.items())},
+            "undecided_vertices": list(self.undecided_vertices),
+            "assignment": {f"{i}-{j}": a for (i, j), a in sorted(self.assignment.items())},
+            "gauge": self.gauge,
+            "saddle": self.saddle,
+            "centres": {str(v): format_rational(c) for v, c in sorted(self.centres.items())},
+            "radius": None if radius is None else format_rational(radius),
+            "squared_distance": None if squared is None else format_rational(squared),
+            "steps": self.steps,
+            "seconds": round(self.seconds, 3),
+        }
+
+    def __repr__(self) -> str:
+        signs, letters = (
+            text if len(text) <= 32 else f"{text[:29]}..."
+            for text in (self.sign_text, self.assignment_text)
+        )
+        times = "" if self.multiplicity in (None, 1) else f", multiplicity {self.multiplicity}"
+        return f"<Branch {signs}: {self.status}, {letters}{times}>"
+
+
+def _quotient(top: Bounds, bottom: Bounds) -> Bounds:
+    """Bounds of a quotient by a positive number."""
+    (a, b), (low, high) = top, bottom
+    if low <= 0:
+        raise ArithmeticError("the unit of a branch is not proved to be positive")
+    return min(a / low, a / high), max(b / low, b / high)

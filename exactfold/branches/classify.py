@@ -5,22 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import TypeVar
 
 from exactfold.branches.branch import Branch
-from exactfold.branches.functionals import Functionals, Row
-from exactfold.branches.roots import BoxRoot, FlatBoxRoot, Root
+from exactfold.branches.letters import LETTERS, UPSIDE_DOWN
+from exactfold.branches.roots import BoxRoot, ChartRoot, FlatBoxRoot
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.krawczyk import krawczyk_at
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.problem.branch_system import Chart
+from exactfold.problem.functionals import Functionals, Row
+from exactfold.problem.problem import Problem
 from exactfold.rigidity.flat_folds import flat_folds
+from exactfold.rigidity.timelike import saddle_functional
 
 K = TypeVar("K")
-R = TypeVar("R", bound=Root)
-
-LETTERS = {1: "V", -1: "M", 0: "F", None: "U"}
-"""Letter of a fold by its sign."""
+R = TypeVar("R", bound=ChartRoot)
 
 _RISING = (256, 1024)
 
@@ -29,26 +30,22 @@ _RISING = (256, 1024)
 class Undecided:
     """A root whose vertex signs or folds could not all be decided, and which."""
 
-    root: Root
+    root: ChartRoot
     what: tuple[str, ...]
 
 
 def classify(
-    pattern: CreasePattern,
-    chart: Chart,
-    labels: Sequence[int],
-    roots: Sequence[tuple[Root, int]],
+    problem: Problem, chart: Chart, roots: Sequence[tuple[ChartRoot, int]]
 ) -> tuple[list[Branch], list[Undecided]]:
-    """Branches for proved roots of the emptied pattern's chart, sorted by vertex signs.
+    """Branches for proved roots in a chart of the problem's sheet, sorted by vertex signs.
 
-    `chart` belongs to the emptied pattern, whose vertex k is `labels[k]` of `pattern`; each root
-    comes with its multiplicity there and is mirrored if its boundary saddle is negative. A sign
-    that a box does not decide is tried on sharper boxes of the same root, then by `flat_folds`. All
-    roots with an open sign are returned apart; where only folds are open, there is a branch as
-    well, on which these have the letter "U".
+    Each root comes with its multiplicity there and is mirrored if its boundary saddle is negative.
+    A sign that a box does not decide is tried on sharper boxes of the same root, then by
+    `flat_folds`. All roots with an open sign are returned apart; where only folds are open, there
+    is a branch as well, on which these have the letter "U".
     """
-    functionals = Functionals(chart)
-    height_rows = vertex_height_rows(pattern, functionals, labels)
+    functionals, labels = Functionals(chart), problem.labels
+    maker = BranchMaker(problem, chart)
     branches, undecided = [], []
     for given, multiplicity in roots:
         root, vertex_signs, fold_signs = _decide(chart, functionals, given)
@@ -58,22 +55,84 @@ def classify(
         ]
         if still_open:
             undecided.append(Undecided(root, tuple(still_open)))
-        if None in vertex_signs.values():
-            continue
-        signs = dict.fromkeys(pattern.interior, 0)
-        signs |= {labels[v]: s for v, s in vertex_signs.items() if s is not None}
-        letters = dict.fromkeys(pattern.folds, "F")
-        letters |= {(labels[i], labels[j]): LETTERS[s] for (i, j), s in fold_signs.items()}
-        shown = "saddle" if root.sign(functionals.saddle) else "either"
-        weight = multiplicity << pattern.Vt
-        branches.append(Branch(signs, letters, weight, root, shown, height_rows))
+        signs = [s for s in vertex_signs.values() if s is not None]
+        if len(signs) == len(vertex_signs):
+            letters = [LETTERS[s] for _, s in sorted(fold_signs.items())]
+            branches.append(maker.shown(root, signs, letters, multiplicity))
     branches.sort(key=Branch.sort_key)
     return branches, undecided
 
 
+@dataclass(frozen=True)
+class BranchMaker:
+    """Branches of one problem from roots in one chart, with their signs and letters."""
+
+    problem: Problem
+    chart: Chart
+
+    def branch(
+        self, root: ChartRoot, signs: Sequence[int], letters: str, multiplicity: int = 1
+    ) -> Branch:
+        """The branch at a root, from the side of positive saddle.
+
+        `signs` in the order of the foldable vertices, `letters` of the folds of the sheet.
+        """
+        if root.sign(self._saddle) == -1:
+            root, signs = root.mirrored(), [-s for s in signs]
+            letters = letters.translate(UPSIDE_DOWN)
+        return self.shown(root, signs, letters, multiplicity)
+
+    def shown(
+        self, root: ChartRoot, signs: Sequence[int], letters: Sequence[str], multiplicity: int
+    ) -> Branch:
+        """The same for a root that is not on the other side."""
+        pattern = self.problem.pattern
+        saddle = 1 if self._saddle_is_one or root.sign(self._saddle) else 0
+        return Branch(
+            pattern,
+            self._rigid | dict(zip(self.problem.foldable, signs, strict=True)),
+            self._flat | dict(zip(self._folds, letters, strict=True)),
+            root,
+            multiplicity << pattern.Vt,
+            "saddle" if saddle else "notch",
+            saddle,
+            self._rows,
+            () if self._saddle_is_one or not saddle else self._saddle_row,
+        )
+
+    @cached_property
+    def _saddle(self) -> Row:
+        return Functionals(self.chart).saddle
+
+    @cached_property
+    def _saddle_is_one(self) -> bool:
+        return not any(self._saddle[:-1])
+
+    @cached_property
+    def _saddle_row(self) -> tuple[Fraction, ...]:
+        return tuple(self.chart.restrict(saddle_functional(self.problem.sheet)))
+
+    @cached_property
+    def _rows(self) -> dict[int, tuple[Fraction, ...]]:
+        return self.problem.height_rows(self.chart)
+
+    @cached_property
+    def _rigid(self) -> dict[int, int]:
+        return dict.fromkeys(self.problem.pattern.interior, 0)
+
+    @cached_property
+    def _flat(self) -> dict[Edge, str]:
+        return dict.fromkeys(self.problem.pattern.folds, "F")
+
+    @cached_property
+    def _folds(self) -> list[Edge]:
+        labels = self.problem.labels
+        return [(labels[i], labels[j]) for i, j in sorted(self.problem.sheet.folds)]
+
+
 def _decide(
-    chart: Chart, functionals: Functionals, root: Root
-) -> tuple[Root, dict[int, int | None], dict[Edge, int | None]]:
+    chart: Chart, functionals: Functionals, root: ChartRoot
+) -> tuple[ChartRoot, dict[int, int | None], dict[Edge, int | None]]:
     """`decide_signs` at the root or, if its saddle is negative, at its mirror image."""
     for bits in _RISING:
         if root.sign(functionals.saddle) is None:
@@ -115,7 +174,7 @@ def _add_flat(emptied: CreasePattern, folds: dict[Edge, int | None]) -> None:
             folds[fold] = 0
 
 
-def _fill(signs: dict[K, int | None], rows: Mapping[K, Row], root: Root) -> None:
+def _fill(signs: dict[K, int | None], rows: Mapping[K, Row], root: ChartRoot) -> None:
     for key, sign in signs.items():
         if sign is None:
             signs[key] = root.sign(rows[key])
@@ -129,30 +188,3 @@ def _sharpen(chart: Chart, root: R, bits: int) -> R | None:
         return None
     sharper = krawczyk_at(system, root.box, bits)
     return replace(root, box=sharper) if isinstance(sharper, IsolatingBox) else None
-
-
-def vertex_height_rows(
-    pattern: CreasePattern, functionals: Functionals, labels: Sequence[int]
-) -> dict[int, tuple[Fraction, ...]]:
-    """Heights as rows on (x, 1): rigid vertices lie in the plane of their 3-cycle."""
-    rows = {labels[v]: row for v, row in functionals.heights.items()}
-    for cycle, inside in pattern.triangulated_triangles:
-        for v in inside:
-            weights = barycentric(pattern, cycle, v)
-            rows[v] = tuple(
-                sum((w * x for w, x in zip(weights, column, strict=True)), Fraction(0))
-                for column in zip(*(rows[c] for c in cycle), strict=True)
-            )
-    return dict(sorted(rows.items()))
-
-
-def barycentric(
-    pattern: CreasePattern, cycle: Sequence[int], vertex: int
-) -> tuple[Fraction, Fraction, Fraction]:
-    """Barycentric coordinates of a vertex in a triangle, exactly."""
-    (ax, ay), (bx, by), (cx, cy) = (pattern.vertices[v] for v in cycle)
-    x, y = pattern.vertices[vertex]
-    whole = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-    beta = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / whole
-    gamma = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / whole
-    return 1 - beta - gamma, beta, gamma

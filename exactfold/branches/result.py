@@ -3,19 +3,39 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from exactfold.branches.branch import Branch
-from exactfold.branches.named import UPSIDE_DOWN
+from exactfold.certify.algebraic import AlgebraicProof
+from exactfold.errors import UsageError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.problem.branch_system import Chart
+from exactfold.rigidity.rigid_triangles import RigidTriangle
 from exactfold.verdict import UNDECIDED, Verdict
 
 
 @dataclass(frozen=True)
+class Proof:
+    """What proves a count; `exactfold.evidence` writes it down (docs/certificate.md).
+
+    `kind` is "isolated" (the roots of the branches, each in a box, are all there are), "algebraic"
+    (by multiplicities, see `AlgebraicProof`), "rigid" or "single vertex". The first two hold in
+    `chart`, whose vertex k is `labels[k]` of the pattern.
+    """
+
+    kind: str
+    triangles: tuple[RigidTriangle, ...]
+    labels: tuple[int, ...] = ()
+    chart: Chart | None = None
+    algebraic: AlgebraicProof | None = None
+
+
+@dataclass(frozen=True, repr=False)
 class BranchCount:
     """What is known of the branches of a pattern at the unfolded state.
 
@@ -26,8 +46,11 @@ class BranchCount:
     true configuration space (docs/mathematics.md, 5). `dimension` and `degree` are those of the
     cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi where that is proved
     (docs/mathematics.md, 10), else None. `branches` holds every branch decided, all of
-    them if PROVED and D = 1; for D > 1 a branch is no line and none is listed. `evidence` is what a
-    certificate holds. `open_questions` is what is missing; if PROVED, folds with the letter "U".
+    them if PROVED and D = 1; for D > 1 a branch is no line and none is listed. `proof` is what a
+    certificate is written from. `open_questions` is what is missing; if PROVED, folds with the
+    letter "U".
+
+    `len(result)`, iteration and `result["+-"]` or `result[3]` are about `branches`.
     """
 
     pattern: CreasePattern
@@ -44,10 +67,41 @@ class BranchCount:
     degree: int | None = None
     branches: tuple[Branch, ...] = ()
     open_questions: tuple[str, ...] = ()
-    evidence: Mapping[str, Any] | None = None
+    proof: Proof | None = None
     settings: Mapping[str, int | str] = field(default_factory=dict)
     snapped: Fraction = Fraction(0)
     seconds: float = 0.0
+
+    def __len__(self) -> int:
+        return len(self.branches)
+
+    def __iter__(self) -> Iterator[Branch]:
+        return iter(self.branches)
+
+    def __bool__(self) -> bool:
+        return True  # a result, also where no branch is listed
+
+    def __getitem__(self, which: int | str) -> Branch:
+        """A branch by its place in the list or by its vertex signs.
+
+        Raises `KeyError` for signs that no listed branch has, `UsageError` for signs that several
+        have, which can be only where the boundary has a reflex corner.
+        """
+        if isinstance(which, int):
+            return self.branches[which]
+        found = self._by_signs.get(which, [])
+        if not found:
+            raise KeyError(f"no branch listed has the vertex signs {which!r}")
+        if len(found) > 1:
+            raise UsageError(f"{len(found)} branches have the vertex signs {which!r}")
+        return found[0]
+
+    @cached_property
+    def _by_signs(self) -> dict[str, list[Branch]]:
+        groups: dict[str, list[Branch]] = {}
+        for branch in self.branches:
+            groups.setdefault(branch.sign_text, []).append(branch)
+        return groups
 
     def to_dict(self, certificate: str | None = None) -> dict[str, Any]:
         """The object printed by `exactfold count --json`."""
@@ -81,11 +135,7 @@ class BranchCount:
     @property
     def sign_vectors(self) -> Counter[str]:
         """How many branches have each vertex-sign vector, opposite vectors taken together."""
-        counts: Counter[str] = Counter()
-        for branch in self.branches:
-            text = branch.sign_text
-            counts[min(text, text.translate(UPSIDE_DOWN))] += 1
-        return counts
+        return Counter(branch.names[0] for branch in self.branches)
 
     @property
     def undecided_folds(self) -> Counter[Edge]:
@@ -93,8 +143,8 @@ class BranchCount:
         return Counter(
             fold
             for branch in self.branches
-            for fold, letter in branch.assignment.items()
-            if letter == "U"
+            if "U" in branch.assignment_text
+            for fold in branch.undecided_folds
         )
 
     @property
@@ -103,12 +153,9 @@ class BranchCount:
 
         None if the letter of some fold is undecided.
         """
-        counts: Counter[str] = Counter()
-        for branch in self.branches:
-            text = branch.assignment_text
-            if "U" in text:
-                return None
-            counts[min(text, text.translate(UPSIDE_DOWN))] += 1
+        if self.undecided_folds:
+            return None
+        counts = Counter(branch.names[1] for branch in self.branches)
         return sum(count for count in counts.values() if count > 1)
 
     def __repr__(self) -> str:

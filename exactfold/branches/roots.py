@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Protocol
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Protocol
 
-from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.flat_zeros import FlatSheets
-from exactfold.branches.functionals import Row, integer_row
 from exactfold.certify.box import IsolatingBox
-from exactfold.exact.univariate import Interval
+from exactfold.exact.numbers import integer_row
+
+if TYPE_CHECKING:  # FLINT is loaded where there is an algebraic root
+    from exactfold.algebra.exact_solution import RootClass
+    from exactfold.algebra.flat_zeros import FlatSheets
+    from exactfold.exact.univariate import Interval
+
+Row = tuple[int, ...]
 
 
-class Root(Protocol):
-    """A real point of the chart that is proved to exist and enclosed."""
+class ChartRoot(Protocol):
+    """A real point of a chart that is proved to exist and enclosed."""
 
     def enclose(self, row: Sequence[Fraction | int]) -> tuple[Fraction, Fraction]:
         """Bounds of the value of a row (c_1, ..., c_n, c_0)."""
@@ -23,8 +28,11 @@ class Root(Protocol):
     def sign(self, row: Row) -> int | None:
         """Sign of the value: 1, -1, 0 only if it is proved to vanish, None if undecided."""
 
-    def mirrored(self) -> Root:
+    def mirrored(self) -> ChartRoot:
         """The same branch seen from below: all values change their sign."""
+
+    def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> Any:
+        """The value, over that of `unit` if given (`Branch.exact_heights`); None if unknown."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +77,9 @@ class BoxRoot:
         """The mirror image."""
         return replace(self, side=-self.side)
 
+    def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> None:
+        """Nothing: a box holds bounds."""
+
 
 @dataclass(frozen=True)
 class FlatBoxRoot:
@@ -92,6 +103,9 @@ class FlatBoxRoot:
     def mirrored(self) -> FlatBoxRoot:
         """The mirror image."""
         return replace(self, side=-self.side)
+
+    def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> None:
+        """Nothing: a box holds bounds."""
 
 
 @dataclass(frozen=True)
@@ -130,3 +144,38 @@ class AlgebraicRoot:
     def mirrored(self) -> AlgebraicRoot:
         """The mirror image."""
         return replace(self, side=-self.side)
+
+    def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> Any:
+        """The value: a `Fraction`, radicals, or a `CRootOf` of sympy."""
+        from exactfold.branches.exact_values import value_at_root  # sympy, for this alone
+
+        side = 1 if unit else self.side  # of a quotient both sides agree
+        return value_at_root(self.root_class, self.index, [side * c for c in row], unit)
+
+
+@dataclass(frozen=True)
+class EnclosedRoot:
+    """The only solution with given signs, near given heights (`exactfold.certify.enclosure`).
+
+    Its heights lie within `radius` of `centres`, and the integral of |grad(h - centres)|^2 over the
+    sheet is at most `squared_distance`; where that is 0, `centres` are the heights themselves.
+    """
+
+    centres: Mapping[int, Fraction]
+    radius: Fraction
+    squared_distance: Fraction
+
+    @cached_property
+    def heights(self) -> dict[int, tuple[Fraction, Fraction]]:
+        """Rational bounds of the height of every vertex."""
+        r = self.radius
+        return {v: (c - r, c + r) for v, c in self.centres.items()}
+
+    @property
+    def exact_heights(self) -> dict[int, Fraction] | None:
+        """The heights, if they are known exactly."""
+        return None if self.squared_distance else dict(self.centres)
+
+
+Root = ChartRoot | EnclosedRoot
+"""Where a branch is, proved."""

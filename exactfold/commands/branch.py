@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from exactfold.branches.signed import SignedBranch
+from exactfold.branches.branch import Branch
 from exactfold.commands.shell import Bar
 from exactfold.count.find import BranchFinder
 from exactfold.errors import UnreadableFileError, UsageError
@@ -44,7 +44,7 @@ class Asked:
             for name, result in self._found(finder, bar):
                 proved &= result.status is PROVED
                 if self.as_json:
-                    print(json.dumps(result.to_dict()), flush=True)
+                    print(json.dumps(result.report()), flush=True)
                 elif name:
                     rows.append(report.branch_row(name, result))
         if not self._is_many:
@@ -59,7 +59,7 @@ class Asked:
     def _is_many(self) -> bool:
         return self.batch is not None or self.pops is not None
 
-    def _found(self, finder: BranchFinder, bar: Bar) -> Iterator[tuple[str, SignedBranch]]:
+    def _found(self, finder: BranchFinder, bar: Bar) -> Iterator[tuple[str, Branch]]:
         if self.batch is not None:
             yield from _of_lines(finder, self.batch, bar)
             return
@@ -76,7 +76,7 @@ class Asked:
         for v, result in finder.each_neighbour(given, chosen, progress=bar):
             yield f"pop {v}", result
 
-    def _certify(self, result: SignedBranch) -> None:
+    def _certify(self, result: Branch) -> None:
         if self.certificate is None:
             return
         if result.status is PROVED:
@@ -89,7 +89,7 @@ class Asked:
             print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
 
 
-def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str, SignedBranch]]:
+def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str, Branch]]:
     """The branches of a file of sign vectors, which is read to its end before any is found."""
     lines = list(_lines(path))
     if not lines:

@@ -6,15 +6,12 @@ import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
-from exactfold.branches.result import BranchCount
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
 from exactfold.compact_checker import MOST_UNKNOWNS
-from exactfold.count.collect import count_branches
 from exactfold.count.dask_engine import LOCAL, dask_engine
-from exactfold.count.stream import StreamedCount, count_streaming
+from exactfold.count.stream import StreamedCount, stream_branches
 from exactfold.errors import (
     NoInteriorVertexError,
     NotApplicableError,
@@ -24,14 +21,10 @@ from exactfold.errors import (
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold import load_fold
-from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import available_cores
 
 ADVISED = 14
 """Foldable vertices from which plain `count` takes ten times as long, and doubles with each."""
-
-HANDED_OVER = 12
-"""Most foldable vertices of a pattern with open sign vectors that is also counted otherwise."""
 
 
 @dataclass(frozen=True)
@@ -56,10 +49,10 @@ class Streaming:
                 words += [f"--{name}", str(value)]
         return shlex.join(words)
 
-    def run(self) -> tuple[BranchCount, StreamedCount]:
-        """The count, by another method where that proves what the run left open, and the run.
+    def run(self) -> StreamedCount:
+        """The count, by another method where that proves what the run left open.
 
-        Raises the errors of `count_streaming` and `dask_engine`, and `UsageError` for a file that
+        Raises the errors of `stream_branches` and `dask_engine`, and `UsageError` for a file that
         is there already.
         """
         if self.workers is not None and self.dask not in (None, LOCAL):
@@ -73,27 +66,19 @@ class Streaming:
             if self.file.exists() and not self.resume:
                 raise UsageError(f"{self.file} is there already; --resume continues it")
             with interruptible(), self._resumable():
-                streamed = self._streamed(file.pattern, bar)
-                result = streamed_count(streamed)
-                if streamed.status is UNDECIDED and streamed.foldable <= HANDED_OVER:
-                    other = count_branches(file.pattern, seed=self.seed, progress=bar)
-                    if other.status is not PROVED:
-                        questions = (*result.open_questions, *other.open_questions)
-                        other = replace(other, open_questions=questions)
-                    result = other
-        return replace(result, snapped=file.snapped), streamed
+                return replace(self._streamed(file.pattern, bar), snapped=file.snapped)
 
     def _streamed(self, pattern: CreasePattern, bar: Bar) -> StreamedCount:
         cluster = nullcontext() if self.dask is None else dask_engine(self.dask, self.workers)
         with cluster as engine:
-            return count_streaming(
+            return stream_branches(
                 pattern,
                 self.file,
                 workers=self.workers or available_cores(),
                 resume=self.resume,
                 replace=False,
-                progress=partial(bar, "proving"),
-                verified=partial(bar, "verifying"),
+                seed=self.seed,
+                progress=bar,
                 engine=engine,
             )
 
@@ -108,54 +93,6 @@ class Streaming:
             if not self.file.is_file():
                 raise
             raise type(error)(f"{error}; go on with\n  {self.again}") from None
-
-
-def streamed_count(streamed: StreamedCount) -> BranchCount:
-    """What a run proved, in the form of all counts; the branches are in its file."""
-    proved = streamed.status is PROVED
-    return BranchCount(
-        streamed.pattern,
-        streamed.status,
-        "streaming",
-        streamed.reason if proved else f"{streamed.reason}; {_culprits(streamed)}",
-        why="a block of sign vectors at a time",
-        distinct=streamed.distinct,
-        with_multiplicity=streamed.with_multiplicity,
-        real=streamed.distinct,
-        nonreal=0 if proved else None,
-        true_branches=streamed.status,
-        dimension=streamed.pattern.degrees_of_freedom if proved else None,
-        degree=streamed.with_multiplicity,
-        open_questions=tuple(_questions(streamed)),
-        seconds=streamed.elapsed,
-    )
-
-
-def _culprits(streamed: StreamedCount) -> str:
-    """What keeps the other sign vectors from being proved, and what else can be tried."""
-    names = streamed.pattern.foldable_vertices
-    zeros = {k for root in streamed.open_roots for k, s in enumerate(root.limit) if s == "0"}
-    if not zeros:
-        return "for each other the reason is below"
-    flat = ", ".join(str(names[k]) for k in sorted(zeros))
-    several = "vertices" if len(zeros) > 1 else "vertex"
-    text = f"on the others {several} {flat} look{'' if len(zeros) > 1 else 's'} flat"
-    if streamed.foldable > HANDED_OVER:
-        text += ": count without --stream also looks for multiple roots"
-    return text
-
-
-def _questions(streamed: StreamedCount) -> Iterator[str]:
-    """Groups of sign vectors that seem to meet, then what is open by itself."""
-    for limit, group in streamed.groups.items():
-        signs = ", ".join(root.signs for root in group[:8])
-        more = f" and {len(group) - 8} more" if len(group) > 8 else ""
-        yield f"sign vectors {signs}{more} seem to meet at {limit}: {group[0].reason}"
-    for root in streamed.open_roots:
-        if "0" not in root.limit:
-            yield f"sign vector {root.signs}: {root.reason}"
-    if (rest := streamed.unproved - len(streamed.open_roots)) > 0:
-        yield f"{rest} more sign vectors, not listed"
 
 
 def advice(pattern: CreasePattern) -> str | None:

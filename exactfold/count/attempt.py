@@ -1,35 +1,17 @@
-"""One attempt at a count in one chart: from candidates to a proof, or to what is missing."""
+"""One attempt at a count in one chart: what every way of proving it shares."""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from exactfold.algebra.flat_zeros import common_parameter, flat_vertices
-from exactfold.algebra.groebner import groebner
-from exactfold.branches.branch import Branch
-from exactfold.branches.classify import Undecided, classify
-from exactfold.branches.named import UPSIDE_DOWN
-from exactfold.branches.result import BranchCount
-from exactfold.branches.roots import AlgebraicRoot, BoxRoot, FlatBoxRoot, Root
-from exactfold.certify.algebraic import AlgebraicProof, prove_algebraic
-from exactfold.certify.isolation import Isolation, isolate
+from exactfold.branches.result import BranchCount, Proof
+from exactfold.certify.algebraic import AlgebraicProof
 from exactfold.count.methods import Choice
-from exactfold.count.multiple_roots import Zeros, recognised, solve_flat
-from exactfold.evidence.entries import (
-    algebraic_evidence,
-    box_entry,
-    chart_evidence,
-    class_entry,
-    flat_box_entry,
-    triangle_evidence,
-)
-from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import Chart
-from exactfold.rigidity.rigid_triangles import RigidTriangle
+from exactfold.problem.chart_change import from_chart, to_chart
+from exactfold.problem.problem import Problem
 from exactfold.solve.candidates import Candidates
 from exactfold.verdict import PROVED, UNDECIDED
 
@@ -38,18 +20,16 @@ Progress = Callable[[str, int, int], None]
 
 @dataclass(frozen=True)
 class Attempt:
-    """What every method works on: the pattern, and the chart of the emptied pattern."""
+    """A problem, a chart of its sheet, and the method that was chosen."""
 
-    pattern: CreasePattern
-    triangles: tuple[RigidTriangle, ...]
+    problem: Problem
     chart: Chart
-    labels: tuple[int, ...]
     choice: Choice
     progress: Progress | None
 
     @property
     def total(self) -> int:
-        """2^n, what the solutions of the emptied pattern must add up to."""
+        """2^n, what the solutions in the chart must add up to."""
         return self.chart.system.bezout_number
 
     def stage(self, name: str) -> Callable[[int, int], None]:
@@ -57,193 +37,47 @@ class Attempt:
         report = self.progress
         return lambda done, total: None if report is None else report(name, done, total)
 
+    def in_chart(self, candidates: Candidates) -> Candidates:
+        """Candidates found in the chart of the problem as points of this one."""
+        if self.chart == self.problem.chart:
+            return candidates
+        heights = from_chart(self.problem.chart, candidates.points.real)
+        points = to_chart(self.chart, heights).astype(candidates.points.dtype)
+        return replace(candidates, points=points)
+
     def undecided(self, reason: str, **known: Any) -> BranchCount:
         """An undecided count, with what is known."""
         choice = self.choice
         return BranchCount(
-            self.pattern, UNDECIDED, choice.method, reason=reason, why=choice.why, **known
+            self.problem.pattern, UNDECIDED, choice.method, reason=reason, why=choice.why, **known
+        )
+
+    def isolated(self, found: BranchCount, **counts: Any) -> BranchCount:
+        """The same count, proved: 2^n disjoint boxes are all zeros, by refined Bezout."""
+        reason = (
+            f"{self.total} solution{'s' * (self.total > 1)} isolated; by refined Bezout there "
+            "are no others"
+        )
+        distinct = counts["real"] + counts["nonreal"]
+        return self.proved(
+            found, reason, "isolated", None, distinct=distinct, true_branches=PROVED, **counts
         )
 
     def proved(
-        self, open_count: BranchCount, reason: str, evidence: dict[str, Any], **counts: Any
+        self,
+        found: BranchCount,
+        reason: str,
+        kind: str,
+        algebraic: AlgebraicProof | None,
+        **counts: Any,
     ) -> BranchCount:
         """The same count, proved."""
+        problem = self.problem
         return replace(
-            open_count,
+            found,
             status=PROVED,
             reason=reason,
-            with_multiplicity=self.total << self.pattern.Vt,
-            evidence={
-                "triangles": triangle_evidence(self.triangles),
-                "chart": chart_evidence(self.chart, self.labels),
-                **evidence,
-            },
+            with_multiplicity=self.total << problem.pattern.Vt,
+            proof=Proof(kind, problem.triangles or (), problem.labels, self.chart, algebraic),
             **counts,
         )
-
-
-def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
-    """Boxes around candidates, completeness by refined Bezout, signs on the boxes."""
-    isolation = isolate(attempt.chart.system, candidates, progress=attempt.stage("certifying"))
-    roots: list[tuple[Root, int]] = [(BoxRoot(box), 1) for box in isolation.boxes if box.is_real]
-    branches, open_signs = classify(attempt.pattern, attempt.chart, attempt.labels, roots)
-    result = attempt.undecided(
-        f"all {attempt.total} solutions isolated, but signs are undecided on {len(open_signs)}",
-        branches=tuple(branches),
-        settings={**candidates.settings, "lost": len(candidates.lost)},
-        open_questions=(*candidates.lost, *_failures(isolation), *_signs(open_signs)),
-    )
-    if isolation.complete is not PROVED:
-        return replace(
-            result,
-            reason=f"{len(isolation.boxes)} of {attempt.total} solutions isolated: the others are "
-            "multiple, at infinity or were not found",
-        )
-    more = recognised(attempt.chart, Zeros(boxes=list(isolation.boxes)), open_signs)
-    if more is not None:
-        exactly = _algebraic(attempt, more, result.settings)
-        if exactly.status is PROVED:
-            return exactly
-    if len(branches) < len(roots):
-        return result
-    boxes = [branch.root.box for branch in branches if isinstance(branch.root, BoxRoot)]
-    return attempt.proved(
-        result,
-        f"{attempt.total} solution{'s' * (attempt.total > 1)} isolated; by refined Bezout there "
-        "are no others",
-        {"kind": "isolated", "roots": [box_entry(box) for box in boxes]},
-        distinct=isolation.real + isolation.nonreal,
-        real=isolation.real,
-        nonreal=isolation.nonreal,
-        true_branches=PROVED,
-        open_questions=_signs(open_signs),  # what a solver lost was found all the same
-    )
-
-
-def with_flat_vertices(attempt: Attempt, candidates: Candidates) -> BranchCount | None:
-    """Zeros with flat vertices found on flat sheets, boxes for the others; None if some are lost.
-
-    Which vertices are flat is guessed from the candidates, one tolerance after the other.
-    """
-    points = candidates.points.real
-    stage = attempt.stage("certifying")
-    for guess in flat_vertices(attempt.chart, points):
-        found = Zeros()
-        for chosen, where in guess.flat.items():
-            solve_flat(attempt.chart, chosen, points[where], found)
-        if found.total + int(guess.simple.sum()) != attempt.total:
-            continue
-        simple = points[guess.simple].astype(candidates.points.dtype)
-        isolation = isolate(
-            attempt.chart.system, replace(candidates, points=simple), progress=stage
-        )
-        found.boxes += [box for box in isolation.boxes if box.is_real]
-        if found.total == attempt.total:
-            return _algebraic(attempt, found, dict(candidates.settings))
-    return None
-
-
-def solved_exactly(attempt: Attempt) -> BranchCount:
-    """Groebner basis; simple roots are then isolated in boxes, multiple ones proved as they are."""
-    stage = attempt.stage("computing a Groebner basis")
-    stage(0, 1)
-    solution = groebner(attempt.chart.system)
-    stage(1, 1)
-    if solution.dimension is None:
-        return attempt.undecided(
-            "the branch system has infinitely many solutions: dimension "
-            f"{solution.krull_dimension}, degree {solution.degree}"
-        )
-    proved = None
-    if solution.distinct == attempt.total:
-        with suppress(OverflowError):  # zeros beyond floats are proved as they are
-            result = isolated(attempt, solution.candidates)
-            proved = result if result.status is PROVED else None
-    if proved is not None and not proved.undecided_folds:
-        return proved
-    exactly = _algebraic(attempt, Zeros(list(solution.classes)), dict(solution.settings))
-    return exactly if proved is None or exactly.status is PROVED else proved
-
-
-def _algebraic(attempt: Attempt, found: Zeros, settings: Mapping[str, int | str]) -> BranchCount:
-    """Exact classes and boxes, complete by a definite stress and the sum of multiplicities."""
-    chart = attempt.chart
-    classes = common_parameter(found.classes, chart.system.size) if found.classes else []
-    proof = prove_algebraic(chart, classes, found.boxes, found.flat_boxes)
-    given: list[tuple[Root, int]] = [(AlgebraicRoot(c, k), m) for c, k, m in proof.roots]
-    given += [(BoxRoot(box), 1) for box in proof.boxes]
-    given += [(FlatBoxRoot(s, box), 1 << len(s.vertices)) for s, box in proof.flat_boxes]
-    branches, open_signs = classify(attempt.pattern, chart, attempt.labels, given)
-    if proof.complete is PROVED and open_signs:
-        more = recognised(chart, found, open_signs)
-        if more is not None:
-            exactly = _algebraic(attempt, more, settings)
-            if exactly.status is PROVED:
-                return exactly
-    result = attempt.undecided(
-        proof.reason,
-        branches=tuple(branches),
-        settings=settings,
-        open_questions=_signs(open_signs),
-    )
-    if proof.complete is not PROVED:
-        return result
-    if len(branches) < len(given):
-        return replace(result, reason=f"{proof.reason}, but signs are undecided")
-    if not _told_apart(branches):
-        return replace(result, reason="two roots found in different ways may be the same")
-    roots = [_entry(proof, attempt.labels, branch.root) for branch in branches]
-    return attempt.proved(
-        result,
-        proof.reason,
-        {"kind": "algebraic", **algebraic_evidence(proof, roots, attempt.labels)},
-        distinct=proof.distinct,
-        real=len(roots),
-        nonreal=proof.distinct - len(roots),
-        true_branches=PROVED if proof.distinct == len(roots) == attempt.total else UNDECIDED,
-    )
-
-
-def _entry(proof: AlgebraicProof, labels: Sequence[int], root: Root) -> dict[str, Any]:
-    """A root as the certificate shows it."""
-    if isinstance(root, BoxRoot):
-        return box_entry(root.box)
-    if isinstance(root, FlatBoxRoot):
-        return flat_box_entry(root.sheets, root.box, labels)
-    if isinstance(root, AlgebraicRoot):
-        return class_entry(proof, root.root_class, root.index)
-    raise TypeError(f"no evidence for {type(root).__name__}")
-
-
-def _told_apart(branches: Sequence[Branch]) -> bool:
-    """Whether no two branches proved in different ways have the same, or mirrored, signs.
-
-    Only the folds that are decided on all branches are looked at.
-    """
-    kinds: dict[tuple[str, str], object] = {}
-    texts = [branch.assignment_text for branch in branches]
-    decided = [k for k, letters in enumerate(zip(*texts, strict=True)) if "U" not in letters]
-    for branch, text in zip(branches, texts, strict=True):
-        root = branch.root
-        kind = root.sheets.vertices if isinstance(root, FlatBoxRoot) else type(root)
-        seen = (branch.sign_text, "".join(text[k] for k in decided))
-        mirrored = (seen[0].translate(UPSIDE_DOWN), seen[1].translate(UPSIDE_DOWN))
-        for letters in (seen, mirrored):
-            if kinds.setdefault(letters, kind) != kind:
-                return False
-    return True
-
-
-def _failures(isolation: Isolation) -> list[str]:
-    """Where no box was found, and why."""
-    return [
-        f"no box around the candidate ({', '.join(f'{x.real:.6g}' for x in failure.point)}): "
-        f"{failure.reason}"
-        for failure in isolation.failures
-    ]
-
-
-def _signs(undecided: list[Undecided]) -> tuple[str, ...]:
-    """What is not decided, and on how many roots."""
-    counts = Counter(", ".join(item.what) for item in undecided)
-    return tuple(f"sign not decided on {count} roots: {what}" for what, count in counts.items())

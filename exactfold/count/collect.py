@@ -1,4 +1,4 @@
-"""From a pattern to a proven branch count: the stages in their order."""
+"""All branches of a pattern in memory: from a problem to a proven count."""
 
 from __future__ import annotations
 
@@ -6,20 +6,29 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from exactfold.branches.result import BranchCount
-from exactfold.count.attempt import Attempt, isolated, solved_exactly, with_flat_vertices
-from exactfold.count.methods import METHODS, Choice, choose, find_candidates
+from exactfold.branches.branch import Branch
+from exactfold.branches.result import BranchCount, Proof
+from exactfold.compact_checker import MOST_UNKNOWNS
+from exactfold.count.attempt import Attempt
+from exactfold.count.conveyor import LISTED_BITS, Conveyor
+from exactfold.count.hand_over import isolated, solved_exactly, with_flat_vertices
+from exactfold.count.methods import METHODS, NEWTON, Choice, choose, find_candidates
 from exactfold.errors import NoInteriorVertexError
-from exactfold.evidence.entries import triangle_evidence
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import BranchSystem, notch_chart
+from exactfold.problem.problem import Problem
 from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
+from exactfold.solve.candidates import Candidates
+from exactfold.solve.newton_ends import candidates_of
 from exactfold.verdict import PROVED, UNDECIDED
 
 __all__ = ["METHODS", "count_branches"]
 
 Progress = Callable[[str, int, int], None]
+
+_MEET = 9
+"""Digits to which ends agree where a root is multiple: they are as good there as elsewhere."""
 
 GROEBNER_LIMIT = 6
 """Largest number of unknowns for which "auto" turns to the exact engine."""
@@ -34,11 +43,12 @@ def count_branches(
 ) -> BranchCount:
     """The number of branches at the unfolded state, proved, and what distinguishes them.
 
-    For D = 1: solve the branch system of the emptied pattern, isolate every solution by an exact
-    test, prove by refined Bezout that there are no others (docs/mathematics.md, 3 to 5), and decide
-    all vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For D >= 2 only
-    the single-vertex pattern is settled. `method` is one of `METHODS`; "auto" takes Newton's
-    method on the nappes and turns to the exact engine where that does not settle a small pattern.
+    For D = 1: solve the branch system of the sheet without rigid parts, isolate every solution by
+    an exact test, prove by refined Bezout that there are no others (docs/mathematics.md, 3 to 5),
+    and decide all vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For
+    D >= 2 only the single-vertex pattern is settled. `method` is one of `METHODS`; "auto" takes
+    Newton's method, one start for each sign vector, and turns to the exact engine where that does
+    not settle a small pattern.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
     `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.
@@ -48,11 +58,8 @@ def count_branches(
     >>> result.status, result.distinct, result.real
     (<Verdict.PROVED: 'proved'>, 2, 2)
     """
-    choose(method)
-    if not pattern.interior:
-        raise NoInteriorVertexError(
-            "the pattern has no interior vertex: there is no curvature equation to solve"
-        )
+    choice = choose(method)
+    check_countable(pattern)
     start = time.perf_counter()
     triangles = certify_rigid_triangles(pattern)
     if triangles is None:
@@ -65,7 +72,7 @@ def count_branches(
     elif pattern.Ve == 3:
         result = _rigid(pattern, triangles)
     elif pattern.degrees_of_freedom == 1:
-        result = _lines(pattern, triangles, method, seed, progress)
+        result = _lines(Problem.of(pattern), choice, method, seed, progress)
     else:
         result = _higher(pattern, triangles)
     seconds = time.perf_counter() - start
@@ -73,6 +80,14 @@ def count_branches(
         return replace(result, seconds=seconds)
     dimension = pattern.degrees_of_freedom
     return replace(result, dimension=dimension, degree=1 << pattern.Vi, seconds=seconds)
+
+
+def check_countable(pattern: CreasePattern) -> None:
+    """Raise `NoInteriorVertexError` if there is nothing to count."""
+    if not pattern.interior:
+        raise NoInteriorVertexError(
+            "the pattern has no interior vertex: there is no curvature equation to solve"
+        )
 
 
 def _rigid(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> BranchCount:
@@ -86,14 +101,14 @@ def _rigid(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bran
         real=0,
         nonreal=0,
         true_branches=PROVED,
-        evidence={"kind": "rigid", "triangles": triangle_evidence(triangles)},
+        proof=Proof("rigid", triangles),
     )
 
 
 def _higher(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> BranchCount:
     """D >= 2: the null cone of one Lorentzian form is one double cone for N >= 5."""
-    emptied, _ = pattern.emptied()
-    if emptied.Vi == 1 and not emptied.chords:
+    sheet, _ = pattern.without_rigid_parts()
+    if sheet.Vi == 1 and not sheet.chords:
         weight = 1 << pattern.Vt
         return BranchCount(
             pattern,
@@ -106,9 +121,9 @@ def _higher(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bra
             real=1,
             nonreal=0,
             true_branches=PROVED,
-            evidence={"kind": "single vertex", "triangles": triangle_evidence(triangles)},
+            proof=Proof("single vertex", triangles),
         )
-    chords = "".join(f"; the fold {i}-{j} splits the sheet" for i, j in emptied.chords[:1])
+    chords = "".join(f"; the fold {i}-{j} splits the sheet" for i, j in sheet.chords[:1])
     return BranchCount(
         pattern,
         UNDECIDED,
@@ -119,38 +134,72 @@ def _higher(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bra
 
 
 def _lines(
-    pattern: CreasePattern,
-    triangles: tuple[RigidTriangle, ...],
-    method: str,
-    seed: int,
-    progress: Progress | None,
+    problem: Problem, choice: Choice, method: str, seed: int, progress: Progress | None
 ) -> BranchCount:
-    """D = 1: branches are isolated lines, zeros of the emptied pattern's system.
+    """D = 1: branches are isolated lines.
 
-    Solutions at infinity of the chart `saddle = 1` are possible for a reflex corner only; then the
-    chart of the closed notch, which misses none, is tried as well.
+    Where the conveyor leaves something open, and for other methods, zeros are proved in the chart
+    `saddle = 1`; as with a reflex corner some may lie at infinity there, then also in the chart of
+    the closed notch, which misses none.
     """
-    emptied, labels = pattern.emptied()
-    attempt = Attempt(
-        pattern, triangles, BranchSystem(emptied).chart, labels, choose(method), progress
-    )
-    result = _in_chart(attempt, method, seed)
-    if result.status is PROVED or emptied.is_convex:
+    ends: Candidates | None = None
+    if choice.method == NEWTON and 0 < problem.size <= MOST_UNKNOWNS:
+        conveyor = Conveyor.of(problem, bits=LISTED_BITS)
+        attempt = Attempt(problem, problem.chart, choice, progress)
+        ends = _ends(conveyor, attempt)
+        if not (ends.lost or ends.agree_to(_MEET)):
+            result = _collected(conveyor, attempt, ends)
+            if result is not None:
+                return result
+    attempt = Attempt(problem, BranchSystem(problem.sheet).chart, choice, progress)
+    result = _in_chart(attempt, ends, method, seed)
+    if result.status is PROVED or problem.sheet.is_convex:
         return result
-    again = _in_chart(replace(attempt, chart=notch_chart(emptied)), method, seed)
+    again = _in_chart(replace(attempt, chart=notch_chart(problem.sheet)), ends, method, seed)
     return again if again.status is PROVED else result
 
 
-def _in_chart(attempt: Attempt, method: str, seed: int) -> BranchCount:
-    """Solve in one chart; roots with flat vertices are solved for exactly, apart from the others.
+def _ends(conveyor: Conveyor, attempt: Attempt) -> Candidates:
+    """The ends of all blocks, in the chart of the problem."""
+    stage, count = attempt.stage("solving"), conveyor.block_size
+    found = []
+    for index in range(conveyor.blocks):
+        found.append(conveyor.ends(index))
+        stage((index + 1) * count, attempt.total)
+    return candidates_of(found, conveyor.size)
+
+
+def _collected(conveyor: Conveyor, attempt: Attempt, ends: Candidates) -> BranchCount | None:
+    """The branches of all blocks, None if a root or a letter stays open."""
+    stage, count = attempt.stage("certifying"), conveyor.block_size
+    branches: list[Branch] = []
+    for index in range(conveyor.blocks):
+        block = conveyor.prove(index)
+        if block.open or any("U" in root.assignment for root in block.exact.values()):
+            return None
+        branches += conveyor.branches(block)
+        stage((index + 1) * count, attempt.total)
+    branches.sort(key=Branch.sort_key)
+    return attempt.isolated(
+        attempt.undecided("", branches=tuple(branches), settings={**ends.settings, "lost": 0}),
+        real=attempt.total,
+        nonreal=0,
+    )
+
+
+def _in_chart(attempt: Attempt, ends: Candidates | None, method: str, seed: int) -> BranchCount:
+    """Prove zeros in one chart; those with flat vertices are solved for apart from the others.
 
     Where that fails too, "auto" turns to the exact engine for small systems.
     """
     size = attempt.chart.system.size
     if attempt.choice.method == "groebner" and size:
         return solved_exactly(attempt)
-    stage = attempt.stage("solving")
-    candidates = find_candidates(attempt.chart, method, seed=seed, progress=stage)
+    if ends is not None:
+        candidates = attempt.in_chart(ends)
+    else:
+        stage = attempt.stage("solving")
+        candidates = find_candidates(attempt.chart, method, seed=seed, progress=stage)
     multiple = bool(candidates.lost) or candidates.some_meet
     result = with_flat_vertices(attempt, candidates) if multiple else None
     if result is None:

@@ -13,8 +13,9 @@ from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
-from exactfold.count.chambers import Chambers, ProvedBlock
-from exactfold.count.stream import Engine
+from exactfold.branches.blocks import ProvedBlock
+from exactfold.count.conveyor import Conveyor
+from exactfold.count.engines import Engine
 from exactfold.errors import ClusterError, DaskMissingError, WorkerDiedError
 from exactfold.evidence.streamed import block_line
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
@@ -36,7 +37,7 @@ Spec = tuple[str, tuple[Point, ...], tuple[Triangle, ...], int]
 def dask_engine(
     address: str, workers: int | None = None, *, timeout: float = 30.0
 ) -> Iterator[Engine]:
-    """An engine for `count_streaming` on the cluster whose scheduler is at `address`.
+    """An engine for `stream_branches` on the cluster whose scheduler is at `address`.
 
     Each block is a task that depends on nothing else. A few for each thread of the cluster are
     submitted at a time; results are yielded in order and once each, so that the file is that of a
@@ -81,9 +82,9 @@ def dask_engine(
             raise ClusterError(f"no scheduler at {address}: {error}") from None
 
         def engine(
-            chambers: Chambers, left: range
+            conveyor: Conveyor, left: range
         ) -> Generator[tuple[ProvedBlock, str], None, None]:
-            return _blocks(client, chambers, left)
+            return _blocks(client, conveyor, left)
 
         yield engine
 
@@ -103,13 +104,13 @@ def _require_address(address: str) -> None:
 
 
 def _blocks(
-    client: Any, chambers: Chambers, left: range
+    client: Any, conveyor: Conveyor, left: range
 ) -> Generator[tuple[ProvedBlock, str], None, None]:
     """The blocks in `left` with their lines, in order, from the cluster of `client`."""
     from distributed import KilledWorker
 
-    pattern = chambers.pattern
-    spec = (version("exactfold"), pattern.vertices, pattern.triangles, chambers.block_size)
+    pattern = conveyor.problem.pattern
+    spec = (version("exactfold"), pattern.vertices, pattern.triangles, conveyor.block_size)
     waiting: deque[Any] = deque()
     most, asked = 0, 0.0
     indices = iter(left)
@@ -150,9 +151,9 @@ def prove_block(spec: Spec, index: int) -> tuple[ProvedBlock, str]:
         needed, vertices, triangles, block_size = spec
         if (found := version("exactfold")) != needed:
             raise ClusterError(f"a worker has exactfold {found}, not {needed}")
-        _worker.chambers = Chambers.of(CreasePattern(vertices, triangles), block_size)
+        _worker.conveyor = Conveyor.of(CreasePattern(vertices, triangles), block_size)
         _worker.spec = spec
-    block = _worker.chambers.prove(index)
+    block = _worker.conveyor.prove(index)
     none = slice(0, 0)
     boxes = replace(
         block.boxes, centers=block.boxes.centers[none], exponents=block.boxes.exponents[none]

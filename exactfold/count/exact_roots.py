@@ -8,11 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from exactfold.branches.classify import LETTERS, decide_signs
-from exactfold.branches.functionals import Functionals
+from exactfold.branches.blocks import ExactRoot, OpenEnd
+from exactfold.branches.classify import decide_signs
+from exactfold.branches.letters import LETTERS
 from exactfold.branches.roots import BoxRoot
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.krawczyk import krawczyk, krawczyk_at
+from exactfold.problem.problem import Problem
 from exactfold.solve.dense_newton import NappeSystem
 from exactfold.solve.refined_newton import refined_end
 
@@ -22,42 +24,18 @@ _FAR = 1e100
 
 
 @dataclass(frozen=True)
-class ExactRoot:
-    """An isolating box of a zero with the signs asked for, and the letters of its folds.
-
-    "U" where a fold is not decided: flat, or nearly so.
-    """
-
-    box: IsolatingBox
-    assignment: str
-
-
-@dataclass(frozen=True)
-class OpenEnd:
-    """Why no zero was proved for a sign vector, and which of its vertices look flat there.
-
-    `flat` gives places in the sign vector. Paths that differ only in their signs there seem to end
-    at one point, which is then a multiple zero; nothing of this is proved.
-    """
-
-    reason: str
-    flat: tuple[int, ...] = ()
-
-
-@dataclass(frozen=True)
-class Settler:
-    """Settles sign vectors of one pattern, naming vertices by `labels`.
+class ExactProver:
+    """Proves zeros with given vertex signs in integers, where floats leave them open.
 
     Sets of vertices that look flat even in the highest precision are remembered: where the same
     ones look flat in doubles, nothing more is tried, as the zeros cannot all be simple any more.
     """
 
     system: NappeSystem
-    functionals: Functionals
-    labels: Sequence[int]
+    problem: Problem
     _flat_before: set[tuple[int, ...]] = field(default_factory=set)
 
-    def settle(self, signs: Sequence[int], point: npt.NDArray[np.float64]) -> ExactRoot | OpenEnd:
+    def prove(self, signs: Sequence[int], point: npt.NDArray[np.float64]) -> ExactRoot | OpenEnd:
         """The zero with these vertex signs, proved, or why it was not.
 
         The exact test of `krawczyk` at `point`; if it fails, or finds a zero with other signs, at
@@ -67,7 +45,7 @@ class Settler:
             flat = self.system.flat_at_end(signs)
             if flat in self._flat_before:
                 return self._multiple(flat, "in double precision")
-        system = self.functionals.chart.system
+        system = self.problem.chart.system
         if np.isfinite(point).all() and np.abs(point).max(initial=0.0) < _FAR:
             (found,) = krawczyk(system, point[None], precisions=_FIRST)
             if isinstance(found, IsolatingBox):
@@ -95,15 +73,16 @@ class Settler:
         return reason
 
     def _multiple(self, flat: tuple[int, ...], precision: str) -> OpenEnd:
-        interior = self.functionals.chart.branch_system.pattern.interior
-        names = ", ".join(str(self.labels[interior[k]]) for k in flat)
+        names = ", ".join(str(self.problem.foldable[k]) for k in flat)
         which = f"{'vertex' if len(flat) == 1 else 'vertices'} {names} flat {precision}"
         return OpenEnd(f"{which}: {1 << len(flat)} paths seem to meet in a multiple root", flat)
 
     def _classified(self, signs: Sequence[int], box: IsolatingBox) -> ExactRoot | str:
         """The box, perhaps sharper, and its folds if its vertex signs are those asked for."""
-        labels = self.labels
-        root, found, folds = decide_signs(self.functionals.chart, self.functionals, BoxRoot(box))
+        labels = self.problem.labels
+        root, found, folds = decide_signs(
+            self.problem.chart, self.problem.functionals, BoxRoot(box)
+        )
         for wanted, (vertex, sign) in zip(signs, found.items(), strict=True):
             if sign != wanted:
                 state = "undecided" if sign is None else "another"

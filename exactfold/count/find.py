@@ -5,13 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
 
-from exactfold.branches.signed import SignedBranch
+from exactfold.branches.branch import Branch
+from exactfold.branches.letters import LETTERS, sign_value
+from exactfold.branches.roots import EnclosedRoot
 from exactfold.certify.enclosed_flat import deduced, rational
 from exactfold.certify.enclosure import (
     Enclosure,
@@ -21,11 +23,11 @@ from exactfold.certify.enclosure import (
     round_up,
 )
 from exactfold.certify.refinement import exact, refine
-from exactfold.count import reasons as words
+from exactfold.count import reasons
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.validate import orientation
+from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
 from exactfold.rigidity.timelike import saddle_functional
 from exactfold.solve.sparse_newton import End, solve
@@ -47,7 +49,7 @@ def find_branch(
     up: Iterable[int] | None = None,
     rim: Rim | None = None,
     progress: Progress | None = None,
-) -> SignedBranch:
+) -> Branch:
     """The one branch with given vertex signs, proved, without enumerating the others.
 
     `signs`: text such as "+-+" in the order of the interior vertices ("0", or nothing at all, for
@@ -55,8 +57,8 @@ def find_branch(
     vertex to sign. `up`: instead, the vertices that pop up; the others pop down. Newton's method on
     the nappes proposes heights (docs/mathematics.md, 12); they are refined in exact arithmetic and
     enclosed by a theorem that needs no factorisation (docs/branch.md, `enclose`), so that the cost
-    of the proof grows like the number of folds. Gauge: see `SignedBranch`. With `rim`, heights of
-    all boundary vertices of a convex boundary of any length, the branch of that rim. A vertex that
+    of the proof grows like the number of folds. Gauge: see `Branch`. With `rim`, heights of all
+    boundary vertices of a convex boundary of any length, the branch of that rim. A vertex that
     is proved flat on the branch gets the sign 0: either sign leads to that branch.
 
     Raises `UsageError` for signs that do not fit the pattern, `NotApplicableError` if Ve is not 4
@@ -78,7 +80,7 @@ def find_branches(
     *,
     rim: Rim | None = None,
     progress: Progress | None = None,
-) -> Iterator[SignedBranch]:
+) -> Iterator[Branch]:
     """`find_branch` for each of many sign vectors, one after the other, the setup shared.
 
     >>> from exactfold.pattern.random_squares import random_square
@@ -97,7 +99,7 @@ def neighbours(
     *,
     rim: Rim | None = None,
     progress: Progress | None = None,
-) -> dict[int, SignedBranch]:
+) -> dict[int, Branch]:
     """The branches reached by popping one vertex through, by vertex.
 
     For each vertex of `vertices` (by default all that can pop) the branch whose sign vector differs
@@ -122,9 +124,16 @@ class BranchFinder:
     rim: Rim | None = None
 
     @cached_property
+    def problem(self) -> Problem:
+        """The problem in the gauge asked for."""
+        problem = Problem.of(self.pattern, rim=self.rim)
+        problem.require_foldable()
+        return problem
+
+    @cached_property
     def sheet(self) -> Sheet:
-        """The exact equations."""
-        return Sheet.of(self.pattern, self.rim)
+        """The exact equations, fold by fold."""
+        return Sheet(self.problem)
 
     @cached_property
     def _floats(self) -> FloatSheet:
@@ -133,7 +142,7 @@ class BranchFinder:
     @cached_property
     def poppable(self) -> tuple[int, ...]:
         """The interior vertices outside triangulated triangles."""
-        return tuple(self.sheet.labels[v] for v in self.sheet.poppable)
+        return self.problem.foldable
 
     def cannot_pop(self, vertex: object) -> str:
         """Why a vertex has no sign."""
@@ -175,10 +184,6 @@ class BranchFinder:
             raise UsageError(f"vertex {missing[0]} has no sign")
         return {v: int(given[v]) for v in names}
 
-    @property
-    def _gauge(self) -> str:
-        return "saddle" if self.rim is None else "rim"
-
     @cached_property
     def _names(self) -> frozenset[int]:
         return frozenset(self.poppable)
@@ -196,7 +201,7 @@ class BranchFinder:
         *,
         start: FloatArray | None = None,
         progress: Progress | None = None,
-    ) -> SignedBranch:
+    ) -> Branch:
         """The branch with the signs that `signs` returned."""
         begin = time.perf_counter()
         steps = 0
@@ -216,7 +221,7 @@ class BranchFinder:
                 reason = end.failure
                 if end.worst is not None:
                     worst = self.sheet.labels[self.sheet.unknowns[end.worst]]
-                    reason += f", worst at {words.named([worst])}"
+                    reason += f", worst at {reasons.named([worst])}"
         except OverflowError:
             reason = "a length or a form is beyond the range of floats"
         return self._undecided(signs, reason, steps, time.perf_counter() - begin)
@@ -227,7 +232,7 @@ class BranchFinder:
         vertices: Iterable[int] | None = None,
         *,
         progress: Progress | None = None,
-    ) -> dict[int, SignedBranch]:
+    ) -> dict[int, Branch]:
         """The branches that differ from `signs`, as returned by `signs`, at one of `vertices`."""
         return dict(self.each_neighbour(signs, vertices, progress=progress))
 
@@ -237,7 +242,7 @@ class BranchFinder:
         vertices: Iterable[int] | None = None,
         *,
         progress: Progress | None = None,
-    ) -> Iterator[tuple[int, SignedBranch]]:
+    ) -> Iterator[tuple[int, Branch]]:
         """`neighbours` one by one, for patterns where all of them would fill the memory."""
         chosen = self.poppable if vertices is None else tuple(dict.fromkeys(vertices))
         for v in chosen:
@@ -288,58 +293,54 @@ class BranchFinder:
         if best is None and not failed:
             rough = enclose(sheet, heights.values, heights.denominator, heights.bits)
             failed = rough if isinstance(rough, tuple) else ()
-        return best, words.not_found([sheet.labels[v] for v in failed])
+        return best, reasons.not_found([sheet.labels[v] for v in failed])
 
     def _result(
         self, signs: Mapping[int, int], proof: Enclosure, steps: int, seconds: float
-    ) -> SignedBranch:
+    ) -> Branch:
+        """What the enclosure means (`classify`): the signs, letters and heights it proves."""
         sheet, labels = self.sheet, self.sheet.labels
         unit = sheet.height_unit
         squared = round_up(proof.squared_distance * unit**2)
-        radius = height_radius(sheet, squared)
-        centres = {
-            labels[v]: Fraction(int(height), proof.denominator) * unit
-            for v, height in enumerate(proof.heights)
-        }
+        centres = self.problem.all_heights(
+            {v: Fraction(int(h), proof.denominator) * unit for v, h in enumerate(proof.heights)}
+        )
+        root = EnclosedRoot(centres, height_radius(sheet, squared), squared)
         loose = tuple(labels[v] for v in proof.loose)
         flat = tuple(labels[v] for v in proof.flat_vertices)
         error = root_above(squared) if squared else Fraction(0)
-        reason = words.proved(error, flat, self.pattern.Vt > 0)
         letters = {
-            (labels[i], labels[j]): "F" if k in proof.flat_folds else "UVM"[proof.letters[k]]
-            for k, (i, j) in enumerate(sheet.pattern.folds)
+            (labels[i], labels[j]): "F" if k in proof.flat_folds else LETTERS[sign or None]
+            for (k, (i, j)), sign in zip(enumerate(sheet.pattern.folds), proof.letters, strict=True)
         }
-        return SignedBranch(
-            pattern=self.pattern,
+        return replace(
+            self._undecided(signs, reasons.undecided(error, loose), steps, seconds),
             status=UNDECIDED if loose else PROVED,
-            reason=words.undecided(error, loose) if loose else reason,
+            reason=reasons.undecided(error, loose)
+            if loose
+            else reasons.proved(error, flat, self.pattern.Vt > 0),
             vertex_signs=self._all_signs({**signs, **dict.fromkeys(flat, 0)}),
             undecided_vertices=loose,
             assignment=self._assignment(letters),
-            centres=self._all_heights(centres),
-            radius=radius,
-            squared_distance=squared,
-            gauge=self._gauge,
-            saddle=self._saddle(centres, radius),
-            steps=steps,
-            seconds=seconds,
+            root=root,
+            multiplicity=None if loose else 1 << (len(flat) + self.pattern.Vt),
+            saddle=self._saddle(root),
         )
 
     def _undecided(
         self, signs: Mapping[int, int], reason: str, steps: int, seconds: float
-    ) -> SignedBranch:
-        return SignedBranch(
+    ) -> Branch:
+        return Branch(
             pattern=self.pattern,
+            vertex_signs=self._all_signs(signs),
+            assignment=self._assignment({}),
+            root=None,
+            multiplicity=None,
+            gauge=self.problem.gauge.kind,
+            saddle=0,
             status=UNDECIDED,
             reason=reason,
-            vertex_signs=self._all_signs(signs),
             undecided_vertices=self.poppable,
-            assignment=self._assignment({}),
-            centres={},
-            radius=None,
-            squared_distance=None,
-            gauge=self._gauge,
-            saddle=0,
             steps=steps,
             seconds=seconds,
         )
@@ -357,37 +358,20 @@ class BranchFinder:
             for fold in self.pattern.folds
         }
 
-    def _all_heights(self, known: Mapping[int, Fraction]) -> dict[int, Fraction]:
-        """Heights of all vertices: those in a triangulated triangle lie in its plane."""
-        heights = dict(known)
-        points, _ = self.pattern.integer_vertices
-        for corners, inside in self.pattern.triangulated_triangles:
-            a, b, c = (points[v] for v in corners)
-            area = orientation(a, b, c)
-            for v in inside:
-                p = points[v]
-                parts = (orientation(p, b, c), orientation(a, p, c), orientation(a, b, p))
-                weighted = (w * known[u] for w, u in zip(parts, corners, strict=True))
-                heights[v] = sum(weighted, Fraction(0)) / area
-        return dict(sorted(heights.items()))
-
-    def _saddle(self, centres: Mapping[int, Fraction], radius: Fraction) -> int:
+    def _saddle(self, root: EnclosedRoot) -> int:
         if self.pattern.Ve != 4:
             return 0
         functional = saddle_functional(self.pattern)
-        value = sum((c * centres[v] for v, c in functional.items()), Fraction(0))
+        value = sum((c * root.centres[v] for v, c in functional.items()), Fraction(0))
         error = Fraction(0)
         if self.sheet.corner is not None:
-            error = abs(functional[self.sheet.labels[self.sheet.corner]]) * radius
+            error = abs(functional[self.sheet.labels[self.sheet.corner]]) * root.radius
         return 0 if abs(value) <= error else 1 if value > 0 else -1
-
-
-_VALUES = (("+", 1), ("-", -1), ("0", 0), (1, 1), (-1, -1), (0, 0))
 
 
 def _value(sign: object) -> int:
     """A sign, as a character or a number, as an integer."""
-    for name, value in _VALUES:
-        if sign == name:
-            return value
-    raise UsageError(f"{sign!r} is not a vertex sign: + or 1, - or -1, 0 where none can pop")
+    value = sign_value(sign)
+    if value is None:
+        raise UsageError(f"{sign!r} is not a vertex sign: + or 1, - or -1, 0 where none can pop")
+    return value

@@ -25,6 +25,9 @@ SOLVERS: dict[str, Callable[[Chart, int, Progress | None], Candidates]] = {
 }
 METHODS = ("auto", *SOLVERS)
 
+NEWTON = "nappes"
+"""Newton's method, one start for each sign vector: the solver of the conveyor."""
+
 
 @dataclass(frozen=True)
 class Choice:

@@ -1,4 +1,4 @@
-"""What `SignedBranch.reason` says."""
+"""What `Branch.reason` says."""
 
 from __future__ import annotations
 

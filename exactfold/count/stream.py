@@ -4,75 +4,55 @@ from __future__ import annotations
 
 import os
 import time
-from collections import Counter, deque
-from collections.abc import Callable, Generator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
-from contextlib import ExitStack, closing
-from dataclasses import asdict, dataclass
-from multiprocessing import get_context
+from collections.abc import Callable, Mapping
+from contextlib import closing
+from dataclasses import asdict, dataclass, field, fields
+from dataclasses import replace as changed
 from typing import Any
 
 from exactfold import compact_checker
-from exactfold.count.chambers import Chambers, ProvedBlock
-from exactfold.count.exact_roots import OpenEnd
-from exactfold.errors import WorkerDiedError
+from exactfold.branches.result import BranchCount
+from exactfold.count.collect import check_countable, count_branches
+from exactfold.count.conveyor import Conveyor
+from exactfold.count.engines import Engine, processes
+from exactfold.count.open_roots import OpenRoot, Tally, by_limit
 from exactfold.evidence.check import FastChecker
 from exactfold.evidence.journal import Journal
-from exactfold.evidence.streamed import block_line, claims_line, header_line
-from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
-from exactfold.verdict import PROVED, UNDECIDED, Verdict
-from exactfold.workers import become_worker, held_interrupts, worker_environment
+from exactfold.evidence.streamed import claims_line, header_line
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.verdict import PROVED, UNDECIDED
 
-Progress = Callable[[int, int], None]
+Progress = Callable[[str, int, int], None]
 
-Engine = Callable[[Chambers, range], Generator[tuple[ProvedBlock, str], None, None]]
-"""Yields the blocks with the numbers given and their lines, in order; closed at an interruption."""
-
-_AHEAD = 2
-"""Blocks under way or waiting for each worker: this bounds memory."""
-
-LEAST = 8
-"""Blocks for each worker that make starting processes worth while."""
+HANDED_OVER = 12
+"""Most foldable vertices of a pattern with open sign vectors that is also counted otherwise."""
 
 
-@dataclass(frozen=True)
-class OpenRoot:
-    """A sign vector whose branch was not proved, as text over the foldable vertices, and why.
+@dataclass(frozen=True, repr=False)
+class StreamedCount(BranchCount):
+    """What a run of `stream_branches` proved: a `BranchCount`, and the file.
 
-    `limit` has 0 in place of the signs of vertices that look flat at the end of the path: paths
-    with the same `limit` seem to end at one point. Nothing of this is proved.
+    If `path` holds a complete certificate (`unproved` is 0), the branches are in the file and not
+    listed here: `read_branches` reads them. Otherwise the roots that are in the file are proved
+    nevertheless, `open_roots` names the sign vectors without one (1000 at most; their number is
+    `unproved`), and up to 12 foldable vertices the pattern was counted otherwise as well, which may
+    prove the count. `exact` counts roots that needed integers, `resumed` the blocks taken over from
+    an earlier run, verified again. `cpu_seconds` is processor time by stage, of all workers.
     """
 
-    signs: str
-    reason: str
-    limit: str
+    path: str = ""
+    open_roots: tuple[OpenRoot, ...] = ()
+    unproved: int = 0
+    exact: int = 0
+    blocks: int = 0
+    resumed: int = 0
+    steps: int = 0
+    cpu_seconds: Mapping[str, float] = field(default_factory=dict)
 
-
-@dataclass(frozen=True)
-class StreamedCount:
-    """What a run of `count_streaming` proved.
-
-    `status` is PROVED if `path` holds a complete certificate: 2^n branches, all real and simple,
-    no others. Otherwise UNDECIDED, and `open_roots` names the sign vectors without a proved branch
-    (1000 at most; their number is `unproved`); the other roots in the file are proved nevertheless.
-    `exact` counts roots that needed integers, `resumed` the blocks taken over from an earlier run,
-    verified again. `seconds` is processor time by stage, of all workers, `elapsed` by the clock.
-    """
-
-    pattern: CreasePattern
-    path: str
-    status: Verdict
-    reason: str
-    distinct: int | None
-    with_multiplicity: int | None
-    open_roots: tuple[OpenRoot, ...]
-    unproved: int
-    exact: int
-    blocks: int
-    resumed: int
-    steps: int
-    seconds: Mapping[str, float]
-    elapsed: float
+    @property
+    def complete(self) -> bool:
+        """Whether the file is a complete certificate."""
+        return self.unproved == 0
 
     @property
     def foldable(self) -> int:
@@ -82,15 +62,11 @@ class StreamedCount:
     @property
     def groups(self) -> dict[str, list[OpenRoot]]:
         """The open roots whose paths seem to meet others, by the sign vector they share there."""
-        found: dict[str, list[OpenRoot]] = {}
-        for root in self.open_roots:
-            if "0" in root.limit:
-                found.setdefault(root.limit, []).append(root)
-        return found
+        return by_limit(self.open_roots)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The object under "stream" in the output of `exactfold count --stream --json`."""
-        return {
+    def to_dict(self, certificate: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold count --stream --json`."""
+        stream = {
             "file": self.path,
             "blocks": self.blocks,
             "resumed": self.resumed,
@@ -100,180 +76,135 @@ class StreamedCount:
             "groups": {
                 limit: [root.signs for root in group] for limit, group in self.groups.items()
             },
-            "cpu_seconds": {name: round(value, 3) for name, value in self.seconds.items()},
+            "cpu_seconds": {name: round(value, 3) for name, value in self.cpu_seconds.items()},
         }
+        return {**super().to_dict(certificate), "stream": stream}
 
 
-def count_streaming(
+def stream_branches(
     pattern: CreasePattern,
     path: str | os.PathLike[str],
     *,
     workers: int = 1,
     resume: bool = False,
     replace: bool = True,
+    seed: int = 0,
+    hand_over: bool = True,
     progress: Progress | None = None,
-    verified: Progress | None = None,
     engine: Engine | None = None,
 ) -> StreamedCount:
     """Prove all branches of a pattern with four boundary vertices, streaming them to `path`.
 
-    Each of the 2^n sign vectors leads to one candidate (`NappeSystem`); a box around it with one
-    zero whose signs are those asked for (`FloatKrawczyk`, `FloatSigns`, or exactly) makes the zeros
-    pairwise different, and by refined Bezout complete (docs/mathematics.md, 4 and 12). Memory does
-    not grow with 2^n: a block of 1024 roots, and two waiting for each worker.
+    Each of the 2^n sign vectors leads to one candidate; a box around it with one zero whose signs
+    are those asked for makes the zeros pairwise different, and by refined Bezout complete
+    (docs/mathematics.md, 4 and 12). Memory does not grow with 2^n: a block of 1024 roots, and two
+    waiting for each worker. Where sign vectors stay open, as at multiple roots, the pattern is
+    handed over to `count_branches` if it has at most 12 foldable vertices; not without `hand_over`.
 
     Up to `workers` processes share the blocks, fewer if there is little to do; a script that asks
     for several needs the usual `if __name__ == "__main__"`. With `resume`, a file left by an
     interrupted run is verified and continued; otherwise it is replaced, or refused without
-    `replace`. `progress(done, total)` counts sign vectors, and `verified` those taken over. An
-    `engine`, such as `dask_engine`, takes the place of the `workers`.
+    `replace`. `progress(stage, done, total)` counts sign vectors. An `engine`, such as
+    `dask_engine`, takes the place of the `workers`.
 
     Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most,
-    `ForeignJournalError`, `JournalInUseError` while another run writes the file,
-    `UnwritableFileError`, `UsageError`, `WorkerDiedError`. An interruption leaves a file that can
-    be resumed.
+    `NoInteriorVertexError`, `ForeignJournalError`, `JournalInUseError` while another run writes the
+    file, `UnwritableFileError`, `UsageError`, `WorkerDiedError`. An interruption leaves a file that
+    can be resumed. UNDECIDED does not mean that the count is unusual.
 
     >>> import os, tempfile
     >>> from exactfold.pattern.random_squares import random_square
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     result = count_streaming(random_square(4, seed=0), os.path.join(folder, "c.txt"))
+    ...     result = stream_branches(random_square(4, seed=0), os.path.join(folder, "c.txt"))
     >>> result.status, result.distinct, result.unproved
     (<Verdict.PROVED: 'proved'>, 16, 0)
     """
     start = time.perf_counter()
-    chambers = Chambers.of(pattern)
-    header = header_line(chambers)
-    tally = _Tally()
-    total = 1 << chambers.size
+    check_countable(pattern)
+    conveyor = Conveyor.of(pattern)
+    problem, total = conveyor.problem, 1 << conveyor.size
+    header = header_line(problem, conveyor.block_size)
+    tally = Tally()
     if resume:
         known = FastChecker(compact_checker.Chambers(compact_checker.read_header(header)))
 
         def refusal(text: str, number: int) -> str | None:
-            if verified is not None:
-                verified(number * chambers.block_size, total)
+            if progress is not None:
+                progress("verifying", number * conveyor.block_size, total)
             return known.refusal(text, number)
 
         journal = Journal.resumed(path, header, refusal)
     else:
         journal = Journal(path, header, replace=replace)
     resumed = journal.blocks
-    left = range(resumed, chambers.blocks)
-    with closing(journal), closing((engine or _processes(workers))(chambers, left)) as blocks:
+    left = range(resumed, conveyor.blocks)
+    with closing(journal), closing((engine or processes(workers))(conveyor, left)) as blocks:
         for block, line in blocks:
-            tally.add(chambers, block)
+            tally.add(conveyor, block)
             journal.append(line)
             if progress is not None:
-                progress(journal.blocks * chambers.block_size, total)
+                progress("proving", journal.blocks * conveyor.block_size, total)
         if not tally.unproved:
-            journal.finish(claims_line(chambers))
+            journal.finish(claims_line(problem))
         else:
             journal.sync()
-    proved = journal.complete
+    if journal.complete:
+        found = _proved(pattern, total)
+    else:
+        found = _open(pattern, conveyor, tally)
+        if hand_over and conveyor.size <= HANDED_OVER:
+            found = _handed_over(found, seed, progress)
+    given = {f.name: getattr(found, f.name) for f in fields(BranchCount)}
+    given["seconds"] = time.perf_counter() - start
     return StreamedCount(
-        pattern,
-        journal.path,
-        PROVED if proved else UNDECIDED,
-        f"{total} solutions isolated; by refined Bezout there are no others"
-        if proved
-        else f"{total - tally.unproved} of {total} solutions isolated",
-        total if proved else None,
-        1 << pattern.Vi if proved else None,
-        tuple(tally.open_roots),
-        tally.unproved,
-        tally.exact,
-        chambers.blocks,
-        resumed,
-        tally.steps,
-        dict(tally.seconds),
-        time.perf_counter() - start,
+        **given,
+        path=journal.path,
+        open_roots=tuple(tally.open_roots),
+        unproved=tally.unproved,
+        exact=tally.exact,
+        blocks=conveyor.blocks,
+        resumed=resumed,
+        steps=tally.steps,
+        cpu_seconds=dict(tally.seconds),
     )
 
 
-class _Tally:
-    """Sums over blocks; of open roots the first ones are kept."""
-
-    most_open = 1000
-
-    def __init__(self) -> None:
-        self.open_roots: list[OpenRoot] = []
-        self.unproved = self.exact = self.steps = 0
-        self.seconds: Counter[str] = Counter()
-
-    def add(self, chambers: Chambers, block: ProvedBlock) -> None:
-        """Count one block."""
-        self.exact += len(block.exact)
-        self.unproved += len(block.open)
-        self.steps += block.steps
-        self.seconds.update(block.seconds)
-        for j, end in block.open.items():
-            if len(self.open_roots) < self.most_open:
-                number = block.index * chambers.block_size + j
-                self.open_roots.append(open_root(chambers, number, end))
+def _proved(pattern: CreasePattern, total: int) -> BranchCount:
+    weight = 1 << pattern.Vi
+    return BranchCount(
+        pattern,
+        PROVED,
+        "streaming",
+        f"{total} solutions isolated; by refined Bezout there are no others",
+        why="a block of sign vectors at a time",
+        distinct=total,
+        with_multiplicity=weight,
+        real=total,
+        nonreal=0,
+        true_branches=PROVED,
+        dimension=pattern.degrees_of_freedom,
+        degree=weight,
+    )
 
 
-def open_root(chambers: Chambers, number: int, end: OpenEnd) -> OpenRoot:
-    """The open end of a path by its number."""
-    signs = "".join("+-"[number >> k & 1] for k in range(chambers.size))
-    limit = "".join("0" if k in end.flat else sign for k, sign in enumerate(signs))
-    return OpenRoot(signs, end.reason, limit)
+def _open(pattern: CreasePattern, conveyor: Conveyor, tally: Tally) -> BranchCount:
+    total = 1 << conveyor.size
+    culprits = tally.culprits(conveyor.problem.foldable)
+    if conveyor.size > HANDED_OVER and "flat" in culprits:
+        culprits += ": count without --stream also looks for multiple roots"
+    return BranchCount(
+        pattern,
+        UNDECIDED,
+        "streaming",
+        f"{total - tally.unproved} of {total} solutions isolated; {culprits}",
+        why="a block of sign vectors at a time",
+        open_questions=tuple(tally.questions()),
+    )
 
 
-def _processes(workers: int) -> Engine:
-    """The engine of up to `workers` processes of this machine."""
-
-    def engine(chambers: Chambers, left: range) -> Generator[tuple[ProvedBlock, str], None, None]:
-        return _blocks(chambers, left, workers)
-
-    return engine
-
-
-def _blocks(
-    chambers: Chambers, left: range, workers: int
-) -> Generator[tuple[ProvedBlock, str], None, None]:
-    """The blocks with the numbers given and their lines, in order."""
-    workers = min(workers, len(left) // LEAST)
-    if workers < 2:
-        for index in left:
-            block = chambers.prove(index)
-            yield block, block_line(block)
-        return
-    pattern = chambers.pattern
-    with worker_environment(), ExitStack() as stack:
-        pool = ProcessPoolExecutor(
-            workers,
-            get_context("spawn"),
-            _start_worker,
-            (pattern.vertices, pattern.triangles, chambers.block_size),
-        )
-        stack.callback(pool.shutdown, cancel_futures=True)
-        waiting: deque[Future[tuple[ProvedBlock, str]]] = deque()
-        try:
-            for index in left:
-                with held_interrupts():  # this may start a process
-                    waiting.append(pool.submit(_prove, index))
-                if len(waiting) > _AHEAD * workers:
-                    yield waiting.popleft().result()
-            while waiting:
-                yield waiting.popleft().result()
-        except BrokenExecutor:
-            raise WorkerDiedError(
-                "a worker process died; the blocks written so far can be resumed"
-            ) from None
-
-
-_chambers: Chambers | None = None  # of a worker process
-
-
-def _start_worker(
-    vertices: Sequence[Point], triangles: Sequence[Triangle], block_size: int
-) -> None:
-    global _chambers
-    become_worker()
-    _chambers = Chambers.of(CreasePattern(vertices, triangles), block_size)
-
-
-def _prove(index: int) -> tuple[ProvedBlock, str]:
-    if _chambers is None:
-        raise RuntimeError("the worker was not started")
-    block = _chambers.prove(index)
-    return block, block_line(block)
+def _handed_over(found: BranchCount, seed: int, progress: Progress | None) -> BranchCount:
+    """The count by other means, with what the run left open if that proves nothing either."""
+    other = count_branches(found.pattern, seed=seed, progress=progress)
+    if other.status is PROVED:
+        return other
+    return changed(other, open_questions=(*found.open_questions, *other.open_questions))

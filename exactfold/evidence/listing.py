@@ -1,22 +1,39 @@
-"""The claims of a certificate, from a proved count."""
+"""The certificate of a count: claims and evidence, from a proved result."""
 
 from __future__ import annotations
 
 import platform
 from typing import Any
 
-from exactfold.branches.result import BranchCount
+from exactfold.branches.branch import Branch
+from exactfold.branches.result import BranchCount, Proof
+from exactfold.branches.roots import AlgebraicRoot, BoxRoot, FlatBoxRoot
 from exactfold.errors import NotApplicableError
-from exactfold.evidence.entries import Document, document
+from exactfold.evidence.entries import (
+    Document,
+    algebraic_evidence,
+    box_entry,
+    chart_evidence,
+    class_entry,
+    document,
+    flat_box_entry,
+    triangle_evidence,
+)
 from exactfold.verdict import PROVED
 
 
 def certificate(result: BranchCount) -> Document:
     """The certificate of a proved count, as a JSON object for `exactfold.checker`.
 
-    Raises `NotApplicableError` if the count is not proved: there is nothing to certify.
+    Raises `NotApplicableError` if the count is not proved, or was proved in a stream, whose file
+    is the certificate.
+
+    >>> from exactfold.count.collect import count_branches
+    >>> from exactfold.pattern.families import two_vertex
+    >>> certificate(count_branches(two_vertex()))["claims"]["distinct"]
+    4
     """
-    if result.status is not PROVED or result.evidence is None:
+    if result.status is not PROVED or result.proof is None:
         raise NotApplicableError(f"no certificate: the count is {result.status} ({result.reason})")
     claims: dict[str, Any] = {
         "distinct": result.distinct,
@@ -39,4 +56,28 @@ def certificate(result: BranchCount) -> Document:
         "settings": dict(result.settings),
         "python": platform.python_version(),
     }
-    return document(result.pattern, claims, result.evidence, provenance)
+    return document(result.pattern, claims, _evidence(result.proof, result.branches), provenance)
+
+
+def _evidence(proof: Proof, branches: tuple[Branch, ...]) -> Document:
+    """What the checker verifies the claims by."""
+    found: Document = {"kind": proof.kind, "triangles": triangle_evidence(proof.triangles)}
+    if proof.chart is None:
+        return found
+    roots = [_entry(proof, branch) for branch in branches]
+    found["chart"] = chart_evidence(proof.chart, proof.labels)
+    if proof.algebraic is None:
+        return {**found, "roots": roots}
+    return {**found, **algebraic_evidence(proof.algebraic, roots, proof.labels)}
+
+
+def _entry(proof: Proof, branch: Branch) -> Document:
+    """A root as the certificate shows it."""
+    root = branch.root
+    if isinstance(root, BoxRoot):
+        return box_entry(root.box)
+    if isinstance(root, FlatBoxRoot):
+        return flat_box_entry(root.sheets, root.box, proof.labels)
+    if isinstance(root, AlgebraicRoot) and proof.algebraic is not None:
+        return class_entry(proof.algebraic, root.root_class, root.index)
+    raise TypeError(f"no evidence for {type(root).__name__}")

@@ -7,14 +7,14 @@ from collections.abc import Iterator
 
 from exactfold import checker, compact_checker
 from exactfold.branches.branch import Branch
-from exactfold.branches.classify import vertex_height_rows
-from exactfold.branches.named import UPSIDE_DOWN
-from exactfold.branches.roots import BoxRoot, Root
+from exactfold.branches.classify import BranchMaker
+from exactfold.branches.roots import BoxRoot
 from exactfold.certify.box import IsolatingBox
-from exactfold.count.chambers import Chambers
 from exactfold.errors import CertificateFormatError, ExactfoldError, UnreadableFileError
+from exactfold.evidence.entries import chart_evidence
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.problem.problem import Problem
 
 
 def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
@@ -40,14 +40,15 @@ def _branches(found: Iterator[str]) -> Iterator[Branch]:
     header = compact_checker.read_header(next(found, "{}"))
     known = compact_checker.Chambers(header)
     vertices = [(as_rational(x), as_rational(y)) for x, y in header["pattern"]["vertices"]]
-    chambers = Chambers.of(CreasePattern(vertices, header["pattern"]["triangles"]))
-    chart = checker.read_chart(chambers.evidence()["chart"])
+    problem = Problem.of(CreasePattern(vertices, header["pattern"]["triangles"]))
+    chart = checker.read_chart(chart_evidence(problem.chart, problem.labels))
     checker.require(
         checker.read_chart(header["evidence"]["chart"]) == chart
-        and [chambers.labels[v] for v in chambers.emptied.interior] == known.emptied.interior,
+        and list(problem.foldable) == known.emptied.interior,
         "the chart or the emptied sheet is not the one in which exactfold writes branches",
     )
-    maker = _Maker(chambers)
+    maker = BranchMaker(problem, problem.chart)
+    size = range(problem.size)
     for number in range(known.blocks):
         text = next(found, None)
         if text is None:
@@ -65,35 +66,5 @@ def _branches(found: Iterator[str]) -> Iterator[Branch]:
                 center = tuple(block.center(j, known.size))
                 box = IsolatingBox(center, (), 1 << block.radii[j], block.bits)
                 letters = known.letters(block, j)
-            yield maker.branch(block.first + j, box, letters)
-
-
-class _Maker:
-    """Branches of one pattern from boxes, numbers and letters."""
-
-    def __init__(self, chambers: Chambers) -> None:
-        self.chambers = chambers
-        self.rows = vertex_height_rows(chambers.pattern, chambers.functionals, chambers.labels)
-        self.vertices = [chambers.labels[v] for v in chambers.emptied.interior]
-        self.folds = [
-            (chambers.labels[i], chambers.labels[j]) for i, j in sorted(chambers.emptied.folds)
-        ]
-        self.rigid = dict.fromkeys(chambers.pattern.interior, 0)
-        self.flat = dict.fromkeys(chambers.pattern.folds, "F")
-
-    def branch(self, number: int, box: IsolatingBox, letters: str) -> Branch:
-        """The branch, seen from the side of its positive saddle."""
-        root: Root = BoxRoot(box)
-        side = root.sign(self.chambers.functionals.saddle)
-        signs = [-1 if number >> k & 1 else 1 for k in range(self.chambers.size)]
-        if side == -1:
-            root, signs = root.mirrored(), [-s for s in signs]
-            letters = letters.translate(UPSIDE_DOWN)
-        return Branch(
-            self.rigid | dict(zip(self.vertices, signs, strict=True)),
-            self.flat | dict(zip(self.folds, letters, strict=True)),
-            1 << self.chambers.pattern.Vt,
-            root,
-            "saddle" if side else "either",
-            self.rows,
-        )
+            signs = [-1 if block.first + j >> k & 1 else 1 for k in size]
+            yield maker.branch(BoxRoot(box), signs, letters)

@@ -5,16 +5,18 @@ from __future__ import annotations
 from math import lcm
 from typing import Any
 
-from exactfold.branches.signed import SignedBranch
+from exactfold.branches.branch import Branch
+from exactfold.branches.roots import EnclosedRoot
 from exactfold.errors import UsageError
 from exactfold.evidence.entries import pattern_document
 from exactfold.exact.numbers import format_integer, format_rational
+from exactfold.problem.gauge import RIM, SADDLE
 from exactfold.verdict import PROVED
 
 FORMAT, VERSION = "exactfold branch", 1
 
 
-def branch_certificate(branch: SignedBranch) -> dict[str, Any]:
+def branch_certificate(branch: Branch) -> dict[str, Any]:
     """The proof of a branch as a JSON object (docs/branch.md, 6).
 
     Raises `UsageError` unless the branch is proved.
@@ -26,20 +28,21 @@ def branch_certificate(branch: SignedBranch) -> dict[str, Any]:
     >>> branch_checker.check(certificate)["vertex_signs"]
     [1, -1, 1]
     """
-    if branch.status is not PROVED or branch.squared_distance is None:
-        raise UsageError("there is no certificate of a branch that is not proved")
+    root = branch.root
+    if branch.status is not PROVED or not isinstance(root, EnclosedRoot):
+        raise UsageError("there is no certificate of a branch that `find_branch` has not proved")
     pattern, rigid = branch.pattern, branch.pattern.rigid_vertices
-    heights = [None if v in rigid else h for v, h in sorted(branch.centres.items())]
+    heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
     denominator = lcm(*(h.denominator for h in heights if h is not None))
     return {
         "format": FORMAT,
         "version": VERSION,
         "pattern": pattern_document(pattern),
         "claims": {
-            "gauge": branch.gauge,
+            "gauge": RIM if branch.gauge == RIM else SADDLE,
             "vertex_signs": [branch.vertex_signs[v] for v in pattern.interior],
             "assignment": branch.assignment_text,
-            "squared_distance": format_rational(branch.squared_distance),
+            "squared_distance": format_rational(root.squared_distance),
         },
         "evidence": {
             "emptied": [

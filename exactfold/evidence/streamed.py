@@ -10,20 +10,26 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from exactfold.branches.blocks import ProvedBlock
 from exactfold.compact_checker import FORMAT, UNPROVED, VERSION
-from exactfold.count.chambers import Chambers, ProvedBlock
-from exactfold.evidence.entries import pattern_document
+from exactfold.evidence.entries import chart_evidence, pattern_document, triangle_evidence
 from exactfold.exact.numbers import format_integer
+from exactfold.problem.problem import Problem
 
 
-def header_line(chambers: Chambers) -> str:
+def header_line(problem: Problem, block_size: int) -> str:
     """The first line: the pattern and what its roots are proved with."""
     return _text(
         {
             "format": FORMAT,
             "version": VERSION,
-            "pattern": pattern_document(chambers.pattern),
-            "evidence": chambers.evidence(),
+            "pattern": pattern_document(problem.pattern),
+            "evidence": {
+                "kind": "chambers",
+                "triangles": triangle_evidence(problem.triangles or ()),
+                "chart": chart_evidence(problem.chart, problem.labels),
+                "block": block_size,
+            },
             "provenance": {"method": "nappes", "python": platform.python_version()},
         }
     )
@@ -60,9 +66,25 @@ def block_line(block: ProvedBlock) -> str:
     )
 
 
-def claims_line(chambers: Chambers) -> str:
+def claims_line(problem: Problem) -> str:
     """The last line of a file without open roots."""
-    return _text({"claims": chambers.claims()})
+    pattern = problem.pattern
+    return _text(
+        {
+            "claims": {
+                "interior": pattern.Vi,
+                "boundary": pattern.Ve,
+                "folds": len(pattern.folds),
+                "degrees_of_freedom": pattern.degrees_of_freedom,
+                "sha256": pattern.sha256,
+                "distinct": 1 << problem.size,
+                "with_multiplicity": 1 << pattern.Vi,
+                "real": 1 << problem.size,
+                "nonreal": 0,
+                "true_branches": "proved",
+            }
+        }
+    )
 
 
 def _text(data: dict[str, Any]) -> str:

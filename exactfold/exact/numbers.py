@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from decimal import ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 from math import lcm
@@ -172,3 +172,12 @@ def over_common_denominator(values: Iterable[Fraction]) -> tuple[list[int], int]
     values = list(values)
     denominator = lcm(*(value.denominator for value in values))
     return [value.numerator * (denominator // value.denominator) for value in values], denominator
+
+
+def integer_row(row: Sequence[Fraction]) -> tuple[int, ...]:
+    """A positive integer multiple of a rational row: the same signs.
+
+    >>> integer_row([Fraction(1, 2), Fraction(-1, 3)])
+    (3, -2)
+    """
+    return tuple(over_common_denominator(row)[0])

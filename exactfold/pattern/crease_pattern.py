@@ -215,14 +215,14 @@ class CreasePattern:
         """Interior vertices outside every triangulated triangle."""
         return tuple(v for v in self.interior if v not in self.rigid_vertices)
 
-    def emptied(self) -> tuple[CreasePattern, tuple[int, ...]]:
+    def without_rigid_parts(self) -> tuple[CreasePattern, tuple[int, ...]]:
         """The pattern with every triangulated triangle made a single face, and its labels.
 
         `labels[k]` is the index in this pattern of vertex k of the emptied one; order is kept.
 
         >>> wheel = CreasePattern(
         ...     [(0, 0), (3, 0), (0, 3), (1, 1)], [(0, 1, 3), (1, 2, 3), (2, 0, 3)])
-        >>> emptied, labels = wheel.emptied()
+        >>> emptied, labels = wheel.without_rigid_parts()
         >>> emptied.triangles, labels
         (((0, 1, 2),), (0, 1, 2))
         """

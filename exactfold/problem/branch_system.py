@@ -98,6 +98,23 @@ def notch_chart(pattern: CreasePattern) -> Chart:
     return Chart(system, functional, corner)
 
 
+def chamber_chart(pattern: CreasePattern) -> Chart:
+    """The chart in which each branch is named by its vertex signs alone (docs/theorem.md, 4).
+
+    `saddle = 1` for a convex boundary, the chart of the closed notch for one with a reflex corner:
+    neither leaves a branch at infinity. Raises `NotApplicableError` unless Ve = 4.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> chamber_chart(single_vertex(4)).system.bezout_number
+    2
+    """
+    if pattern.Ve != 4:
+        raise NotApplicableError(
+            f"branches are named by signs for four boundary vertices, not {pattern.Ve}"
+        )
+    return BranchSystem(pattern).chart if pattern.is_convex else notch_chart(pattern)
+
+
 @dataclass(frozen=True)
 class Chart:
     """The part of projective space where a linear functional of the heights is 1.
@@ -110,6 +127,12 @@ class Chart:
     branch_system: BranchSystem
     functional: Mapping[int, Fraction]
     eliminated: int
+
+    @property
+    def is_saddle(self) -> bool:
+        """Whether the functional is the boundary saddle."""
+        system = self.branch_system
+        return self == system.chart and system.pinned == BranchSystem(system.pattern).pinned
 
     @property
     def variables(self) -> tuple[int, ...]:

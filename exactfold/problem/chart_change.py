@@ -2,26 +2,15 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import numpy as np
 import numpy.typing as npt
 
-from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import Chart
+from exactfold.problem.gauge import pattern_size
 
 FloatArray = npt.NDArray[np.float64]
 
 _INFINITY = 1e-12
-
-
-def pattern_size(pattern: CreasePattern) -> Fraction:
-    """The larger side of the bounding box: the unit of length that keeps floats in range."""
-    sides = (
-        max(p[axis] for p in pattern.vertices) - min(p[axis] for p in pattern.vertices)
-        for axis in (0, 1)
-    )
-    return max(sides)
 
 
 def to_chart(chart: Chart, heights: FloatArray) -> FloatArray:

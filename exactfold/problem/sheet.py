@@ -1,4 +1,4 @@
-"""The sheet whose branch is wanted: exact fold data, unknown heights, and their targets."""
+"""A problem in integers: exact fold data, the rim, and the targets of the curvatures."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from exactfold.errors import NotApplicableError, UsageError
-from exactfold.exact.numbers import RationalLike, as_rational, over_common_denominator
+from exactfold.exact.numbers import over_common_denominator
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.rigidity.timelike import saddle_functional
+from exactfold.problem.problem import Problem
 
 IntArray = npt.NDArray[np.intp]
 BigArray = npt.NDArray[np.object_]
@@ -23,64 +22,34 @@ BigArray = npt.NDArray[np.object_]
 
 @dataclass(frozen=True)
 class Sheet:
-    """Equations K_v(h) = k_v with given rim heights, on a convex sheet without rigid vertices.
+    """A problem in integers, fold by fold: what the sparse solver and the enclosure work on.
 
-    `pattern` is the sheet that the equations live on: triangulated triangles emptied, and for a
-    reflex quadrilateral the notch closed. `labels[v]` is the vertex of the given pattern that
-    vertex v of `pattern` is. `rim` holds the heights of the boundary vertices, over the common
-    denominator `rim_denominator` and in multiples of `height_unit`, a power of two. `corner` is the
-    reflex corner, the only vertex with a target k_v = 1 / size^2 instead of 0, or None.
-
-    Lengths are integers: the coordinates are `pattern.integer_vertices`.
+    `pattern` is the sheet that the equations live on, for a reflex quadrilateral with the notch
+    closed. Lengths are integers: the coordinates are `pattern.integer_vertices`. Heights of the rim
+    are integers over `rim_denominator`, in multiples of `height_unit`, a power of two.
     """
 
-    original: CreasePattern
-    pattern: CreasePattern
-    labels: tuple[int, ...]
-    rim: Mapping[int, int]
-    rim_denominator: int
-    height_unit: Fraction
-    corner: int | None
+    problem: Problem
 
-    @classmethod
-    def of(cls, pattern: CreasePattern, rim: Mapping[int, RationalLike] | None = None) -> Sheet:
-        """The sheet of a pattern with four boundary vertices, or with given rim heights.
+    @property
+    def pattern(self) -> CreasePattern:
+        """The convex sheet of the gauge."""
+        return self.problem.gauge.sheet
 
-        Without `rim` the boundary has saddle +1 (`saddle_functional`); with a reflex corner the
-        rim of the closed sheet is flat and the corner pops up. Raises `NotApplicableError` for
-        another number of boundary vertices without `rim`, for `rim` on a boundary with a reflex
-        corner, and for a pattern all of whose interior vertices are rigid or a flat `rim`;
-        `UsageError` unless `rim` names exactly the boundary vertices.
-        """
-        if pattern.Ve != 4 and rim is None:
-            raise NotApplicableError(
-                f"a branch is named by vertex signs if there are four boundary vertices, not "
-                f"{pattern.Ve}; for more, give the heights of the rim"
-            )
-        emptied, labels = pattern.emptied()
-        if not emptied.interior:
-            raise NotApplicableError(
-                "no vertex can pop: all interior vertices lie in triangulated triangles"
-                if pattern.interior
-                else "no vertex can pop: the pattern has no interior vertex"
-            )
-        corner = None
-        if rim is not None:
-            heights = _rim_heights(pattern, rim)
-            position = {v: k for k, v in enumerate(labels)}
-            heights = {position[v]: height for v, height in heights.items()}
-        elif emptied.reflex_corner is not None:
-            corner = emptied.reflex_corner
-            emptied = emptied.with_notch_closed()
-            heights = dict.fromkeys(emptied.boundary, Fraction(0))
-        else:
-            saddle = saddle_functional(emptied)
-            raised = next(v for v in emptied.boundary if saddle[v])
-            heights = {v: Fraction(v == raised) for v in emptied.boundary}
-        unit = power_of_two(max(map(abs, heights.values()))) if corner is None else Fraction(1)
-        integers, denominator = over_common_denominator(h / unit for h in heights.values())
-        scaled = dict(zip(heights, integers, strict=True))
-        return cls(pattern, emptied, labels, scaled, denominator, unit, corner)
+    @property
+    def labels(self) -> tuple[int, ...]:
+        """`labels[v]` is the vertex of the given pattern that vertex v of `pattern` is."""
+        return self.problem.labels
+
+    @property
+    def corner(self) -> int | None:
+        """The reflex corner, the only vertex with a target k_v = 1 / size^2 and not 0."""
+        return self.problem.gauge.corner
+
+    @property
+    def unclosed(self) -> CreasePattern:
+        """`pattern` without the triangle that closes a notch; the same vertices."""
+        return self.problem.sheet
 
     @property
     def unknowns(self) -> tuple[int, ...]:
@@ -90,18 +59,35 @@ class Sheet:
     @property
     def poppable(self) -> tuple[int, ...]:
         """The vertices of `pattern` that a sign vector names: all unknowns but the corner."""
-        return tuple(v for v in self.unknowns if v != self.corner)
+        return self.problem.sheet.interior
+
+    @cached_property
+    def height_unit(self) -> Fraction:
+        """A power of two near the largest height of the rim, 1 where all are 0."""
+        largest = max(map(abs, self.problem.gauge.rim.values()))
+        return power_of_two(largest) if largest else Fraction(1)
+
+    @cached_property
+    def _scaled(self) -> tuple[dict[int, int], int]:
+        rim = self.problem.gauge.rim
+        integers, denominator = over_common_denominator(h / self.height_unit for h in rim.values())
+        return dict(zip(rim, integers, strict=True)), denominator
+
+    @property
+    def rim(self) -> Mapping[int, int]:
+        """Heights of the boundary vertices, times `rim_denominator` / `height_unit`."""
+        return self._scaled[0]
+
+    @property
+    def rim_denominator(self) -> int:
+        """The common denominator of the heights of the rim."""
+        return self._scaled[1]
 
     @cached_property
     def size(self) -> int:
         """The larger side of the bounding box, in integer lengths."""
         points = self.pattern.integer_vertices[0]
         return max(max(p[a] for p in points) - min(p[a] for p in points) for a in (0, 1))
-
-    @cached_property
-    def unclosed(self) -> CreasePattern:
-        """`pattern` without the triangle that closes a notch; the same vertices."""
-        return self.pattern if self.corner is None else self.original.emptied()[0]
 
     @cached_property
     def folds(self) -> Folds:
@@ -117,31 +103,6 @@ def power_of_two(value: Fraction) -> Fraction:
     """
     exponent = value.numerator.bit_length() - value.denominator.bit_length()
     return Fraction(1 << exponent) if exponent >= 0 else Fraction(1, 1 << -exponent)
-
-
-def _rim_heights(pattern: CreasePattern, rim: Mapping[int, RationalLike]) -> dict[int, Fraction]:
-    if set(rim) != set(pattern.boundary):
-        raise UsageError(f"give a height for each boundary vertex: {pattern.boundary}")
-    if not pattern.is_convex:
-        raise NotApplicableError(
-            f"rim heights need a convex boundary; vertex {pattern.reflex_corner} is reflex"
-        )
-    heights = {v: as_rational(rim[v]) for v in pattern.boundary}
-    a, b = pattern.boundary[:2]
-    (ax, ay), (bx, by) = pattern.vertices[a], pattern.vertices[b]
-
-    def row(v: int) -> tuple[Fraction, Fraction, Fraction]:
-        # Height above the line ab, along it and across it.
-        x, y = pattern.vertices[v][0] - ax, pattern.vertices[v][1] - ay
-        dx, dy = bx - ax, by - ay
-        along = (x * dx + y * dy) / (dx * dx + dy * dy)
-        return x * dy - y * dx, heights[v] - heights[a] - along * (heights[b] - heights[a]), along
-
-    rows = [row(v) for v in pattern.boundary[2:]]
-    third = next(r for r in rows if r[0])
-    if all(r[1] * third[0] == third[1] * r[0] for r in rows):
-        raise NotApplicableError("the rim is flat: the only sheet without curvature is flat")
-    return heights
 
 
 @dataclass(frozen=True)

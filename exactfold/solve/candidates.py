@@ -27,6 +27,10 @@ class Candidates:
     @property
     def some_meet(self) -> bool:
         """Whether two of them agree to about six digits, as they do at a multiple zero."""
+        return self.agree_to(6)
+
+    def agree_to(self, digits: int) -> bool:
+        """Whether two of them agree to about so many digits."""
         size = np.abs(self.points).max(axis=1, initial=1.0)
-        rounded = np.round(self.points / size[:, None], 6)
+        rounded = np.round(self.points / size[:, None], digits)
         return len(np.unique(rounded, axis=0)) < len(rounded)

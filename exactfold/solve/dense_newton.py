@@ -22,8 +22,8 @@ import numpy as np
 import numpy.typing as npt
 
 from exactfold.errors import NotApplicableError
-from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.branch_system import BranchSystem, Chart, notch_chart
+from exactfold.problem.branch_system import Chart
+from exactfold.problem.gauge import Gauge
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
 
@@ -61,23 +61,6 @@ class Nappe:
     squares: tuple[tuple[Fraction, Row], ...]
 
 
-def chamber_chart(pattern: CreasePattern) -> Chart:
-    """The chart in which each branch is named by its vertex signs alone (docs/theorem.md, 4).
-
-    `saddle = 1` for a convex boundary, the chart of the closed notch for one with a reflex corner:
-    neither leaves a branch at infinity. Raises `NotApplicableError` unless Ve = 4.
-
-    >>> from exactfold.pattern.families import single_vertex
-    >>> chamber_chart(single_vertex(4)).system.bezout_number
-    2
-    """
-    if pattern.Ve != 4:
-        raise NotApplicableError(
-            f"branches are named by signs for four boundary vertices, not {pattern.Ve}"
-        )
-    return BranchSystem(pattern).chart if pattern.is_convex else notch_chart(pattern)
-
-
 def sign_vectors(first: int, count: int, size: int) -> FloatArray:
     """Sign vectors number `first`, ...: bit k of the number is set where sign k is -1.
 
@@ -92,33 +75,28 @@ def sign_vectors(first: int, count: int, size: int) -> FloatArray:
 class NappeSystem:
     """The equations g = 0 of a pattern with four boundary vertices, for all sign vectors.
 
-    Unknowns are the heights of the interior vertices, the boundary having those of `chart`. With a
-    reflex corner r the boundary is flat, r is an unknown too, the last, and its equation is
-    l_r = (N_r + 1)^(1/2), that is K_r = 1 in the closed sheet.
+    Unknowns are the heights of `gauge.unknowns`, the rim having those of the gauge; ends are given
+    as points of `chart`. A reflex corner is the last unknown, with the equation
+    l_r = (N_r + k)^(1/2), k its given curvature, that is K_r = k in the closed sheet.
     """
 
     chart: Chart
 
     @cached_property
-    def movable(self) -> tuple[int, ...]:
-        """The vertices whose heights are unknown."""
-        pattern = self.chart.branch_system.pattern
-        corner = pattern.reflex_corner
-        return pattern.interior if corner is None else (*pattern.interior, corner)
+    def gauge(self) -> Gauge:
+        """The gauge of the sheet."""
+        return Gauge.of(self.chart.branch_system.pattern)
 
     @cached_property
     def nappes(self) -> tuple[Nappe, ...]:
         """Exact data of every unknown's vertex, scaled so that l_v has coefficient 1 at the hub."""
-        pattern = self.chart.branch_system.pattern
-        corner = pattern.reflex_corner
-        sheet = pattern if corner is None else pattern.with_notch_closed()
-        place = {v: k for k, v in enumerate(self.movable)}
-        if corner is None:
-            place[self.chart.eliminated] = len(place)
-        size = len(self.movable) + 1
+        gauge = self.gauge
+        size = len(gauge.unknowns) + 1
+        lift = {v: (k, Fraction(1)) for k, v in enumerate(gauge.unknowns)}
+        lift |= {v: (size - 1, height) for v, height in gauge.rim.items() if height}
         found = []
-        for v in self.movable:
-            form, cone = curvature_form(sheet, v), round_cone(sheet, v)
+        for v in gauge.unknowns:
+            form, cone = curvature_form(gauge.sheet, v), round_cone(gauge.sheet, v)
             polar = form.functional(cone)
             hub, scale = polar[v], form(cone) / polar[v] ** 2
             line = [polar[u] / hub for u in form.labels]
@@ -126,12 +104,12 @@ class NappeSystem:
                 [a * b - scale * k for b, k in zip(line, row, strict=True)]
                 for a, row in zip(line, form.matrix, strict=True)
             ]
-            lift = {k: place[u] for k, u in enumerate(form.labels) if u in place}
-            squares = [(d, _lifted(row, lift, size)) for d, row in sum_of_squares(rest)]
-            if v == corner:
+            places = [lift.get(u) for u in form.labels]
+            squares = [(d, _lifted(row, places, size)) for d, row in sum_of_squares(rest)]
+            if v == gauge.corner:
                 unit = [Fraction(int(k == size - 1)) for k in range(size)]
-                squares.append((Fraction(1), tuple(unit)))
-            found.append(Nappe(_lifted(line, lift, size), tuple(squares)))
+                squares.append((scale * gauge.corner_curvature, tuple(unit)))
+            found.append(Nappe(_lifted(line, places, size), tuple(squares)))
         return tuple(found)
 
     @cached_property
@@ -158,7 +136,7 @@ class NappeSystem:
 
     def full_signs(self, signs: FloatArray) -> FloatArray:
         """The signs of all unknowns: a reflex corner pops up."""
-        missing = len(self.movable) - signs.shape[1]
+        missing = len(self.gauge.unknowns) - signs.shape[1]
         return np.hstack([signs, np.ones((len(signs), missing))])
 
     def ends(self, signs: FloatArray) -> Ends:
@@ -169,6 +147,7 @@ class NappeSystem:
         point is returned.
 
         >>> from exactfold.pattern.families import single_vertex
+        >>> from exactfold.problem.branch_system import chamber_chart
         >>> system = NappeSystem(chamber_chart(single_vertex(4)))
         >>> found = system.ends(sign_vectors(0, 2, 1))
         >>> found.points.shape, bool(found.converged.all())
@@ -278,9 +257,9 @@ class NappeSystem:
 
     def _to_chart(self, x: FloatArray) -> FloatArray:
         """Points of the chart: with a reflex corner, heights scaled to its functional."""
-        if self.chart.branch_system.pattern.reflex_corner is None:
+        if self.gauge.corner is None:
             return x
-        weights = np.array([float(self.chart.functional.get(v, 0)) for v in self.movable])
+        weights = np.array([float(self.chart.functional.get(v, 0)) for v in self.gauge.unknowns])
         return np.asarray((x / (x @ weights)[:, None])[:, :-1])
 
 
@@ -324,9 +303,11 @@ def sum_of_squares(matrix: list[list[Fraction]]) -> list[tuple[Fraction, list[Fr
     return squares
 
 
-def _lifted(row: list[Fraction], lift: dict[int, int], size: int) -> Row:
+def _lifted(row: list[Fraction], places: list[tuple[int, Fraction] | None], size: int) -> Row:
     """A row over a star as a row on (x, 1); vertices without a place have height 0."""
     full = [Fraction(0)] * size
-    for k, place in lift.items():
-        full[place] += row[k]
+    for value, found in zip(row, places, strict=True):
+        if found is not None:
+            place, height = found
+            full[place] += height * value
     return tuple(full)

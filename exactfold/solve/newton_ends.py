@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from exactfold.problem.branch_system import Chart
+from exactfold.problem.branch_system import Chart, chamber_chart
 from exactfold.problem.chart_change import from_chart, to_chart
 from exactfold.solve.candidates import Candidates
-from exactfold.solve.dense_newton import NappeSystem, chamber_chart, sign_vectors
+from exactfold.solve.dense_newton import Ends, NappeSystem, sign_vectors
 
 Progress = Callable[[int, int], None]
 
@@ -36,22 +37,29 @@ def nappe_ends(chart: Chart, *, progress: Progress | None = None) -> Candidates:
     system, size = NappeSystem(natural), natural.system.size
     total = 1 << size
     block = min(_BLOCK, total)
-    points, lost, steps = [], [], 0
+    found = []
     for first in range(0, total, block):
-        ends = system.ends_of_block(first, block)
-        points.append(ends.points)
-        steps += ends.steps
-        for signs in sign_vectors(first, block, size)[~ends.converged]:
-            text = "".join("+" if e > 0 else "-" for e in signs)
-            lost.append(f"Newton's steps for the signs {text} did not converge")
+        found.append(system.ends_of_block(first, block))
         if progress is not None:
             progress(first + block, total)
-    found = np.concatenate(points)
-    if chart != natural:
-        found = to_chart(chart, from_chart(natural, found))
+    candidates = candidates_of(found, size)
+    if chart == natural:
+        return candidates
+    points = to_chart(chart, from_chart(natural, candidates.points.real))
+    return replace(candidates, points=points.astype(np.complex128))
+
+
+def candidates_of(blocks: Sequence[Ends], size: int) -> Candidates:
+    """The ends of blocks of sign vectors, in their order, as candidates."""
+    lost, first = [], 0
+    for ends in blocks:
+        for signs in sign_vectors(first, len(ends.points), size)[~ends.converged]:
+            text = "".join("+" if e > 0 else "-" for e in signs)
+            lost.append(f"Newton's steps for the signs {text} did not converge")
+        first += len(ends.points)
     return Candidates(
-        method="nappes",
-        points=found.astype(np.complex128),
+        method="newton",
+        points=np.concatenate([ends.points for ends in blocks]).astype(np.complex128),
         lost=tuple(lost),
-        settings={"ends": total, "steps": steps},
+        settings={"ends": first, "steps": sum(ends.steps for ends in blocks)},
     )

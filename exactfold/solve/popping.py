@@ -11,7 +11,8 @@ import numpy.typing as npt
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import Chart
-from exactfold.problem.chart_change import pattern_size, to_chart
+from exactfold.problem.chart_change import to_chart
+from exactfold.problem.gauge import pattern_size
 from exactfold.rigidity.curvature import curvature_form, spokes
 from exactfold.rigidity.timelike import saddle_functional
 from exactfold.solve.candidates import Candidates

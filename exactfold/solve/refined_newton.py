@@ -31,7 +31,7 @@ def refined_end(system: NappeSystem, signs: Sequence[int], bits: int) -> Refined
     """The zero of g for one sign vector, to `bits` bits after the point; None if not reached.
 
     >>> from exactfold.pattern.families import single_vertex
-    >>> from exactfold.solve.dense_newton import chamber_chart
+    >>> from exactfold.problem.branch_system import chamber_chart
     >>> refined_end(NappeSystem(chamber_chart(single_vertex(4))), [1], 10)
     RefinedEnd(point=(512,), bits=10, flat=())
     """
@@ -46,9 +46,8 @@ def refined_end(system: NappeSystem, signs: Sequence[int], bits: int) -> Refined
     _, _, norms = newton.values(x)
     tiny = newton.ctx.ldexp(1, -(bits // 2))
     flat = tuple(k for k, norm in enumerate(norms) if norm < tiny)
-    pattern = system.chart.branch_system.pattern
-    if pattern.reflex_corner is not None:
-        weights = [system.chart.functional.get(v, 0) for v in system.movable]
+    if system.gauge.corner is not None:
+        weights = [system.chart.functional.get(v, 0) for v in system.gauge.unknowns]
         value = sum(newton.rational(w) * a for w, a in zip(weights, x, strict=True))
         if not value:
             return None

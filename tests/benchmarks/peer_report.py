@@ -230,7 +230,7 @@ memory of any run.
   limit was reached, beyond the sizes of this run, or beyond 7 vertices for lifting and 10 for
   the parametrisation from roots).{missing}
 - *exactfold, certificate* is `count_branches` with its certificate: every branch in a box,
-  proved, with its signs and folds. *Streaming* is `count_streaming` on one core: the same with a
+  proved, with its signs and folds. *Streaming* is `stream_branches` on one core: the same with a
   compact certificate. *Exact* is the rational parametrisation of all branches, proved by
   substitution, by two independent ways.
 - msolve's answer are boxes of exact numbers, computed modulo several primes until the result no

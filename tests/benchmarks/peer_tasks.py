@@ -26,7 +26,7 @@ from exactfold.algebra.from_roots import parametrisation_from_roots
 from exactfold.algebra.lifting import lifted_classes
 from exactfold.branches.roots import BoxRoot
 from exactfold.bridges.export import to_msolve
-from exactfold.count.stream import count_streaming
+from exactfold.count.stream import stream_branches
 from exactfold.evidence.check import check_compact
 from exactfold.pattern.fold import read_fold
 from exactfold.pattern.fold_writing import write_fold
@@ -97,11 +97,11 @@ def count(size: int, seed: int) -> Found:
 
 def stream(size: int, seed: int) -> Found:
     """The streaming pipeline on one core."""
-    result = count_streaming(read_fold("pattern.fold"), "compact.txt")
+    result = stream_branches(read_fold("pattern.fold"), "compact.txt")
     stages = result.seconds
     return {
         "found": result.distinct or 0,
-        "stages": {"solve": stages["solve"], "certify": stages["certify"] + stages["settle"]},
+        "stages": {"solve": stages["solve"], "certify": stages["certify"] + stages["exactly"]},
     }
 
 

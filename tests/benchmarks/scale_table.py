@@ -25,14 +25,14 @@ from typing import Any
 COUNT = """
 import json, sys
 from exactfold.pattern.random_squares import random_square
-from exactfold.count.stream import count_streaming
+from exactfold.count.stream import stream_branches
 if __name__ == "__main__":
     n, seed, workers = map(int, sys.argv[2:])
-    result = count_streaming(random_square(n, seed=seed), sys.argv[1], workers=workers)
-    settle = result.seconds["settle"]
+    result = stream_branches(random_square(n, seed=seed), sys.argv[1], workers=workers)
+    settle = result.cpu_seconds["exactly"]
     print(json.dumps({"status": str(result.status), "exact": result.exact,
                       "solve": result.seconds["solve"],
-                      "certify": result.seconds["certify"] + settle}))
+                      "certify": result.cpu_seconds["certify"] + settle}))
 """
 CHECK = """
 import sys

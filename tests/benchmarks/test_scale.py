@@ -7,9 +7,10 @@ import pytest
 
 from exactfold import random_square
 from exactfold.certify.float_krawczyk import FloatKrawczyk
-from exactfold.count.stream import count_streaming
+from exactfold.count.stream import stream_branches
 from exactfold.evidence.check import check_compact
-from exactfold.solve.dense_newton import NappeSystem, chamber_chart, sign_vectors
+from exactfold.problem.branch_system import chamber_chart
+from exactfold.solve.dense_newton import NappeSystem, sign_vectors
 
 SIZES = [4, 8]
 
@@ -30,11 +31,11 @@ def test_float_krawczyk(benchmark: Any, interior: int) -> None:
 @pytest.mark.parametrize("interior", SIZES)
 def test_streaming(benchmark: Any, interior: int, tmp_path: Path) -> None:
     pattern, path = random_square(interior, seed=1), tmp_path / "c.txt"
-    assert benchmark(count_streaming, pattern, path).distinct == 1 << interior
+    assert benchmark(stream_branches, pattern, path).distinct == 1 << interior
 
 
 @pytest.mark.parametrize("fast", [True, False])
 def test_checking(benchmark: Any, fast: bool, tmp_path: Path) -> None:
-    count_streaming(random_square(6, seed=1), tmp_path / "c.txt")
+    stream_branches(random_square(6, seed=1), tmp_path / "c.txt")
     claims = benchmark(check_compact, tmp_path / "c.txt", fast=fast)
     assert claims["distinct"] == 64

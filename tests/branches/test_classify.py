@@ -9,13 +9,15 @@ from sheets import dart, nested_triangles, reflex_corners, scrambled, wheel
 
 from exactfold import count_branches, random_square
 from exactfold.branches import classify as module
-from exactfold.branches.classify import barycentric, classify
-from exactfold.branches.functionals import Functionals, integer_row
+from exactfold.branches.classify import classify
 from exactfold.branches.roots import AlgebraicRoot, BoxRoot
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.krawczyk import krawczyk_at
+from exactfold.exact.numbers import integer_row
 from exactfold.pattern.families import flat_vertex_square, h1_sequence, hypar, two_vertex
 from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.functionals import Functionals
+from exactfold.problem.problem import Problem, barycentric
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
 
@@ -34,10 +36,10 @@ patterns = pytest.mark.parametrize("pattern", PATTERNS.values(), ids=PATTERNS.ke
 
 @patterns
 def test_vertex_signs_do_not_depend_on_the_timelike_vector(pattern):
-    emptied, labels = pattern.emptied()
-    chart = BranchSystem(emptied).chart
+    emptied, labels = pattern.without_rigid_parts()
     source = random.Random(0)
     result = count_branches(pattern)
+    chart = result.proof.chart
     for k in emptied.interior:
         form, cone = curvature_form(emptied, k), round_cone(emptied, k)
         size = max(map(abs, cone.values()))
@@ -140,7 +142,7 @@ def test_sharper_boxes_settle_what_a_wide_one_leaves_open():
     first = Functionals(chart)
     rows = [*first.vertices.values(), *first.folds.values()]
     assert any(BoxRoot(box).sign(row) is None for box in wide for row in rows)
-    branches, undecided = classify(pattern, chart, range(6), [(BoxRoot(b), 1) for b in wide])
+    branches, undecided = classify(Problem.of(pattern), chart, [(BoxRoot(b), 1) for b in wide])
     assert undecided == []
     expected = count_branches(pattern).branches
     assert [b.sign_text + b.assignment_text for b in branches] == [
@@ -153,7 +155,7 @@ def test_signs_that_stay_open_are_named(monkeypatch):
     pattern = random_square(2, seed=0)
     chart, boxes = chart_and_boxes(pattern)
     hopeless = IsolatingBox(boxes[0].real, (), boxes[0].radius << 200, boxes[0].bits)
-    branches, undecided = classify(pattern, chart, range(6), [(BoxRoot(hopeless), 1)])
+    branches, undecided = classify(Problem.of(pattern), chart, [(BoxRoot(hopeless), 1)])
     assert branches == []
     (item,) = undecided
     assert "vertex 4" in item.what

@@ -37,7 +37,7 @@ def big_square(points: int, seed: int) -> CreasePattern:
     source = random.Random(seed)
     inside = {(source.randrange(1, 10**6), source.randrange(1, 10**6)) for _ in range(points)}
     corners = [(0, 0), (10**6, 0), (10**6, 10**6), (0, 10**6)]
-    return delaunay([*corners, *sorted(inside)]).emptied()[0]
+    return delaunay([*corners, *sorted(inside)]).without_rigid_parts()[0]
 
 
 def signs_of(pattern: CreasePattern, seed: int) -> str:

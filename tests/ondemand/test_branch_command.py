@@ -38,7 +38,7 @@ def test_json_is_the_result() -> None:
     result = run(TWO, "--signs", "-+", "--json")
     data = json.loads(result.stdout)
     assert set(data) == KEYS
-    expected = find_branch(read_fold(TWO), "-+").to_dict()
+    expected = find_branch(read_fold(TWO), "-+").report()
     for key in KEYS - {"seconds"}:
         assert data[key] == expected[key]
 

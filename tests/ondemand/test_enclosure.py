@@ -21,6 +21,8 @@ from exactfold.certify.enclosure import (
 from exactfold.certify.refinement import Heights, exact, refine
 from exactfold.count.find import BranchFinder
 from exactfold.pattern.random_squares import random_square
+from exactfold.problem.gauge import Gauge
+from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
 from exactfold.rigidity.timelike import fold_functional, vertex_sign_functional
 from exactfold.solve.sparse_newton import solve
@@ -50,7 +52,7 @@ def fractions(found: Heights) -> dict[int, Fraction]:
 
 @pytest.mark.parametrize("name", SHEETS)
 def test_folds_give_the_curvature_forms(name: str) -> None:
-    sheet = Sheet.of(SHEETS[name])
+    sheet = Sheet(Problem.of(SHEETS[name]))
     pattern, folds = sheet.pattern, sheet.folds
     source = random.Random(5)
     values = [source.randint(-99, 99) for _ in pattern.vertices]
@@ -71,7 +73,7 @@ def test_folds_give_the_curvature_forms(name: str) -> None:
 
 @pytest.mark.parametrize("name", SHEETS)
 def test_a_proof_holds_by_the_definitions(name: str) -> None:
-    sheet = Sheet.of(SHEETS[name])
+    sheet = Sheet(Problem.of(SHEETS[name]))
     signs = "".join("+-"[k % 2] for k in range(len(sheet.poppable)))
     if sheet.corner is not None:
         signs = "".join(
@@ -93,7 +95,7 @@ def test_a_proof_holds_by_the_definitions(name: str) -> None:
 @pytest.mark.parametrize("name", SHEETS)
 @pytest.mark.parametrize("level", [6, 12, 24])
 def test_the_distance_is_bounded_and_not_much_too_large(name: str, level: int) -> None:
-    sheet = Sheet.of(SHEETS[name])
+    sheet = Sheet(Problem.of(SHEETS[name]))
     signs = "+" * len(sheet.unknowns)
     rough, fine = proposal(sheet, signs, level), proposal(sheet, signs, 200)
     proof = enclose(sheet, rough.values, rough.denominator, rough.bits)
@@ -112,7 +114,7 @@ def test_the_distance_is_bounded_and_not_much_too_large(name: str, level: int) -
 
 
 def test_a_rough_bound_leaves_letters_open() -> None:
-    sheet = Sheet.of(SHEETS["random"])
+    sheet = Sheet(Problem.of(SHEETS["random"]))
     found = proposal(sheet, "+-+-+-", 3)
     proof = enclose(sheet, found.values, found.denominator, found.bits)
     assert isinstance(proof, Enclosure)
@@ -121,7 +123,7 @@ def test_a_rough_bound_leaves_letters_open() -> None:
 
 def test_the_inequality_for_any_two_sheets_in_the_same_nappes() -> None:
     # Theorem 5 (a) with targets other than zero, in exact arithmetic.
-    sheet = Sheet.of(SHEETS["thin"])
+    sheet = Sheet(Problem.of(SHEETS["thin"]))
     pattern = sheet.pattern
     points, denominator = pattern.integer_vertices
     radius = 2 * max(x * x + y * y for x, y in points)
@@ -140,7 +142,7 @@ def test_the_inequality_for_any_two_sheets_in_the_same_nappes() -> None:
 
 
 def test_a_vertex_of_negative_curvature_is_named() -> None:
-    sheet = Sheet.of(SHEETS["random"])
+    sheet = Sheet(Problem.of(SHEETS["random"]))
     found = proposal(sheet, "+-+-+-", 80)
     v = sheet.unknowns[2]
     values = found.values.copy()
@@ -155,7 +157,7 @@ def test_a_vertex_of_negative_curvature_is_named() -> None:
 
 def test_curvature_zero_does_not_pass() -> None:
     # A sheet that is flat but for one corner has K = 0 at almost every vertex.
-    sheet = Sheet.of(SHEETS["random"])
+    sheet = Sheet(Problem.of(SHEETS["random"]))
     flat = np.array([0] * len(sheet.pattern.vertices), dtype=object)
     for v, height in sheet.rim.items():
         flat[v] = height
@@ -163,7 +165,7 @@ def test_curvature_zero_does_not_pass() -> None:
 
 
 def test_another_rim_is_refused() -> None:
-    sheet = Sheet.of(SHEETS["random"])
+    sheet = Sheet(Problem.of(SHEETS["random"]))
     found = proposal(sheet, "+-+-+-", 80)
     for v in sheet.pattern.boundary:
         values = found.values.copy()
@@ -174,8 +176,8 @@ def test_another_rim_is_refused() -> None:
 
 def test_a_boundary_that_is_not_convex_is_refused() -> None:
     pattern = dart()
-    rim = dict.fromkeys(pattern.boundary, 0)
-    sheet = Sheet(pattern, pattern, tuple(range(5)), rim, 1, Fraction(1), None)
+    flat = Gauge("rim", pattern, dict.fromkeys(pattern.boundary, Fraction(0)))
+    sheet = Sheet(Problem(pattern, pattern, tuple(range(5)), flat))
     with pytest.raises(ValueError, match="convex"):
         enclose(sheet, np.array([0] * 5, dtype=object), 1, 8)
 

@@ -33,6 +33,7 @@ from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern import degenerate
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
 from exactfold.solve.sparse_newton import Point, equations
 from exactfold.solve.sparse_sheet import FloatSheet
@@ -100,7 +101,7 @@ def test_krawczyk_isolates_the_same_solution() -> None:
 
 def test_inertia_of_the_jacobian_counts_the_vertices_up_and_down() -> None:
     pattern = big_square(60, seed=8)
-    sheet = Sheet.of(pattern)
+    sheet = Sheet(Problem.of(pattern))
     floats = FloatSheet.of(sheet)
     for seed in range(4):
         signs = signs_of(pattern, seed)
@@ -250,7 +251,7 @@ def test_what_is_beyond_floats_is_undecided(power: int) -> None:
     assert found.heights == {}
     assert set(found.assignment_text) == {"U"}
     assert found.undecided_vertices == pattern.interior
-    assert found.to_dict()["radius"] is None
+    assert found.report()["radius"] is None
     reached = neighbours(pattern, "+-+", [4])
     assert reached[4].status is UNDECIDED
 

@@ -288,7 +288,7 @@ def test_nested_triangulated_triangles():
     assert pattern.triangulated_triangles == (((0, 1, 2), (3, 4)), ((1, 5, 2), (6,)))
     assert pattern.Vt == 3
     assert pattern.foldable_vertices == ()
-    emptied, labels = pattern.emptied()
+    emptied, labels = pattern.without_rigid_parts()
     assert labels == (0, 1, 2, 5)
     assert emptied.triangles == ((0, 1, 2), (1, 3, 2))
     assert emptied.Vt == 0
@@ -296,11 +296,11 @@ def test_nested_triangulated_triangles():
 
 def test_emptied_octahedron():
     pattern = flat_octahedron_in_square()
-    emptied, labels = pattern.emptied()
+    emptied, labels = pattern.without_rigid_parts()
     assert (pattern.Vi, pattern.Vt, emptied.Vi, emptied.Vt) == (6, 3, 3, 0)
     assert labels == tuple(range(7))
     assert emptied.area == pattern.area
-    assert emptied.emptied()[0] is emptied
+    assert emptied.without_rigid_parts()[0] is emptied
 
 
 def test_a_pattern_with_three_boundary_vertices_is_one_triangulated_triangle():

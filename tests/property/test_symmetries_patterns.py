@@ -23,12 +23,12 @@ from sheets import (
 )
 
 from exactfold import BranchCount, count_branches, random_square
-from exactfold.branches.functionals import Functionals
 from exactfold.branches.roots import BoxRoot
 from exactfold.certify.isolation import isolate
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.problem.branch_system import BranchSystem, Chart
+from exactfold.problem.functionals import Functionals
 from exactfold.solve.homotopy import homotopy
 from exactfold.verdict import PROVED
 

@@ -13,8 +13,8 @@ from compact_files import Lines, bodies, chained, listed_exactly, put, raw, refu
 from sheets import nested_triangles, reflex_corners, scrambled
 
 from exactfold import compact_checker, random_square
-from exactfold.count import chambers as chambers_module
-from exactfold.count.stream import count_streaming
+from exactfold.count import conveyor as conveyor_module
+from exactfold.count.stream import stream_branches
 from exactfold.errors import CertificateFormatError, UnreadableFileError
 from exactfold.evidence.check import CertificateError, check_compact
 from exactfold.evidence.read import read_branches
@@ -26,8 +26,8 @@ SIZE, BLOCK = 6, 16
 def written(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     path = tmp_path_factory.mktemp("compact") / "c.txt"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(chambers_module, "BLOCK", BLOCK)
-        count_streaming(random_square(SIZE, seed=2), path)
+        patch.setattr(conveyor_module, "BLOCK", BLOCK)
+        stream_branches(random_square(SIZE, seed=2), path)
     return path.read_bytes()
 
 
@@ -322,7 +322,7 @@ def test_lines_of_json_that_is_no_object_are_refused() -> None:
 
 @pytest.mark.parametrize("sheet", [nested_triangles(), scrambled(2, reflex_corners(2), 6)])
 def test_triangulated_triangles_and_charts_are_rebuilt(sheet: Any, tmp_path: Path) -> None:
-    count_streaming(sheet, tmp_path / "c.txt")
+    stream_branches(sheet, tmp_path / "c.txt")
     lines = bodies((tmp_path / "c.txt").read_bytes())
     assert lines[0]["evidence"]["triangles"]
     lines[0]["evidence"]["triangles"] = []

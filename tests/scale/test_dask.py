@@ -15,9 +15,9 @@ from typer.testing import CliRunner
 from exactfold import example_path, random_square, write_fold
 from exactfold.cli import app
 from exactfold.count import dask_engine as engine_module
-from exactfold.count.chambers import Chambers
+from exactfold.count.conveyor import Conveyor
 from exactfold.count.dask_engine import dask_engine, prove_block
-from exactfold.count.stream import count_streaming
+from exactfold.count.stream import stream_branches
 from exactfold.errors import ClusterError, DaskMissingError
 from exactfold.evidence.streamed import block_line
 
@@ -27,27 +27,27 @@ KILLED = """
 import logging, os, signal, sys
 from distributed import Client, LocalCluster
 from exactfold import random_square
-from exactfold.count import chambers, stream
+from exactfold.count import conveyor, engines, stream
 from exactfold.count.dask_engine import dask_engine
 from exactfold.workers import worker_environment
 
-def kill(done, total):
+def kill(stage, done, total):
     dones.append(done)
     if done == 16 * 4:
         os.kill(next(iter(observer.run(os.getpid).values())), signal.SIGKILL)
 
 if __name__ == "__main__":
-    chambers.BLOCK = 16
+    conveyor.BLOCK = 16
     pattern, dones = random_square(9, seed=1), []
     with worker_environment():
-        local = stream.count_streaming(pattern, sys.argv[1])
+        local = stream.stream_branches(pattern, sys.argv[1])
         with (
             LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
                          silence_logs=logging.CRITICAL) as cluster,
             Client(cluster.scheduler_address) as observer,
             dask_engine(cluster.scheduler_address) as engine,
         ):
-            result = stream.count_streaming(pattern, sys.argv[2], progress=kill, engine=engine)
+            result = stream.stream_branches(pattern, sys.argv[2], progress=kill, engine=engine)
     print(dones == list(range(16, 513, 16)))
     print(result.status, result.distinct, result.steps == local.steps, result.exact == local.exact)
 """
@@ -58,24 +58,24 @@ import dask
 from distributed import Client, LocalCluster, WorkerPlugin
 from exactfold import random_square
 from exactfold.errors import WorkerDiedError
-from exactfold.count import chambers, stream
+from exactfold.count import conveyor, engines, stream
 from exactfold.count.dask_engine import dask_engine
 
 class Deadly(WorkerPlugin):
     def setup(self, worker):
-        chambers.Chambers.prove = lambda chambers, index: os._exit(1)
+        conveyor.Conveyor.prove = lambda conveyor, index: os._exit(1)
 
 def failed(progress):
     try:
         with dask_engine(cluster.scheduler_address) as engine:
-            stream.count_streaming(
+            stream.stream_branches(
                 pattern, sys.argv[1], progress=progress, engine=engine, resume=True
             )
     except WorkerDiedError as error:
         print(str(error).partition(";")[0])
 
 if __name__ == "__main__":
-    chambers.BLOCK = 16
+    conveyor.BLOCK = 16
     pattern = random_square(9, seed=1)
     with (
         dask.config.set({"distributed.scheduler.allowed-failures": 0}),
@@ -87,8 +87,8 @@ if __name__ == "__main__":
         failed(None)
     with LocalCluster(processes=False, threads_per_worker=1, dashboard_address=None,
                       silence_logs=logging.CRITICAL) as cluster:
-        failed(lambda done, total: cluster.close())
-    result = stream.count_streaming(pattern, sys.argv[1], resume=True)
+        failed(lambda *_: cluster.close())
+    result = stream.stream_branches(pattern, sys.argv[1], resume=True)
     print(result.status, result.resumed > 0)
 """
 
@@ -134,7 +134,7 @@ def test_a_local_cluster_by_command(tmp_path: Path) -> None:
         run = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
     assert (run.returncode, run.stderr) == (0, "")
     assert json.loads(run.stdout)["distinct"] == 2048
-    count_streaming(pattern, tmp_path / "whole.txt")
+    stream_branches(pattern, tmp_path / "whole.txt")
     assert file.read_bytes() == (tmp_path / "whole.txt").read_bytes()
 
 
@@ -170,12 +170,12 @@ def test_without_dask_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.Mon
 
 def test_a_task_is_a_block_and_knows_its_version(monkeypatch: pytest.MonkeyPatch) -> None:
     """Run here as a worker runs it: the tasks carry all they need, and no boxes go back."""
-    chambers = Chambers.of(random_square(5, seed=1), 8)
-    pattern = chambers.pattern
+    conveyor = Conveyor.of(random_square(5, seed=1), 8)
+    pattern = conveyor.problem.pattern
     spec = (engine_module.version("exactfold"), pattern.vertices, pattern.triangles, 8)
     for index in (3, 0):
         block, line = prove_block(spec, index)
-        expected = chambers.prove(index)
+        expected = conveyor.prove(index)
         assert line == block_line(expected)
         assert (block.index, block.steps, block.boxes.centers.size) == (index, expected.steps, 0)
     with pytest.raises(ClusterError, match="not other"):

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from exactfold import checker, compact_checker, random_square
 from exactfold.cli import app
-from exactfold.count.stream import count_streaming
+from exactfold.count.stream import stream_branches
 from exactfold.errors import CertificateFormatError
 from exactfold.evidence.check import CertificateError, check_compact
 from exactfold.evidence.read import read_branches
@@ -22,7 +22,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 
 
 def lines_of(pattern: CreasePattern, path: Path) -> Lines:
-    count_streaming(pattern, path)
+    stream_branches(pattern, path)
     return bodies(path.read_bytes())
 
 

@@ -16,8 +16,8 @@ from typer.testing import CliRunner
 
 from exactfold import example_path, random_square
 from exactfold.cli import app
-from exactfold.count import chambers as chambers_module
-from exactfold.count.stream import count_streaming
+from exactfold.count import conveyor as conveyor_module
+from exactfold.count.stream import stream_branches
 from exactfold.errors import (
     ForeignJournalError,
     JournalInUseError,
@@ -34,12 +34,12 @@ posix = pytest.mark.skipif(os.name != "posix", reason="locks of POSIX")
 
 @pytest.fixture(autouse=True)
 def _small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(chambers_module, "BLOCK", 8)
+    monkeypatch.setattr(conveyor_module, "BLOCK", 8)
 
 
 @pytest.fixture
 def whole(tmp_path: Path) -> bytes:
-    count_streaming(SQUARE, tmp_path / "whole.txt")
+    stream_branches(SQUARE, tmp_path / "whole.txt")
     return (tmp_path / "whole.txt").read_bytes()
 
 
@@ -48,19 +48,19 @@ def test_one_run_at_a_time_writes_a_file(tmp_path: Path, whole: bytes) -> None:
     """Others stop at once, whatever they meant to do, and the first loses nothing."""
     path, refusals = tmp_path / "c.txt", 0
 
-    def others(done: int, total: int) -> None:
+    def others(stage: str, done: int, total: int) -> None:
         nonlocal refusals
         before = path.read_bytes()
         for how in ({}, {"resume": True}, {"replace": False}):
             with pytest.raises(JournalInUseError, match=str(path)):
-                count_streaming(SQUARE, path, **how)
+                stream_branches(SQUARE, path, **how)
             refusals += 1
         assert path.read_bytes() == before
 
-    count_streaming(SQUARE, path, progress=others)
+    stream_branches(SQUARE, path, progress=others)
     assert path.read_bytes() == whole
     path.write_bytes(whole[: len(whole) // 2])
-    count_streaming(SQUARE, path, resume=True, progress=others, verified=others)
+    stream_branches(SQUARE, path, resume=True, progress=others)
     assert path.read_bytes() == whole
     assert refusals > 20
 
@@ -82,10 +82,10 @@ def test_the_command_names_the_file_in_use(tmp_path: Path) -> None:
 def test_a_file_that_appears_in_the_last_moment_is_left_alone(tmp_path: Path, whole: bytes) -> None:
     path = tmp_path / "whole.txt"
     with pytest.raises(UsageError, match="is there already"):
-        count_streaming(SQUARE, path, replace=False)
+        stream_branches(SQUARE, path, replace=False)
     assert path.read_bytes() == whole
     path.write_bytes(b"")
-    assert count_streaming(SQUARE, path, replace=False).status is PROVED
+    assert stream_branches(SQUARE, path, replace=False).status is PROVED
     assert path.read_bytes() == whole
 
 
@@ -93,7 +93,7 @@ KILLED = """
 import os, signal, sys
 from exactfold import random_square
 from exactfold.evidence import journal
-from exactfold.count import chambers, stream
+from exactfold.count import conveyor, engines, stream
 
 append = journal.Journal.append
 
@@ -103,8 +103,8 @@ def then_die(self, body):
         os.kill(os.getpid(), signal.SIGKILL)
 
 if __name__ == "__main__":
-    journal.Journal.append, chambers.BLOCK, stream.LEAST = then_die, 8, 1
-    stream.count_streaming(random_square(5, seed=1), sys.argv[1], workers=2)
+    journal.Journal.append, conveyor.BLOCK, engines.LEAST = then_die, 8, 1
+    stream.stream_branches(random_square(5, seed=1), sys.argv[1], workers=2)
 """
 
 
@@ -115,7 +115,7 @@ def test_a_run_that_is_killed_leaves_whole_blocks_and_no_lock(tmp_path: Path, wh
     done = subprocess.run([sys.executable, str(script), str(path)], check=False)
     assert done.returncode == -9
     assert whole.startswith(path.read_bytes())
-    assert count_streaming(SQUARE, path, resume=True).resumed == 2
+    assert stream_branches(SQUARE, path, resume=True).resumed == 2
     assert path.read_bytes() == whole
 
 
@@ -129,7 +129,7 @@ def test_file_systems_without_locks_are_written_all_the_same(
         raise OSError(errno.ENOLCK, "No locks available")
 
     monkeypatch.setattr(fcntl, "flock", none)
-    count_streaming(SQUARE, tmp_path / "c.txt")
+    stream_branches(SQUARE, tmp_path / "c.txt")
     assert (tmp_path / "c.txt").read_bytes() == whole
 
 
@@ -138,12 +138,12 @@ def test_claims_are_on_the_disk_when_the_run_ends(
 ) -> None:
     path, seen = tmp_path / "c.txt", list[int]()
     monkeypatch.setattr(journal, "synced", lambda file: seen.append(path.stat().st_size))
-    count_streaming(SQUARE, path)
+    stream_branches(SQUARE, path)
     header = whole.index(b"\n") + 1
     assert seen == [header, len(whole), len(whole)]  # begun, finished, closed
     monkeypatch.setattr(journal, "SYNC", -1.0)
     seen.clear()
-    count_streaming(SQUARE, path)
+    stream_branches(SQUARE, path)
     assert len(seen) == 3 + 4  # and each block
 
 
@@ -154,10 +154,10 @@ def test_what_cannot_be_brought_to_the_disk_is_no_certificate(
         raise OSError(number, os.strerror(number))
 
     monkeypatch.setattr(durable.os, "fsync", lambda _: fail(errno.EINVAL))  # a pipe, say
-    assert count_streaming(SQUARE, tmp_path / "c.txt").status is PROVED
+    assert stream_branches(SQUARE, tmp_path / "c.txt").status is PROVED
     monkeypatch.setattr(durable.os, "fsync", lambda _: fail(errno.EIO))
     with pytest.raises(UnwritableFileError, match="cannot write"):
-        count_streaming(SQUARE, tmp_path / "c.txt")
+        stream_branches(SQUARE, tmp_path / "c.txt")
 
 
 def test_a_full_disk_leaves_a_file_to_resume(
@@ -176,9 +176,9 @@ def test_a_full_disk_leaves_a_file_to_resume(
     with monkeypatch.context() as patch:
         patch.setattr(journal, "locked", lambda path: Full(path, "a+"))
         with pytest.raises(UnwritableFileError, match="No space left"):
-            count_streaming(SQUARE, path)
+            stream_branches(SQUARE, path)
     assert path.read_bytes() == whole[:room]
-    assert count_streaming(SQUARE, path, resume=True).resumed == 3
+    assert stream_branches(SQUARE, path, resume=True).resumed == 3
     assert path.read_bytes() == whole
 
 
@@ -187,14 +187,14 @@ def test_a_full_disk_leaves_a_file_to_resume(
 def test_a_file_taken_away_while_it_is_written_is_missed(put_back: bool, tmp_path: Path) -> None:
     path = tmp_path / "c.txt"
 
-    def take(done: int, total: int) -> None:
+    def take(stage: str, done: int, total: int) -> None:
         if done == 16:
             path.unlink()
             if put_back:
                 path.write_text("another")
 
     with pytest.raises(UnwritableFileError, match="removed or replaced"):
-        count_streaming(SQUARE, path, progress=take)
+        stream_branches(SQUARE, path, progress=take)
 
 
 @pytest.mark.parametrize("change", ["true", "1.0", "deep", "twice"])
@@ -213,5 +213,5 @@ def test_headers_that_only_look_the_same_are_foreign(
     path = tmp_path / "c.txt"
     path.write_bytes(chained_texts(texts))
     with pytest.raises(ForeignJournalError, match="another pattern or version"):
-        count_streaming(SQUARE, path, resume=True)
+        stream_branches(SQUARE, path, resume=True)
     assert path.read_bytes() == chained_texts(texts)

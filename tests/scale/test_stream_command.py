@@ -15,8 +15,8 @@ from typer.testing import CliRunner, Result
 from exactfold import example_path, families, random_square, write_fold
 from exactfold.cli import app
 from exactfold.commands import stream as stream_command
-from exactfold.count import chambers as chambers_module
-from exactfold.count.stream import count_streaming
+from exactfold.count import conveyor as conveyor_module
+from exactfold.count.stream import stream_branches
 from exactfold.errors import UnwritableFileError, WorkerDiedError
 from exactfold.evidence.journal import Journal
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -93,7 +93,7 @@ def test_multiple_roots_are_named_and_handed_over(tmp_path: Path) -> None:
 
 
 def test_what_stays_open_is_undecided(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stream_command, "HANDED_OVER", 0)
+    monkeypatch.setattr("exactfold.count.stream.HANDED_OVER", 0)
     file, certificate = tmp_path / "c.txt", tmp_path / "c.json"
     given = ("count", FLAT, "--stream", file, "--certificate", certificate)
     result = run(*given)
@@ -116,7 +116,7 @@ def test_what_stays_open_is_undecided(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_both_methods_say_what_is_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("exactfold.count.attempt.flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr("exactfold.count.hand_over.flat_vertices", lambda chart, points: iter(()))
     monkeypatch.setattr("exactfold.count.collect.GROEBNER_LIMIT", 0)
     data = json.loads(run("count", FLAT, "--stream", tmp_path / "c.txt", "--json").stdout)
     assert data["status"] == "undecided"
@@ -198,7 +198,7 @@ def test_a_dead_worker_is_no_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyP
         (tmp_path / "c.txt").write_text("some blocks")
         raise WorkerDiedError("a worker process died")
 
-    monkeypatch.setattr(stream_command, "count_streaming", died)
+    monkeypatch.setattr(stream_command, "stream_branches", died)
     more = ("--workers", 3, "--seed", 0, "--certificate", "c.json")
     result = run("count", TWO, "--stream", tmp_path / "c.txt", *more)
     assert result.exit_code == 70
@@ -210,7 +210,7 @@ SIGNALLED = """
 import os, signal, sys
 from exactfold.cli import main
 from exactfold.evidence import journal
-from exactfold.count import chambers, stream
+from exactfold.count import conveyor, engines, stream
 
 append = journal.Journal.append
 
@@ -223,7 +223,7 @@ def then_signal(self, body):
             os.kill(os.getpid(), signal.SIGTERM)
 
 if __name__ == "__main__":
-    journal.Journal.append, chambers.BLOCK, stream.LEAST = then_signal, 16, 1
+    journal.Journal.append, conveyor.BLOCK, engines.LEAST = then_signal, 16, 1
     main()
 """
 
@@ -261,14 +261,14 @@ def test_interruptions_leave_a_file_to_resume(
     kept = file.read_bytes()
     assert kept.count(b"\n") == 4
 
-    monkeypatch.setattr(chambers_module, "BLOCK", 16)
+    monkeypatch.setattr(conveyor_module, "BLOCK", 16)
     words = shlex.split(again)
     assert (words[0], words[-2:]) == ("exactfold", engine.split())
     result = run(*words[1:-2], "--workers", 1, "--json")
     assert result.exit_code == PROVED
     assert json.loads(result.stdout)["stream"]["resumed"] == 3
     assert file.read_bytes().startswith(kept)
-    count_streaming(pattern, tmp_path / "whole.txt")
+    stream_branches(pattern, tmp_path / "whole.txt")
     assert file.read_bytes() == (tmp_path / "whole.txt").read_bytes()
 
 
@@ -280,7 +280,7 @@ def test_an_interrupted_hand_over_can_be_resumed(
 
     file = tmp_path / "c.txt"
     with monkeypatch.context() as patch:
-        patch.setattr(stream_command, "count_branches", stop)
+        patch.setattr("exactfold.count.stream.count_branches", stop)
         result = run("count", FLAT, "--stream", file)
     assert result.exit_code == INTERRUPTED
     again = shlex.split(result.stderr.splitlines()[-1])
@@ -300,26 +300,25 @@ def test_every_command_ends_with_130_on_ctrl_c(monkeypatch: pytest.MonkeyPatch) 
 def test_progress_names_what_is_verified_and_what_is_proved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(chambers_module, "BLOCK", 8)
+    monkeypatch.setattr(conveyor_module, "BLOCK", 8)
     square, file = random_square(5, seed=1), tmp_path / "c.txt"
 
-    def stop(done: int, total: int) -> None:
+    def stop(stage: str, done: int, total: int) -> None:
         if done == 16:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        count_streaming(square, file, progress=stop)
+        stream_branches(square, file, progress=stop)
     seen: list[tuple[str, int, int]] = []
-    count_streaming(
+    stream_branches(
         square,
         file,
         resume=True,
-        progress=lambda *at: seen.append(("proved", *at)),
-        verified=lambda *at: seen.append(("verified", *at)),
+        progress=lambda *at: seen.append(at),
     )
     assert seen == [
-        ("verified", 0, 32),
-        ("verified", 8, 32),
-        ("proved", 24, 32),
-        ("proved", 32, 32),
+        ("verifying", 0, 32),
+        ("verifying", 8, 32),
+        ("proving", 24, 32),
+        ("proving", 32, 32),
     ]

@@ -13,9 +13,9 @@ from sheets import SQUARE, dart, nested_triangles, reflex_corners, scrambled
 
 from exactfold import Branch, checker, count_branches, families, random_square, read_fold
 from exactfold.branches import classify
-from exactfold.count import chambers as chambers_module
-from exactfold.count.chambers import Chambers
-from exactfold.count.stream import count_streaming
+from exactfold.count import conveyor as conveyor_module
+from exactfold.count.conveyor import Conveyor
+from exactfold.count.stream import stream_branches
 from exactfold.data import example_path
 from exactfold.errors import ForeignJournalError, NotApplicableError, UnwritableFileError
 from exactfold.evidence.check import CertificateError, check_compact
@@ -49,7 +49,7 @@ PATTERNS = {
 
 @pytest.fixture(autouse=True)
 def _small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(chambers_module, "BLOCK", 8)
+    monkeypatch.setattr(conveyor_module, "BLOCK", 8)
 
 
 def described(branch: Branch) -> tuple[str, str, int, str]:
@@ -60,7 +60,7 @@ def described(branch: Branch) -> tuple[str, str, int, str]:
 def test_branches_agree_with_the_other_pipeline(name: str, tmp_path: Path) -> None:
     """Popping paths, exact Krawczyk and sorting by boxes find the same branches."""
     pattern = PATTERNS[name]
-    result = count_streaming(pattern, tmp_path / "c.txt")
+    result = stream_branches(pattern, tmp_path / "c.txt")
     # Popping paths stall where two ends are 1e-30 apart.
     other = count_branches(pattern, method="groebner" if name == "gap 1e-30" else "popping")
     assert result.status is other.status is PROVED
@@ -81,7 +81,7 @@ def test_branches_agree_with_the_other_pipeline(name: str, tmp_path: Path) -> No
 
 def test_heights_agree_with_the_other_pipeline(tmp_path: Path) -> None:
     pattern = random_square(4, seed=9)
-    count_streaming(pattern, tmp_path / "c.txt")
+    stream_branches(pattern, tmp_path / "c.txt")
     for mine, other in zip(
         sorted(read_branches(tmp_path / "c.txt"), key=lambda b: b.sort_key()),
         count_branches(pattern).branches,
@@ -95,7 +95,10 @@ def test_heights_agree_with_the_other_pipeline(tmp_path: Path) -> None:
 
 
 def test_multiple_roots_are_handed_on_by_name(tmp_path: Path) -> None:
-    result = count_streaming(gap(Fraction(0)), tmp_path / "c.txt")
+    counted = stream_branches(gap(Fraction(0)), tmp_path / "c.txt")
+    assert (counted.status, counted.distinct, counted.complete) == (PROVED, 3, False)
+    assert counted.proof is not None
+    result = stream_branches(gap(Fraction(0)), tmp_path / "c.txt", hand_over=False)
     assert result.status is UNDECIDED
     assert result.distinct is None
     assert [root.signs for root in result.open_roots] == ["++", "+-"]
@@ -110,7 +113,7 @@ def test_multiple_roots_are_handed_on_by_name(tmp_path: Path) -> None:
 
 def test_paths_that_solver_loses_are_settled_or_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """A solver that returns nonsense costs time, never a branch."""
-    chambers = Chambers.of(random_square(3, seed=1))
+    chambers = Conveyor.of(random_square(3, seed=1))
     ends = chambers._nappes.ends_of_block
 
     def spoiled(first: int, count: int) -> object:
@@ -129,57 +132,57 @@ def test_paths_that_solver_loses_are_settled_or_named(monkeypatch: pytest.Monkey
 
 def test_interrupted_runs_continue_to_the_same_file(tmp_path: Path) -> None:
     pattern, whole, path = random_square(5, seed=1), tmp_path / "whole.txt", tmp_path / "c.txt"
-    count_streaming(pattern, whole)
+    stream_branches(pattern, whole)
 
-    def stop(done: int, total: int) -> None:
+    def stop(stage: str, done: int, total: int) -> None:
         if done == 16:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        count_streaming(pattern, path, progress=stop)
-    result = count_streaming(pattern, path, resume=True)
+        stream_branches(pattern, path, progress=stop)
+    result = stream_branches(pattern, path, resume=True)
     assert (result.status, result.resumed, result.blocks) == (PROVED, 2, 4)
     assert path.read_bytes() == whole.read_bytes()
-    again = count_streaming(pattern, path, resume=True)
+    again = stream_branches(pattern, path, resume=True)
     assert (again.status, again.resumed) == (PROVED, 4)
     assert path.read_bytes() == whole.read_bytes()
 
 
 def test_a_file_cut_anywhere_is_continued_to_the_same_file(tmp_path: Path) -> None:
     pattern, whole, path = random_square(4, seed=1), tmp_path / "whole.txt", tmp_path / "c.txt"
-    count_streaming(pattern, whole)
+    stream_branches(pattern, whole)
     data = whole.read_bytes()
     for cut in [0, 1, 40, *range(100, len(data), 97), len(data) - 1]:
         path.write_bytes(data[:cut])
-        assert count_streaming(pattern, path, resume=True).status is PROVED
+        assert stream_branches(pattern, path, resume=True).status is PROVED
         assert path.read_bytes() == data
     path.unlink()
-    assert count_streaming(pattern, path, resume=True).resumed == 0
+    assert stream_branches(pattern, path, resume=True).resumed == 0
     assert path.read_bytes() == data
 
 
 def test_only_files_of_the_same_pattern_are_continued(tmp_path: Path) -> None:
     path = tmp_path / "c.txt"
-    count_streaming(random_square(3, seed=1), path)
+    stream_branches(random_square(3, seed=1), path)
     before = path.read_bytes()
     with pytest.raises(ForeignJournalError, match="another pattern"):
-        count_streaming(random_square(3, seed=2), path, resume=True)
+        stream_branches(random_square(3, seed=2), path, resume=True)
     assert path.read_bytes() == before
     path.write_text("my notes\n")
     with pytest.raises(ForeignJournalError, match="not a compact certificate"):
-        count_streaming(random_square(3, seed=2), path, resume=True)
+        stream_branches(random_square(3, seed=2), path, resume=True)
     assert path.read_text() == "my notes\n"
 
 
 def test_unwritable_files_and_other_patterns_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UnwritableFileError):
-        count_streaming(random_square(3, seed=1), tmp_path / "none" / "c.txt")
+        stream_branches(random_square(3, seed=1), tmp_path / "none" / "c.txt")
     with pytest.raises(UnwritableFileError):
-        count_streaming(random_square(3, seed=1), tmp_path, resume=True)
+        stream_branches(random_square(3, seed=1), tmp_path, resume=True)
     large = sample_random_square(41, 1, 1 << 20, redraw=True).pattern
     for sheet in (families.single_vertex(5), families.single_vertex(3), large):
         with pytest.raises(NotApplicableError):
-            Chambers.of(sheet)
+            Conveyor.of(sheet)
 
 
 WORKERS = """
@@ -187,26 +190,26 @@ import multiprocessing, sys
 from exactfold import random_square
 from exactfold.errors import WorkerDiedError
 from exactfold.evidence import check
-from exactfold.count import chambers, stream
+from exactfold.count import conveyor, engines, stream
 
-def seen(done, total):
+def seen(stage, done, total):
     dones.append(done)
 
-def kill(done, total):
+def kill(stage, done, total):
     for process in multiprocessing.active_children():
         process.kill()
 
 if __name__ == "__main__":
-    check.LEAST, stream.LEAST, chambers.BLOCK = 1, 1, 16
+    check.LEAST, engines.LEAST, conveyor.BLOCK = 1, 1, 16
     pattern, dones = random_square(8, seed=1), []
     one, two, three = sys.argv[1:]
-    stream.count_streaming(pattern, one)
-    stream.count_streaming(pattern, two, workers=2, progress=seen)
+    stream.stream_branches(pattern, one)
+    stream.stream_branches(pattern, two, workers=2, progress=seen)
     try:
-        stream.count_streaming(pattern, three, workers=2, progress=kill)
+        stream.stream_branches(pattern, three, workers=2, progress=kill)
     except WorkerDiedError:
         print("died")
-    result = stream.count_streaming(pattern, three, resume=True)
+    result = stream.stream_branches(pattern, three, resume=True)
     print(result.resumed < 16, dones == list(range(16, 257, 16)))
     print(check.check_compact(two, workers=2)["distinct"])
 """
@@ -225,13 +228,13 @@ def test_workers_write_the_same_file_and_may_be_killed(tmp_path: Path) -> None:
 
 def test_a_flat_fold_and_a_wide_block_are_written(tmp_path: Path) -> None:
     """A fold that is proved flat (a cross) has no bit: such roots are listed exactly."""
-    result = count_streaming(read_fold(example_path("flat-octahedron")), tmp_path / "c.txt")
+    result = stream_branches(read_fold(example_path("flat-octahedron")), tmp_path / "c.txt")
     assert result.status is PROVED
     cross = CreasePattern(
         [(2, 0), (0, 3), (-2, 0), (0, -1), (0, 0)],
         [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
     )
-    crossed = count_streaming(cross, tmp_path / "cross.txt")
+    crossed = stream_branches(cross, tmp_path / "cross.txt")
     assert (crossed.status, crossed.exact) == (PROVED, 2)
     assert all("F" in b.assignment_text for b in read_branches(tmp_path / "cross.txt"))
     assert check_compact(tmp_path / "cross.txt")["distinct"] == 2
@@ -244,7 +247,7 @@ def test_a_fold_that_stays_open_costs_its_letter_only(
     """As for a flat fold that nothing proves to be flat."""
     monkeypatch.setattr(classify, "flat_folds", lambda pattern, signs: frozenset())
     path = tmp_path / "c.txt"
-    result = count_streaming(straight_path(2), path)
+    result = stream_branches(straight_path(2), path)
     assert (result.status, result.distinct, result.unproved) == (PROVED, 4, 0)
     letters = [branch.assignment_text for branch in read_branches(path)]
     assert any("U" in text for text in letters)

@@ -10,12 +10,12 @@ from exactfold import families, random_square, read_fold
 from exactfold.data import example_path
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.problem.branch_system import chamber_chart
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
 from exactfold.solve.dense_newton import (
     Ends,
     NappeSystem,
-    chamber_chart,
     sign_vectors,
     solve_each,
     sum_of_squares,
@@ -39,7 +39,7 @@ def every_end(pattern: CreasePattern) -> Ends:
 
 @pytest.mark.parametrize("name", PATTERNS)
 def test_all_paths_end_where_popping_says(name: str) -> None:
-    pattern, _ = PATTERNS[name].emptied()
+    pattern, _ = PATTERNS[name].without_rigid_parts()
     ends = every_end(pattern)
     assert ends.converged.all()
     expected = popping(chamber_chart(pattern)).points.real
@@ -50,7 +50,7 @@ def test_all_paths_end_where_popping_says(name: str) -> None:
 
 @pytest.mark.parametrize("name", PATTERNS)
 def test_ends_have_zero_curvature_and_the_signs_asked_for(name: str) -> None:
-    pattern, _ = PATTERNS[name].emptied()
+    pattern, _ = PATTERNS[name].without_rigid_parts()
     system = NappeSystem(chamber_chart(pattern))
     signs = sign_vectors(0, 1 << pattern.Vi, pattern.Vi)
     z = np.hstack([system.ends(signs).points, np.ones((len(signs), 1))])
@@ -131,7 +131,7 @@ def test_other_boundaries_are_refused() -> None:
 
 @pytest.mark.parametrize("name", ["random square", "reflex corner", "flat vertex"])
 def test_refined_ends_agree_with_doubles_and_between_precisions(name: str) -> None:
-    system = NappeSystem(chamber_chart(PATTERNS[name].emptied()[0]))
+    system = NappeSystem(chamber_chart(PATTERNS[name].without_rigid_parts()[0]))
     size = system.chart.system.size
     for signs in sign_vectors(0, 3, size):
         (point,) = system.ends(signs[None]).points

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from exactfold.exact.numbers import over_common_denominator
+from exactfold.exact.numbers import integer_row
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.problem.branch_system import Chart
 from exactfold.rigidity.timelike import (
@@ -17,11 +17,6 @@ from exactfold.rigidity.timelike import (
 )
 
 Row = tuple[int, ...]
-
-
-def integer_row(row: list[Fraction]) -> Row:
-    """A positive integer multiple of a rational row: the same signs."""
-    return tuple(over_common_denominator(row)[0])
 
 
 @dataclass(frozen=True)
