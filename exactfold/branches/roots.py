@@ -8,10 +8,10 @@ from fractions import Fraction
 from typing import Protocol
 
 from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.flat_zeros import FlatSheets
 from exactfold.branches.functionals import Row, integer_row
 from exactfold.certify.box import IsolatingBox
 from exactfold.exact.univariate import Interval
+from exactfold.problem.flat_sheets import FlatSheets
 
 
 class Root(Protocol):

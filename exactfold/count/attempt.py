@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
-from exactfold.algebra.flat_zeros import common_parameter, flat_vertices
+from exactfold.algebra.flat_zeros import common_parameter
 from exactfold.algebra.groebner import groebner
 from exactfold.branches.branch import Branch
 from exactfold.branches.classify import Undecided, classify
@@ -31,6 +31,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import Chart
 from exactfold.rigidity.rigid_triangles import RigidTriangle
 from exactfold.solve.candidates import Candidates
+from exactfold.solve.flat_guess import flat_vertices
 from exactfold.verdict import PROVED, UNDECIDED
 
 Progress = Callable[[str, int, int], None]
