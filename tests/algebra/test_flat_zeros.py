@@ -1,6 +1,5 @@
 """Exact zeros with flat vertices, against the quotient algebra of the whole system."""
 
-
 import pytest
 
 from exactfold.algebra.flat_zeros import (
