@@ -45,7 +45,7 @@ def test_multiplicity_is_two_to_the_number_of_flat_vertices(name):
 
 
 @pytest.mark.parametrize("name", PATTERNS)
-def test_every_stratum_of_the_exact_solution_is_found_again(name):
+def test_the_zeros_with_each_set_of_flat_vertices_are_found_again(name):
     pattern = PATTERNS[name]
     chart = BranchSystem(pattern).chart
     wanted: dict[frozenset[int], int] = {}
