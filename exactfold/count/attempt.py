@@ -17,8 +17,8 @@ from exactfold.branches.result import BranchCount
 from exactfold.branches.roots import AlgebraicRoot, BoxRoot, FlatBoxRoot, Root
 from exactfold.certify.algebraic import AlgebraicProof, prove_algebraic
 from exactfold.certify.isolation import Isolation, isolate
-from exactfold.count.methods import Choice
 from exactfold.count.multiple_roots import Zeros, recognised, solve_flat
+from exactfold.count.solvers import Choice
 from exactfold.evidence.entries import (
     algebraic_evidence,
     box_entry,

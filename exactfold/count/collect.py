@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from exactfold.branches.result import BranchCount
 from exactfold.count.attempt import Attempt, isolated, solved_exactly, with_flat_vertices
-from exactfold.count.methods import METHODS, Choice, choose, find_candidates
+from exactfold.count.solvers import METHODS, Choice, choose, find_candidates
 from exactfold.errors import NoInteriorVertexError
 from exactfold.evidence.entries import triangle_evidence
 from exactfold.pattern.crease_pattern import CreasePattern

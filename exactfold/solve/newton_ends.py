@@ -50,7 +50,7 @@ def nappe_ends(chart: Chart, *, progress: Progress | None = None) -> Candidates:
     if chart != natural:
         found = to_chart(chart, from_chart(natural, found))
     return Candidates(
-        method="nappes",
+        method="newton",
         points=found.astype(np.complex128),
         lost=tuple(lost),
         settings={"ends": total, "steps": steps},
