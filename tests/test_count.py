@@ -40,8 +40,10 @@ from exactfold import (
 from exactfold.algebra.groebner import groebner
 from exactfold.branches import classify
 from exactfold.certify import algebraic
+from exactfold.certify.isolation import isolate
 from exactfold.count import attempt, multiple_roots
 from exactfold.count import collect as module
+from exactfold.count.solvers import find_candidates
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.evidence.listing import certificate
 from exactfold.pattern.degenerate import DEGENERATE
@@ -406,9 +408,15 @@ def test_branch_with_a_flat_boundary_is_not_lost_silently(method):
     pattern = wheel([(2, -2), ("2/3", 0), (2, 2), (-2, 0)])
     hub = dict.fromkeys(range(4), Fraction(0)) | {4: Fraction(1)}
     assert curvature_form(pattern, 4)(hub) == 0
+    chart = BranchSystem(pattern).chart  # saddle = 1
+    alone = isolate(chart.system, find_candidates(chart, method))
+    assert (len(alone.boxes), alone.complete) == (1, UNDECIDED)
     result = count_branches(pattern, method=method)
-    assert result.status is UNDECIDED or counts(result) == (2, 2, 2, 0)
-    assert len(result.branches) < 2 or result.status is PROVED
+    assert result.status is PROVED
+    assert counts(result) == (2, 2, 2, 0)
+    assert [branch.representative for branch in result.branches] == ["saddle", "either"]
+    low, high = result.branches[1].heights[1]
+    assert -Fraction(1, 10**9) < low <= 0 <= high < Fraction(1, 10**9)
 
 
 @pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
