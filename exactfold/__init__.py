@@ -35,10 +35,10 @@ if TYPE_CHECKING:
     from exactfold.certify.interval_newton import interval_newton
     from exactfold.certify.isolation import isolate
     from exactfold.certify.krawczyk import krawczyk
-    from exactfold.count.collect import METHODS, count_branches
+    from exactfold.count.collect import count_branches
     from exactfold.count.dask_engine import dask_engine
     from exactfold.count.find import BranchFinder, find_branch, find_branches, neighbours
-    from exactfold.count.methods import find_candidates
+    from exactfold.count.solvers import METHODS, find_candidates, register_solver, solvers
     from exactfold.count.stream import StreamedCount, stream_branches
     from exactfold.data import EXAMPLES, example_path
     from exactfold.evidence.check import check_compact
@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from exactfold.rigidity.definite_stress import definite_stress
     from exactfold.rigidity.facts import pattern_facts
     from exactfold.rigidity.self_stress import rigidity_matrix, self_stresses
+    from exactfold.solve.candidates import Candidates
     from exactfold.solve.homotopy import homotopy
     from exactfold.solve.newton_ends import nappe_ends
     from exactfold.solve.popping import popping
@@ -75,7 +76,7 @@ _HOMES = {
     "exactfold.certify.interval_newton": ("interval_newton",),
     "exactfold.certify.isolation": ("isolate",),
     "exactfold.certify.krawczyk": ("krawczyk",),
-    "exactfold.count.collect": ("METHODS", "count_branches"),
+    "exactfold.count.collect": ("count_branches",),
     "exactfold.data": ("EXAMPLES", "example_path"),
     "exactfold.exact.factor_degrees": ("factor_degrees",),
     "exactfold.exact.forms": ("QuadraticForm",),
@@ -100,7 +101,8 @@ _HOMES = {
     "exactfold.algebra.groebner": ("groebner", "quotient_algebra"),
     "exactfold.algebra.hermite": ("hermite_counts",),
     "exactfold.solve.homotopy": ("homotopy",),
-    "exactfold.count.methods": ("find_candidates",),
+    "exactfold.count.solvers": ("METHODS", "find_candidates", "register_solver", "solvers"),
+    "exactfold.solve.candidates": ("Candidates",),
     "exactfold.solve.newton_ends": ("nappe_ends",),
     "exactfold.solve.popping": ("popping",),
     "exactfold.algebra.degree_four": ("split_form",),
@@ -127,6 +129,7 @@ __all__ = [
     "BranchCount",
     "BranchFinder",
     "BranchSystem",
+    "Candidates",
     "Chart",
     "CreasePattern",
     "ExactfoldError",
@@ -170,8 +173,10 @@ __all__ = [
     "random_square",
     "read_branches",
     "read_fold",
+    "register_solver",
     "rigidity_matrix",
     "self_stresses",
+    "solvers",
     "split_form",
     "stream_branches",
     "stress_form",

@@ -26,6 +26,7 @@ from exactfold.commands.shell import (
     reported,
     standard_input,
 )
+from exactfold.count.solvers import ALIASES, METHODS
 from exactfold.errors import UsageError
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import one_thread
@@ -46,14 +47,14 @@ app = typer.Typer(
 )
 
 
-class Method(StrEnum):
-    """The names of `exactfold.count.collect.METHODS`."""
+if TYPE_CHECKING:
 
-    auto = "auto"
-    nappes = "nappes"
-    popping = "popping"
-    homotopy = "homotopy"
-    groebner = "groebner"
+    class Method(StrEnum):
+        """What --method may be."""
+
+        auto = "auto"
+else:
+    Method = StrEnum("Method", {name: name for name in (*METHODS, *ALIASES)})
 
 
 @app.command()
@@ -64,8 +65,7 @@ def count(
         Method,
         typer.Option(
             metavar="METHOD",
-            help="auto, nappes, popping, homotopy or groebner: how solutions are found. The proof "
-            "does not depend on it.",
+            help=f"{', '.join(METHODS)}: how solutions are found. The proof does not depend on it.",
         ),
     ] = Method.auto,
     certificate: Annotated[

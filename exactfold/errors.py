@@ -21,6 +21,10 @@ class UsageError(ExactfoldError):
     """The call asks for something that does not exist or does not apply (exit code 2)."""
 
 
+class BadCandidatesError(UsageError):
+    """A solver returned something that is no set of finite points of the right shape."""
+
+
 # --- numbers -------------------------------------------------------------------------------------
 
 

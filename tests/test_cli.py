@@ -24,6 +24,7 @@ from exactfold import (
 )
 from exactfold.cli import app
 from exactfold.commands.shell import Bar
+from exactfold.count.solvers import ALIASES
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES
 
@@ -110,11 +111,11 @@ def test_count_json_is_exact(two_vertex):
             assert tuple(map(Fraction, ends)) == expected.heights[int(v)]
 
 
-@pytest.mark.parametrize("method", ["auto", "nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["auto", "newton", "nappes", "popping", "homotopy", "groebner"])
 def test_methods(two_vertex, method):
     data = json.loads(run("count", two_vertex, "--json", "--method", method).stdout)
     assert data["distinct"] == 4
-    assert data["method"] == ("nappes" if method == "auto" else method)
+    assert data["method"] == ("newton" if method in ("auto", "nappes") else method)
 
 
 def test_rigid_sheet_has_no_branches(tmp_path):
@@ -786,7 +787,7 @@ def test_public_names():
 
 
 def test_methods_of_the_command_line():
-    assert tuple(method.value for method in cli.Method) == exactfold.METHODS
+    assert tuple(method.value for method in cli.Method) == (*exactfold.METHODS, *ALIASES)
 
 
 def test_factors_of_the_branch_polynomial_are_reported(two_vertex):

@@ -183,7 +183,7 @@ def test_exact_engine_finds_all_zeros_real(name: str) -> None:
     [
         (name, method)
         for name in SOLVABLE
-        for method in ("nappes", "popping", "homotopy")
+        for method in ("newton", "popping", "homotopy")
         if method != "homotopy" or CORPUS[name].Vi < 5
     ],
 )
@@ -196,9 +196,9 @@ def test_boxes_around_path_ends_hold_the_exact_simple_zeros(name: str, method: s
 
 
 @solvable
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy"])
 def test_as_many_paths_end_at_a_zero_as_its_multiplicity(name: str, method: str) -> None:
-    """Exactly so for nappes and popping; homotopy keeps one or more of the paths that meet."""
+    """Exactly so for newton and popping; homotopy keeps one or more of the paths that meet."""
     ends = candidates_of(name, method).points
     points = np.array([root.point for root in roots_of(name)])
     distance = np.abs(ends[:, None, :] - points[None, :, :]).max(axis=2)

@@ -41,9 +41,10 @@ from exactfold import (
 from exactfold.algebra.groebner import groebner
 from exactfold.branches import classify
 from exactfold.certify import algebraic
+from exactfold.certify.isolation import isolate
 from exactfold.count import collect as module
-from exactfold.count import hand_over, multiple_roots
-from exactfold.count.methods import SOLVERS
+from exactfold.count import multiple_roots
+from exactfold.count.solvers import find_candidates
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.evidence.listing import certificate
 from exactfold.pattern.degenerate import DEGENERATE
@@ -52,9 +53,7 @@ from exactfold.problem.branch_system import BranchSystem
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.rigidity import rigid_triangles
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.solve.candidates import Candidates
 from exactfold.solve.dense_newton import Ends, NappeSystem
-from exactfold.solve.popping import popping
 
 # (distinct, with multiplicity); None where D > 1 or flat vertices make it other than a power of 2.
 EXPECTED = {
@@ -262,7 +261,7 @@ def test_degree_four_cross_folds_along_its_lines():
 # --- triangulated triangles ----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
 def test_one_vertex_of_degree_three(method):
     pattern = with_point(two_vertex(), 2, (1, 2, 2))
     assert pattern.Vt == 1
@@ -365,7 +364,7 @@ def test_unknown_method_error():
 # --- chords, reflex corners, straight sides ------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
 def test_chord_between_two_halves_with_vertices(method):
     """Each half is a triangle, hence rigid: one branch, the fold along the chord."""
     pattern = CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)])
@@ -395,12 +394,12 @@ def star_in(corners):
     return wheel(corners, (ax + near * (cx - ax), ay + near * (cy - ay)))
 
 
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
 def test_dart(method):
     check_generic(dart(), count_branches(dart(), method=method))
 
 
-@pytest.mark.parametrize("method", ["auto", "nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["auto", "newton", "popping", "homotopy", "groebner"])
 def test_branch_with_a_flat_boundary_is_not_lost_silently(method):
     """Here raising the hub alone bends the sheet without curvature: the saddle of that branch is 0.
 
@@ -409,12 +408,18 @@ def test_branch_with_a_flat_boundary_is_not_lost_silently(method):
     pattern = wheel([(2, -2), ("2/3", 0), (2, 2), (-2, 0)])
     hub = dict.fromkeys(range(4), Fraction(0)) | {4: Fraction(1)}
     assert curvature_form(pattern, 4)(hub) == 0
+    chart = BranchSystem(pattern).chart  # saddle = 1
+    alone = isolate(chart.system, find_candidates(chart, method))
+    assert (len(alone.boxes), alone.complete) == (1, UNDECIDED)
     result = count_branches(pattern, method=method)
-    assert result.status is UNDECIDED or counts(result) == (2, 2, 2, 0)
-    assert len(result.branches) < 2 or result.status is PROVED
+    assert result.status is PROVED
+    assert counts(result) == (2, 2, 2, 0)
+    assert [branch.representative for branch in result.branches] == ["saddle", "either"]
+    low, high = result.branches[1].heights[1]
+    assert -Fraction(1, 10**9) < low <= 0 <= high < Fraction(1, 10**9)
 
 
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
 @pytest.mark.parametrize("first", range(4))
 def test_boundary_angle_of_pi_wherever_numbering_starts(method, first):
     pattern = straight_side(smallest=True)
@@ -453,7 +458,7 @@ AGREEMENT = {
 @pytest.mark.parametrize("pattern", AGREEMENT.values(), ids=AGREEMENT.keys())
 def test_methods_agree(pattern):
     results = [
-        count_branches(pattern, method=m) for m in ("nappes", "popping", "homotopy", "groebner")
+        count_branches(pattern, method=m) for m in ("newton", "popping", "homotopy", "groebner")
     ]
     for result in results:
         check_generic(pattern, result)
@@ -571,7 +576,7 @@ def test_huge_denominators():
 
 
 @pytest.mark.parametrize("scale", [Fraction(10**40), Fraction(1, 10**40), Fraction(10**150)])
-@pytest.mark.parametrize("method", ["nappes", "popping", "homotopy", "groebner"])
+@pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])
 def test_scale_does_not_matter(scale, method):
     pattern = random_square(3, seed=8)
     scaled = mapped(pattern, lambda p: (scale * p[0], scale * p[1]))
@@ -621,19 +626,7 @@ def test_settings_and_time_are_recorded():
     assert result.seconds > 0
 
 
-def test_a_missing_candidate_is_undecided(monkeypatch):
-    """A solver that loses a path must cost the proof, never the count."""
-
-    def forgetful(chart, seed, progress):
-        return Candidates("popping", popping(chart).points[:-1], ("path lost on purpose",))
-
-    monkeypatch.setitem(SOLVERS, "popping", forgetful)
-    result = count_branches(random_square(2, seed=0), method="popping")
-    assert result.status is UNDECIDED
-    assert "3 of 4 solutions isolated" in result.reason
-    assert "path lost on purpose" in result.open_questions
-    assert len(result.branches) == 3
-    assert result.distinct is None
+def test_auto_turns_to_the_exact_engine_where_newton_loses_a_zero(monkeypatch):
     real = NappeSystem.ends_of_block
 
     def spoiled(system, first, count):
@@ -644,40 +637,6 @@ def test_a_missing_candidate_is_undecided(monkeypatch):
     monkeypatch.setattr(NappeSystem, "ends_of_block", spoiled)
     exactly = count_branches(random_square(2, seed=0))
     assert (exactly.status, exactly.method) == (PROVED, "groebner")
-
-
-def test_what_a_solver_lost_is_no_open_question_once_all_is_proved(monkeypatch):
-    def modest(chart, seed, progress):
-        return Candidates("popping", popping(chart).points, ("a path may be lost",))
-
-    monkeypatch.setitem(SOLVERS, "popping", modest)
-    result = count_branches(random_square(2, seed=0), method="popping")
-    assert (result.status, result.open_questions) == (PROVED, ())
-
-
-def test_a_false_candidate_is_never_counted(monkeypatch):
-    def inventive(chart, seed, progress):
-        points = popping(chart).points.copy()
-        points[0] = 10 + points[1]
-        points[2] = points[3]
-        return Candidates("popping", points)
-
-    monkeypatch.setitem(SOLVERS, "popping", inventive)
-    result = count_branches(random_square(2, seed=0), method="popping")
-    assert result.status is UNDECIDED
-    assert result.distinct is None
-    assert 1 <= len(result.branches) < 4
-    boxes = [branch.root.box for branch in result.branches]
-    assert all(a.is_disjoint_from(b) for k, a in enumerate(boxes) for b in boxes[:k])
-
-
-def test_no_candidates_at_all_are_undecided(monkeypatch):
-    empty = Candidates("popping", np.zeros((0, 2), dtype=complex))
-    monkeypatch.setitem(SOLVERS, "popping", lambda chart, seed, progress: empty)
-    result = count_branches(two_vertex(), method="popping")
-    assert result.status is UNDECIDED
-    assert "0 of 4 solutions isolated" in result.reason
-    assert result.branches == ()
 
 
 # --- a missing lemma is never papered over -------------------------------------------------------

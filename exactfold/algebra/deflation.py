@@ -29,9 +29,8 @@ class Coordinates:
         for i in range(size):
             for j in range(i):
                 lower[i][j], upper[j][i] = source.randint(-9, 9), source.randint(-9, 9)
-        matrix = _times(lower, upper)
-        inverse = fmpz_mat(matrix).inv(integer=True).tolist()
-        return cls(matrix, [[int(x) for x in row] for row in inverse])
+        matrix = fmpz_mat(lower) * fmpz_mat(upper)
+        return cls(_rows(matrix), _rows(matrix.inv(integer=True)))
 
     @classmethod
     def same(cls, size: int) -> Coordinates:
@@ -155,26 +154,16 @@ def _transformed(
 ) -> QuadraticSystem:
     """Integer combinations of the quadrics, in the coordinates y with x = B y."""
     size = system.size
-    lift = [[*row, 0] for row in coordinates.matrix] + [[0] * size + [1]]
-    turned = [_times(transposed(lift), _times(matrix, lift)) for matrix in system.matrices]
-    return QuadraticSystem(
-        tuple(
-            tuple(
-                tuple(
-                    sum(w * t[i][j] for w, t in zip(row, turned, strict=True))
-                    for j in range(size + 1)
-                )
-                for i in range(size + 1)
-            )
-            for row in mixture
-        )
-    )
+    lift = fmpz_mat([*([*row, 0] for row in coordinates.matrix), [0] * size + [1]])
+    turned = [lift.transpose() * fmpz_mat([*map(list, m)]) * lift for m in system.matrices]
+    mixed = fmpz_mat([*map(list, mixture)]) * fmpz_mat([form.entries() for form in turned])
+    forms = [fmpz_mat(size + 1, size + 1, row) for row in mixed.tolist()]
+    return QuadraticSystem(tuple(tuple(tuple(row) for row in _rows(form)) for form in forms))
 
 
 def _identity(size: int) -> list[list[int]]:
     return [[int(i == j) for j in range(size)] for i in range(size)]
 
 
-def _times(left: IntRows, right: IntRows) -> list[list[int]]:
-    columns = transposed(right)
-    return [[sum(x * y for x, y in zip(row, c, strict=True)) for c in columns] for row in left]
+def _rows(matrix: fmpz_mat) -> list[list[int]]:
+    return [[int(x) for x in row] for row in matrix.tolist()]

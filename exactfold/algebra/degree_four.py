@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import isqrt
+from math import prod
+
+from flint import fmpz
 
 from exactfold.errors import NotApplicableError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form
 
-_TRIED = 100  # squares of numbers below this are taken out of D
+_PRIMES = 100  # squares of the first primes are taken out of D
 
 
 @dataclass(frozen=True)
@@ -118,16 +120,15 @@ def _check(form: QuadraticForm, found: Splitting) -> None:
 
 
 def _is_square(value: Fraction) -> bool:
-    return all(isqrt(x) ** 2 == x for x in (value.numerator, value.denominator))
+    return all(fmpz(x).is_square() for x in (value.numerator, value.denominator))
 
 
 def _without_squares(value: int) -> tuple[int, int]:
-    """(d, r) with value = d r^2; d is 1 for a square, and free of the squares of small numbers."""
-    root = isqrt(value)
-    if root * root == value:
-        return 1, root
-    root = 1
-    for k in range(2, _TRIED):
-        while value % (k * k) == 0:
-            value, root = value // (k * k), root * k
-    return value, root
+    """(d, r) with value = d r^2 > 0; d is 1 for a square, and free of the squares of small primes.
+
+    No more, as nobody can factor long integers.
+    """
+    if fmpz(value).is_square():
+        return 1, int(fmpz(value).isqrt())
+    root = prod((int(p) ** (e // 2) for p, e in fmpz(value).factor(trial_limit=_PRIMES)), start=1)
+    return value // root**2, root

@@ -202,20 +202,16 @@ def _classes_of_form(
             sum((s * m[0] for s, m in zip(shifts, moments, strict=True)), fmpq_poly())
         )
     full = fmpq_poly(algebra.multiplication(form).charpoly().coeffs())
+    parts = full.factor_squarefree()[1]
     whole = RootClass.from_monic(
         from_rational_poly(characteristic), [from_rational_poly(w) for w in numerators], form
     )
     return tuple(
-        replace(c, multiplicity=_exponent(fmpq_poly(list(c.polynomial)), full))
+        replace(c, multiplicity=_exponent(fmpq_poly(list(c.polynomial)), parts))
         for c in whole.factors()
     )
 
 
-def _exponent(factor: fmpq_poly, polynomial: fmpq_poly) -> int:
-    """The largest m such that factor^m divides the polynomial."""
-    exponent = 0
-    quotient, remainder = divmod(polynomial, factor)
-    while remainder == 0:
-        exponent += 1
-        quotient, remainder = divmod(quotient, factor)
-    return exponent
+def _exponent(factor: fmpq_poly, parts: Sequence[tuple[fmpq_poly, int]]) -> int:
+    """The exponent of an irreducible factor in a product of coprime squarefree parts."""
+    return next(int(exponent) for part, exponent in parts if part % factor == 0)

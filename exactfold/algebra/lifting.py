@@ -16,10 +16,10 @@ from math import isqrt
 
 from flint import nmod_poly
 
+from exactfold.algebra.coranks import with_proved_multiplicities
 from exactfold.algebra.deflation import Deflation
 from exactfold.algebra.exact_solution import RootClass
 from exactfold.algebra.modular import PRIMES, ModularClass, modular_quotient
-from exactfold.algebra.multiplicities import with_proved_multiplicities
 from exactfold.algebra.quotient import separating_forms
 from exactfold.algebra.residues import ResidueRing, Vector
 from exactfold.errors import ParametrisationError

@@ -2,30 +2,29 @@
 
 from __future__ import annotations
 
-import re
+import json
 import shutil
 import subprocess
 import sysconfig
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd
 from pathlib import Path
-from typing import Any
+from typing import NoReturn
 
 from flint import fmpq_poly
 
+from exactfold.algebra.coranks import with_proved_multiplicities
 from exactfold.algebra.exact_solution import RootClass
 from exactfold.algebra.modular import PRIMES, modular_quotient
-from exactfold.algebra.multiplicities import with_proved_multiplicities
 from exactfold.bridges.export import to_msolve
 from exactfold.errors import MsolveFailedError, MsolveMissingError, NotApplicableError
 from exactfold.exact.numbers import parse_rational
 from exactfold.exact.univariate import from_rational_poly
 from exactfold.problem.quadratic import QuadraticSystem
 
-_TOKEN = re.compile(r"\s*(?:([\[\],])|'([^']*)'|(-?[0-9]+))")
 _SHOWN = 200
 
 
@@ -99,12 +98,13 @@ def parse_output(text: str) -> Parametrisation | None:
     (-1, 1)
     """
     try:
-        tokens = _tokens(text.strip().removesuffix(":"))
-        if next(tokens) != "[":
-            raise ValueError("no list")
-        data = _nested(tokens)
-        if next(tokens, None) is not None:
-            raise ValueError("text after the list")
+        # A list as in JSON but for the quotes; integers of any length.
+        data = json.loads(
+            text.strip().removesuffix(":").replace("'", '"'),
+            parse_int=lambda number: int(parse_rational(number)),
+            parse_float=_no_integer,
+            parse_constant=_no_integer,
+        )
         if data[0] != 0:
             return None
         characteristic, count, dimension, variables, form, (parts, body) = data[1]
@@ -121,35 +121,12 @@ def parse_output(text: str) -> Parametrisation | None:
             tuple(denominator[1]),
             tuple((tuple(v[1]), c) for v, c in numerators),
         )
-    except (ValueError, TypeError, IndexError, StopIteration) as error:
+    except (ValueError, TypeError, LookupError) as error:
         raise MsolveFailedError(f"output of msolve not understood: {text[:_SHOWN]!r}") from error
 
 
-def _tokens(text: str) -> Iterator[str | int]:
-    position = 0
-    text = text.rstrip()
-    while position < len(text):
-        match = _TOKEN.match(text, position)
-        if match is None:
-            raise ValueError(f"unexpected text at {position}")
-        position = match.end()
-        bracket, name, number = match.groups()
-        yield int(parse_rational(number)) if number else bracket or f"'{name}"
-
-
-def _nested(tokens: Iterator[str | int]) -> list[Any]:
-    """The list up to its closing bracket; names without their quote."""
-    found: list[Any] = []
-    for token in tokens:
-        if token == "]":
-            return found
-        if token == "[":
-            found.append(_nested(tokens))
-        elif isinstance(token, int):
-            found.append(token)
-        elif token != ",":
-            found.append(token[1:])
-    raise ValueError("a bracket is not closed")
+def _no_integer(text: str) -> NoReturn:
+    raise ValueError(f"{text} is not an integer")
 
 
 def to_root_class(found: Parametrisation, names: Sequence[str]) -> RootClass:

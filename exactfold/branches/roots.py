@@ -13,8 +13,8 @@ from exactfold.exact.numbers import integer_row
 
 if TYPE_CHECKING:  # FLINT is loaded where there is an algebraic root
     from exactfold.algebra.exact_solution import RootClass
-    from exactfold.algebra.flat_zeros import FlatSheets
     from exactfold.exact.univariate import Interval
+    from exactfold.problem.flat_sheets import FlatSheets
 
 Row = tuple[int, ...]
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.flat_zeros import FlatSheets, flat_equations
+from exactfold.algebra.flat_zeros import flat_equations
 from exactfold.certify.box import IsolatingBox
 from exactfold.problem.branch_system import Chart
+from exactfold.problem.flat_sheets import FlatSheets
 from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 

@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, floor
 from typing import Any, TypeAlias
 
+import mpmath
 from flint import arb, arb_mat, ctx
-from mpmath.ctx_iv import MPIntervalContext
-from mpmath.ctx_mp import MPContext
-from mpmath.libmp import from_man_exp, to_rational
 
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.certify.points import REACH, Candidate, Point, Points, exact_candidates
@@ -22,9 +19,10 @@ _PRECISIONS = (106, 212, 424, 848, 1696)
 _NEWTON_STEPS = 128
 _SLOW_STEPS = 20  # in a row, each no shorter than an eighth of the one before: a multiple zero
 _INFLATIONS = (1, 4, 64)
+_GUARD = 16
 
 Interval: TypeAlias = Any  # an mpmath interval, closed, with dyadic end points
-Float: TypeAlias = Any  # an mpmath floating-point number
+Column: TypeAlias = Any  # an arb_mat of one column with exact entries
 
 
 def interval_newton(
@@ -43,18 +41,19 @@ def interval_newton(
     returned is a cube of about twice the width of N(X) around it, if that lies in X; otherwise X.
 
     mpmath's elementary functions are not all correctly rounded (its `iv.exp` has missed values,
-    mpmath issue 1181). The proof uses none: of mpmath it uses intervals with exactly given dyadic
-    ends, their sums, differences and products, quotients by intervals without zero and by 2, and
-    comparisons of end points. Each of these is tested against Fractions, for enclosure and for
-    width, in tests/certify/test_interval_newton.py. All else of mpmath, and FLINT's inverse, only
-    choose m, r and Y.
+    mpmath issue 1181). The proof uses none: of mpmath's public interface it uses an interval
+    context of its own, intervals with exactly given dyadic ends (`mpmath.ldexp`, which does not
+    round), their sums, differences and products, quotients by intervals without zero and by 2,
+    comparisons, and end points as integers. Each of these is tested against Fractions, for
+    enclosure and for width, in tests/certify/test_interval_newton.py. FLINT's Newton steps and
+    inverses only choose m, r and Y.
 
     `points` has shape (m, n); coordinates as in `exact_candidates`. Where imaginary parts are
     negligible the real system is tried first, which proves the zero real; otherwise, and if that
     fails, the 2n real equations in real and imaginary parts. Newton's method in floating point
     chooses m, within `reach` max(1, |candidate|) of the candidate (None: anywhere). `precisions`
     are bits of the significand, tried in turn. No precision of mpmath's global contexts is read or
-    changed.
+    changed, and that of python-flint's context is restored.
 
     Raises `UsageError` if a candidate does not have n coordinates. `Uncertified` does not mean that
     there is no zero nearby: it may be multiple, the candidate too far off, the precision too low.
@@ -133,18 +132,15 @@ class _LeftError(Exception):
 
 
 class _Worker:
-    """The test for one real system, in contexts of its own."""
+    """The test for one real system, in an interval context of its own."""
 
     def __init__(self, system: QuadraticSystem, reach: Fraction | None = REACH) -> None:
         self.reach = reach
-        self.iv = MPIntervalContext()
-        self.mp = MPContext()
-        self.size = system.size
+        self.iv = mpmath.MPIntervalContext()
+        self.size = n = system.size
         self.exact = system.matrices
-        self.floats = [
-            [[self.mp.make_mpf(from_man_exp(s, 0)) for s in row] for row in matrix]
-            for matrix in system.matrices
-        ]
+        entries = [s for matrix in system.matrices for row in matrix for s in row]
+        self.stacked = arb_mat(n * (n + 1), n + 1, entries)
         self.intervals = [
             [[self._dyadic(s, s, 0) for s in row] for row in matrix] for matrix in system.matrices
         ]
@@ -154,10 +150,11 @@ class _Worker:
         reason = "no precision was given"
         for precision in precisions:
             self.iv.prec = precision
-            self.mp.prec = precision + 16
             try:
                 # Afresh each time: lower precision may have taken a cluster to the wrong zero.
-                found = self._enclose(self._newton(start, precision), precision)
+                with ctx.workprec(precision + _GUARD):
+                    bits, centre = _rounded(self._newton(start, precision), precision)
+                found = self._enclose(centre, bits, precision)
             except ZeroDivisionError:
                 reason = f"the Jacobian is singular at {precision} bits"
                 continue
@@ -172,16 +169,16 @@ class _Worker:
         """The test on a given cube, at rising precision."""
         length = max(abs(c) + box.radius for c in box.centre).bit_length()
         for precision in (length + 64, 2 * length + 256, 4 * length + 1024):
-            self.iv.prec = self.mp.prec = precision
+            self.iv.prec = precision
             cube = [self._dyadic(c - box.radius, c + box.radius, box.bits) for c in box.centre]
             if any((v > 0) is True or (v < 0) is True for v in self._values(cube)):
                 return REFUTED
             point = [self._dyadic(c, c, box.bits) for c in box.centre]
-            middle = [self.mp.ldexp(self.mp.mpf(c), -box.bits) for c in box.centre]
             try:
-                factors, residual = self._preconditioned(middle, point)
+                factors = self._inverse(box.centre, box.bits)
             except ZeroDivisionError:
                 continue
+            residual = self._product(factors, [[v] for v in self._values(point)])
             matrix = self._product(factors, self._jacobian(cube))
             solution = _eliminate(matrix, [row[0] for row in residual])
             if solution is None:
@@ -191,71 +188,58 @@ class _Worker:
                 return PROVED
         return UNDECIDED
 
-    def _preconditioned(
-        self, middle: list[Float], point: list[Interval]
-    ) -> tuple[list[list[Interval]], list[list[Interval]]]:
-        """An approximate inverse Y of F'(m) as intervals of width 0, and Y F(m)."""
-        inverse = self._approx_inverse(self._approx_derivatives(middle)[0])
-        factors = [[self.iv.make_mpf((c._mpf_, c._mpf_)) for c in row] for row in inverse]
-        return factors, self._product(factors, [[v] for v in self._values(point)])
+    # --- FLINT: chooses what to try ---
 
-    # --- floating point: chooses what to try ---
-
-    def _rational(self, value: Fraction) -> Float:
-        return self.mp.mpf(value.numerator) / self.mp.mpf(value.denominator)
-
-    def _newton(self, candidate: Point, precision: int) -> list[Float]:
-        mp, n = self.mp, self.size
-        x = start = [self._rational(c) for c in candidate]
-        reach = None if self.reach is None else self._rational(self.reach)
-        allowed = None if reach is None else max([mp.one, *map(abs, start)]) * reach
-        slow, last = 0, mp.inf
+    def _newton(self, candidate: Point, precision: int) -> Column:
+        """Newton's method on midpoints, at the precision of FLINT's context."""
+        start = x = arb_mat(self.size, 1, [_arb(c).mid() for c in candidate])
+        allowed = None
+        if self.reach is not None:
+            allowed = (max([arb(1), *map(abs, start.entries())]) * _arb(self.reach)).mid()
+        slow, last = 0, arb("inf")
         for _ in range(_NEWTON_STEPS):
             jacobian, values = self._approx_derivatives(x)
-            inverse = self._approx_inverse(jacobian)
-            step = [mp.fdot(inverse[i], values) for i in range(n)]
-            x = [a - s for a, s in zip(x, step, strict=True)]
-            moved = max(abs(a - b) for a, b in zip(x, start, strict=True))
-            if allowed is not None and moved > allowed:
+            step = (jacobian.inv().mid() * values).mid()
+            x = (x - step).mid()
+            if allowed is not None and not _largest(x - start) <= allowed:
                 raise _LeftError("Newton's method left the candidate")
-            length = max(map(abs, step))
+            length = _largest(step)
             slow, last = slow + 1 if 8 * length > last else 0, length
-            if slow > _SLOW_STEPS or length <= mp.ldexp(max(map(abs, x)), 4 - precision):
+            if slow > _SLOW_STEPS or length <= _largest(x) * arb((1, 4 - precision)):
                 break
         return x
 
-    def _approx_derivatives(self, x: list[Float]) -> tuple[list[list[Float]], list[Float]]:
-        z = [*x, self.mp.one]
-        rows = [[self.mp.fdot(row, z) for row in matrix] for matrix in self.floats]
-        return [row[:-1] for row in rows], [self.mp.fdot(row, z) / 2 for row in rows]
-
-    def _approx_inverse(self, matrix: list[list[Float]]) -> list[list[Float]]:
-        """The inverse by FLINT, without its radii; `ZeroDivisionError` if it may be singular."""
-        entries = []
-        for row in matrix:
-            for value in row:
-                sign, mantissa, exponent, _ = value._mpf_
-                entries.append(arb((-int(mantissa) if sign else int(mantissa), int(exponent))))
+    def _approx_derivatives(self, x: Column) -> tuple[arb_mat, Column]:
         n = self.size
-        with ctx.workprec(self.mp.prec):
-            middles = [x.mid().man_exp() for x in arb_mat(n, n, entries).inv().entries()]
-        values = [self.mp.make_mpf(from_man_exp(int(m), int(e))) for m, e in middles]
+        z = arb_mat(n + 1, 1, [*x.entries(), 1])
+        rows = arb_mat(n, n + 1, (self.stacked * z).entries()).mid()
+        jacobian = arb_mat(n, n, [rows[p, k] for p in range(n) for k in range(n)])
+        return jacobian, (rows * z * arb((1, -1))).mid()
+
+    def _inverse(self, centre: Sequence[int], bits: int) -> list[list[Interval]]:
+        """About the inverse of F'(centre / 2^bits), as intervals of width 0.
+
+        Raises `ZeroDivisionError` if F' may be singular there.
+        """
+        n = self.size
+        with ctx.workprec(self.iv.prec + _GUARD):
+            point = arb_mat(n, 1, [arb((c, -bits)) for c in centre])
+            inverse = self._approx_derivatives(point)[0].inv()
+            middles = [tuple(map(int, x.mid().man_exp())) for x in inverse.entries()]
+        values = [self._dyadic(m, m, -e) for m, e in middles]
         return [values[k * n : (k + 1) * n] for k in range(n)]
 
     # --- interval arithmetic: proves ---
 
     def _dyadic(self, low: int, high: int, bits: int) -> Interval:
         """The interval [low, high] / 2^bits, exactly."""
-        return self.iv.make_mpf((from_man_exp(low, -bits), from_man_exp(high, -bits)))
+        return self.iv.mpf([mpmath.ldexp(low, -bits), mpmath.ldexp(high, -bits)])
 
-    def _enclose(self, x: list[Float], precision: int) -> _Cube | str:
-        """The interval Newton test on cubes about x, for the smallest radius that fits."""
-        largest = max(map(abs, x))
-        exponent = max(int(self.mp.frexp(largest)[1]), -precision) if largest else 0
-        bits = max(0, precision - exponent)
-        centre = [int(self.mp.nint(self.mp.ldexp(c, bits))) for c in x]
+    def _enclose(self, centre: list[int], bits: int, precision: int) -> _Cube | str:
+        """The interval Newton test on cubes about a point, for the smallest radius that fits."""
         point = [self._dyadic(c, c, bits) for c in centre]
-        factors, residual = self._preconditioned(x, point)
+        factors = self._inverse(centre, bits)
+        residual = self._product(factors, [[v] for v in self._values(point)])
         shift = max(_magnitude(row[0], bits) for row in residual)
         reason = ""
         for inflation in _INFLATIONS:
@@ -359,9 +343,14 @@ def _tighten(image: list[Interval], proved: _Cube) -> _Cube:
 
 
 def _outward(value: Interval, bits: int) -> tuple[int, int]:
-    """The smallest interval of multiples of 2^-bits that holds `value`, as integers."""
-    low, high = (Fraction(*map(int, to_rational(end))) * 2**bits for end in value._mpi_)
-    return floor(low), ceil(high)
+    """The smallest interval of multiples of 2^-bits that holds `value`, as integers.
+
+    The product is exact if the end points of `value` fit the working precision, as all results do;
+    otherwise it is rounded outward.
+    """
+    scaled = value * (1 << bits)
+    low, high = int(scaled.a), int(scaled.b)  # truncated towards zero
+    return low - ((scaled.a < low) is True), high + ((scaled.b > high) is True)
 
 
 def _magnitude(value: Interval, bits: int) -> int:
@@ -371,3 +360,23 @@ def _magnitude(value: Interval, bits: int) -> int:
 def _text(value: int, bits: int) -> str:
     """About value / 2^bits, in powers of two so that nothing overflows."""
     return f"2^{value.bit_length() - bits}" if value else "0"
+
+
+def _arb(value: Fraction) -> arb:
+    return arb(value.numerator) / arb(value.denominator)
+
+
+def _largest(column: Column) -> arb:
+    """About the largest absolute value."""
+    return max(abs(entry).mid() for entry in column.entries())
+
+
+def _rounded(x: Column, precision: int) -> tuple[int, list[int]]:
+    """Bits after the point that show about `precision` digits of the largest, and x in these."""
+    values = []
+    for entry in x.entries():
+        mantissa, exponent = map(int, entry.man_exp())
+        values.append((mantissa, exponent))
+    lengths = [abs(m).bit_length() + e for m, e in values if m]
+    bits = max(0, precision - max(-precision, *lengths)) if lengths else precision
+    return bits, [round(Fraction(m) * Fraction(2) ** (e + bits)) for m, e in values]

@@ -60,7 +60,7 @@ class Isolation:
 def isolate(
     system: QuadraticSystem, candidates: Candidates, *, progress: Progress | None = None
 ) -> Isolation:
-    """Certify every candidate: exact Krawczyk first, interval Newton for what it cannot settle.
+    """Certify every candidate: exact Krawczyk first, interval Newton for what is left.
 
     Candidates that lead to the same zero are counted once.
 
@@ -72,7 +72,7 @@ def isolate(
     (2, 'proved')
     """
     boxes: list[IsolatingBox] = []
-    unsettled: list[ComplexRow] = []
+    unproved: list[ComplexRow] = []
     total = len(candidates.points)
     for start in range(0, total, _BLOCK):
         block = candidates.points[start : start + _BLOCK]
@@ -82,12 +82,12 @@ def isolate(
             if isinstance(result, IsolatingBox):
                 boxes.append(result)
             else:
-                unsettled.append(point)
+                unproved.append(point)
         if progress is not None:
             progress(min(start + _BLOCK, total), total)
     failures: list[Uncertified] = []
-    for group in _clusters(unsettled):
-        more, failure = _settle(system, group)
+    for group in _clusters(unproved):
+        more, failure = _prove_meeting(system, group)
         boxes += more
         if failure is not None:
             failures.append(failure)
@@ -103,7 +103,7 @@ def _clusters(points: list[ComplexRow]) -> list[list[ComplexRow]]:
     return list(groups.values())
 
 
-def _settle(
+def _prove_meeting(
     system: QuadraticSystem, group: list[ComplexRow]
 ) -> tuple[list[IsolatingBox], Uncertified | None]:
     """Higher precision and the second certifier for candidates that meet; stops at a failure."""

@@ -29,7 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 _PRECISIONS = (64, 128, 256, 512, 1024)
 _Y_BITS = 56
 _NEWTON_STEPS = 12
-_SETTLED = 2
+_AT_REST = 2
 _WIDE = 1 << 16
 _LEFT = "Newton's steps left the candidate"
 _SLOW = "Newton's steps do not shrink quadratically: the zero is multiple or the candidate far off"
@@ -258,7 +258,7 @@ class _Kernel:
         jacobian, values = self._evaluate(m, bits)
         for _ in range(_NEWTON_STEPS):
             step = self._step(values, bits, y, shift)
-            if max(map(abs, step)) <= _SETTLED:
+            if max(map(abs, step)) <= _AT_REST:
                 break
             m = [a - s for a, s in zip(m, step, strict=True)]
             jacobian, values = self._evaluate(m, bits)
@@ -281,7 +281,7 @@ class _Kernel:
             m = [a - s for a, s in zip(m, step, strict=True)]
             result = self._test(m, *self._evaluate(m, bits), bits, y, entries, shift)
             sharp = isinstance(result, IsolatingBox) and result.radius <= _WIDE
-            if sharp or max(map(abs, step)) <= _SETTLED:
+            if sharp or max(map(abs, step)) <= _AT_REST:
                 return result
             length, last = max(map(abs, step)), length
         slow = last is not None and length is not None and 8 * length > last

@@ -8,7 +8,7 @@ from typing import Any
 
 from exactfold.branches.result import BranchCount, Proof
 from exactfold.certify.algebraic import AlgebraicProof
-from exactfold.count.methods import Choice
+from exactfold.count.solvers import Choice
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.chart_change import from_chart, to_chart
 from exactfold.problem.problem import Problem
@@ -39,6 +39,7 @@ class Attempt:
 
     def in_chart(self, candidates: Candidates) -> Candidates:
         """Candidates found in the chart of the problem as points of this one."""
+        candidates = candidates.finite()
         if self.chart == self.problem.chart:
             return candidates
         heights = from_chart(self.problem.chart, candidates.points.real)

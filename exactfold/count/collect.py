@@ -12,7 +12,7 @@ from exactfold.compact_checker import MOST_UNKNOWNS
 from exactfold.count.attempt import Attempt
 from exactfold.count.conveyor import LISTED_BITS, Conveyor
 from exactfold.count.hand_over import isolated, solved_exactly, with_flat_vertices
-from exactfold.count.methods import METHODS, NEWTON, Choice, choose, find_candidates
+from exactfold.count.solvers import METHODS, NEWTON, Choice, choose, find_candidates
 from exactfold.errors import NoInteriorVertexError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import BranchSystem, notch_chart
@@ -166,7 +166,7 @@ def _ends(conveyor: Conveyor, attempt: Attempt) -> Candidates:
     for index in range(conveyor.blocks):
         found.append(conveyor.ends(index))
         stage((index + 1) * count, attempt.total)
-    return candidates_of(found, conveyor.size)
+    return candidates_of(found, conveyor.size).finite()
 
 
 def _collected(conveyor: Conveyor, attempt: Attempt, ends: Candidates) -> BranchCount | None:

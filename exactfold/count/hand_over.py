@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
-from exactfold.algebra.flat_zeros import common_parameter, flat_vertices
+from exactfold.algebra.flat_zeros import common_parameter
 from exactfold.algebra.groebner import groebner
 from exactfold.branches.branch import Branch
 from exactfold.branches.classify import Undecided, classify
@@ -19,6 +19,7 @@ from exactfold.certify.isolation import Isolation, isolate
 from exactfold.count.attempt import Attempt
 from exactfold.count.multiple_roots import Zeros, recognised, solve_flat
 from exactfold.solve.candidates import Candidates
+from exactfold.solve.flat_guess import flat_vertices
 from exactfold.verdict import PROVED, UNDECIDED
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.flat_zeros import flat_sheets, zeros_flat_at
+from exactfold.algebra.flat_zeros import lift, zeros_flat_at
 from exactfold.branches.classify import Undecided
 from exactfold.branches.roots import BoxRoot, FlatBoxRoot
 from exactfold.certify.algebraic import FlatBox
@@ -16,8 +16,9 @@ from exactfold.certify.box import IsolatingBox
 from exactfold.certify.isolation import isolate
 from exactfold.certify.recognition import recognise
 from exactfold.problem.branch_system import Chart
+from exactfold.problem.flat_sheets import flat_sheets
 from exactfold.solve.candidates import Candidates
-from exactfold.solve.near_zeros import FloatArray
+from exactfold.solve.flat_guess import FloatArray
 
 _MOST_TOGETHER = 64  # conjugate zeros in one class, for the sake of the checker
 
@@ -81,7 +82,7 @@ def recognised(chart: Chart, found: Zeros, undecided: Sequence[Undecided]) -> Ze
         elif first.sheets.system is not None:
             classes = recognise(first.sheets.system, boxes)
             if classes is not None:
-                result.classes += [first.sheets.lift(c) for c in classes]
+                result.classes += [lift(first.sheets, c) for c in classes]
                 result.flat_boxes = [
                     (s, b)
                     for s, b in result.flat_boxes

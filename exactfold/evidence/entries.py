@@ -8,13 +8,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.flat_zeros import FlatSheets
 from exactfold.certify.algebraic import AlgebraicProof
 from exactfold.certify.box import IsolatingBox
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold_writing import write_text
 from exactfold.problem.branch_system import BranchSystem, Chart
+from exactfold.problem.flat_sheets import FlatSheets
 from exactfold.rigidity.rigid_triangles import RigidTriangle
 
 FORMAT = "exactfold certificate"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +23,14 @@ class Candidates:
     points: ComplexArray
     lost: tuple[str, ...] = ()
     settings: Mapping[str, int | str] = field(default_factory=dict)
+
+    def finite(self) -> Candidates:
+        """The finite candidates; the others are lost."""
+        good = np.isfinite(self.points).all(axis=1)
+        if good.all():
+            return self
+        lost = (*self.lost, f"{int((~good).sum())} candidates left the range of floats")
+        return replace(self, points=self.points[good], lost=lost)
 
     @property
     def some_meet(self) -> bool:

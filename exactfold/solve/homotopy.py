@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial.polynomial import polyval
 
 from exactfold.errors import UsageError
 from exactfold.problem.quadratic import QuadraticSystem
@@ -301,7 +302,8 @@ class _Tracker:
         for _ in range(tolerances.rounds):
             steps += len(live)
             target = np.where(t + step >= 1.0, 1.0, t + step)
-            guess = _horner(series, target - t)
+            ends = polyval((target - t)[:, None], series, tensor=False)
+            guess: ComplexArray = np.asarray(ends, dtype=np.complex128)
             inverse = _inverses(self._jacobian(guess, target))
             new, good = self._correct(guess, target, inverse, tolerances)
             step = np.where(good, step, step / 2)
@@ -390,10 +392,3 @@ class _Tracker:
         last = np.linalg.norm(series[-2:], axis=2)
         lengths = (tolerances.predict / last) ** (1.0 / np.array([[_ORDER - 1], [_ORDER]]))
         return np.asarray(np.nan_to_num(np.minimum(lengths.min(axis=0), 1 - t), nan=0.0))
-
-
-def _horner(series: ComplexArray, step: FloatArray) -> ComplexArray:
-    value = series[-1]
-    for term in series[-2::-1]:
-        value = value * step[:, None] + term
-    return np.asarray(value)

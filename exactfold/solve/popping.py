@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial.polynomial import polyval
 
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -16,6 +17,7 @@ from exactfold.problem.gauge import pattern_size
 from exactfold.rigidity.curvature import curvature_form, spokes
 from exactfold.rigidity.timelike import saddle_functional
 from exactfold.solve.candidates import Candidates
+from exactfold.solve.dense_newton import sign_vectors
 
 FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -75,8 +77,7 @@ def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
 def _sign_vectors(size: int, reflex: bool) -> FloatArray:
     """All sign vectors as rows; with a reflex corner its sign, the last, is +1 throughout."""
     free = size - 1 if reflex else size
-    bits = (np.arange(1 << free)[:, None] >> np.arange(free)) & 1
-    signs = np.where(bits == 0, 1.0, -1.0)
+    signs = sign_vectors(0, 1 << free, free)
     return np.asarray(np.hstack([signs, np.ones((len(signs), 1))]) if reflex else signs)
 
 
@@ -172,9 +173,7 @@ def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, npt.NDArra
         )
         step = reach[live] * 0.1 ** (2 / _ORDER) / np.maximum(tail, 1e-300)
         step = np.minimum(step, 1.0 - t[live])
-        trial = series[-1]
-        for term in series[-2::-1]:
-            trial = trial * step[:, None] + term
+        trial = polyval(step[:, None], np.array(series), tensor=False)
         arrive = t[live] + step
         arrive[1.0 - arrive < 1e-14] = 1.0
         trial, good = _correct(problem, trial, arrive, signs[live])

@@ -59,9 +59,9 @@ class _Newton:
     """Damped Newton in mpmath, in a context of its own."""
 
     def __init__(self, system: NappeSystem, e: list[int], bits: int) -> None:
-        from mpmath.ctx_mp import MPContext  # here, as few paths need it
+        import mpmath  # here, as few paths need it
 
-        self.ctx: Any = MPContext()
+        self.ctx: Any = mpmath.mp.clone()
         self.ctx.prec = bits + _GUARD
         self.e = e
         self.small = self.ctx.ldexp(1, -bits - _GUARD // 2)

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import operator
+import re
 from fractions import Fraction
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import mpmath
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from mpmath.ctx_iv import MPIntervalContext
-from mpmath.libmp import to_rational
 
+import exactfold
 from exactfold.certify import interval_newton as module
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.certify.interval_newton import interval_newton
@@ -38,8 +39,16 @@ def worker(precision: int) -> Any:
 
 
 def ends(interval: Any) -> tuple[Fraction, Fraction]:
-    low, high = (Fraction(*map(int, to_rational(end))) for end in interval._mpi_)
+    low, high = (exactly(end) for end in (interval.a, interval.b))
     return low, high
+
+
+def exactly(end: Any) -> Fraction:
+    """The value of an interval of width 0, with room for 2000 bits on either side of the point."""
+    value = mpmath.mpf(end, prec=4000)
+    number = Fraction(int(mpmath.ldexp(value, 2000)), 2**2000)
+    assert mpmath.ldexp(int(number * 2**2000), -2000) == value  # nothing was cut off
+    return number
 
 
 def exact(value: Ends) -> tuple[Fraction, Fraction]:
@@ -165,7 +174,15 @@ def test_global_precision_is_neither_read_nor_changed() -> None:
         assert (mpmath.iv.prec, mpmath.mp.prec) == (7, 9)
     finally:
         mpmath.iv.prec, mpmath.mp.prec = before
-    assert isinstance(MPIntervalContext(), type(mpmath.iv))
+
+
+def test_no_private_name_of_mpmath_is_used() -> None:
+    """Its modules inside, `make_mpf`, and attributes that start with an underscore."""
+    inside = r"mpmath\.(libmp|ctx_|matrices|calculus|functions|rational)|make_mp[fc]|\._mp[fci]+_"
+    files = list(Path(exactfold.__file__).parent.rglob("*.py"))
+    assert any("import mpmath" in path.read_text("utf-8") for path in files)
+    for path in files:
+        assert re.search(inside, path.read_text("utf-8")) is None, path
 
 
 @pytest.mark.parametrize("precision", [53, 106, 212, 1696])
