@@ -28,6 +28,9 @@ class Splitting:
     sum_part: Mapping[int, Fraction]
     root_part: Mapping[int, Fraction]
 
+    def __repr__(self) -> str:
+        return f"<Splitting: two linear forms over {'Q' if self.D == 1 else f'Q(sqrt({self.D}))'}>"
+
     @property
     def is_rational(self) -> bool:
         """Whether the two linear forms have rational coefficients."""

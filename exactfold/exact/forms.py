@@ -50,6 +50,9 @@ class QuadraticForm:
             for v, row in zip(self.labels, self.matrix, strict=True)
         }
 
+    def __repr__(self) -> str:
+        return f"<QuadraticForm: {len(self.labels)} variables>"
+
     @property
     def inertia(self) -> Inertia:
         """(positive, negative, zero), exactly."""

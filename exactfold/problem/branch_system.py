@@ -53,6 +53,10 @@ class BranchSystem:
         """The vertices that are not pinned, in increasing order."""
         return tuple(v for v in range(len(self.pattern.vertices)) if v not in self.pinned)
 
+    def __repr__(self) -> str:
+        pinned = ", ".join(map(str, self.pinned))
+        return f"<BranchSystem: {pinned} pinned, {self.pattern!r}>"
+
     @cached_property
     def quadrics(self) -> dict[int, QuadraticForm]:
         """The curvature form of each interior vertex, restricted to the variables in its star."""
@@ -115,6 +119,9 @@ class Chart:
     def variables(self) -> tuple[int, ...]:
         """The unknowns of the chart, as vertex indices."""
         return tuple(v for v in self.branch_system.variables if v != self.eliminated)
+
+    def __repr__(self) -> str:
+        return f"<Chart: height of vertex {self.eliminated} eliminated, {self.branch_system!r}>"
 
     @cached_property
     def eliminated_row(self) -> tuple[Fraction, ...]:

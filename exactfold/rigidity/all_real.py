@@ -25,6 +25,10 @@ class Reality:
     solutions: int | None = None
     multipliers: dict[int, Fraction] | None = None
 
+    def __repr__(self) -> str:
+        found = "?" if self.solutions is None else str(self.solutions)
+        return f"<Reality: {self.verdict}, {found} solutions>"
+
 
 def decide_all_branches_real(pattern: CreasePattern) -> Reality:
     """What docs/theorem.md says of a pattern, its hypotheses checked exactly.

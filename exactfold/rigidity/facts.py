@@ -24,6 +24,12 @@ class PatternFacts:
     self_stresses: int
     inertias: dict[int, Inertia]
 
+    def __repr__(self) -> str:
+        return (
+            f"<PatternFacts: rank {self.rigidity_rank}, {self.self_stresses} self stresses, "
+            f"{self.pattern!r}>"
+        )
+
     def to_dict(self) -> dict[str, Any]:
         """The object printed by `exactfold info --json`."""
         pattern = self.pattern
