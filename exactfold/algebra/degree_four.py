@@ -10,6 +10,7 @@ from math import isqrt
 from exactfold.errors import NotApplicableError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.rigidity.curvature import curvature_form
 
 _TRIED = 100  # squares of numbers below this are taken out of D
@@ -65,7 +66,7 @@ def area_product(pattern: CreasePattern, vertex: int) -> Fraction:
     return product
 
 
-def split_form(pattern: CreasePattern, vertex: int) -> Splitting:
+def split_form(pattern: PatternLike, vertex: int) -> Splitting:
     """The two linear forms of a vertex of degree four, checked by multiplying out.
 
     Raises `NotApplicableError` unless the vertex is interior of degree four, `ArithmeticError` if
@@ -75,6 +76,7 @@ def split_form(pattern: CreasePattern, vertex: int) -> Splitting:
     >>> split_form(flat_vertex_square(), 4).is_rational  # a straight crease path through it
     True
     """
+    pattern = as_pattern(pattern)
     discriminant = area_product(pattern, vertex)
     form = curvature_form(pattern, vertex)
     (a, left), (b, right) = _two_squares(form)

@@ -10,6 +10,7 @@ from functools import cached_property
 from exactfold.errors import CollinearPointsError, NotApplicableError, UsageError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import saddle_functional, vertex_sign_functional
@@ -36,7 +37,8 @@ class BranchSystem:
     pattern: CreasePattern
     pinned: tuple[int, int, int]
 
-    def __init__(self, pattern: CreasePattern, pinned: Sequence[int] | None = None) -> None:
+    def __init__(self, pattern: PatternLike, pinned: Sequence[int] | None = None) -> None:
+        pattern = as_pattern(pattern)
         object.__setattr__(self, "pattern", pattern)
         chosen = _default_pins(pattern) if pinned is None else tuple(sorted(pinned))
         count = len(pattern.vertices)

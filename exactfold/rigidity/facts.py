@@ -10,6 +10,7 @@ from typing import Any
 from exactfold.exact.linalg import Inertia
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.rigidity.curvature import curvature_form
 
 Progress = Callable[[str, int, int], None]
@@ -64,7 +65,7 @@ class PatternFacts:
         return dict(sorted(Counter(self.pattern.degree(v) for v in self.pattern.interior).items()))
 
 
-def pattern_facts(pattern: CreasePattern, progress: Progress | None = None) -> PatternFacts:
+def pattern_facts(pattern: PatternLike, progress: Progress | None = None) -> PatternFacts:
     """The exact facts that `exactfold info` reports; every inertia is computed, none assumed.
 
     >>> from exactfold.pattern.families import single_vertex
@@ -72,6 +73,7 @@ def pattern_facts(pattern: CreasePattern, progress: Progress | None = None) -> P
     >>> facts.rigidity_rank, facts.self_stresses, facts.inertias
     (9, 1, {5: (1, 2, 3)})
     """
+    pattern = as_pattern(pattern)
     rank = rigidity_rank(pattern)
     inertias = {}
     for k, v in enumerate(pattern.interior):
