@@ -11,6 +11,7 @@ from exactfold.exact.linalg import (
     inertia_by_elimination,
     nullspace,
     rank,
+    sum_of_squares,
     to_flint,
 )
 
@@ -131,9 +132,32 @@ def test_inertia(compute, matrix, expected):
     assert compute(matrix) == expected
 
 
-def test_inertia_error():
+@pytest.mark.parametrize("compute", [inertia, inertia_by_elimination, sum_of_squares])
+def test_forms_must_be_symmetric(compute):
     with pytest.raises(ValueError, match="symmetric"):
-        inertia([[0, 1], [2, 0]])
+        compute([[0, 1], [2, 0]])
+
+
+@quick
+@given(symmetric())
+def test_the_squares_add_up_to_the_form_and_are_independent(matrix):
+    squares = sum_of_squares(matrix)
+    n = len(matrix)
+    added = [
+        [sum((w * row[i] * row[j] for w, row in squares), Fraction(0)) for j in range(n)]
+        for i in range(n)
+    ]
+    assert added == [[Fraction(x) for x in row] for row in matrix]
+    assert all(weight != 0 for weight, _ in squares)
+    assert rank([row for _, row in squares]) == len(squares) == rank(matrix)
+
+
+def test_squares_of_a_form_without_a_diagonal():
+    assert sum_of_squares([[0, 1], [1, 0]]) == [
+        (2, [Fraction(1, 2), Fraction(1, 2)]),
+        (Fraction(-1, 2), [1, -1]),
+    ]
+    assert sum_of_squares([[0, 0], [0, 0]]) == []
 
 
 @quick
