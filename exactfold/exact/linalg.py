@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from typing import TypeAlias
 
-from flint import fmpq, fmpq_mat
+from flint import fmpq, fmpq_mat, nmod_mat
 
 Matrix: TypeAlias = Sequence[Sequence[Fraction | int]]
 Inertia: TypeAlias = tuple[int, int, int]
@@ -32,6 +32,21 @@ def rank(matrix: Matrix) -> int:
     1
     """
     return int(to_flint(matrix).rank()) if matrix and len(matrix[0]) else 0
+
+
+def rank_modulo(rows: Sequence[Mapping[int, int]], columns: int, prime: int) -> int:
+    """Rank over F_p of integer rows, given as entries by column; at most the rank over Q.
+
+    A minor that is not zero modulo p is not zero. The prime must be below 2^64.
+
+    >>> rank_modulo([{0: 1, 1: 2}, {0: 2, 1: 1}], 2, 7), rank_modulo([{0: 1, 1: 2}, {0: 2}], 2, 2)
+    (2, 1)
+    """
+    matrix = nmod_mat(len(rows), columns, prime)
+    for i, row in enumerate(rows):
+        for j, value in row.items():
+            matrix[i, j] = value % prime
+    return int(matrix.rank())
 
 
 def nullspace(matrix: Matrix) -> list[list[Fraction]]:

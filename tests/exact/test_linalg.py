@@ -11,6 +11,7 @@ from exactfold.exact.linalg import (
     inertia_by_elimination,
     nullspace,
     rank,
+    rank_modulo,
     sum_of_squares,
     to_flint,
 )
@@ -60,6 +61,14 @@ def test_rank_is_exact():
     tiny = Fraction(1, 10**50)
     assert rank([[1, 1], [1, 1 + tiny]]) == 2
     assert rank([[tiny, 2 * tiny], [1, 2]]) == 1
+
+
+@quick
+@given(st.lists(st.lists(st.integers(-9, 9), min_size=4, max_size=4), min_size=1, max_size=5))
+def test_rank_modulo_a_prime_is_at_most_the_rank(matrix):
+    rows = [{j: x for j, x in enumerate(row) if x} for row in matrix]
+    assert rank_modulo(rows, 4, 3) <= rank(matrix)
+    assert rank_modulo(rows, 4, (1 << 61) - 1) == rank(matrix)  # minors are below the prime
 
 
 @quick
