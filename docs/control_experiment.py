@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from exactfold import PROVED, BranchSystem, homotopy, isolate, random_square
 from exactfold.branches.roots import BoxRoot
-from exactfold.problem.functionals import Functionals
 from exactfold.problem.perturbed import perturbed
+from exactfold.problem.sign_rows import Functionals
 
 SIZES = ("0", "1/100", "1/10", "1/2")
 HEAD = (

@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING
 from exactfold.errors import ExactfoldError, InputError
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
+__version__ = "0.1.0"
+
 if TYPE_CHECKING:
     from exactfold.algebra.degree_four import split_form
     from exactfold.algebra.from_roots import parametrisation_from_roots
@@ -40,7 +42,7 @@ if TYPE_CHECKING:
     from exactfold.count.find import BranchFinder, find_branch, find_branches, neighbours
     from exactfold.count.solvers import METHODS, find_candidates, register_solver, solvers
     from exactfold.count.stream import StreamedCount, stream_branches
-    from exactfold.data import EXAMPLES, example_path
+    from exactfold.data import EXAMPLES, example_path, examples
     from exactfold.evidence.check import check_compact
     from exactfold.evidence.entries import write_certificate
     from exactfold.evidence.listing import certificate
@@ -53,6 +55,7 @@ if TYPE_CHECKING:
     from exactfold.pattern.delaunay import delaunay
     from exactfold.pattern.fold import FoldFile, load_fold, read_fold
     from exactfold.pattern.fold_writing import write_fold
+    from exactfold.pattern.load import load
     from exactfold.pattern.random_squares import random_square
     from exactfold.problem.branch_system import BranchSystem, Chart
     from exactfold.problem.perturbed import perturbed
@@ -77,7 +80,7 @@ _HOMES = {
     "exactfold.certify.isolation": ("isolate",),
     "exactfold.certify.krawczyk": ("krawczyk",),
     "exactfold.count.collect": ("count_branches",),
-    "exactfold.data": ("EXAMPLES", "example_path"),
+    "exactfold.data": ("EXAMPLES", "example_path", "examples"),
     "exactfold.exact.factor_degrees": ("factor_degrees",),
     "exactfold.exact.forms": ("QuadraticForm",),
     "exactfold.exact.numbers": ("as_rational",),
@@ -87,6 +90,7 @@ _HOMES = {
     "exactfold.pattern.delaunay": ("delaunay",),
     "exactfold.pattern.fold": ("FoldFile", "load_fold", "read_fold"),
     "exactfold.pattern.fold_writing": ("write_fold",),
+    "exactfold.pattern.load": ("load",),
     "exactfold.pattern.random_squares": ("random_square",),
     "exactfold.rigidity.all_real": ("decide_all_branches_real",),
     "exactfold.rigidity.curvature": ("curvature_form", "stress_form", "wheel_stress"),
@@ -151,6 +155,7 @@ __all__ = [
     "degenerate",
     "delaunay",
     "example_path",
+    "examples",
     "factor_degrees",
     "families",
     "find_branch",
@@ -162,6 +167,7 @@ __all__ = [
     "interval_newton",
     "isolate",
     "krawczyk",
+    "load",
     "load_fold",
     "nappe_ends",
     "neighbours",

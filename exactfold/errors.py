@@ -47,6 +47,10 @@ class UnreadableFileError(InputError):
     """A file does not exist or cannot be read."""
 
 
+class UnknownPatternError(UnreadableFileError):
+    """Text that is neither a file nor the name of an example; the message lists the names."""
+
+
 class UnwritableFileError(InputError):
     """An output path cannot be written."""
 

@@ -201,9 +201,8 @@ def info_report(facts: PatternFacts) -> Table:
         ),
         (
             "rank of rigidity matrix",
-            f"{facts.rigidity_rank} = 2V - 3"
-            if facts.rigidity_rank == 2 * len(pattern.vertices) - 3
-            else str(facts.rigidity_rank),
+            f"{facts.rigidity_rank}, by {facts.rank_by}"
+            + (" (2V - 3 for every triangulated disk)" if facts.rank_by == "theorem" else ""),
         ),
         ("self stresses", str(facts.self_stresses)),
         ("inertia of curvature forms", _listed([f"{v}: {i}" for v, i in facts.inertias.items()])),

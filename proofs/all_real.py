@@ -31,7 +31,7 @@ from exactfold import (
 from exactfold.branches.roots import BoxRoot
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.problem.branch_system import Chart, notch_chart
-from exactfold.problem.functionals import Functionals
+from exactfold.problem.sign_rows import Functionals
 from exactfold.rigidity.definite_stress import disk_multipliers
 from exactfold.verdict import PROVED
 from proofs.chambers import corner_sign, counted, solve

@@ -30,7 +30,7 @@ from exactfold import BranchSystem, CreasePattern, QuadraticSystem, families, gr
 from exactfold.algebra.exact_solution import ExactSolution, RootClass
 from exactfold.exact.linalg import inertia, nullspace
 from exactfold.problem.branch_system import Chart, notch_chart
-from exactfold.problem.functionals import Functionals
+from exactfold.problem.sign_rows import Functionals
 from exactfold.rigidity.definite_stress import disk_multipliers
 from proofs.branch_counts import OCTAHEDRON, SQUARE, TWISTED, gram, inner_points, restricted
 from proofs.chambers import jacobian

@@ -43,7 +43,7 @@ from exactfold.branches import classify
 from exactfold.certify import algebraic
 from exactfold.certify.isolation import isolate
 from exactfold.count import collect as module
-from exactfold.count import multiple_roots
+from exactfold.count import hand_over, multiple_roots
 from exactfold.count.solvers import find_candidates
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.evidence.listing import certificate

@@ -127,6 +127,12 @@ class RootClass:
             [c // content for c in integers], columns[1:], self.multiplicity, form
         )
 
+    def __repr__(self) -> str:
+        return (
+            f"<RootClass: {self.degree} conjugate zeros in {len(self.numerators)} unknowns, "
+            f"multiplicity {self.multiplicity}>"
+        )
+
     @property
     def degree(self) -> int:
         """Number d of conjugate zeros, real and complex."""
@@ -294,6 +300,10 @@ class ExactSolution:
     krull_dimension: int
     degree: int
     guesses: ComplexArray | None = field(default=None, compare=False, repr=False)
+
+    def __repr__(self) -> str:
+        found = "infinitely many" if self.dimension is None else str(self.distinct)
+        return f"<ExactSolution: {found} zeros of {self.system!r}>"
 
     @property
     def factor_degrees(self) -> tuple[int, ...]:

@@ -15,7 +15,7 @@ from exactfold.exact.linalg import from_fmpq
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.flat_sheets import FlatSheets
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 
 _ONE_POINT = RootClass((0, 1), (), 1, ())  # the point of a space of dimension 0
 

@@ -108,6 +108,12 @@ class QuotientAlgebra:
     basis: tuple[Exponent, ...]
     matrices: tuple[fmpq_mat, ...]
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return _restored, (self.basis, tuple(m.tolist() for m in self.matrices))  # FLINT's cannot
+
+    def __repr__(self) -> str:
+        return f"<QuotientAlgebra: dimension {self.dimension}, {len(self.matrices)} unknowns>"
+
     @property
     def dimension(self) -> int:
         """dim_Q A: the number of complex zeros of I with multiplicity."""
@@ -160,6 +166,12 @@ class QuotientAlgebra:
             columns = (project * matrix).tolist()
             matrices.append(fmpq_mat([[row[k] for k in pivots] for row in columns]))
         return QuotientAlgebra(tuple(self.basis[k] for k in pivots), tuple(matrices))
+
+
+def _restored(
+    basis: tuple[Exponent, ...], matrices: Sequence[Sequence[Sequence[fmpq]]]
+) -> QuotientAlgebra:
+    return QuotientAlgebra(basis, tuple(fmpq_mat(rows) for rows in matrices))
 
 
 def from_groebner_basis(basis: Sequence[SparsePolynomial], size: int) -> QuotientAlgebra | None:

@@ -15,10 +15,10 @@ from exactfold.certify.box import IsolatingBox
 from exactfold.certify.krawczyk import krawczyk_at
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.problem.branch_system import Chart
-from exactfold.problem.functionals import Functionals, Row
 from exactfold.problem.problem import Problem
+from exactfold.problem.sign_rows import Functionals, Row
 from exactfold.rigidity.flat_folds import flat_folds
-from exactfold.rigidity.timelike import saddle_functional
+from exactfold.rigidity.functionals import saddle_functional
 
 K = TypeVar("K")
 R = TypeVar("R", bound=ChartRoot)

@@ -23,6 +23,11 @@ class IsolatingBox:
     radius: int
     bits: int
 
+    def __repr__(self) -> str:
+        kind = "real" if self.is_real else "complex"
+        size = self.radius.bit_length() - self.bits
+        return f"<IsolatingBox: {kind}, {len(self.real)} unknowns, radius below 2^{size}>"
+
     @property
     def is_real(self) -> bool:
         """Whether the zero is proved real."""

@@ -37,6 +37,12 @@ class Isolation:
     boxes: tuple[IsolatingBox, ...]
     failures: tuple[Uncertified, ...]
 
+    def __repr__(self) -> str:
+        return (
+            f"<Isolation: {self.complete}, {len(self.boxes)} boxes, {self.real} real, "
+            f"{len(self.failures)} failures>"
+        )
+
     @property
     def complete(self) -> Verdict:
         """Whether the boxes are proved to hold all zeros in projective space."""

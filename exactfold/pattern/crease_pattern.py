@@ -320,5 +320,20 @@ class CreasePattern:
     def __hash__(self) -> int:
         return hash(self.sha256)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return _restored, (self.vertices, self.triangles)  # what is cached stays behind
+
     def __repr__(self) -> str:
         return f"<CreasePattern: {self.Vi} interior and {self.Ve} boundary vertices>"
+
+
+def _restored(vertices: tuple[Point, ...], triangles: tuple[Triangle, ...]) -> CreasePattern:
+    """The copy of a pattern, which was validated when it was made.
+
+    It is not validated again: who can forge a pickle can make it run any program, so that nothing
+    would be gained for the cost, a second for 10,000 vertices.
+    """
+    pattern = object.__new__(CreasePattern)
+    object.__setattr__(pattern, "vertices", vertices)
+    object.__setattr__(pattern, "triangles", triangles)
+    return pattern

@@ -190,6 +190,9 @@ class H1Triangulation:
     moves: tuple[tuple[int, int, int, int], ...]
     seed: int
 
+    def __repr__(self) -> str:
+        return f"<H1Triangulation: {len(self.moves)} moves, seed {self.seed}, {self.pattern!r}>"
+
 
 def h1_sequence(steps: int = 4, seed: int = 0) -> CreasePattern:
     """A random H1 triangulation with `steps` interior vertices; see `sample_h1_sequence`.

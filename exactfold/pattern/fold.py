@@ -59,6 +59,18 @@ class FoldFile:
     exact: bool = False
     assignment: Mapping[Edge, str] = field(default_factory=dict, hash=False)
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "assignment", MappingProxyType(dict(self.assignment)))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return FoldFile, (self.pattern, self.snapped, self.exact, dict(self.assignment))
+
+    def __repr__(self) -> str:
+        letters = f", {len(self.assignment)} letters" if self.assignment else ""
+        exact = ", exact coordinates" if self.exact else ""
+        moved = ", snapped" if self.snapped else ""
+        return f"<FoldFile: {self.pattern!r}{letters}{exact}{moved}>"
+
 
 def read_fold(path: str | PathLike[str], snap: int | None = None) -> CreasePattern:
     """The crease pattern in a FOLD file; `load_fold` also tells how far snapping moved anything."""
@@ -345,4 +357,4 @@ def _assignment(
             raise NotFoldError(
                 f"edge {k} ({i}-{j}) is assigned {letter}, and {assignment[edge]} before"
             )
-    return MappingProxyType(assignment)
+    return assignment

@@ -10,18 +10,21 @@ from contextlib import suppress
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from exactfold.errors import NotApplicableError, UnwritableFileError, UsageError
-from exactfold.exact.numbers import format_rational
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.exact.numbers import format_rational, shown
+from exactfold.pattern.crease_pattern import Edge
+
+if TYPE_CHECKING:
+    from exactfold.pattern.load import PatternLike
 
 EXACT_KEY: Final = "vertices_exactfold:coords"
 _ANGLES: Final = {"M": -180, "V": 180, "F": 0, "U": 0, "B": 0}
 
 
 def fold_document(
-    pattern: CreasePattern,
+    pattern: PatternLike,
     assignment: Mapping[Edge, str] | None = None,
     title: str | None = None,
 ) -> dict[str, Any]:
@@ -41,6 +44,9 @@ def fold_document(
     >>> document["edges_vertices"], document["edges_assignment"]
     ([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]], ['B', 'B', 'M', 'B', 'U', 'U'])
     """
+    from exactfold.pattern.load import as_pattern  # here, as it reads what is written here
+
+    pattern = as_pattern(pattern)
     letters = dict.fromkeys(pattern.edges, "B")
     letters.update(dict.fromkeys(pattern.folds, "U"))
     for edge, letter in (assignment or {}).items():
@@ -72,20 +78,25 @@ def fold_document(
 
 
 def write_fold(
-    pattern: CreasePattern,
+    pattern: PatternLike,
     path: str | PathLike[str],
     assignment: Mapping[Edge, str] | None = None,
     title: str | None = None,
 ) -> None:
     """Write `fold_text(pattern, assignment, title)`, whole or not at all.
 
-    Raises what `fold_document` raises, and `UnwritableFileError`.
+    Raises what `fold_document` raises, `UnwritableFileError`, and `UsageError` for a path that is
+    none, as where the arguments are swapped.
     """
+    if not isinstance(path, str | PathLike):
+        raise UsageError(
+            f"write_fold(pattern, path): {shown(path)} is not a path; the pattern comes first"
+        )
     write_text(path, fold_text(pattern, assignment, title))
 
 
 def fold_text(
-    pattern: CreasePattern,
+    pattern: PatternLike,
     assignment: Mapping[Edge, str] | None = None,
     title: str | None = None,
 ) -> str:

@@ -10,9 +10,10 @@ from functools import cached_property
 from exactfold.errors import CollinearPointsError, NotApplicableError, UsageError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.rigidity.timelike import saddle_functional, vertex_sign_functional
+from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functional
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,8 @@ class BranchSystem:
     pattern: CreasePattern
     pinned: tuple[int, int, int]
 
-    def __init__(self, pattern: CreasePattern, pinned: Sequence[int] | None = None) -> None:
+    def __init__(self, pattern: PatternLike, pinned: Sequence[int] | None = None) -> None:
+        pattern = as_pattern(pattern)
         object.__setattr__(self, "pattern", pattern)
         chosen = _default_pins(pattern) if pinned is None else tuple(sorted(pinned))
         count = len(pattern.vertices)
@@ -52,6 +54,10 @@ class BranchSystem:
     def variables(self) -> tuple[int, ...]:
         """The vertices that are not pinned, in increasing order."""
         return tuple(v for v in range(len(self.pattern.vertices)) if v not in self.pinned)
+
+    def __repr__(self) -> str:
+        pinned = ", ".join(map(str, self.pinned))
+        return f"<BranchSystem: {pinned} pinned, {self.pattern!r}>"
 
     @cached_property
     def quadrics(self) -> dict[int, QuadraticForm]:
@@ -138,6 +144,9 @@ class Chart:
     def variables(self) -> tuple[int, ...]:
         """The unknowns of the chart, as vertex indices."""
         return tuple(v for v in self.branch_system.variables if v != self.eliminated)
+
+    def __repr__(self) -> str:
+        return f"<Chart: height of vertex {self.eliminated} eliminated, {self.branch_system!r}>"
 
     @cached_property
     def eliminated_row(self) -> tuple[Fraction, ...]:

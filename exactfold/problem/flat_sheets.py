@@ -19,7 +19,7 @@ from exactfold.exact.linalg import from_fmpq, nullspace, to_flint
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 
 Row = tuple[Fraction, ...]
 

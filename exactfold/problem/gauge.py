@@ -10,7 +10,7 @@ from functools import cached_property
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.numbers import RationalLike, as_rational
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.rigidity.timelike import saddle_functional
+from exactfold.rigidity.functionals import saddle_functional
 
 SADDLE, CORNER, RIM = "saddle", "corner", "rim"
 

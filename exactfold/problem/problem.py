@@ -11,8 +11,8 @@ from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import BranchSystem, Chart, chamber_chart
-from exactfold.problem.functionals import Functionals
 from exactfold.problem.gauge import Gauge
+from exactfold.problem.sign_rows import Functionals
 from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
 
 

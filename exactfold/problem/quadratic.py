@@ -56,6 +56,9 @@ class QuadraticSystem:
         """Number n of unknowns and of equations."""
         return len(self.matrices)
 
+    def __repr__(self) -> str:
+        return f"<QuadraticSystem: {self.size} quadrics in {self.size} unknowns>"
+
     @property
     def bezout_number(self) -> int:
         """2^n, the number of complex zeros in projective space if finite, with multiplicity."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
@@ -25,8 +25,12 @@ class Reality:
     solutions: int | None = None
     multipliers: dict[int, Fraction] | None = None
 
+    def __repr__(self) -> str:
+        found = "?" if self.solutions is None else str(self.solutions)
+        return f"<Reality: {self.verdict}, {found} solutions>"
 
-def decide_all_branches_real(pattern: CreasePattern) -> Reality:
+
+def decide_all_branches_real(pattern: PatternLike) -> Reality:
     """What docs/theorem.md says of a pattern, its hypotheses checked exactly.
 
     The theorem covers every triangulated convex polygon (boundary angles of pi, chords, vertices of
@@ -38,6 +42,7 @@ def decide_all_branches_real(pattern: CreasePattern) -> Reality:
     >>> str(reality.verdict), reality.solutions
     ('proved', 4)
     """
+    pattern = as_pattern(pattern)
     if not pattern.is_convex and pattern.Ve != 4:
         return Reality(
             UNDECIDED,

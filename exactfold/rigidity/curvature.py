@@ -8,6 +8,7 @@ from fractions import Fraction
 from exactfold.errors import UsageError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.load import PatternLike, as_pattern
 
 
 def spokes(
@@ -21,7 +22,7 @@ def spokes(
     return ring, [(pattern.vertices[j][0] - x, pattern.vertices[j][1] - y) for j in ring]
 
 
-def wheel_stress(pattern: CreasePattern, vertex: int) -> dict[Edge, Fraction]:
+def wheel_stress(pattern: PatternLike, vertex: int) -> dict[Edge, Fraction]:
     r"""Stress densities w_e of the wheel around an interior vertex, by edge (i, j) with i < j.
 
     With spokes d_j, c_j = d_j x d_{j+1}, s_j = d_j . d_{j+1}, L_j^2 = d_j . d_j:
@@ -32,6 +33,7 @@ def wheel_stress(pattern: CreasePattern, vertex: int) -> dict[Edge, Fraction]:
     (the paper's Eq. wheelstress divided by the edge lengths, so that everything is rational).
     Unit: 1 / length^2. Raises `UsageError` unless `vertex` is interior.
     """
+    pattern = as_pattern(pattern)
     ring, d = spokes(pattern, vertex)
     n = len(ring)
     c = [d[j][0] * d[(j + 1) % n][1] - d[j][1] * d[(j + 1) % n][0] for j in range(n)]
@@ -47,7 +49,7 @@ def wheel_stress(pattern: CreasePattern, vertex: int) -> dict[Edge, Fraction]:
     return stress
 
 
-def curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
+def curvature_form(pattern: PatternLike, vertex: int) -> QuadraticForm:
     r"""Second-order Gaussian curvature K_v at an interior vertex, as a form in the heights.
 
         K_v(h) = sum_j x_j x_{j+1} / c_j - (s_j / 2 c_j) (x_j^2 / L_j^2 + x_{j+1}^2 / L_{j+1}^2)
@@ -60,6 +62,7 @@ def curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
     >>> curvature_form(single_vertex(5), 5).inertia
     (1, 2, 3)
     """
+    pattern = as_pattern(pattern)
     ring, d = spokes(pattern, vertex)
     n = len(ring)
     turned = d[1:] + d[:1]
@@ -80,8 +83,9 @@ def curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
     return QuadraticForm((vertex, *ring), tuple(tuple(row) for row in matrix))
 
 
-def stress_form(pattern: CreasePattern, stress: Mapping[Edge, Fraction]) -> QuadraticForm:
+def stress_form(pattern: PatternLike, stress: Mapping[Edge, Fraction]) -> QuadraticForm:
     """(1/2) sum_e w_e (h_i - h_j)^2 for stress densities w, on all vertices (paper Eq. compat)."""
+    pattern = as_pattern(pattern)
     size = len(pattern.vertices)
     matrix = [[Fraction(0)] * size for _ in range(size)]
     for (i, j), w in stress.items():

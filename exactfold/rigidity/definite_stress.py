@@ -22,10 +22,11 @@ from fractions import Fraction
 
 from exactfold.exact.linalg import inertia
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.rigidity.curvature import curvature_form
 
 
-def definite_stress(pattern: CreasePattern) -> dict[int, Fraction] | None:
+def definite_stress(pattern: PatternLike) -> dict[int, Fraction] | None:
     """Positive multipliers, by interior vertex, of a definite combination of curvature forms.
 
     R^2 - |U_v - c|^2 for a disk about the centroid c of the boundary vertices (docs/theorem.md, Key
@@ -37,6 +38,7 @@ def definite_stress(pattern: CreasePattern) -> dict[int, Fraction] | None:
     >>> definite_stress(CreasePattern(pyramid, [(0, 1, 3), (1, 2, 3), (2, 0, 3)]))
     {3: Fraction(5, 1)}
     """
+    pattern = as_pattern(pattern)
     if not pattern.interior:
         return {}
     multipliers = disk_multipliers(pattern)

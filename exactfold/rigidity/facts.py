@@ -10,19 +10,32 @@ from typing import Any
 from exactfold.exact.linalg import Inertia
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.self_stress import rigidity_rank
 
 Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
 class PatternFacts:
-    """Exact facts of a pattern: counts, rank of the rigidity matrix, inertia of each vertex."""
+    """Exact facts of a pattern: counts, rank of the rigidity matrix, inertia of each vertex.
+
+    `rank_by` says what proves the rank: "elimination", or for large sheets a "theorem", see
+    `exactfold.rigidity.self_stress.rigidity_rank`.
+    """
 
     pattern: CreasePattern
     rigidity_rank: int
     self_stresses: int
     inertias: dict[int, Inertia]
+    rank_by: str
+
+    def __repr__(self) -> str:
+        return (
+            f"<PatternFacts: rank {self.rigidity_rank}, {self.self_stresses} self stresses, "
+            f"{self.pattern!r}>"
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """The object printed by `exactfold info --json`."""
@@ -47,6 +60,7 @@ class PatternFacts:
             ],
             "foldable_vertices": list(pattern.foldable_vertices),
             "rigidity_rank": self.rigidity_rank,
+            "rigidity_rank_by": self.rank_by,
             "self_stresses": self.self_stresses,
             "inertia": {str(v): list(i) for v, i in self.inertias.items()},
             "sha256": pattern.sha256,
@@ -58,7 +72,7 @@ class PatternFacts:
         return dict(sorted(Counter(self.pattern.degree(v) for v in self.pattern.interior).items()))
 
 
-def pattern_facts(pattern: CreasePattern, progress: Progress | None = None) -> PatternFacts:
+def pattern_facts(pattern: PatternLike, progress: Progress | None = None) -> PatternFacts:
     """The exact facts that `exactfold info` reports; every inertia is computed, none assumed.
 
     >>> from exactfold.pattern.families import single_vertex
@@ -66,20 +80,11 @@ def pattern_facts(pattern: CreasePattern, progress: Progress | None = None) -> P
     >>> facts.rigidity_rank, facts.self_stresses, facts.inertias
     (9, 1, {5: (1, 2, 3)})
     """
-    rank = rigidity_rank(pattern)
+    pattern = as_pattern(pattern)
+    rank, rank_by = rigidity_rank(pattern)
     inertias = {}
     for k, v in enumerate(pattern.interior):
         if progress is not None and k % 100 == 0:
             progress("curvature forms", k, pattern.Vi)
         inertias[v] = curvature_form(pattern, v).inertia
-    return PatternFacts(pattern, rank, len(pattern.edges) - rank, inertias)
-
-
-def rigidity_rank(pattern: CreasePattern) -> int:
-    """Rank over Q of the rigidity matrix: 2V - 3, as for every triangulated disk.
-
-    A face is infinitesimally rigid in the plane, its vertices not being collinear. Two such bodies
-    with two points in common are one, and the faces of a disk are connected through their sides.
-    So nothing but the three rigid motions is in the kernel.
-    """
-    return 2 * len(pattern.vertices) - 3
+    return PatternFacts(pattern, rank, len(pattern.edges) - rank, inertias, rank_by)

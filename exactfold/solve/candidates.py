@@ -11,7 +11,7 @@ import numpy.typing as npt
 ComplexArray = npt.NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Candidates:
     """Approximate zeros of a `QuadraticSystem`, one row a zero; nothing here is proved.
 
@@ -31,6 +31,17 @@ class Candidates:
             return self
         lost = (*self.lost, f"{int((~good).sum())} candidates left the range of floats")
         return replace(self, points=self.points[good], lost=lost)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Candidates):
+            return NotImplemented
+        mine, theirs = (self.method, self.lost, self.settings), (other.method, other.lost)
+        return mine == (*theirs, other.settings) and np.array_equal(self.points, other.points)
+
+    __hash__ = None  # type: ignore[assignment]  # arrays have none
+
+    def __repr__(self) -> str:
+        return f"<Candidates: {len(self.points)} by {self.method}, {len(self.lost)} paths lost>"
 
     @property
     def some_meet(self) -> bool:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from exactfold.exact.linalg import from_fmpq
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.flat_sheets import FlatSheets, flat_sheets
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]

@@ -15,7 +15,7 @@ from exactfold.problem.branch_system import Chart
 from exactfold.problem.chart_change import to_chart
 from exactfold.problem.gauge import pattern_size
 from exactfold.rigidity.curvature import curvature_form, spokes
-from exactfold.rigidity.timelike import saddle_functional
+from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.dense_newton import sign_vectors
 

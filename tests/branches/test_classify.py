@@ -16,8 +16,8 @@ from exactfold.certify.krawczyk import krawczyk_at
 from exactfold.exact.numbers import integer_row
 from exactfold.pattern.families import flat_vertex_square, h1_sequence, hypar, two_vertex
 from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.functionals import Functionals
 from exactfold.problem.problem import Problem, barycentric
+from exactfold.problem.sign_rows import Functionals
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
 

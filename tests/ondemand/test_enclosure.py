@@ -24,7 +24,7 @@ from exactfold.pattern.random_squares import random_square
 from exactfold.problem.gauge import Gauge
 from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
-from exactfold.rigidity.timelike import fold_functional, vertex_sign_functional
+from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
 from exactfold.solve.sparse_newton import solve
 from exactfold.solve.sparse_sheet import FloatSheet
 

@@ -9,7 +9,7 @@ from exactfold.errors import UsageError
 from exactfold.pattern.families import flat_vertex_square, hypar, two_vertex
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.problem.flat_sheets import flat_sheets
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 
 
 def test_flat_sheets_are_flat_where_they_should_be():

@@ -28,7 +28,7 @@ from exactfold.certify.isolation import isolate
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.problem.branch_system import BranchSystem, Chart
-from exactfold.problem.functionals import Functionals
+from exactfold.problem.sign_rows import Functionals
 from exactfold.solve.homotopy import homotopy
 from exactfold.verdict import PROVED
 

@@ -1,0 +1,60 @@
+"""One way in for patterns: a pattern, what was read from a file, a path, or a shipped example."""
+
+from __future__ import annotations
+
+import os
+from os import PathLike
+from typing import TypeAlias
+
+from exactfold.data import EXAMPLES, example_path
+from exactfold.errors import UnknownPatternError, UsageError
+from exactfold.exact.numbers import shown
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.fold import FoldFile, read_fold
+
+PatternLike: TypeAlias = "CreasePattern | FoldFile | str | PathLike[str]"
+"""What every public function accepts where it asks for a pattern."""
+
+
+def load(what: PatternLike, snap: int | None = None) -> CreasePattern:
+    """The pattern that is meant: a shipped example by name, a path, a pattern, or a `FoldFile`.
+
+    Text that is a name in `EXAMPLES` is that example, whatever files there are ("./two-vertex" is
+    a file of this name); all other text and every `Path` is the path of a FOLD file, read by
+    `read_fold`. With `snap`, all coordinates are rounded to multiples of 1/snap.
+
+    Raises `UnknownPatternError`, which lists the names, for text that is neither a name nor a file;
+    what `read_fold` raises; `UsageError` for anything else than the four kinds.
+
+    >>> load("two-vertex")
+    <CreasePattern: 2 interior and 4 boundary vertices>
+    >>> load(load("two-vertex")) == load("two-vertex")
+    True
+    >>> load(3)
+    Traceback (most recent call last):
+    exactfold.errors.UsageError: 3 is not a pattern: give a CreasePattern, a FoldFile, the path of
+    a FOLD file, or the name of an example
+    """
+    if isinstance(what, FoldFile):
+        what = what.pattern
+    if isinstance(what, CreasePattern):
+        return what if snap is None else what.snapped(snap)[0]
+    if not isinstance(what, str | PathLike):
+        raise UsageError(
+            f"{shown(what)} is not a pattern: give a CreasePattern, a FoldFile, the path of a FOLD "
+            "file, or the name of an example"
+        )
+    if isinstance(what, str):
+        if what in EXAMPLES:
+            return read_fold(example_path(what), snap)
+        if not os.path.exists(what):
+            raise UnknownPatternError(
+                f"{shown(what)} is neither a file nor an example; the examples are: "
+                f"{', '.join(EXAMPLES)}"
+            )
+    return read_fold(what, snap)
+
+
+def as_pattern(what: PatternLike) -> CreasePattern:
+    """`load(what)`, for functions that take a pattern: a pattern passes through untouched."""
+    return what if isinstance(what, CreasePattern) else load(what)

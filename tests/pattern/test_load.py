@@ -1,0 +1,156 @@
+"""What a public function takes for a pattern."""
+
+import inspect
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+import exactfold
+from exactfold.data import EXAMPLES, example_path, examples
+from exactfold.errors import NotJSONError, UnknownPatternError, UnreadableFileError, UsageError
+from exactfold.pattern.families import two_vertex
+from exactfold.pattern.fold import load_fold, read_fold
+from exactfold.pattern.fold_writing import write_fold
+from exactfold.pattern.load import as_pattern, load
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_fold(two_vertex(), "sheet.fold")
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_examples_are_loaded_by_name_from_anywhere(name, here):
+    assert load(name) == read_fold(example_path(name))
+
+
+def test_four_kinds_of_the_same_pattern(here):
+    pattern = two_vertex()
+    kinds = [pattern, load_fold("sheet.fold"), "sheet.fold", Path("sheet.fold"), "two-vertex"]
+    assert [load(kind) for kind in kinds] == [pattern] * 5
+    assert as_pattern(pattern) is load(pattern) is pattern
+
+
+def test_the_name_of_an_example_is_not_a_file(here):
+    os.rename("sheet.fold", "waterbomb")
+    assert load("waterbomb") == read_fold(example_path("waterbomb"))
+    for path in ("./waterbomb", Path("waterbomb"), str(here / "waterbomb")):
+        assert load(path) == two_vertex()
+
+
+@pytest.mark.parametrize("what", ["two_vertex", "sheet", "", "a\0b", "none/sheet.fold", "x" * 5000])
+def test_unknown_pattern_error_lists_the_names(what, here):
+    with pytest.raises(UnknownPatternError, match="is neither a file nor an example") as caught:
+        load(what)
+    assert str(caught.value).endswith(", ".join(EXAMPLES))
+    assert len(str(caught.value)) < 250
+
+
+def test_a_path_is_never_the_name_of_an_example(here):
+    with pytest.raises(UnreadableFileError, match="cannot read two-vertex: No such file") as caught:
+        load(Path("two-vertex"))
+    assert type(caught.value) is UnreadableFileError
+
+
+def test_a_file_that_is_there_is_read_whatever_it_is(here):
+    (here / "empty").write_text("")
+    with pytest.raises(NotJSONError):
+        load("empty")
+    with pytest.raises(UnreadableFileError, match="directory"):
+        load(".")
+
+
+@pytest.mark.parametrize("what", [3, None, 0.5, b"sheet.fold", [(0, 0)], {"pattern": 1}, object])
+def test_anything_else_is_named(what, here):
+    with pytest.raises(UsageError, match="is not a pattern: give a CreasePattern, a FoldFile, t"):
+        load(what)
+
+
+def test_snapping_whatever_is_loaded(here):
+    fine = load("two-vertex").snapped(10)[0]
+    kinds = ["two-vertex", "sheet.fold", two_vertex(), load_fold("sheet.fold")]
+    assert [load(kind, snap=10) for kind in kinds] == [fine] * 4
+    assert fine != two_vertex()
+
+
+TAKES_PATTERN = {
+    "curvature_form": (4,),
+    "wheel_stress": (4,),
+    "stress_form": ({(0, 1): 1},),
+    "definite_stress": (),
+    "decide_all_branches_real": (),
+    "pattern_facts": (),
+    "rigidity_matrix": (),
+    "self_stresses": (),
+    "split_form": (4,),
+    "BranchSystem": (),
+}
+WIRED_LATER = {
+    "BranchFinder",
+    "count_branches",
+    "count_streaming",
+    "find_branch",
+    "find_branches",
+    "neighbours",
+}
+
+
+@pytest.mark.parametrize("name", TAKES_PATTERN)
+def test_public_functions_take_a_name_or_a_path(name, here):
+    function, more = getattr(exactfold, name), TAKES_PATTERN[name]
+    expected = function(two_vertex(), *more)
+    assert function("two-vertex", *more) == expected
+    assert function(Path("sheet.fold"), *more) == expected
+    with pytest.raises(UsageError, match="3 is not a pattern"):
+        function(3, *more)
+
+
+def test_no_public_function_that_takes_a_pattern_is_missing():
+    """Results hold a pattern too; they are made by functions, not by callers."""
+    made = {"BranchCount", "FoldFile", "SignedBranch", "StreamedCount"}
+    taking = {
+        name
+        for name in exactfold.__all__
+        if callable(getattr(exactfold, name))
+        and not isinstance(getattr(exactfold, name), type(exactfold.Verdict))
+        and "pattern" in _parameters(getattr(exactfold, name))
+    }
+    assert taking - made == {*TAKES_PATTERN, *WIRED_LATER, "write_fold"}
+
+
+def _parameters(function):
+    try:
+        return inspect.signature(function).parameters
+    except ValueError:
+        return {}
+
+
+def test_every_example_is_described_in_one_line():
+    found = examples()
+    assert tuple(found) == EXAMPLES
+    for name, text in found.items():
+        assert text == json.loads(example_path(name).read_text())["file_description"]
+        assert text.endswith(".")
+        assert "\n" not in text
+        assert 20 < len(text) < 120
+
+
+DESCRIBED = {
+    "two-vertex": "four ways",
+    "single-vertex-4": "two ways",
+    "flat-vertex": "three branches",
+    "hypar-2": "256 branches",
+    "random-8": "256 branches",
+}
+NUMBERS = {"two": 2, "three": 3, "four": 4, "256": 256}
+
+
+@pytest.mark.parametrize("name", DESCRIBED)
+def test_counts_in_descriptions_are_right(name):
+    assert DESCRIBED[name] in examples()[name]
+    count = exactfold.count_branches(load(name)).distinct
+    assert count == NUMBERS[DESCRIBED[name].split()[0]]
