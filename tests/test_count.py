@@ -42,6 +42,7 @@ from exactfold import count as module
 from exactfold.branches import attempt, classify, multiple_roots
 from exactfold.branches.claims import certificate
 from exactfold.certify import algebraic, rigid_triangles
+from exactfold.checker import listing
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import FAMILIES, h1_sequence, hypar, single_vertex, two_vertex
@@ -745,7 +746,7 @@ def test_open_folds_cost_their_letters_and_not_the_count(monkeypatch, name):
         assert agreeing
     document = json.loads(json.dumps(certificate(result)))
     assert checker.check(document) == document["claims"]
-    monkeypatch.setattr(checker, "close_flat", lambda sheet, signs: None)
+    monkeypatch.setattr(listing, "close_flat", lambda sheet, signs: None)
     assert checker.check(document) == document["claims"]
     place = next(b for b in document["claims"]["branches"] if "U" in b["assignment"])
     for letter in "MVF?":

@@ -9,13 +9,11 @@ from typing import Any
 
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.rigid_triangles import RigidTriangle
+from exactfold.checker.formats import LISTING, LISTING_VERSION
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold_writing import write_text
 from exactfold.system.branch_system import BranchSystem, Chart
-
-FORMAT = "exactfold certificate"
-VERSION = 2
 
 Document = dict[str, Any]
 
@@ -28,8 +26,8 @@ def document(
 ) -> Document:
     """The certificate as a JSON object; `docs/certificate.md` describes every key."""
     return {
-        "format": FORMAT,
-        "version": VERSION,
+        "format": LISTING,
+        "version": LISTING_VERSION,
         "pattern": pattern_document(pattern),
         "claims": {
             "interior": pattern.Vi,

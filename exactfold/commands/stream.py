@@ -10,8 +10,8 @@ from functools import partial
 from pathlib import Path
 
 from exactfold.branches.result import BranchCount
+from exactfold.checker.formats import MOST_UNKNOWNS
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
-from exactfold.compact_checker import MOST_UNKNOWNS
 from exactfold.count import count_branches
 from exactfold.errors import (
     NoInteriorVertexError,

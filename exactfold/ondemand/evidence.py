@@ -1,4 +1,4 @@
-"""Certificates of single branches, for `exactfold.branch_checker`."""
+"""Certificates of single branches, for `exactfold.checker`."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ from math import lcm
 from typing import Any
 
 from exactfold.certify.certificate import pattern_document
+from exactfold.checker.formats import BRANCH, BRANCH_VERSION
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.ondemand.result import SignedBranch
 from exactfold.verdict import PROVED
-
-FORMAT, VERSION = "exactfold branch", 1
 
 
 def branch_certificate(branch: SignedBranch) -> dict[str, Any]:
@@ -19,11 +18,11 @@ def branch_certificate(branch: SignedBranch) -> dict[str, Any]:
 
     Raises `UsageError` unless the branch is proved.
 
-    >>> from exactfold import branch_checker
+    >>> from exactfold import checker
     >>> from exactfold.ondemand.find import find_branch
     >>> from exactfold.pattern.random_squares import random_square
     >>> certificate = branch_certificate(find_branch(random_square(3, seed=0), "+-+"))
-    >>> branch_checker.check(certificate)["vertex_signs"]
+    >>> checker.check(certificate)["vertex_signs"]
     [1, -1, 1]
     """
     if branch.status is not PROVED or branch.squared_distance is None:
@@ -32,8 +31,8 @@ def branch_certificate(branch: SignedBranch) -> dict[str, Any]:
     heights = [None if v in rigid else h for v, h in sorted(branch.centres.items())]
     denominator = lcm(*(h.denominator for h in heights if h is not None))
     return {
-        "format": FORMAT,
-        "version": VERSION,
+        "format": BRANCH,
+        "version": BRANCH_VERSION,
         "pattern": pattern_document(pattern),
         "claims": {
             "gauge": branch.gauge,

@@ -14,7 +14,7 @@ from exactfold.branches.functionals import Functionals
 from exactfold.certify.certificate import Document, chart_evidence, triangle_evidence
 from exactfold.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
 from exactfold.certify.rigid_triangles import RigidTriangle, certify_rigid_triangles
-from exactfold.compact_checker import MOST_UNKNOWNS
+from exactfold.checker.formats import MOST_UNKNOWNS
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.scale.settle import ExactRoot, OpenEnd, Settler

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from exactfold.certify.certificate import pattern_document
-from exactfold.compact_checker import FORMAT, UNPROVED, VERSION
+from exactfold.checker.formats import COMPACT, COMPACT_VERSION, UNPROVED
 from exactfold.exact.numbers import format_integer
 from exactfold.scale.chambers import Chambers, ProvedBlock
 
@@ -20,8 +20,8 @@ def header_line(chambers: Chambers) -> str:
     """The first line: the pattern and what its roots are proved with."""
     return _text(
         {
-            "format": FORMAT,
-            "version": VERSION,
+            "format": COMPACT,
+            "version": COMPACT_VERSION,
             "pattern": pattern_document(chambers.pattern),
             "evidence": chambers.evidence(),
             "provenance": {"method": "nappes", "python": platform.python_version()},

@@ -12,7 +12,8 @@ from dataclasses import asdict, dataclass
 from multiprocessing import get_context
 from typing import Any
 
-from exactfold import compact_checker
+from exactfold.checker.compact_blocks import CompactSheet
+from exactfold.checker.compact_lines import read_header
 from exactfold.errors import WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 from exactfold.scale.chambers import Chambers, ProvedBlock
@@ -147,7 +148,7 @@ def count_streaming(
     tally = _Tally()
     total = 1 << chambers.size
     if resume:
-        known = FastChecker(compact_checker.Chambers(compact_checker.read_header(header)))
+        known = FastChecker(CompactSheet(read_header(header)))
 
         def refusal(text: str, number: int) -> str | None:
             if verified is not None:
