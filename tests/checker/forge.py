@@ -101,7 +101,12 @@ def completed(document: Document) -> Document:
     claims, said = made["claims"], []
     roots = made["evidence"].get("roots")
     if roots is not None:
-        fresh = {"vertex_signs": "", "assignment": "", "multiplicity": 1, "representative": "saddle"}
+        fresh = {
+            "vertex_signs": "",
+            "assignment": "",
+            "multiplicity": 1,
+            "representative": "saddle",
+        }
         claims["branches"] = [dict(fresh) for _ in roots]
     other = listing.require
 

@@ -94,3 +94,113 @@ def test_face_given_twice_is_refused():
     document["pattern"]["triangles"] = [*faces, [faces[0][1], faces[0][2], faces[0][0]]]
     with pytest.raises(checker.CertificateError, match="a face appears twice"):
         checker.check(document)
+
+
+def refusal(points, faces):
+    """The exact message with which a sheet is refused, None if it is accepted."""
+    exact = {k: (Fraction(x), Fraction(y)) for k, (x, y) in enumerate(points)}
+    try:
+        Sheet(exact, faces)
+    except checker.CertificateError as error:
+        return str(error)
+    return None
+
+
+@pytest.mark.parametrize(
+    ("points", "faces", "message"),
+    [
+        (SQUARE, [(0, 2, 1), (0, 3, 2)], "face (0, 2, 1) is not positive"),
+        ([(0, 0), (1, 0), (2, 0)], [(0, 1, 2)], "face (0, 1, 2) is not positive"),
+        (SQUARE, [(0, 1, 2), (0, 2, 2)], "bad face (0, 2, 2)"),
+        (SQUARE, [(0, 1, 2), (0, 2, 9)], "bad face (0, 2, 9)"),
+        ([*SQUARE, (1, 1)], [(0, 1, 2), (0, 4, 3)], "two vertices at one point"),
+        (
+            [*SQUARE, ("1/2", 2)],
+            [(0, 1, 2), (0, 2, 3), (0, 1, 4)],
+            "two faces on one side of edge 0-1",
+        ),
+        (SQUARE, [(0, 1, 2), (0, 2, 3), (1, 2, 0)], "two faces on one side of edge 1-2"),
+        ([*SQUARE, (5, 5)], [(0, 1, 2), (0, 2, 3)], "vertex 4 is on no face"),
+        (
+            [(0, 0), (1, 0), (0, 1), (-1, 0), (0, -1)],
+            [(0, 1, 2), (0, 3, 4)],
+            "the sheet is pinched at vertex 0",
+        ),
+        (
+            # an inner vertex about which two closed fans go round
+            [(0, 0), *((x, y) for r in (1, 3) for x, y in ((r, 0), (0, r), (-r, 0), (0, -r)))],
+            [(0, a + k, a + (k + 1) % 4) for a in (1, 5) for k in range(4)],
+            "the sheet is pinched at vertex 0",
+        ),
+        ([], [], "the sheet has no boundary"),
+        (
+            [(0, 0), (1, 0), (0, 1), (5, 0), (6, 0), (5, 1)],
+            [(0, 1, 2), (3, 4, 5)],
+            "the boundary is not one cycle",
+        ),
+    ],
+)
+def test_sheets_are_refused_for_what_is_wrong_with_them(points, faces, message):
+    assert refusal(points, faces) == message
+
+
+def test_two_bands_through_a_square_are_no_disk():
+    """One boundary curve, every face positive, and yet a torus with a hole; it overlaps itself."""
+    patch = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    first = [(2, -2), (-1, -2), (4, -4), (-3, -4)]
+    second = [(1 - y, x) for x, y in first]  # turned about the middle of the patch
+    faces = [(0, 1, 2), (0, 2, 3)]
+    for base, (p0, p1, p2, p3) in ((4, (0, 1, 2, 3)), (8, (1, 2, 3, 0))):
+        i1, i2, o1, o2 = range(base, base + 4)
+        faces += [(p1, i1, o1), (p1, o1, p2), (i1, i2, o2), (i1, o2, o1), (i2, p0, p3)]
+        faces += [(i2, p3, o2)]
+    assert refusal([*patch, *first, *second], faces) == "the sheet is not one disk"
+
+
+def crossing(a, b, c, d):
+    """Whether two closed segments have a point in common, by the parameters of their points."""
+    (ux, uy), (vx, vy) = (b[0] - a[0], b[1] - a[1]), (d[0] - c[0], d[1] - c[1])
+    wx, wy = c[0] - a[0], c[1] - a[1]
+    across = ux * vy - uy * vx
+    if across:
+        s, t = (wx * vy - wy * vx) / across, (wx * uy - wy * ux) / across
+        return 0 <= s <= 1 and 0 <= t <= 1
+    if wx * uy - wy * ux:
+        return False
+    length = ux * ux + uy * uy
+    ends = sorted(((p[0] - a[0]) * ux + (p[1] - a[1]) * uy) / length for p in (c, d))
+    return ends[0] <= 1 and ends[1] >= 0
+
+
+def test_sides_meet_where_they_have_a_point_in_common():
+    """All pairs of sides without a common end on a grid, and those with one that overlap."""
+    grid = [(Fraction(x), Fraction(y)) for x in range(4) for y in range(3)]
+    sheet = Sheet.__new__(Sheet)
+    sheet.points = dict(enumerate(grid))
+    seen = set()
+    for a, b in combinations(range(12), 2):
+        for c, d in combinations(range(12), 2):
+            ends = {a, b} & {c, d}
+            if len(ends) == 2:
+                continue
+            if ends:
+                (p,) = ends
+                (q,), (r,) = {a, b} - ends, {c, d} - ends
+                (px, py), (qx, qy), (rx, ry) = (grid[v] for v in (p, q, r))
+                turned = (qx - px) * (ry - py) - (qy - py) * (rx - px)
+                along = (qx - px) * (rx - px) + (qy - py) * (ry - py)
+                expected = turned == 0 and along > 0
+            else:
+                expected = crossing(*(grid[v] for v in (a, b, c, d)))
+            assert sheet._meet((a, b), (c, d)) == expected
+            assert sheet._meet((b, a), (c, d)) == expected
+            seen.add((len(ends), expected))
+    assert len(seen) == 4
+
+
+def test_boundaries_that_meet_are_named():
+    """A strip wound once and a bit, whose ends overlap without a common vertex."""
+    points, faces, _ = BAD_SHEETS["spiral"]
+    message = refusal(points, faces)
+    assert message.startswith("boundary edges (")
+    assert message.endswith(" meet")
