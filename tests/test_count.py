@@ -42,6 +42,7 @@ from exactfold.algebra.groebner import groebner
 from exactfold.branches import classify
 from exactfold.certify import algebraic
 from exactfold.certify.isolation import isolate
+from exactfold.checker import listing
 from exactfold.count import collect as module
 from exactfold.count import hand_over, multiple_roots
 from exactfold.count.solvers import find_candidates
@@ -714,7 +715,7 @@ def test_open_folds_cost_their_letters_and_not_the_count(monkeypatch, name):
         assert agreeing
     document = json.loads(json.dumps(certificate(result)))
     assert checker.check(document) == document["claims"]
-    monkeypatch.setattr(checker, "close_flat", lambda sheet, signs: None)
+    monkeypatch.setattr(listing, "close_flat", lambda sheet, signs: None)
     assert checker.check(document) == document["claims"]
     place = next(b for b in document["claims"]["branches"] if "U" in b["assignment"])
     for letter in "MVF?":

@@ -8,8 +8,8 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from exactfold.checker.formats import MOST_UNKNOWNS
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
-from exactfold.compact_checker import MOST_UNKNOWNS
 from exactfold.count.dask_engine import LOCAL, dask_engine
 from exactfold.count.stream import StreamedCount, stream_branches
 from exactfold.errors import (

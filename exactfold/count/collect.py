@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from exactfold.branches.branch import Branch
 from exactfold.branches.result import BranchCount, Proof
-from exactfold.compact_checker import MOST_UNKNOWNS
+from exactfold.checker.formats import MOST_UNKNOWNS
 from exactfold.count.attempt import Attempt
 from exactfold.count.conveyor import LISTED_BITS, Conveyor
 from exactfold.count.hand_over import isolated, solved_exactly, with_flat_vertices

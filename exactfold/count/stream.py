@@ -10,8 +10,9 @@ from dataclasses import asdict, dataclass, field, fields
 from dataclasses import replace as changed
 from typing import Any
 
-from exactfold import compact_checker
 from exactfold.branches.result import BranchCount
+from exactfold.checker.compact_blocks import CompactSheet
+from exactfold.checker.compact_lines import read_header
 from exactfold.count.collect import check_countable, count_branches
 from exactfold.count.conveyor import Conveyor
 from exactfold.count.engines import Engine, processes
@@ -126,7 +127,7 @@ def stream_branches(
     header = header_line(problem, conveyor.block_size)
     tally = Tally()
     if resume:
-        known = FastChecker(compact_checker.Chambers(compact_checker.read_header(header)))
+        known = FastChecker(CompactSheet(read_header(header)))
 
         def refusal(text: str, number: int) -> str | None:
             if progress is not None:

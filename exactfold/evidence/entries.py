@@ -10,15 +10,13 @@ from typing import Any
 from exactfold.algebra.exact_solution import RootClass
 from exactfold.certify.algebraic import AlgebraicProof
 from exactfold.certify.box import IsolatingBox
+from exactfold.checker.formats import LISTING, LISTING_VERSION
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold_writing import write_text
 from exactfold.problem.branch_system import BranchSystem, Chart
 from exactfold.problem.flat_sheets import FlatSheets
 from exactfold.rigidity.rigid_triangles import RigidTriangle
-
-FORMAT = "exactfold certificate"
-VERSION = 2
 
 Document = dict[str, Any]
 
@@ -31,8 +29,8 @@ def document(
 ) -> Document:
     """The certificate as a JSON object; `docs/certificate.md` describes every key."""
     return {
-        "format": FORMAT,
-        "version": VERSION,
+        "format": LISTING,
+        "version": LISTING_VERSION,
         "pattern": pattern_document(pattern),
         "claims": {
             "interior": pattern.Vi,

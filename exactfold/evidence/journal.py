@@ -9,7 +9,8 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 
-from exactfold import checker, compact_checker
+from exactfold.checker import FormatError
+from exactfold.checker.compact_lines import digest, lines, read_header
 from exactfold.errors import ForeignJournalError, UnwritableFileError, UsageError
 from exactfold.evidence.durable import locked, synced, synced_entry, unwritable
 
@@ -60,7 +61,7 @@ class Journal:
             if length := journal._verified(header, refusal):
                 journal._cut(length)
             else:  # not even a header: begin anew, but not over a file of another kind
-                line = f"{header}\t{compact_checker.digest('', header)}\n".encode("ascii")
+                line = f"{header}\t{digest('', header)}\n".encode("ascii")
                 journal._file.seek(0)
                 if not line.startswith(journal._file.read(len(line) + 1)):
                     raise ForeignJournalError(f"{path} is not a compact certificate")
@@ -125,8 +126,8 @@ class Journal:
         length = 0
         self._file.seek(0)
         stream = io.BufferedReader(self._file)
-        with suppress(checker.FormatError):
-            for number, body in enumerate(compact_checker.lines(stream), -1):
+        with suppress(FormatError):
+            for number, body in enumerate(lines(stream), -1):
                 if number < 0:
                     if not _same(body, header):
                         raise ForeignJournalError(
@@ -136,7 +137,7 @@ class Journal:
                     break  # claims are written anew
                 else:
                     self.blocks += 1
-                self.digest = compact_checker.digest(self.digest, body)
+                self.digest = digest(self.digest, body)
                 length += len(body) + len(self.digest) + 2
         stream.detach()
         return length
@@ -150,7 +151,7 @@ class Journal:
             raise unwritable(self.path, error) from None
 
     def _write(self, body: str) -> None:
-        self.digest = compact_checker.digest(self.digest, body)
+        self.digest = digest(self.digest, body)
         left = memoryview(f"{body}\t{self.digest}\n".encode("ascii"))
         try:
             while left:
@@ -162,8 +163,8 @@ class Journal:
 def _same(body: str, header: str) -> bool:
     """Whether two headers agree in all but their provenance, to the type of every number."""
     try:
-        found, wanted = (compact_checker.read_header(text) for text in (body, header))
-    except checker.FormatError:
+        found, wanted = (read_header(text) for text in (body, header))
+    except FormatError:
         return False
     return _canonical(found) == _canonical(wanted)
 

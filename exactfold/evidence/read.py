@@ -5,11 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 
-from exactfold import checker, compact_checker
 from exactfold.branches.branch import Branch
 from exactfold.branches.classify import BranchMaker
 from exactfold.branches.roots import BoxRoot
 from exactfold.certify.box import IsolatingBox
+from exactfold.checker.compact_blocks import CompactSheet
+from exactfold.checker.compact_lines import lines, read_header
+from exactfold.checker.equations import read_chart
+from exactfold.checker.formats import UNPROVED
+from exactfold.checker.reading import MALFORMED, CertificateError, FormatError, require
 from exactfold.errors import CertificateFormatError, ExactfoldError, UnreadableFileError
 from exactfold.evidence.entries import chart_evidence
 from exactfold.exact.numbers import as_rational
@@ -26,24 +30,24 @@ def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
     """
     try:
         with open(path, "rb") as stream:
-            yield from _branches(compact_checker.lines(stream))
-    except checker.FormatError as error:
+            yield from _branches(lines(stream))
+    except FormatError as error:
         raise CertificateFormatError(f"{path}: {error}") from None
-    except (*compact_checker.MALFORMED, ExactfoldError) as error:
-        raise checker.CertificateError(f"malformed: {type(error).__name__}: {error}") from None
+    except (*MALFORMED, ExactfoldError) as error:
+        raise CertificateError(f"malformed: {type(error).__name__}: {error}") from None
     except OSError as error:
         raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
 
 
 def _branches(found: Iterator[str]) -> Iterator[Branch]:
     """The branches of the lines of a file."""
-    header = compact_checker.read_header(next(found, "{}"))
-    known = compact_checker.Chambers(header)
+    header = read_header(next(found, "{}"))
+    known = CompactSheet(header)
     vertices = [(as_rational(x), as_rational(y)) for x, y in header["pattern"]["vertices"]]
     problem = Problem.of(CreasePattern(vertices, header["pattern"]["triangles"]))
-    chart = checker.read_chart(chart_evidence(problem.chart, problem.labels))
-    checker.require(
-        checker.read_chart(header["evidence"]["chart"]) == chart
+    chart = read_chart(chart_evidence(problem.chart, problem.labels))
+    require(
+        read_chart(header["evidence"]["chart"]) == chart
         and list(problem.foldable) == known.emptied.interior,
         "the chart or the emptied sheet is not the one in which exactfold writes branches",
     )
@@ -52,17 +56,15 @@ def _branches(found: Iterator[str]) -> Iterator[Branch]:
     for number in range(known.blocks):
         text = next(found, None)
         if text is None:
-            raise checker.FormatError(f"only {number} of {known.blocks} blocks are there")
+            raise FormatError(f"only {number} of {known.blocks} blocks are there")
         block = known.decode(text, number)
         for j in range(known.block):
             if j in block.exact:
                 root, letters = block.exact[j]
-                checker.require(set(letters) <= set("MVFU"), f"root {block.first + j}: no letters")
+                require(set(letters) <= set("MVFU"), f"root {block.first + j}: no letters")
                 box = IsolatingBox(tuple(root.center), (), root.radius, root.bits)
             else:
-                checker.require(
-                    block.radii[j] != compact_checker.UNPROVED, f"root {block.first + j} is missing"
-                )
+                require(block.radii[j] != UNPROVED, f"root {block.first + j} is missing")
                 center = tuple(block.center(j, known.size))
                 box = IsolatingBox(center, (), 1 << block.radii[j], block.bits)
                 letters = known.letters(block, j)

@@ -1,4 +1,4 @@
-"""Certificates of single branches, for `exactfold.branch_checker`."""
+"""Certificates of single branches, for `exactfold.checker`."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from typing import Any
 
 from exactfold.branches.branch import Branch
 from exactfold.branches.roots import EnclosedRoot
+from exactfold.checker.formats import BRANCH, BRANCH_VERSION
 from exactfold.errors import UsageError
 from exactfold.evidence.entries import pattern_document
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.problem.gauge import RIM, SADDLE
 from exactfold.verdict import PROVED
-
-FORMAT, VERSION = "exactfold branch", 1
 
 
 def branch_certificate(branch: Branch) -> dict[str, Any]:
@@ -21,11 +20,11 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
 
     Raises `UsageError` unless the branch is proved.
 
-    >>> from exactfold import branch_checker
+    >>> from exactfold import checker
     >>> from exactfold.count.find import find_branch
     >>> from exactfold.pattern.random_squares import random_square
     >>> certificate = branch_certificate(find_branch(random_square(3, seed=0), "+-+"))
-    >>> branch_checker.check(certificate)["vertex_signs"]
+    >>> checker.check(certificate)["vertex_signs"]
     [1, -1, 1]
     """
     root = branch.root
@@ -35,8 +34,8 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
     heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
     denominator = lcm(*(h.denominator for h in heights if h is not None))
     return {
-        "format": FORMAT,
-        "version": VERSION,
+        "format": BRANCH,
+        "version": BRANCH_VERSION,
         "pattern": pattern_document(pattern),
         "claims": {
             "gauge": RIM if branch.gauge == RIM else SADDLE,

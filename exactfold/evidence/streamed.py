@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from exactfold.branches.blocks import ProvedBlock
-from exactfold.compact_checker import FORMAT, UNPROVED, VERSION
+from exactfold.checker.formats import COMPACT, COMPACT_VERSION, UNPROVED
 from exactfold.evidence.entries import chart_evidence, pattern_document, triangle_evidence
 from exactfold.exact.numbers import format_integer
 from exactfold.problem.problem import Problem
@@ -21,8 +21,8 @@ def header_line(problem: Problem, block_size: int) -> str:
     """The first line: the pattern and what its roots are proved with."""
     return _text(
         {
-            "format": FORMAT,
-            "version": VERSION,
+            "format": COMPACT,
+            "version": COMPACT_VERSION,
             "pattern": pattern_document(problem.pattern),
             "evidence": {
                 "kind": "chambers",

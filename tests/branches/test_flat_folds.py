@@ -6,7 +6,9 @@ from itertools import product
 import pytest
 from sheets import dart, random_wheel, wheel, with_point
 
-from exactfold import checker, count_branches, random_square
+from exactfold import count_branches, random_square
+from exactfold.checker.flat_folds import close_flat
+from exactfold.checker.sheet import Sheet
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, hypar, single_vertex, two_vertex
 from exactfold.rigidity.curvature import curvature_form
@@ -48,12 +50,12 @@ def test_the_checker_deduces_as_much(spokes):
     deduced = 0
     for seed in range(8):
         pattern = random_wheel(seed, spokes, reach=2)
-        sheet = checker.Sheet(dict(enumerate(pattern.vertices)), pattern.triangles)
+        sheet = Sheet(dict(enumerate(pattern.vertices)), pattern.triangles)
         for values in product((None, 1), repeat=spokes - 1):
             for flat in range(spokes):
                 signs = dict(zip(pattern.folds, (*values[:flat], 0, *values[flat:]), strict=True))
                 found = flat_folds(pattern, signs)
-                checker.close_flat(sheet, signs)
+                close_flat(sheet, signs)
                 assert {fold for fold, sign in signs.items() if sign == 0} == found
                 deduced += len(found) > 1
     assert deduced > 100

@@ -18,7 +18,8 @@ from exactfold.certify.float_krawczyk import (
     inverse_each,
     scaled_rows,
 )
-from exactfold.checker import CertificateError, Krawczyk
+from exactfold.checker import CertificateError
+from exactfold.checker.krawczyk import Krawczyk
 from exactfold.problem.quadratic import QuadraticSystem
 
 

@@ -35,7 +35,7 @@ SOLUTION = exactfold.groebner(SYSTEM.chart.system)
 
 
 def _streamed(folder):
-    return exactfold.count_streaming(PATTERN, folder / "branches.txt")
+    return exactfold.stream_branches(PATTERN, folder / "branches.txt")
 
 
 VALUES = {

@@ -92,7 +92,7 @@ TAKES_PATTERN = {
 WIRED_LATER = {
     "BranchFinder",
     "count_branches",
-    "count_streaming",
+    "stream_branches",
     "find_branch",
     "find_branches",
     "neighbours",
@@ -111,7 +111,7 @@ def test_public_functions_take_a_name_or_a_path(name, here):
 
 def test_no_public_function_that_takes_a_pattern_is_missing():
     """Results hold a pattern too; they are made by functions, not by callers."""
-    made = {"BranchCount", "FoldFile", "SignedBranch", "StreamedCount"}
+    made = {"BranchCount", "FoldFile", "Branch", "StreamedCount"}
     taking = {
         name
         for name in exactfold.__all__

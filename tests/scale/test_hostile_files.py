@@ -12,11 +12,14 @@ from compact_files import Lines, bodies, chained, chained_texts, refused
 from sheets import SQUARE, dart, reflex_corners, scrambled, with_point
 from typer.testing import CliRunner
 
-from exactfold import checker, compact_checker, random_square
+from exactfold import checker, random_square
+from exactfold.checker import CertificateError, command, compact_lines
+from exactfold.checker.reading import parse_rational
+from exactfold.checker.sheet import read_sheet
 from exactfold.cli import app
 from exactfold.count.stream import stream_branches
 from exactfold.errors import CertificateFormatError
-from exactfold.evidence.check import CertificateError, check_compact
+from exactfold.evidence.check import check_compact
 from exactfold.evidence.read import read_branches
 from exactfold.pattern.crease_pattern import CreasePattern
 
@@ -44,7 +47,7 @@ def test_what_is_printed_is_one_line_of_printable_ascii(
         lines[-1]["claims"]["sha256"] = SPOOFED
     path.write_bytes(chained(lines))
     code = 3 if place == "version" else 1
-    assert compact_checker.main([str(path)]) == code
+    assert checker.main([str(path)]) == code
     printed = "".join(capsys.readouterr())
     result = CliRunner().invoke(app, ["check", str(path)])
     assert result.exit_code == code
@@ -62,8 +65,8 @@ def test_a_defect_or_lack_of_memory_is_no_verdict(
         def fail(*_: object, error: type[Exception] = error) -> None:
             raise error
 
-        monkeypatch.setattr(compact_checker, "check", fail)
-        assert compact_checker.main([str(tmp_path / "c.txt")]) == 70
+        monkeypatch.setattr(command, "verify", fail)
+        assert checker.main([str(tmp_path / "c.txt")]) == 70
         assert "VALID" not in "".join(capsys.readouterr())
 
 
@@ -80,7 +83,7 @@ def test_the_command_knows_a_compact_certificate_by_its_first_line(
     if way == "escaped":
         texts[0] = texts[0].replace('"format"', '"f\\u006frmat"')
     path.write_bytes(chained_texts(texts))
-    assert compact_checker.main([str(path)]) == 0
+    assert checker.main([str(path)]) == 0
     assert CliRunner().invoke(app, ["check", str(path)]).exit_code == 0
 
 
@@ -89,7 +92,7 @@ def test_a_line_without_end_is_not_read_to_its_end(
 ) -> None:
     path = tmp_path / "c.txt"
     lines_of(random_square(2, seed=1), path)
-    monkeypatch.setattr(compact_checker, "MOST_LINE", 100)
+    monkeypatch.setattr(compact_lines, "MOST_LINE", 100)
     with pytest.raises(CertificateFormatError, match="line 1"):
         check_compact(path)
 
@@ -155,12 +158,12 @@ def test_sheets_that_are_none_are_refused(name: str, tmp_path: Path) -> None:
     lines[0]["pattern"] = {"vertices": vertices, "triangles": [list(face) for face in faces]}
     if match is not None:
         with pytest.raises(CertificateError, match=match):
-            checker.read_sheet(lines[0]["pattern"])
+            read_sheet(lines[0]["pattern"])
     refused(chained(lines), tmp_path / "c.txt", f"{match}|four boundary vertices")
 
 
 def negated(chart: dict[str, str]) -> dict[str, str]:
-    return {v: str(-checker.parse_rational(c)) for v, c in chart.items()}
+    return {v: str(-parse_rational(c)) for v, c in chart.items()}
 
 
 CHARTS: dict[str, tuple[Callable[[dict[str, str]], Any], str]] = {
@@ -188,7 +191,7 @@ def test_branches_are_read_in_the_chart_they_were_written_in(tmp_path: Path) -> 
     lines = lines_of(dart(), path)
     chart = lines[0]["evidence"]["chart"]
     for vertex, weight in chart.items():
-        chart[vertex] = str(4 * checker.parse_rational(weight))
+        chart[vertex] = str(4 * parse_rational(weight))
     for place in (lines[1], *lines[1]["exact"]):
         place["bits"] += 2
     path.write_bytes(chained(lines))

@@ -11,8 +11,9 @@ import pytest
 from compact_files import bodies, chained, refused
 from sheets import SQUARE, dart, nested_triangles, reflex_corners, scrambled
 
-from exactfold import Branch, checker, count_branches, families, random_square, read_fold
+from exactfold import Branch, count_branches, families, random_square, read_fold
 from exactfold.branches import classify
+from exactfold.checker import compact_blocks
 from exactfold.count import conveyor as conveyor_module
 from exactfold.count.conveyor import Conveyor
 from exactfold.count.stream import stream_branches
@@ -252,7 +253,7 @@ def test_a_fold_that_stays_open_costs_its_letter_only(
     letters = [branch.assignment_text for branch in read_branches(path)]
     assert any("U" in text for text in letters)
     assert check_compact(path, fast=fast)["distinct"] == 4
-    monkeypatch.setattr(checker, "close_flat", lambda sheet, signs: None)
+    monkeypatch.setattr(compact_blocks, "close_flat", lambda sheet, signs: None)
     assert check_compact(path, fast=fast)["distinct"] == 4
     lines = bodies(path.read_bytes())
     entry = next(e for e in lines[1]["exact"] if "U" in e["assignment"])

@@ -6,7 +6,6 @@ import copy
 import json
 import os
 import random
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -30,8 +29,7 @@ from sheets import (
 )
 from typer.testing import CliRunner
 
-import exactfold
-from exactfold import PROVED, branch_checker, families, find_branch, random_square, read_fold
+from exactfold import PROVED, checker, families, find_branch, random_square, read_fold
 from exactfold.checker import CertificateError, FormatError
 from exactfold.cli import app
 from exactfold.data import example_path
@@ -62,8 +60,8 @@ def certificate(name: str, seed: int = 0) -> Document:
 @pytest.mark.parametrize("seed", range(3))
 def test_proofs_are_accepted(name: str, seed: int) -> None:
     document = certificate(name, seed)
-    read = branch_checker.load(json.dumps(document))
-    claims = branch_checker.check(read)
+    read = checker.load(json.dumps(document))
+    claims = checker.check(read)
     assert claims["sha256"] == PATTERNS[name].sha256
     assert claims["vertex_signs"] == document["claims"]["vertex_signs"]
 
@@ -71,9 +69,9 @@ def test_proofs_are_accepted(name: str, seed: int) -> None:
 def test_a_given_rim_is_accepted() -> None:
     pattern = scrambled(5, HEXAGON, 3)
     rim = {v: Fraction(v * v + 1, 3) for v in pattern.boundary}
-    claims = branch_checker.check(branch_certificate(find_branch(pattern, "+-+", rim=rim)))
+    claims = checker.check(branch_certificate(find_branch(pattern, "+-+", rim=rim)))
     assert claims["gauge"] == "rim"
-    assert branch_checker.summary(claims).startswith("VALID: exactly one branch")
+    assert checker.summary(claims).startswith("VALID: exactly one branch")
 
 
 def shifted(text: str, by: int) -> str:
@@ -182,7 +180,7 @@ def test_altered_certificates_are_refused(tamper: Callable[[Document], None]) ->
     tamper(altered)
     assert altered != document
     with pytest.raises(CertificateError):
-        branch_checker.check(altered)
+        checker.check(altered)
 
 
 FLAT = {  # vertices and folds that are flat: by K_v = 0 at a vertex, or with exact heights
@@ -201,7 +199,7 @@ def test_flat_folds_and_vertices_are_proved_and_nothing_else_passes(name: str) -
     assert "F" in claims["assignment"]
     assert "U" not in claims["assignment"]
     assert (claims["squared_distance"] == "0") == exact
-    branch_checker.check(document)
+    checker.check(document)
     forged = []
     for k, letter in enumerate(claims["assignment"]):
         text = claims["assignment"]
@@ -213,7 +211,7 @@ def test_flat_folds_and_vertices_are_proved_and_nothing_else_passes(name: str) -
     forged += [] if exact else [{"squared_distance": "0"}]
     for change in forged:
         with pytest.raises(CertificateError):
-            branch_checker.check({**document, "claims": {**claims, **change}})
+            checker.check({**document, "claims": {**claims, **change}})
 
 
 @pytest.mark.parametrize(
@@ -232,19 +230,19 @@ def test_heights_that_are_almost_exact_are_refused(
     evidence["denominator"] = str(int(evidence["denominator"]) << bits)
     finer = [h and str(int(h) << bits) for h in evidence["heights"]]
     evidence["heights"] = finer
-    branch_checker.check(document)
+    checker.check(document)
     for v, by in product(range(4, len(finer)), (1, -1)):
         if finer[v] is not None:
             evidence["heights"] = [*finer[:v], shifted(finer[v], by), *finer[v + 1 :]]
             with pytest.raises(CertificateError, match="K is not positive"):
-                branch_checker.check(document)
+                checker.check(document)
 
 
 def test_a_vertex_that_may_be_flat_is_refused() -> None:
     found = find_branch(ringed_square(4), "+++++")
     document = branch_certificate(replace(found, status=PROVED))
     with pytest.raises(CertificateError, match="vertex 8 may be flat"):
-        branch_checker.check(document)
+        checker.check(document)
 
 
 def test_the_curvature_of_the_reflex_corner_counts() -> None:
@@ -254,7 +252,7 @@ def test_the_curvature_of_the_reflex_corner_counts() -> None:
     claims["assignment"] = "U" * len(claims["assignment"])
     claims["squared_distance"] = str(Fraction(claims["squared_distance"]) * 1000)
     with pytest.raises(CertificateError, match="distance is larger"):
-        branch_checker.check(document)
+        checker.check(document)
 
 
 def test_folds_are_not_flat_by_what_is_around_the_reflex_corner(
@@ -266,16 +264,16 @@ def test_folds_are_not_flat_by_what_is_around_the_reflex_corner(
     monkeypatch.setattr("exactfold.count.find._LEVELS", (6,))  # too rough for fold (1, 4)
     document = branch_certificate(find_branch(pattern, "-"))
     assert document["claims"]["assignment"] == "VUVV"
-    branch_checker.check(document)
+    checker.check(document)
     document["claims"]["assignment"] = "VFVV"
     with pytest.raises(CertificateError, match="not known to be 'F'"):
-        branch_checker.check(document)
+        checker.check(document)
 
 
 def test_a_letter_may_be_left_open() -> None:
     document = certificate("random")
     document["claims"]["assignment"] = "U" * len(document["claims"]["assignment"])
-    branch_checker.check(document)
+    checker.check(document)
 
 
 def test_a_reflex_corner_that_pops_down_is_refused() -> None:
@@ -287,14 +285,14 @@ def test_a_reflex_corner_that_pops_down_is_refused() -> None:
     swap = str.maketrans("MV", "VM")
     document["claims"]["assignment"] = document["claims"]["assignment"].translate(swap)
     with pytest.raises(CertificateError, match="corner does not pop up"):
-        branch_checker.check(document)
+        checker.check(document)
 
 
 def test_a_boundary_that_is_not_convex_needs_its_notch_closed() -> None:
     document = certificate("dart")
     document["claims"]["gauge"] = "rim"
     with pytest.raises(CertificateError, match="not convex"):
-        branch_checker.check(document)
+        checker.check(document)
 
 
 def test_vertices_of_triangulated_triangles_must_be_the_ones_inside() -> None:
@@ -302,7 +300,7 @@ def test_vertices_of_triangulated_triangles_must_be_the_ones_inside() -> None:
     entry = document["evidence"]["emptied"][0]
     entry["inside"] = entry["inside"][1:]
     with pytest.raises(CertificateError):
-        branch_checker.check(document)
+        checker.check(document)
 
 
 @pytest.mark.parametrize(
@@ -311,13 +309,13 @@ def test_vertices_of_triangulated_triangles_must_be_the_ones_inside() -> None:
 )
 def test_other_files_are_no_certificates(text: str) -> None:
     with pytest.raises(FormatError):
-        branch_checker.load(text)
+        checker.load(text)
 
 
 def test_a_repeated_key_is_refused() -> None:
     text = json.dumps(certificate("dart")).replace('"claims":', '"claims": {}, "claims":')
     with pytest.raises(FormatError, match="a key appears twice"):
-        branch_checker.load(text)
+        checker.load(text)
 
 
 def test_a_truth_value_is_no_vertex() -> None:
@@ -326,7 +324,7 @@ def test_a_truth_value_is_no_vertex() -> None:
     inside = document["evidence"]["emptied"][0]["inside"]
     inside[inside.index(1)] = True
     with pytest.raises(CertificateError, match="not a natural number"):
-        branch_checker.check(document)
+        checker.check(document)
 
 
 @pytest.mark.parametrize("letter", ["\ud800", "\u00e9", "\x1b"])
@@ -339,7 +337,7 @@ def test_verdicts_can_be_printed_whatever_the_file_holds(letter: str, tmp_path: 
         else:
             document["evidence"]["heights"][5] = letter
         path.write_text(json.dumps(document))
-        command = [sys.executable, branch_checker.__file__, str(path)]
+        command = [sys.executable, str(Path(checker.__file__).parent), str(path)]
         ascii_only = {**os.environ, "PYTHONIOENCODING": "ascii"}
         run = subprocess.run(command, capture_output=True, text=True, check=False, env=ascii_only)
         assert (run.returncode, run.stderr) == (1, "")
@@ -353,14 +351,14 @@ def test_low_heights_over_a_long_denominator_are_accepted() -> None:
     pattern = mapped(scrambled(5, HEXAGON, 3), lambda p: (p[0] + tiny, p[1] * (1 + tiny)))
     rim = {v: Fraction(v * v + 1, 3 << 400) for v in pattern.boundary}
     document = branch_certificate(find_branch(pattern, "+-+", rim=rim))
-    assert branch_checker.check(document)["vertex_signs"] == [1, -1, 1]
+    assert checker.check(document)["vertex_signs"] == [1, -1, 1]
 
 
 def test_versions_and_keys_are_checked() -> None:
     document = certificate("dart")
     for wrong in ({**document, "version": 2}, {**document, "more": 1}):
         with pytest.raises(FormatError):
-            branch_checker.load(json.dumps(wrong))
+            checker.load(json.dumps(wrong))
 
 
 def test_nothing_undecided_gets_a_certificate() -> None:
@@ -406,37 +404,13 @@ def test_main_prints_the_verdict(tmp_path: Path, capsys: pytest.CaptureFixture[s
     path = tmp_path / "c.json"
     document = certificate("thin triangles")
     path.write_text(json.dumps(document))
-    assert branch_checker.main([str(path)]) == 0
+    assert checker.main([str(path)]) == 0
     assert capsys.readouterr().out.startswith("VALID")
     flip_sign(document)
     path.write_text(json.dumps(document))
-    assert branch_checker.main([str(path)]) == 1
+    assert checker.main([str(path)]) == 1
     assert capsys.readouterr().out.startswith("INVALID")
     path.write_text('{"format": "exactfold branch", "version": 1.0}')
-    assert branch_checker.main([str(path)]) == 3
-    assert branch_checker.main([str(tmp_path / "none")]) == 3
-    assert branch_checker.main([]) == 2
-
-
-def test_it_runs_alone_beside_the_other_checker(tmp_path: Path) -> None:
-    folder = Path(exactfold.__file__).parent
-    for name in ("checker.py", "branch_checker.py"):
-        shutil.copy(folder / name, tmp_path / name)
-    document = certificate("random")
-    (tmp_path / "good.json").write_text(json.dumps(document))
-    flip_sign(document)
-    (tmp_path / "bad.json").write_text(json.dumps(document))
-    (tmp_path / "none.json").write_text("{}")
-    for name, code in (("good", 0), ("bad", 1), ("none", 3)):
-        command = [sys.executable, "-I", "-c", _ALONE, str(tmp_path), f"{name}.json"]
-        run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-        assert run.returncode == code, run.stderr
-
-
-_ALONE = """
-import runpy, sys
-folder, file = sys.argv[1:]
-sys.path.insert(0, folder)
-sys.argv = ["branch_checker.py", file]
-runpy.run_path(folder + "/branch_checker.py", run_name="__main__")
-"""
+    assert checker.main([str(path)]) == 3
+    assert checker.main([str(tmp_path / "none")]) == 3
+    assert checker.main([]) == 2

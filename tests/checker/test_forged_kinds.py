@@ -11,6 +11,9 @@ from typing import Any
 import pytest
 
 from exactfold import certificate, checker, count_branches
+from exactfold.checker import listing
+from exactfold.checker.equations import BranchSystem
+from exactfold.checker.sheet import read_sheet
 from exactfold.count import multiple_roots
 from exactfold.pattern.degenerate import DEGENERATE
 
@@ -144,12 +147,12 @@ def test_finiteness_needs_positive_multipliers_for_every_vertex():
 
 def test_zeros_listed_in_two_ways_are_not_told_apart_by_an_open_fold(monkeypatch):
     """A zero in a class, with a fold that is flat, and once more in a box that leaves it open."""
-    monkeypatch.setattr(checker, "close_flat", lambda sheet, signs: None)
-    sheet, _ = checker.read_sheet(certificate(count_branches(DEGENERATE["cross"]()))["pattern"])
-    system = checker.BranchSystem(sheet, None)
+    monkeypatch.setattr(listing, "close_flat", lambda sheet, signs: None)
+    sheet, _ = read_sheet(certificate(count_branches(DEGENERATE["cross"]()))["pattern"])
+    system = BranchSystem(sheet, None)
     rows = [system.row(sheet.bend(f)) for f in sheet.folds]
 
-    class Shown(checker.Root):
+    class Shown:
         def __init__(self, kind, first_fold):
             self.kind, self.first_fold = kind, first_fold
 
@@ -166,7 +169,7 @@ def test_zeros_listed_in_two_ways_are_not_told_apart_by_an_open_fold(monkeypatch
             }
             for r in roots
         ]
-        checker.check_branches(sheet, system, [(r, 1) for r in roots], branches, 0)
+        listing.check_branches(sheet, system, [(r, 1) for r in roots], branches)
 
     claim(Shown("box", 1), Shown("class", 0))
     claim(Shown("box", None), Shown("box", 1))  # boxes are compared elsewhere

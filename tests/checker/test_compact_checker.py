@@ -1,9 +1,6 @@
 """Compact certificates with anything wrong in them are refused, by both checkers."""
 
 import random
-import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,11 +9,14 @@ import pytest
 from compact_files import Lines, bodies, chained, listed_exactly, put, raw, refused
 from sheets import nested_triangles, reflex_corners, scrambled
 
-from exactfold import compact_checker, random_square
+from exactfold import random_square
+from exactfold.checker import CertificateError, FormatError
+from exactfold.checker.compact_lines import read_object
+from exactfold.checker.formats import UNPROVED
 from exactfold.count import conveyor as conveyor_module
 from exactfold.count.stream import stream_branches
 from exactfold.errors import CertificateFormatError, UnreadableFileError
-from exactfold.evidence.check import CertificateError, check_compact
+from exactfold.evidence.check import check_compact
 from exactfold.evidence.read import read_branches
 
 SIZE, BLOCK = 6, 16
@@ -85,7 +85,7 @@ def narrow_box(lines: Lines) -> None:
 
 def leave_out(lines: Lines) -> None:
     radii = raw(lines[1], "radii")
-    radii[3] = compact_checker.UNPROVED
+    radii[3] = UNPROVED
     put(lines[1], "radii", radii)
 
 
@@ -316,8 +316,8 @@ def test_missing_files_are_unreadable(tmp_path: Path) -> None:
 
 def test_lines_of_json_that_is_no_object_are_refused() -> None:
     for text, match in (("[1]", "not an object"), ('{"a":1,"a":2}', "twice"), ("{", "not JSON")):
-        with pytest.raises(compact_checker.checker.FormatError, match=match):
-            compact_checker.read_object(text, "a line")
+        with pytest.raises(FormatError, match=match):
+            read_object(text, "a line")
 
 
 @pytest.mark.parametrize("sheet", [nested_triangles(), scrambled(2, reflex_corners(2), 6)])
@@ -327,34 +327,3 @@ def test_triangulated_triangles_and_charts_are_rebuilt(sheet: Any, tmp_path: Pat
     assert lines[0]["evidence"]["triangles"]
     lines[0]["evidence"]["triangles"] = []
     refused(chained(lines), tmp_path / "d.txt", "another length|malformed|does not divide|chart")
-
-
-def test_two_files_are_enough_to_check(written: bytes, tmp_path: Path) -> None:
-    """No package, no third-party library: only the two checkers, isolated from the environment."""
-    folder = Path(compact_checker.__file__).parent
-    for name in ("checker.py", "compact_checker.py"):
-        shutil.copy(folder / name, tmp_path)
-    (tmp_path / "good.txt").write_bytes(written)
-    lines = bodies(written)
-    flip_letter(lines)
-    (tmp_path / "bad.txt").write_bytes(chained(lines))
-    (tmp_path / "none.txt").write_bytes(written[:-1])
-    rows = chained(lines).splitlines(keepends=True)
-    (tmp_path / "both.txt").write_bytes(b"".join([*rows[:3], rows[3][:-9] + b"\n", *rows[4:]]))
-
-    def run(*arguments: str) -> tuple[int, str]:
-        command = [sys.executable, "-S", "-E", "compact_checker.py", *arguments]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-        return done.returncode, done.stdout + done.stderr
-
-    code, text = run("good.txt")
-    assert (code, text[:22]) == (0, "VALID: 64 branches (64")
-    assert run("good.txt", "2") == (code, text)
-    assert run("bad.txt")[0] == 1
-    assert run("none.txt")[0] == 3
-    assert run()[0] == 2
-    for workers in ("x", "", "-1", "\u0662", "9" * 5000):
-        assert run("good.txt", workers)[0] == 2
-    # Whichever comes first in the file is what is said, however many look at it.
-    assert run("both.txt") == run("both.txt", "2")
-    assert run("both.txt")[0] == 1

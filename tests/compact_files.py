@@ -9,8 +9,11 @@ from typing import Any
 
 import pytest
 
-from exactfold import compact_checker
-from exactfold.evidence.check import CertificateError, check_compact
+from exactfold.checker import CertificateError
+from exactfold.checker.compact_blocks import CompactSheet
+from exactfold.checker.compact_lines import digest
+from exactfold.checker.formats import UNPROVED
+from exactfold.evidence.check import check_compact
 
 Lines = list[dict[str, Any]]
 
@@ -20,10 +23,10 @@ def bodies(data: bytes) -> Lines:
 
 
 def chained_texts(texts: list[str]) -> bytes:
-    digest, data = "", ""
+    last, data = "", ""
     for text in texts:
-        digest = compact_checker.digest(digest, text)
-        data += f"{text}\t{digest}\n"
+        last = digest(last, text)
+        data += f"{text}\t{last}\n"
     return data.encode()
 
 
@@ -41,17 +44,17 @@ def put(line: dict[str, Any], key: str, data: bytes | bytearray) -> None:
 
 def listed_exactly(lines: Lines, **changes: Any) -> None:
     """The first root of the file moved to `exact`, as it is but for the changes."""
-    chambers = compact_checker.Chambers(lines[0])
-    block = chambers.decode(json.dumps(lines[1]), 0)
+    sheet = CompactSheet(lines[0])
+    block = sheet.decode(json.dumps(lines[1]), 0)
     entry = {
         "root": 0,
         "bits": block.bits,
         "radius": str(1 << block.radii[0]),
-        "center": [str(m) for m in block.center(0, chambers.size)],
-        "assignment": chambers.letters(block, 0),
+        "center": [str(m) for m in block.center(0, sheet.size)],
+        "assignment": sheet.letters(block, 0),
     }
     radii = raw(lines[1], "radii")
-    radii[0] = compact_checker.UNPROVED
+    radii[0] = UNPROVED
     put(lines[1], "radii", radii)
     lines[1]["exact"] = [entry | changes]
 

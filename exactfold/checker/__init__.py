@@ -1,0 +1,35 @@
+"""Stand-alone checker of exactfold certificates: believes nothing, needs the standard library only.
+
+    python exactfold/checker CERTIFICATE [WORKERS]
+    python -m exactfold.checker CERTIFICATE [WORKERS]
+    python -m zipapp exactfold/checker -o checker.pyz; python checker.pyz CERTIFICATE [WORKERS]
+
+rebuild the sheet and its curvature forms from the vertices and triangles in the file by code of
+their own, and verify every claim. The folder alone is enough. Exit code 0: every claim holds. 1:
+some claim is not supported. 3: not a certificate. 70: a worker process died, memory is short, or a
+defect of this program; nothing is known of the file.
+
+Three kinds of certificates are told apart by what is in the file: listings of all branches
+(`listing`, docs/certificate.md), compact ones with one root for each sign vector (`compact`,
+docs/compact-certificate.md), and proofs of one branch (`branch`, docs/branch.md), which are checked
+by formulas of their own. `formats` owns their names, versions and limits.
+
+Floating point is used in one place, to choose the matrix Y of Krawczyk's test, which may be any.
+Modules import each other relatively, and nothing else of exactfold, so that they run under any
+name; none is named like a module of the standard library, as their folder is on the import path
+when it is run.
+"""
+
+from .command import check, is_compact, load, main, summary, verify
+from .reading import CertificateError, FormatError
+
+__all__ = [
+    "CertificateError",
+    "FormatError",
+    "check",
+    "is_compact",
+    "load",
+    "main",
+    "summary",
+    "verify",
+]

@@ -1,0 +1,174 @@
+"""Certificates of one branch with given vertex signs (docs/branch.md).
+
+Why it is a proof: heights with K_v > 0 at every interior vertex bound the distance to the only
+solution with the same signs (Theorem 5 of docs/branch.md, which also describes the file); heights
+that solve the equations exactly are that solution. The boundary must be convex, or that of a
+quadrilateral whose notch is closed here. Vertices inside a 3-cycle of edges stay flat (Theorem 2
+(a), applied to the triangle) and are removed. Other folds are flat if the heights are exact and
+flat there, or if K_v = 0 at a vertex leaves them no other choice (`close_flat`).
+"""
+
+from __future__ import annotations
+
+from math import lcm
+from typing import Any
+
+from .branch_proof import Heights, Proof
+from .formats import BRANCH, BRANCH_VERSION
+from .reading import (
+    MALFORMED,
+    CertificateError,
+    document,
+    items,
+    keys,
+    natural,
+    parse_integer,
+    parse_rational,
+    require,
+)
+from .sheet import Sheet, read_sheet, turn
+
+
+def read(data: Any) -> dict[str, Any]:
+    """`data` if it is a certificate of one branch; raises `FormatError`."""
+    return document(data, BRANCH, BRANCH_VERSION, "format version pattern claims evidence")
+
+
+def check(data: dict[str, Any]) -> dict[str, Any]:
+    """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
+
+    Returns the claims and the SHA-256 of the pattern. The claims are: of all branches, or of all
+    solutions with the rim of the heights if `gauge` is "rim", exactly one has these vertex signs,
+    all of them exact, 0 where the star is flat; its folds have these letters, "U" making no claim;
+    and for its heights h the integral of |grad(h - heights)|^2 is at most `squared_distance`.
+    """
+    try:
+        return _check(data)
+    except MALFORMED as error:
+        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
+
+
+def _check(data: dict[str, Any]) -> dict[str, Any]:
+    given, digest = read_sheet(data["pattern"])
+    claims, evidence = data["claims"], data["evidence"]
+    keys(claims, "gauge vertex_signs assignment squared_distance", "claims")
+    keys(evidence, "emptied heights denominator", "evidence")
+    unit = lcm(*(x.denominator for point in given.points.values() for x in point))
+    points: dict[int, Any] = {
+        v: (int(x * unit), int(y * unit)) for v, (x, y) in given.points.items()
+    }
+    sheet, removed = _emptied(given, points, evidence["emptied"])
+    corner = None
+    if claims["gauge"] != "rim":
+        require(claims["gauge"] == "saddle", "the gauge is neither saddle nor rim")
+        require(len(sheet.boundary) == 4, "there are not four boundary vertices")
+        sheet, corner = _closed(sheet)
+    _check_convex(sheet)
+    texts = items(evidence["heights"], "heights", len(points))
+    require(all((texts[v] is None) == (v in removed) for v in points), "heights do not fit")
+    heights = {v: parse_integer(texts[v]) for v in points if v not in removed}
+    q = parse_integer(evidence["denominator"])
+    require(q > 0, "the denominator is not positive")
+    if claims["gauge"] == "saddle":
+        _check_gauge(sheet, heights, corner)
+    proof = Proof(sheet, heights, q, corner)
+    require(
+        proof.squared_distance <= parse_rational(claims["squared_distance"]),
+        "the distance is larger than claimed",
+    )
+    _check_signs(given, claims["vertex_signs"], proof, removed)
+    _check_letters(given, claims["assignment"], proof, removed)
+    return {"sha256": digest, "interior": len(given.interior), **claims}
+
+
+# --- the sheet -----------------------------------------------------------------------------------
+
+
+def _emptied(given: Sheet, points: dict[int, Any], evidence: Any) -> tuple[Sheet, set[int]]:
+    """The sheet in integer coordinates without the vertices inside the 3-cycles of the list."""
+    removed: set[int] = set()
+    added: list[tuple[int, ...]] = []
+    edges = set(given.edges)
+    for entry in items(evidence, "emptied"):
+        keys(entry, "corners inside", "3-cycle")
+        a, b, c = (natural(v, "corner") for v in items(entry["corners"], "corners", 3))
+        for i, j in ((a, b), (b, c), (a, c)):
+            require((min(i, j), max(i, j)) in edges, f"{i}-{j} is no edge")
+        for v in (natural(v, "vertex inside") for v in items(entry["inside"], "inside")):
+            sides = [turn(points[i], points[j], points[v]) for i, j in ((a, b), (b, c), (c, a))]
+            require(min(sides) > 0, f"vertex {v} is not inside {(a, b, c)}")
+            removed.add(v)
+        added.append((a, b, c))
+    kept = [given.face(t) for t in given.triangles if removed.isdisjoint(t)]
+    # What is left is verified again: a disk of positive faces with a simple boundary.
+    rest = {v: p for v, p in points.items() if v not in removed}
+    return Sheet(rest, [*kept, *added]), removed
+
+
+def _closed(sheet: Sheet) -> tuple[Sheet, int | None]:
+    """The sheet with the notch at its reflex corner closed, and that corner."""
+    cycle = sheet.boundary
+    for k, v in enumerate(cycle):
+        before, after = cycle[k - 1], cycle[(k + 1) % len(cycle)]
+        if turn(*(sheet.points[u] for u in (before, v, after))) < 0:
+            faces = [sheet.face(t) for t in sheet.triangles]
+            return Sheet(sheet.points, [*faces, (before, after, v)]), v
+    return sheet, None
+
+
+def _check_convex(sheet: Sheet) -> None:
+    cycle = sheet.boundary
+    for k, v in enumerate(cycle):
+        corner = (cycle[k - 1], v, cycle[(k + 1) % len(cycle)])
+        require(turn(*(sheet.points[u] for u in corner)) >= 0, "the boundary is not convex")
+
+
+def _check_gauge(sheet: Sheet, heights: Heights, corner: int | None) -> None:
+    if corner is not None:
+        require(all(heights[v] == 0 for v in sheet.boundary), "the rim is not flat")
+        return
+    a, b, c, d = sheet.boundary
+    p, q, r, s = (sheet.points[v] for v in sheet.boundary)
+    weights = (
+        turn(q, r, s),
+        -turn(p, r, s),
+        turn(p, q, s),
+        -turn(p, q, r),
+    )
+    saddle = sum(w * heights[v] for w, v in zip(weights, (a, b, c, d), strict=True))
+    require(saddle * next(w for w in weights if w) > 0, "the saddle is not positive")
+
+
+def _check_signs(given: Sheet, signs: Any, proof: Proof, removed: set[int]) -> None:
+    if proof.corner is not None:
+        require(proof.signs[proof.corner] == 1, "the reflex corner does not pop up")
+    seen: dict[int, set[str]] = {v: set() for v in proof.sheet.points}
+    for fold, letter in proof.letters.items():
+        for v in fold:
+            seen[v].add(letter)
+    values = items(signs, "vertex_signs", len(given.interior))
+    for v, sign in zip(given.interior, values, strict=True):
+        expected = 0
+        if v not in removed and seen[v] != {"F"}:
+            require(seen[v] & {"M", "V"}, f"vertex {v} may be flat")
+            expected = proof.signs[v]
+        require(type(sign) is int and sign == expected, f"vertex {v} has another sign")
+
+
+def _check_letters(given: Sheet, letters: Any, proof: Proof, removed: set[int]) -> None:
+    require(isinstance(letters, str) and len(letters) == len(given.folds), "letters do not fit")
+    for fold, letter in zip(given.folds, letters, strict=True):
+        rigid = not removed.isdisjoint(fold)
+        expected = "F" if rigid else proof.letters[fold]
+        require(letter == expected or letter == "U", f"fold {fold} is not known to be {letter!a}")
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
+    shown = signs if len(signs) <= 60 else signs[:60] + "..."
+    decided = len(claims["assignment"]) - claims["assignment"].count("U")
+    return (
+        f"VALID: exactly one branch has the vertex signs {shown} ({len(signs)}); "
+        f"{decided} of {len(claims['assignment'])} letters decided; sha256 {claims['sha256']}"
+    )

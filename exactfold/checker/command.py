@@ -1,0 +1,131 @@
+"""One command for certificates of every kind: which kind a file is, and what its check says."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+import traceback
+from concurrent.futures import BrokenExecutor
+from contextlib import suppress
+from io import BytesIO
+from os import PathLike
+from typing import Any
+
+from . import branch, compact, listing
+from .compact_lines import lines
+from .formats import BRANCH, COMPACT, MOST_LINE
+from .reading import CertificateError, FormatError, plain, read_json
+
+USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
+
+_COMPACT = re.compile(rb'"format"\s*:\s*"' + COMPACT.encode() + b'"')
+
+
+def load(text: str) -> dict[str, Any]:
+    """The JSON object of a listing or of a certificate of one branch; raises `FormatError`."""
+    try:
+        data = read_json(text)
+        if isinstance(data, dict) and data.get("format") == BRANCH:
+            return branch.read(data)
+        return listing.read(data)
+    except FormatError as error:
+        raise FormatError(_stranger(text) or error) from None
+
+
+def check(data: dict[str, Any]) -> dict[str, Any]:
+    """Verify every claim of a JSON object that is a listing or a certificate of one branch.
+
+    Returns the claims; raises `CertificateError` at the first that is not supported.
+    """
+    return branch.check(data) if data.get("format") == BRANCH else listing.check(data)
+
+
+def verify(
+    path: str | PathLike[str], workers: int = 1, engine: compact.Engine = compact.INTEGERS
+) -> dict[str, Any]:
+    """Verify every claim of a certificate of any kind; returns the claims.
+
+    `workers` processes share the blocks of a compact certificate, which `engine` verifies. Raises
+    `CertificateError` if a claim is not supported, `FormatError` if the file is no certificate,
+    `OSError`, `BrokenExecutor` if a worker process died.
+    """
+    with open(path, "rb") as stream:
+        first = stream.readline(MOST_LINE)
+        if _is_compact(first):
+            return compact.check_lines(lines(stream, first), workers, engine)
+        try:
+            text = (first + stream.read()).decode()
+        except UnicodeDecodeError as error:
+            raise FormatError(error) from None
+    return check(load(text))
+
+
+def is_compact(path: str | PathLike[str]) -> bool:
+    """Whether a file is a compact certificate, to go by its first line; raises `OSError`."""
+    with open(path, "rb") as stream:
+        return _is_compact(stream.readline(MOST_LINE))
+
+
+def _is_compact(first: bytes) -> bool:
+    """By its format, else by its digest."""
+    if _COMPACT.search(first[:4096]):
+        return True
+    with suppress(FormatError):
+        return b"\t" in first and next(lines(BytesIO(first)), None) is not None
+    return False
+
+
+def _stranger(text: str) -> str | None:
+    """What a file that is no certificate is, if it is one of those that are taken for one."""
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(data, dict):
+        return None
+    if data.keys() & {"vertices_coords", "faces_vertices", "edges_vertices", "file_spec"}:
+        return "this is a FOLD file, a crease pattern and no certificate"
+    if data.keys() >= {"pattern", "status"}:
+        command, advice = (
+            ("branch", "write a certificate with --certificate")
+            if "vertex_signs" in data
+            else ("count", "write a certificate with --certificate or --stream")
+        )
+        return f"this is the result printed by {command} --json, which is no evidence; {advice}"
+    return None
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    return branch.summary(claims) if "gauge" in claims else listing.summary(claims)
+
+
+def main(arguments: list[str]) -> int:
+    """Check one file and print the verdict; the exit code.
+
+    0: every claim holds; 1: some claim is not supported; 2: wrong usage; 3: not a certificate; 70:
+    a worker process died, memory is short, or a defect of this program.
+    """
+    workers = arguments[1] if len(arguments) == 2 else "1"
+    usable = workers.isascii() and workers.isdecimal() and len(workers) < 5
+    if len(arguments) not in (1, 2) or not usable:
+        print(USAGE, file=sys.stderr)
+        return 2
+    try:
+        claims = verify(arguments[0], int(workers))
+    except CertificateError as error:
+        print(f"INVALID: {plain(error)}")
+        return 1
+    except (FormatError, OSError) as error:
+        print(f"not a certificate: {plain(error)}", file=sys.stderr)
+        return 3
+    except (BrokenExecutor, MemoryError):
+        message = "a worker process died, or memory is short: nothing is known of the file"
+        print(message, file=sys.stderr)
+        return 70
+    except Exception:  # never to be read as one of the other codes
+        traceback.print_exc()
+        return 70
+    print(summary(claims))
+    return 0

@@ -1,0 +1,131 @@
+"""Compact certificates (docs/compact-certificate.md): checked in one pass, block by block.
+
+Memory does not grow with the file. Blocks may be shared among processes.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import ExitStack
+from multiprocessing import get_context
+from typing import Any, NamedTuple
+
+from .compact_blocks import CompactSheet
+from .compact_lines import lines, read_header, read_object
+from .reading import MALFORMED, CertificateError, FormatError, keys, require
+
+_sheet: CompactSheet | None = None  # of a worker process
+
+
+def start_worker(header: str) -> None:
+    """Rebuild the sheet in a worker process."""
+    global _sheet
+    _sheet = CompactSheet(read_header(header))
+
+
+def check_line(text: str, number: int) -> str | None:
+    """Verify one block in a worker process: None, or why it does not hold."""
+    if _sheet is None:
+        raise RuntimeError("the worker was not started")
+    try:
+        _sheet.check_block(_sheet.decode(text, number))
+    except CertificateError as error:
+        return str(error)
+    except MALFORMED as error:
+        return f"malformed: {type(error).__name__} in block {number}"
+    return None
+
+
+class Engine(NamedTuple):
+    """What verifies the blocks: `start(header)` in each process, then `work(text, number)`.
+
+    Processes are started only if there are `least` blocks for each.
+    """
+
+    start: Callable[[str], None]
+    work: Callable[[str, int], str | None]
+    least: int
+
+
+INTEGERS = Engine(start_worker, check_line, 1)
+"""All in integers, by the standard library alone."""
+
+
+def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> dict[str, Any]:
+    """Verify every claim of a compact certificate; returns the claims.
+
+    Raises `CertificateError` if one is not supported, `FormatError` if the file is no compact
+    certificate, `OSError`, `BrokenExecutor` if a worker process died.
+    """
+    with open(path, "rb") as stream:
+        return check_lines(lines(stream), workers, engine)
+
+
+def check_lines(
+    found: Iterator[str], workers: int = 1, engine: Engine = INTEGERS
+) -> dict[str, Any]:
+    """Verify every claim, given the lines of a file; returns the claims.
+
+    With several workers, blocks are checked in that many processes, at most two blocks waiting for
+    each.
+    """
+    first = next(found, None)
+    if first is None:
+        raise FormatError("the file is empty")
+    header = read_header(first)
+    try:
+        sheet = CompactSheet(header)
+    except MALFORMED as error:
+        raise CertificateError(f"malformed: {type(error).__name__}") from error
+    _check_blocks(found, first, sheet.blocks, workers, engine)
+    last = next(found, None)
+    require(last is not None, "the claims are missing")
+    claims = read_object(last or "", "the last line")
+    keys(claims, "claims", "the last line")
+    require(next(found, None) is None, "something follows the claims")
+    facts = sheet.claims()
+    keys(claims["claims"], " ".join(facts), "claims")
+    for key, fact in facts.items():
+        claim = claims["claims"][key]
+        require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
+    return facts
+
+
+def _check_blocks(
+    found: Iterator[str], header: str, blocks: int, workers: int, engine: Engine
+) -> None:
+    with ExitStack() as stack:
+        pool = None
+        if workers > 1 and blocks >= engine.least * workers:
+            pool = ProcessPoolExecutor(workers, get_context("spawn"), engine.start, (header,))
+            stack.callback(pool.shutdown, cancel_futures=True)
+        else:
+            engine.start(header)
+        waiting: deque[Future[str | None]] = deque()
+
+        def settle(most: int) -> None:
+            while len(waiting) > most:
+                _raise(waiting.popleft().result())
+
+        for number in range(blocks):
+            try:
+                text = next(found, None)
+            except FormatError:
+                settle(0)  # a block before it that does not hold comes first
+                raise
+            if text is None:
+                settle(0)
+                raise CertificateError(f"only {number} of {blocks} blocks are there")
+            if pool is None:
+                _raise(engine.work(text, number))
+                continue
+            waiting.append(pool.submit(engine.work, text, number))
+            settle(2 * workers)
+        settle(0)
+
+
+def _raise(reason: str | None) -> None:
+    if reason is not None:
+        raise CertificateError(reason)

@@ -1,0 +1,27 @@
+"""Formats, versions and limits of certificates: writers take them from here."""
+
+from __future__ import annotations
+
+LISTING, LISTING_VERSION = "exactfold certificate", 2
+"""All branches of a sheet in one JSON object (docs/certificate.md)."""
+
+COMPACT, COMPACT_VERSION = "exactfold compact certificate", 1
+"""One root for each sign vector, line by line (docs/compact-certificate.md)."""
+
+BRANCH, BRANCH_VERSION = "exactfold branch", 1
+"""One branch with given vertex signs (docs/branch.md)."""
+
+# Bounds on the memory and the work that one file can ask for.
+MOST_BITS = 1 << 14  # of a box in a listing, and digits of its numbers
+MOST_UNITS = 52  # bits of the boxes in a compact block, and the largest radius byte
+MOST_WIDTH = 8  # bytes of a centre
+MOST_BLOCK = 1 << 16  # roots in a block
+MOST_UNKNOWNS = 40
+MOST_LINE = 1 << 25  # bytes of a line
+MOST_DIGITS = 4000  # of an exact root in a block, and its bits
+
+UNPROVED = 255
+"""The radius byte of a root that is given under "exact"."""
+
+FACTS = "interior boundary folds degrees_of_freedom sha256"
+COUNTS = "distinct with_multiplicity real nonreal true_branches"

@@ -1,0 +1,134 @@
+"""Reading what a file holds: exact numbers, lists and objects, and how it is refused."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from typing import Any, NoReturn
+
+MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+"""What the arithmetic raises on values that nothing else has refused."""
+
+
+class CertificateError(Exception):
+    """A claim of the certificate is not supported by its evidence."""
+
+
+class FormatError(Exception):
+    """The file is not a certificate of a known format and version."""
+
+
+def require(condition: object, message: str) -> None:
+    """Raise `CertificateError` unless the condition holds."""
+    if not condition:
+        raise CertificateError(message)
+
+
+def plain(error: object) -> str:
+    """A message in printable ASCII on one line, at most 1000 characters, whatever it quotes."""
+    return "".join(c if " " <= c <= "~" else ascii(c)[1:-1] for c in str(error)[:1000])[:1000]
+
+
+def parse_integer(text: str) -> int:
+    """Exact integer of any length from decimal digits."""
+    sign, digits = (-1, text[1:]) if text[:1] == "-" else (1, text)
+    if not (digits.isascii() and digits.isdigit()):
+        raise CertificateError(f"{text[:40]!a} is not an integer")
+    value = 0
+    for start in range(0, len(digits), 4000):
+        part = digits[start : start + 4000]
+        value = value * 10 ** len(part) + int(part)
+    return sign * value
+
+
+def parse_rational(text: Any) -> Fraction:
+    """Exact rational from "p" or "p/q"."""
+    require(isinstance(text, str), f"{text!a} is not a rational number in quotes")
+    numerator, slash, denominator = text.partition("/")
+    q = parse_integer(denominator) if slash else 1
+    require(q > 0, f"{text[:40]!a} has no positive denominator")
+    return Fraction(parse_integer(numerator), q)
+
+
+def read_json(text: str) -> Any:
+    """A JSON value without floats, repeated keys or integers that Python would not print."""
+
+    def refuse(number: str) -> NoReturn:
+        raise FormatError(f"a certificate holds no floats, but here is {number[:40]}")
+
+    def integer(number: str) -> int:
+        if len(number) > 4000:  # longer ones are written as text; Python would not print them
+            raise FormatError(f"an integer is too long: {number[:40]}...")
+        return int(number)
+
+    def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        keys = [key for key, _ in pairs]
+        if len(set(keys)) != len(keys):
+            raise FormatError("a key appears twice in one object")
+        return dict(pairs)
+
+    try:
+        return json.loads(
+            text,
+            parse_float=refuse,
+            parse_constant=refuse,
+            parse_int=integer,
+            object_pairs_hook=unique,
+        )
+    except (ValueError, RecursionError) as error:
+        raise FormatError(f"not JSON, or cut off: {error}") from None
+
+
+def document(data: Any, form: str, version: int, names: str) -> dict[str, Any]:
+    """`data` if it is a JSON object of the given format and version with the keys `names`."""
+    if not isinstance(data, dict) or data.get("format") != form:
+        raise FormatError(f'the object has no "format": "{form}"')
+    if type(data.get("version")) is not int or data["version"] != version:
+        raise FormatError(f"version {data.get('version')!a} is not known to this checker")
+    keys(data, names, "the object", FormatError)
+    return data
+
+
+def keys(value: Any, names: str, what: str, error: type[Exception] = CertificateError) -> None:
+    """Raise unless `value` is an object with exactly these keys."""
+    if not isinstance(value, dict) or sorted(value) != sorted(names.split()):
+        raise error(f"{what}: expected an object with the keys {names}")
+
+
+def items(value: Any, what: str, length: int | None = None) -> list[Any]:
+    """`value` if it is a list (of the given length)."""
+    require(isinstance(value, list), f"{what} is not a list")
+    require(length is None or len(value) == length, f"{what} has not {length} entries")
+    return list(value)
+
+
+def natural(value: Any, what: str) -> int:
+    """`value` if it is an integer >= 0."""
+    if type(value) is not int or value < 0:
+        raise CertificateError(f"{what} is not a natural number")
+    return value
+
+
+def integer(value: Any) -> int:
+    """`value` if it is an integer."""
+    if type(value) is not int:
+        raise CertificateError(f"{value!a} is not an integer")
+    return value
+
+
+def text_of(value: Any) -> str:
+    """`value` if it is a string."""
+    if not isinstance(value, str):
+        raise CertificateError(f"{value!a} is not a number in quotes")
+    return value
+
+
+def digits(n: int) -> str:
+    """Decimal text of an integer of any length."""
+    if n < 0:
+        return "-" + digits(-n)
+    if n.bit_length() < 13000:  # fewer than 4000 digits, which Python prints
+        return str(n)
+    half = n.bit_length() * 3 // 20
+    high, low = divmod(n, 10**half)
+    return digits(high) + digits(low).rjust(half, "0")

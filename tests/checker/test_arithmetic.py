@@ -1,0 +1,552 @@
+"""The arithmetic of the checker against what defines it: Krawczyk's inequalities, linear algebra,
+polynomials with known roots, numbers of any length."""
+
+from __future__ import annotations
+
+import json
+import random
+from fractions import Fraction
+from itertools import product
+
+import pytest
+from forge import given, refused, unreadable, verified
+from forge import product as times
+
+from exactfold.checker import flat_folds, linear, polynomials, reading
+from exactfold.checker.boxes import Box
+from exactfold.checker.equations import BranchSystem
+from exactfold.checker.krawczyk import Krawczyk, inverse
+from exactfold.checker.listing import agrees, digit
+from exactfold.checker.reading import CertificateError, FormatError
+from exactfold.checker.sheet import read_sheet
+
+Matrix = list[list[Fraction]]
+
+
+def fractions(*rows: list[object]) -> Matrix:
+    return [[Fraction(x) for x in row] for row in rows]  # type: ignore[arg-type]
+
+
+# --- Krawczyk's test -----------------------------------------------------------------------------
+
+
+class Quadrics:
+    """F_p = (1/2) z^T S_p z with symmetric integer matrices."""
+
+    def __init__(self, *matrices: list[list[int]]) -> None:
+        self.size, self.matrices = len(matrices), matrices
+        self.quadrics = [
+            {(i, j): w for i, row in enumerate(s) for j, w in enumerate(row) if w} for s in matrices
+        ]
+
+
+def holds(system: Quadrics, y: Matrix, m: list[Fraction], r: Fraction) -> bool:
+    """k0 + r M < 1 and eta + (k0 + r M) r < r, as stated, for Y of the quadrics as given."""
+    n, z = system.size, [*m, Fraction(1)]
+    jacobian = [
+        [sum((w * x for w, x in zip(row, z, strict=True)), Fraction(0)) for row in s][:n]
+        for s in system.matrices
+    ]
+    values = [
+        sum((z[i] * s[i][j] * z[j] for i, j in product(range(n + 1), repeat=2)), Fraction(0)) / 2
+        for s in system.matrices
+    ]
+    size = [sum(abs(s[i][j]) for i, j in product(range(n), repeat=2)) for s in system.matrices]
+    k0 = max(
+        sum(abs((i == k) - sum(y[i][p] * jacobian[p][k] for p in range(n))) for k in range(n))
+        for i in range(n)
+    )
+    most = max(sum(abs(y[i][p]) * size[p] for p in range(n)) for i in range(n))
+    eta = max(abs(sum(y[i][p] * values[p] for p in range(n))) for i in range(n))
+    return k0 + r * most < 1 and eta + (k0 + r * most) * r < r
+
+
+class Given(Krawczyk):
+    """The test with a matrix Y that is given."""
+
+    def propose(self, y: Matrix) -> None:
+        scale = [self.quadrics[p] for p in range(self.n)]
+        self.given = y, scale
+
+    def _preconditioners(self, gradients, bits):  # type: ignore[no-untyped-def]
+        yield self.integers, self.shift
+
+
+def accepts(system: Quadrics, y: Matrix, center: list[int], radius: int, bits: int) -> bool:
+    """Whether the checker accepts the box with this Y, of the quadrics as given."""
+    test = Given(system)
+    # The checker scales quadric p by a power of two; Y takes it back.
+    factors = [
+        Fraction(next(iter(test.quadrics[p].values())), next(iter(system.quadrics[p].values())))
+        for p in range(test.n)
+    ]
+    scaled = [[x / f for x, f in zip(row, factors, strict=True)] for row in y]
+    test.shift = 0
+    while any((x * (1 << test.shift)).denominator > 1 for row in scaled for x in row):
+        test.shift += 1
+    test.integers = [[int(x * (1 << test.shift)) for x in row] for row in scaled]
+    try:
+        test.check(center, radius, bits)
+    except CertificateError:
+        return False
+    return True
+
+
+def test_the_inequalities_are_those_that_are_stated() -> None:
+    """Whatever Y: for a few thousand small systems and boxes, many at the limit."""
+    source, seen = random.Random(3), {True: 0, False: 0}
+    for _ in range(2500):
+        n = source.randint(1, 2)
+        matrices = []
+        for _ in range(n):
+            s = [[0] * (n + 1) for _ in range(n + 1)]
+            for i, j in product(range(n + 1), repeat=2):
+                if i <= j:
+                    s[i][j] = s[j][i] = source.choice((0, 0, 1, -1, 2, 5))
+            s[0][n] += 1
+            s[n][0] = s[0][n]
+            if not any(map(any, s)):
+                s[0][0] = 1
+            matrices.append(s)
+        system = Quadrics(*matrices)
+        bits = source.randint(0, 3)
+        center = [source.randint(-3, 3) for _ in range(n)]
+        m = [Fraction(c, 1 << bits) for c in center]
+        radius = source.randint(1, 4)
+        jacobian = [
+            [sum(w * x for w, x in zip(row, [*m, 1], strict=True)) for row in s][:n]
+            for s in matrices
+        ]
+        try:
+            y = inverse([[Fraction(x) for x in row] for row in jacobian])
+        except ZeroDivisionError:
+            continue
+        wobble = Fraction(source.choice((0, 0, 1, 3)), 16)
+        y = [
+            [Fraction(round((x + source.choice((-1, 0, 1)) * wobble) * 64), 64) for x in row]
+            for row in y
+        ]
+        expected = holds(system, y, m, Fraction(radius, 1 << bits))
+        assert accepts(system, y, center, radius, bits) == expected
+        seen[expected] += 1
+    assert min(seen.values()) > 50
+
+
+IDENTITY = fractions([1, 0], [0, 1])
+LINEAR = Quadrics([[0, 0, 1], [0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 0, 1], [0, 1, 0]])
+
+
+def test_deviations_add_up_along_rows() -> None:
+    """x = 0 and y = 0: no entry of I - Y is 1, but the box about (5, 5) / 4 holds no zero."""
+    y = fractions(["3/8", "-5/8"], ["-5/8", "3/8"])
+    assert not accepts(LINEAR, y, [5, 5], 4, 2)
+    assert accepts(LINEAR, IDENTITY, [3, 3], 4, 2)
+
+
+def test_a_zero_on_the_side_of_a_box_is_not_in_it() -> None:
+    for center, expected in (([3, 0], True), ([4, 0], False), ([5, 0], False), ([7, 0], False)):
+        assert accepts(LINEAR, IDENTITY, center, 4, 2) == expected
+        assert accepts(LINEAR, IDENTITY, [-x for x in center[::-1]], 4, 2) == expected
+
+
+def test_any_small_box_about_a_zero_passes() -> None:
+    """The checker's own Y: also where doubles are too coarse, and where a quadric is linear."""
+    circle = [[2, 0, 0], [0, 2, 0], [0, 0, -50]]  # x^2 + y^2 = 25
+    steep = [[2 * 10**40, 0, 0], [0, -2, 0], [0, 0, 32 - 18 * 10**40]]
+    line = [[0, 0, 4], [0, 0, -3], [4, -3, 0]]
+    for system in (Quadrics(circle, line), Quadrics(circle, steep), Quadrics(line, circle)):
+        for bits in (4, 64, 500):
+            Krawczyk(system).check([3 << bits, 4 << bits], 1, bits)
+            with pytest.raises(CertificateError):
+                Krawczyk(system).check([3 << bits, 5 << bits], 1, bits)
+    singular = Quadrics(circle, circle)
+    with pytest.raises(CertificateError, match="Krawczyk's test fails"):
+        Krawczyk(singular).check([3 << 64, 4 << 64], 1, 64)
+    lines = Quadrics(line, line)
+    with pytest.raises(CertificateError, match="Krawczyk's test fails"):
+        Krawczyk(lines).check([3 << 64, 4 << 64], 1, 64)
+
+
+@pytest.mark.parametrize("name", ["listing-one-vertex", "listing-two-vertices", "listing-isolated"])
+def test_boxes_that_miss_their_zero_by_little_are_refused(name: str) -> None:
+    """The zero known to 300 bits, boxes of radius 2^-200 beside it and about it."""
+    document = given(name)
+    system = BranchSystem(read_sheet(document["pattern"])[0], None)
+    n, bits, unit = system.size, 300, 1 << 100
+    for number, root in enumerate(document["evidence"]["roots"]):
+        x = [Fraction(int(m), 1 << root["bits"]) for m in root["center"]]
+        for _ in range(4):  # Newton's method
+            z = [*x, Fraction(1)]
+            gradients = [[Fraction(0)] * (n + 1) for _ in range(n)]
+            for row, quadric in zip(gradients, system.quadrics, strict=True):
+                for (i, j), w in quadric.items():
+                    row[i] += w * z[j]
+            values = [sum(a * b for a, b in zip(row, z, strict=True)) / 2 for row in gradients]
+            y = inverse([row[:n] for row in gradients])
+            x = [
+                Fraction(
+                    round((a - sum(b * v for b, v in zip(row, values, strict=True))) * 2**400),
+                    2**400,
+                )
+                for a, row in zip(x, y, strict=True)
+            ]
+        for place in range(n):
+            for off, right in (
+                (99, True),
+                (-99, True),
+                (101, False),
+                (-101, False),
+                (150, False),
+                (199, False),
+                (-399, False),
+            ):
+                center = [int(a * 2**bits) for a in x]
+                center[place] += off * unit // 100
+                box = Box(center, unit, bits)
+                changed = given(name)
+                changed["evidence"]["roots"][number] = {
+                    "bits": bits,
+                    "radius": str(box.radius),
+                    "center": [str(m) for m in center],
+                }
+                if right:
+                    verified(changed)
+                else:
+                    about = f"{center[:2]}.../2^{bits}"
+                    refused(changed, f"Krawczyk's test fails for the box about {about}")
+
+
+# --- signs on a box ------------------------------------------------------------------------------
+
+
+def test_signs_on_a_box() -> None:
+    for row, expected in (
+        ([1, 0, 0], 1),
+        ([-1, 0, 0], -1),
+        ([0, 1, 0], None),
+        ([1, 0, -2], None),  # it touches 0
+        ([1, 0, -1], 1),
+        ([1, 1, -2], None),
+        ([0, 0, 0], 0),
+        ([0, 0, 3], 1),
+        ([0, 0, -3], -1),
+        ([1, 0, -5], -1),
+        ([-1, 0, 2], None),
+        ([1, -1, -4], None),
+        ([1, -1, -7], -1),
+    ):
+        assert Box([12, 1], 4, 2).sign(row) == expected
+    assert [digit(x) for x in (-1, 0, 1, None)] == [-1, 0, 1, 2]
+    assert agrees("MUFV", "MVFV")
+    assert agrees("", "")
+    for claimed, letters in (("M", "V"), ("M", "U"), ("MM", "M"), ("M", "MM"), ("", "M")):
+        assert not agrees(claimed, letters)
+
+
+# --- linear algebra ------------------------------------------------------------------------------
+
+
+def test_inertia_of_forms_with_known_signs() -> None:
+    """P^T D P has the signs of D, for P with determinant not 0."""
+    source = random.Random(2)
+    for _ in range(300):
+        n = source.randint(1, 5)
+        signs = [source.choice((-2, 0, 0, 1, 3)) for _ in range(n)]
+        while True:
+            p = fractions(*([source.randint(-2, 2) for _ in range(n)] for _ in range(n)))
+            try:
+                inverse(p)
+            except ZeroDivisionError:
+                continue
+            break
+        form = [
+            [sum(p[k][i] * signs[k] * p[k][j] for k in range(n)) for j in range(n)]
+            for i in range(n)
+        ]
+        counts = [sum(s > 0 for s in signs), sum(s < 0 for s in signs), signs.count(0)]
+        before = [list(row) for row in form]
+        assert list(linear.inertia(form)) == counts
+        assert form == before
+    assert linear.inertia(fractions([0, 1, 0], [1, 0, 0], [0, 0, 0])) == (1, 1, 1)
+    assert linear.inertia(fractions([0, 1, 1], [1, 0, 1], [1, 1, 0])) == (1, 2, 0)
+    assert linear.inertia([]) == (0, 0, 0)
+
+
+def test_kernels_and_echelon_forms() -> None:
+    source = random.Random(4)
+    for _ in range(300):
+        size, count = source.randint(1, 5), source.randint(0, 5)
+        rows = fractions(
+            *([source.choice((0, 0, 1, -1, 2, 5)) for _ in range(size)] for _ in range(count))
+        )
+        lines, basis = linear.echelon(rows), linear.kernel(rows, size)
+        assert len(lines) + len(basis) == size
+        for line in [*rows, *lines.values()]:
+            assert all(sum(a * b for a, b in zip(line, v, strict=True)) == 0 for v in basis)
+        for k, line in lines.items():
+            assert [other[k] for other in lines.values() if other is not line] == [0] * (
+                len(lines) - 1
+            )
+            assert line[k] == 1
+            assert not any(line[:k])
+        free = [k for k in range(size) if k not in lines]
+        assert [[v[k] for k in free] for v in basis] == [
+            [Fraction(int(i == j)) for j in range(len(free))] for i in range(len(free))
+        ]
+    assert linear.kernel([], 2) == [[1, 0], [0, 1]]
+
+
+def test_inverses() -> None:
+    matrix = fractions([0, 2, 1], [1, 0, 0], [3, 1, 1])
+    assert inverse(matrix) == fractions([0, 1, 0], [1, 3, -1], [-1, -6, 2])
+    with pytest.raises(ZeroDivisionError):
+        inverse(fractions([1, 2], [2, 4]))
+
+
+@pytest.mark.parametrize(
+    ("square", "root"),
+    [
+        ("4/9", "2/3"),
+        ("0", "0"),
+        ("1", "1"),
+        ("49", "7"),
+        ("1/4", "1/2"),
+        ("2", None),
+        ("3", None),
+        ("1/2", None),
+        ("4/3", None),
+        ("3/4", None),
+        ("2/9", None),
+        ("9/8", None),
+    ],
+)
+def test_square_roots_are_rational_or_none(square: str, root: str | None) -> None:
+    assert linear.rational_sqrt(Fraction(square)) == (None if root is None else Fraction(root))
+
+
+# --- polynomials ---------------------------------------------------------------------------------
+
+
+def from_roots(*roots: object) -> list[Fraction]:
+    p = [Fraction(1)]
+    for root in roots:
+        p = times(p, [-Fraction(root), Fraction(1)])  # type: ignore[arg-type]
+    return p
+
+
+def test_real_roots_are_counted_by_sturm() -> None:
+    circle = [Fraction(2), Fraction(1), Fraction(1)]  # no real root
+    for lead in (Fraction(1), Fraction(-3), Fraction(1, 7)):
+        for roots in ((), (0,), (1, -2, 3), (5,), (-1, 1), ("1/3", 2, 7, -4), (0, 1, 2, 3, 4)):
+            p = [lead * c for c in from_roots(*roots)]
+            assert polynomials.count_real_roots(times(p, circle)) == len(roots)
+            if roots:
+                assert polynomials.count_real_roots(p) == len(roots)
+    even = [Fraction(c) for c in (1, 0, 0, 0, 1)]
+    assert polynomials.count_real_roots(even) == 0
+    assert polynomials.count_real_roots([Fraction(c) for c in (-2, 0, 0, 1)]) == 1
+
+
+def test_common_roots() -> None:
+    assert polynomials.are_coprime(from_roots(1, 2), from_roots(3))
+    assert polynomials.are_coprime(from_roots(1, 2), from_roots(3, 4, "1/2"))
+    assert polynomials.are_coprime(from_roots(1), [Fraction(5)])
+    for p, q in (
+        (from_roots(1, 2), from_roots(2, 3)),
+        (from_roots(1), from_roots(3, 1, 4)),
+        (from_roots(1, 2), from_roots(1, 2)),
+        (from_roots(1), [Fraction(0)]),
+    ):
+        assert not polynomials.are_coprime(p, q)
+        assert not polynomials.are_coprime([3 * c for c in q], p)
+
+
+def test_arithmetic_of_polynomials() -> None:
+    source = random.Random(6)
+    for _ in range(200):
+        p, q, r = (
+            [Fraction(source.randint(-3, 3)) for _ in range(source.randint(0, 5))] for _ in range(3)
+        )
+        q += [Fraction(source.choice((1, -2)))]
+        x = Fraction(source.randint(-9, 9), 7)
+        p_x, q_x, r_x = (sum((c * x**k for k, c in enumerate(f)), Fraction(0)) for f in (p, q, r))
+        assert polynomials.value(p, x) == p_x
+        assert polynomials.value(polynomials.times(p, q), x) == p_x * q_x
+        assert polynomials.value(polynomials.plus(p, r), x) == p_x + r_x
+        assert polynomials.value(polynomials.scaled(p, Fraction(3, 2)), x) == p_x * 3 / 2
+        before = list(p)
+        rest = polynomials.remainder(p, q)
+        assert p == before
+        assert len(rest) < len(q)
+        assert not rest or rest[-1]
+        whole = polynomials.plus(polynomials.times(r, q), rest)  # the same modulo q
+        assert polynomials.remainder(whole, q) == rest
+        d = polynomials.derivative(p)
+        assert len(d) == max(len(p) - 1, 0)
+        assert d == [k * c for k, c in enumerate(p)][1:]
+        low, high = sorted((x, Fraction(source.randint(-9, 9), 5)))
+        least, most = polynomials.bounds(p, low, high)
+        for k in range(5):
+            assert least <= polynomials.value(p, low + k * (high - low) / 4) <= most
+    assert polynomials.bounds([Fraction(1), Fraction(2)], Fraction(-1), Fraction(3)) == (-1, 7)
+    assert polynomials.bounds([Fraction(1), Fraction(-2)], Fraction(-1), Fraction(3)) == (-5, 3)
+    square = [Fraction(0), Fraction(0), Fraction(1)]
+    assert polynomials.bounds(square, Fraction(-1), Fraction(3)) == (-3, 9)
+    assert polynomials.bounds(square, Fraction(-3), Fraction(-2)) == (4, 9)
+
+
+# --- numbers and text ----------------------------------------------------------------------------
+
+
+def test_long_integers_survive() -> None:
+    for n in (
+        0,
+        -7,
+        10**4000,
+        -(10**9001) + 3,
+        7**20000,
+        2**12999,
+        2**13000,
+        -(2**13001),
+        1 - 10**50,
+    ):
+        text = reading.digits(n)
+        assert reading.parse_integer(text) == n
+        assert text.lstrip("-").isdigit()
+        assert text.startswith("-") == (n < 0)
+        assert text.lstrip("-")[0] != "0" or n == 0
+    assert reading.parse_integer("9" * 4000 + "1" * 4001 + "0" * 3) == (
+        (10**4000 - 1) * 10**4004 + (10**4001 - 1) // 9 * 1000
+    )
+    assert reading.parse_integer("-00012") == -12
+
+
+@pytest.mark.parametrize(
+    "text", ["", "-", "+1", "1 ", " 1", "1_0", "0x1", "--1", "1-", "\u0661", "\u00b2", "1.0", "1e3"]
+)
+def test_other_text_is_no_integer(text: str) -> None:
+    with pytest.raises(CertificateError) as caught:
+        reading.parse_integer(text)
+    assert str(caught.value) == f"{text!a} is not an integer"
+
+
+def test_rationals() -> None:
+    for text, value in (("3", 3), ("-3/6", Fraction(-1, 2)), ("0/5", 0), ("10/2", 5)):
+        assert reading.parse_rational(text) == value
+    for text in ("1/0", "1/-2"):
+        with pytest.raises(CertificateError) as caught:
+            reading.parse_rational(text)
+        assert str(caught.value) == f"{text!a} has no positive denominator"
+    for text in ("1/", "/2", "1/2/3"):
+        with pytest.raises(CertificateError, match="is not an integer"):
+            reading.parse_rational(text)
+    for other in (1, None, 0.5, True, ["1"]):
+        with pytest.raises(CertificateError) as caught:
+            reading.parse_rational(other)
+        assert str(caught.value) == f"{other!a} is not a rational number in quotes"
+
+
+def test_long_text_is_cut_where_it_is_quoted() -> None:
+    for text, quoted in (("x" * 50, "x" * 40), ("y" * 41, "y" * 40)):
+        with pytest.raises(CertificateError) as caught:
+            reading.parse_integer(text)
+        assert str(caught.value) == f"{quoted!a} is not an integer"
+    with pytest.raises(CertificateError) as caught:
+        reading.parse_rational("1/" + "0" * 60)
+    assert str(caught.value) == f"{'1/' + '0' * 38!a} has no positive denominator"
+
+
+def test_messages_are_one_line_of_printable_ascii() -> None:
+    assert reading.plain("a ~b") == "a ~b"
+    assert reading.plain("a\nb\x7f\u00e9\ud800\x1b") == "a\\nb\\x7f\\xe9\\ud800\\x1b"
+    assert reading.plain("x" * 1001) == "x" * 1000
+    assert reading.plain("\n" * 1000) == "\\n" * 500
+    assert reading.plain(CertificateError("no")) == "no"
+
+
+KEYS = "format version pattern claims evidence provenance"
+
+
+def test_texts_that_are_no_certificates() -> None:
+    text = json.dumps(given("listing-one-vertex"))
+    for number in ("1.0", "2e0", "NaN", "Infinity", "-Infinity", "1E400"):
+        changed = text.replace('"multiplicity": 1', f'"multiplicity": {number}')
+        unreadable(changed, f"a certificate holds no floats, but here is {number}")
+    unreadable(f"[{'1' * 50}.5]", f"a certificate holds no floats, but here is {'1' * 40}")
+    unreadable(
+        text.replace('"multiplicity": 1', f'"multiplicity": {"7" * 4001}'),
+        f"an integer is too long: {'7' * 40}...",
+    )
+    refused(
+        json.loads(text.replace('"multiplicity": 1', f'"multiplicity": {"7" * 4000}')),
+        "branch 0: multiplicity is 1",
+    )
+    unreadable(text.replace('"bits"', '"bits": 1, "bits"', 1), "a key appears twice in one object")
+    for other in ("[]", "1", "null", '"x"', "{}", '{"format": "x"}', '{"format": ["a"]}'):
+        unreadable(other, 'the object has no "format": "exactfold certificate"')
+    for version in ("1", "3", '"2"', "true", "null", "[2]"):
+        shown = repr(json.loads(version))
+        unreadable(
+            text.replace('"version": 2', f'"version": {version}'),
+            f"version {shown} is not known to this checker",
+        )
+    unreadable(
+        text.replace('"provenance"', '"origin"'),
+        f"the object: expected an object with the keys {KEYS}",
+    )
+    branch = json.dumps(given("branch-dart"))
+    unreadable(
+        branch.replace('"version": 1', '"version": 2'), "version 2 is not known to this checker"
+    )
+    unreadable(
+        branch[:-1] + ', "provenance": 1}',
+        "the object: expected an object with the keys format version pattern claims evidence",
+    )
+    for cut in ("", text[:-1], "[" * 10**5, "{'a': 1}"):
+        with pytest.raises(FormatError, match=r"^not JSON, or cut off: "):
+            reading.read_json(cut)
+
+
+def test_lists_objects_and_naturals() -> None:
+    assert reading.items([1, 2], "x") == [1, 2]
+    assert reading.items([1, 2], "x", 2) == [1, 2]
+    assert reading.natural(0, "x") == 0
+    assert reading.integer(-3) == -3
+    assert reading.text_of("a") == "a"
+    reading.keys({"a": 1, "b": 2}, "b a", "x")
+    for call, message in (
+        (lambda: reading.items((1,), "x"), "x is not a list"),
+        (lambda: reading.items([1], "x", 0), "x has not 0 entries"),
+        (lambda: reading.natural(-1, "x"), "x is not a natural number"),
+        (lambda: reading.natural(True, "x"), "x is not a natural number"),
+        (lambda: reading.integer(True), "True is not an integer"),
+        (lambda: reading.integer("1"), "'1' is not an integer"),
+        (lambda: reading.text_of(1), "1 is not a number in quotes"),
+        (lambda: reading.keys({"a": 1}, "a b", "x"), "x: expected an object with the keys a b"),
+        (lambda: reading.keys([], "a b", "x"), "x: expected an object with the keys a b"),
+    ):
+        with pytest.raises(CertificateError) as caught:
+            call()
+        assert str(caught.value) == message
+
+
+# --- folds that are flat -------------------------------------------------------------------------
+
+
+def test_flat_folds_of_a_cross_and_of_a_generic_vertex() -> None:
+    """K_v = 0 on the cross: one straight crease folds, and the other is flat; else none is."""
+    for name, signs, expected in (
+        ("listing-cross", (0, None, None, None), set()),  # any such sheet has K_v = 0
+        ("listing-cross", (1, None, None, None), {(1, 4), (3, 4)}),
+        ("listing-cross", (None, -1, None, None), {(0, 4), (2, 4)}),
+        ("listing-cross", (None, None, None, None), set()),
+        ("listing-cross", (0, None, 0, None), set()),
+        ("listing-cross", (0, 0, None, None), {(2, 4), (3, 4)}),
+        ("listing-one-vertex", (1, None, None, None), set()),
+        ("listing-one-vertex", (0, None, None, None), {(1, 4), (2, 4), (3, 4)}),
+        ("listing-one-vertex", (0, 0, None, None), {(2, 4), (3, 4)}),
+    ):
+        sheet, _ = read_sheet(given(name)["pattern"])
+        folds = tuple((min(4, j), max(4, j)) for j in sheet.star(4))
+        assert folds == ((0, 4), (1, 4), (2, 4), (3, 4))
+        assert set(flat_folds.flat_at(sheet, 4, folds, signs)) == expected

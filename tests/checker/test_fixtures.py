@@ -1,0 +1,29 @@
+"""Certificates that earlier versions wrote: they must verify for ever."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from exactfold import checker
+
+FOLDER = Path(__file__).parent.parent / "fixtures" / "certificates"
+FILES = sorted(path.name for path in FOLDER.iterdir() if path.suffix in (".json", ".txt"))
+
+
+def test_there_are_certificates_of_every_kind() -> None:
+    kinds = {name.split("-")[0] for name in FILES}
+    assert kinds == {"listing", "algebraic", "rigid", "single", "compact", "branch"}
+    assert len(FILES) == 66
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_certificates_of_earlier_versions_verify(name: str) -> None:
+    path = FOLDER / name
+    claims = checker.verify(path)
+    assert checker.is_compact(path) == name.startswith("compact")
+    last = path.read_text().splitlines()[-1]
+    given = json.loads(last.partition("\t")[0])["claims"]
+    assert {key: claims[key] for key in given} == given

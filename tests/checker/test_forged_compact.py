@@ -1,0 +1,525 @@
+"""Forged compact certificates, with right digests, refused in integers."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from forge import (
+    FIXTURES,
+    Document,
+    Lines,
+    chained,
+    given,
+    given_lines,
+    put,
+    raw,
+    refused_lines,
+    verified_lines,
+)
+
+from exactfold import checker
+from exactfold.checker import command, compact
+from exactfold.checker.compact_blocks import CompactSheet
+from exactfold.checker.compact_lines import digest, lines, read_header, read_object
+from exactfold.checker.reading import CertificateError, FormatError
+
+FOUR, EXACT, SIZE = "compact-blocks-of-4", "compact-exact", 4  # n = 4 in 4 blocks; n = 1
+
+
+def moved(parts: Lines, block: int = 0, index: int = 0, **changes: Any) -> None:
+    """One root of a block moved to `exact`, as it is but for the changes."""
+    sheet = CompactSheet(parts[0])
+    line = parts[1 + block]
+    known = sheet.decode(json.dumps(line), block)
+    entry = {
+        "root": index,
+        "bits": known.bits,
+        "radius": str(1 << known.radii[index]),
+        "center": [str(m) for m in known.center(index, sheet.size)],
+        "assignment": sheet.letters(known, index),
+    }
+    radii = raw(line, "radii")
+    radii[index] = 255
+    put(line, "radii", radii)
+    line["exact"] = [*line["exact"], entry | changes]
+
+
+def test_roots_may_be_given_exactly() -> None:
+    for block, index in ((0, 0), (2, 3)):
+        parts = given_lines(FOUR)
+        moved(parts, block, index)
+        assert verified_lines(parts) == parts[-1]["claims"]
+
+
+# --- lines ---------------------------------------------------------------------------------------
+
+
+def test_lines_are_chained_by_digests() -> None:
+    data = (FIXTURES / f"{FOUR}.txt").read_bytes()
+    assert verified_lines(data)["distinct"] == 16
+    rows = data.splitlines(keepends=True)
+    assert digest("", "a") == "ca978112ca1bbdcafac231b39a23dc4da786eff8147c4e72b9807785afee48bb"
+    for number, changed in (
+        (1, data.replace(b'"version":1', b'"version":2', 1)),
+        (1, data.replace(b"nappes", b"napp\xe9s")),
+        (4, data.replace(b'"block":2', b'"block":3')),
+        (3, b"".join([*rows[:2], *rows[3:]])),
+        (6, data[:-1]),
+        (6, data[:-2] + b"\n"),
+        (6, data + b"\n"),
+        (1, b"[" * 99 + b"\n"),
+        (1, b"{}\n"),
+        (7, data + b"more\n"),
+    ):
+        number = 7 if changed == data + b"\n" else number
+        message = f"line {number} is cut off or was altered"
+        refused_lines(changed, message, FormatError)
+    refused_lines(b"", "the file is empty", FormatError)
+
+
+def test_the_first_line_may_have_been_read(tmp_path: Any) -> None:
+    data = (FIXTURES / f"{FOUR}.txt").read_bytes()
+    path = tmp_path / "c.txt"
+    path.write_bytes(data)
+    with open(path, "rb") as stream:
+        first = stream.readline()
+        assert len(list(lines(stream, first))) == 6
+    assert compact.check(str(path)) == checker.verify(path) == given_lines(FOUR)[-1]["claims"]
+    assert checker.is_compact(path)
+
+
+def test_a_file_is_compact_by_its_format_or_its_digest(tmp_path: Any) -> None:
+    """However its header is written."""
+    parts = given_lines(FOUR)
+    late = [{"provenance": "x" * 9000, **{k: parts[0][k] for k in list(parts[0])[:-1]}}, *parts[1:]]
+    texts = [json.dumps(part) for part in parts]
+    texts[0] = texts[0].replace('"format"', '"f\\u006frmat"')
+    last, escaped = "", ""
+    for text in texts:
+        last = digest(last, text)
+        escaped += f"{text}\t{last}\n"
+    path = tmp_path / "c.txt"
+    for data in (chained(late), escaped.encode()):
+        path.write_bytes(data)
+        assert checker.is_compact(path)
+        assert checker.verify(path)["distinct"] == 16
+    for data in (b"", b"{}", b"\t\n", b"{}\tx\n", chained(parts)[:-5]):
+        path.write_bytes(data)
+        assert checker.is_compact(path) == (len(data) > 9)
+    for text in ('{"format" :\t "exactfold compact certificate"}', '{"a": "exactfold branch"}'):
+        path.write_text(text)
+        assert checker.is_compact(path) == ("compact" in text)
+
+
+def test_lines_are_not_read_to_their_end(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
+    from exactfold.checker import compact_lines
+
+    path = tmp_path / "c.txt"
+    path.write_bytes((FIXTURES / f"{FOUR}.txt").read_bytes())
+    longest = max(map(len, path.read_bytes().splitlines(keepends=True)))
+    for most, right in ((longest, True), (longest - 1, False)):
+        monkeypatch.setattr(compact_lines, "MOST_LINE", most)
+        monkeypatch.setattr(command, "MOST_LINE", most)
+        if right:
+            assert checker.verify(path)["distinct"] == 16
+        else:
+            with pytest.raises(FormatError, match="line 1 is cut off or was altered"):
+                checker.verify(path)
+
+
+def test_objects_of_lines() -> None:
+    for text, message in (
+        ("[1]", "a line is not an object"),
+        ('{"a":1,"a":2}', "a line: a key appears twice in one object"),
+        ('{"a":1.5}', "a line: a certificate holds no floats, but here is 1.5"),
+    ):
+        with pytest.raises(FormatError) as caught:
+            read_object(text, "a line")
+        assert str(caught.value) == message
+    assert read_object('{"a":1}', "a line") == {"a": 1}
+    parts = given_lines(FOUR)
+    keys = "format version pattern evidence provenance"
+    for change, message in (
+        (
+            {"format": "exactfold certificate"},
+            'the object has no "format": "exactfold compact certificate"',
+        ),
+        ({"version": 2}, "version 2 is not known to this checker"),
+        ({"more": 1}, f"the object: expected an object with the keys {keys}"),
+    ):
+        forged = [{**parts[0], **change}, *parts[1:]]
+        refused_lines(forged, message, FormatError)
+    refused_lines([parts[0], [1], *parts[2:]], "block 0 is not an object", FormatError)  # type: ignore[list-item]
+    assert read_header(json.dumps(parts[0])) == parts[0]
+
+
+# --- the header ----------------------------------------------------------------------------------
+
+
+def header(**evidence: Any) -> Lines:
+    parts = given_lines(FOUR)
+    parts[0]["evidence"] |= evidence
+    return parts
+
+
+@pytest.mark.parametrize(
+    ("forged", "message"),
+    [
+        (header(kind="isolated"), "unknown kind of evidence"),
+        (header(more=1), "evidence: expected an object with the keys kind triangles chart block"),
+        (header(block=3), "the size of a block does not divide the number of roots"),
+        (header(block=32), "the size of a block does not divide the number of roots"),
+        (header(block=0), "the size of a block does not divide the number of roots"),
+        (header(block=-4), "block is not a natural number"),
+        (header(block=True), "block is not a natural number"),
+        (header(chart={"0": "1"}), "a chart other than the saddle's needs a reflex corner"),
+        (
+            header(triangles=[{"corners": [0, 1, 2], "inside": [4], "multipliers": ["1"]}]),
+            "[0, 1, 2] is no 3-cycle of edges",
+        ),
+        (header(triangles=None), "triangles is not a list"),
+    ],
+)
+def test_headers(forged: Lines, message: str) -> None:
+    refused_lines(forged, message)
+
+
+FOURTH = "the sheet has not four boundary vertices and an inner"
+
+
+def test_sheets_of_other_shapes() -> None:
+    for name, message in (
+        ("single-vertex-nine-folds", FOURTH),
+        ("rigid-nested", FOURTH),
+        ("listing-chord", "the number of unknowns is out of range"),
+    ):
+        other, forged = given(name), given_lines(FOUR)
+        forged[0]["pattern"] = other["pattern"]
+        forged[0]["evidence"]["triangles"] = other["evidence"]["triangles"]
+        refused_lines(forged, message)
+    forged[0]["pattern"] = {
+        "vertices": [["0", "0"], ["1", "0"], ["1", "1"], ["0", "1"]],
+        "triangles": [[0, 1, 2], [0, 2, 3]],
+    }
+    refused_lines(forged, FOURTH)
+    forged[0]["pattern"] = 1  # type: ignore[assignment]
+    refused_lines(forged, "malformed: TypeError")
+
+
+def test_unknowns_are_at_most_forty() -> None:
+    """With more, nothing is tried; 40 are as many as the header may ask for."""
+    pattern = given("branch-random")["pattern"]
+    assert len(pattern["vertices"]) == 44
+    forged = given_lines(FOUR)
+    forged[0]["pattern"] = pattern
+    forged[0]["evidence"]["block"] = 3
+    refused_lines(forged, "the size of a block does not divide the number of roots")
+    forged[0]["evidence"]["block"] = 1 << 16
+    sheet = CompactSheet(forged[0])
+    assert (sheet.size, sheet.blocks) == (40, 1 << 24)
+    forged[0]["evidence"]["block"] = 1 << 17
+    refused_lines(forged, "the size of a block does not divide the number of roots")
+    from fractions import Fraction
+
+    a, b, c = pattern["triangles"].pop()
+    points = [[Fraction(x) for x in pattern["vertices"][v]] for v in (a, b, c)]
+    middle = [str(sum(axis) / 3) for axis in zip(*points, strict=True)]
+    pattern["vertices"].append(middle)
+    pattern["triangles"] += [[a, b, 44], [b, c, 44], [c, a, 44]]
+    refused_lines(forged, "the number of unknowns is out of range")
+
+
+# --- blocks --------------------------------------------------------------------------------------
+
+
+def changed_bytes(line: int, key: str, change: Callable[[bytearray], None]) -> Lines:
+    parts = given_lines(FOUR)
+    data = raw(parts[line], key)
+    change(data)
+    put(parts[line], key, data)
+    return parts
+
+
+def set_byte(place: int, value: int) -> Callable[[bytearray], None]:
+    def change(data: bytearray) -> None:
+        data[place] = value
+
+    return change
+
+
+def test_the_same_box_for_two_sign_vectors() -> None:
+    parts = given_lines(FOUR)
+    for key, width in (("centers", SIZE * parts[1]["width"]), ("radii", 1), ("folds", 2)):
+        data = raw(parts[1], key)
+        data[width : 2 * width] = data[:width]
+        put(parts[1], key, data)
+    sheet = CompactSheet(parts[0])
+    first = sheet.emptied.interior[0]
+    refused_lines(parts, f"root 1: vertex {first} has not the sign of its number")
+
+
+def test_every_sign_is_that_of_the_number() -> None:
+    """Each root under the number that differs in one bit."""
+    for place in range(SIZE):
+        parts = given_lines("compact-convex")
+        width = parts[1]["width"] * SIZE
+        for key, size in (("centers", width), ("radii", 1), ("folds", 2)):
+            data = raw(parts[1], key)
+            rows = [bytes(data[k * size : (k + 1) * size]) for k in range(16)]
+            put(parts[1], key, b"".join(rows[k ^ (1 << place)] for k in range(16)))
+        vertex = CompactSheet(parts[0]).emptied.interior[place]
+        refused_lines(parts, f"root 0: vertex {vertex} has not the sign of its number")
+
+
+def test_every_letter_is_compared() -> None:
+    sheet = CompactSheet(given_lines(FOUR)[0])
+    block = sheet.decode(json.dumps(given_lines(FOUR)[2]), 1)
+    folds = len(sheet.fold_rows)
+    for index in (0, 3):
+        true = sheet.letters(block, index)
+        for k in range(folds):
+
+            def flip(data: bytearray, index: int = index, k: int = k) -> None:
+                data[index * sheet.letter_bytes + k // 8] ^= 1 << k % 8
+
+            other = true[:k] + "MV"["VM".index(true[k])] * 0 + ("V" if true[k] == "M" else "M")
+            other += true[k + 1 :]
+            forged = changed_bytes(2, "folds", flip)
+            refused_lines(forged, f"root {4 + index}: folds are {true}, not {other}")
+    spare = folds % 8
+    assert spare
+
+    def beyond(data: bytearray) -> None:
+        data[sheet.letter_bytes - 1] |= 1 << spare
+
+    refused_lines(changed_bytes(2, "folds", beyond), "a bit of no fold is set")
+
+
+def test_boxes_without_a_zero() -> None:
+    for place in (2, SIZE * 6 + 2):
+        forged = changed_bytes(1, "centers", set_byte(place, 0x55))
+        with pytest.raises(CertificateError, match="Krawczyk's test fails for the box about"):
+            verified_lines(forged)
+    forged = changed_bytes(4, "radii", set_byte(3, 45))
+    with pytest.raises(CertificateError, match="Krawczyk's test fails for the box about"):
+        verified_lines(forged)
+
+
+def test_radii() -> None:
+    for radius in (53, 200, 254):
+        forged = changed_bytes(1, "radii", set_byte(3, radius))
+        refused_lines(forged, "root 3: no such radius")
+    forged = changed_bytes(1, "radii", set_byte(3, 52))
+    with pytest.raises(CertificateError, match="Krawczyk's test fails"):
+        verified_lines(forged)
+    forged = changed_bytes(1, "radii", set_byte(3, 255))
+    refused_lines(forged, "root 3 is given twice or not at all")
+    parts = given_lines(FOUR)
+    moved(parts)
+    radii = raw(parts[1], "radii")
+    radii[0] = 0
+    put(parts[1], "radii", radii)
+    refused_lines(parts, "root 0 is given twice or not at all")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"block": 1}, "block 0 is expected, but here is block 1"),
+        ({"block": False}, "block 0 is expected, but here is block False"),
+        ({"block": "0"}, "block 0 is expected, but here is block '0'"),
+        ({"bits": 53}, "block 0 is out of range"),
+        ({"bits": -1}, "bits is not a natural number"),
+        ({"width": 0}, "block 0 is out of range"),
+        ({"width": 9}, "block 0 is out of range"),
+        ({"width": "6"}, "width is not a natural number"),
+        ({"width": 5}, "block 0: centers has another length"),
+        ({"centers": "!" * 128}, "block 0: centers is not base 64"),
+        ({"radii": 1}, "block 0: radii is not base 64"),
+        ({"radii": "AAAA"}, "block 0: radii has another length"),
+        ({"folds": ""}, "block 0: folds has another length"),
+        ({"folds": "\u00e9"}, "block 0: folds is not base 64"),
+        ({"open": [[2, "flat"]]}, "root 2 is open: 'flat'"),
+        ({"open": [[2]]}, "open root has not 2 entries"),
+        ({"open": [2]}, "open root is not a list"),
+        ({"open": {}}, "open is not a list"),
+        ({"open": [["a", "b"]]}, "malformed: TypeError in block 0"),
+        ({"exact": {}}, "exact is not a list"),
+        (
+            {"exact": [1]},
+            "exact root: expected an object with the keys root bits radius center assignment",
+        ),
+        (
+            {"more": 1},
+            "block 0: expected an object with the keys block bits width centers radii folds exact "
+            "open",
+        ),
+    ],
+)
+def test_blocks_that_are_none(change: Document, message: str) -> None:
+    parts = given_lines(FOUR)
+    parts[1] |= change
+    refused_lines(parts, message)
+
+
+def test_the_number_of_an_open_root_is_that_of_the_file() -> None:
+    parts = given_lines(FOUR)
+    parts[3]["open"] = [[1, "\x1b"]]
+    refused_lines(parts, "root 9 is open: '\\x1b'")
+
+
+def test_small_widths_and_all_bits_are_read() -> None:
+    """Centres in eight bytes, and in as many bits as are allowed."""
+    parts = given_lines(FOUR)
+    for line in parts[1:-1]:
+        width = line["width"]
+        data = raw(line, "centers")
+        wide = b""
+        for k in range(0, len(data), width):
+            m = int.from_bytes(data[k : k + width], "little", signed=True)
+            wide += (m << 52 - line["bits"]).to_bytes(8, "little", signed=True)
+        radii = raw(line, "radii")
+        put(line, "radii", bytes(r + 52 - line["bits"] for r in radii))
+        put(line, "centers", wide)
+        line["width"], line["bits"] = 8, 52
+    assert verified_lines(parts) == parts[-1]["claims"]
+
+
+EXACTLY: list[tuple[Document, str]] = [
+    ({"root": True}, "root is not a natural number"),
+    ({"root": 4}, "block 0 has no root 4"),
+    ({"radius": "0"}, "the radius is not positive"),
+    ({"radius": "\u0661"}, "'\\u0661' is not an integer"),
+    ({"bits": 4001}, "root 0 is out of range"),
+    ({"radius": "0" * 3999 + "12"}, "root 0 is out of range"),
+    ({"center": ["0", "0", "0", "1" * 4001]}, "root 0 is out of range"),
+    ({"center": ["0"]}, "center has not 4 entries"),
+    ({"assignment": 1}, "1 is not a number in quotes"),
+    (
+        {"more": 1},
+        "exact root: expected an object with the keys root bits radius center assignment",
+    ),
+]
+
+
+@pytest.mark.parametrize(("change", "message"), EXACTLY)
+def test_exact_roots(change: Document, message: str) -> None:
+    parts = given_lines(FOUR)
+    moved(parts, **change)
+    refused_lines(parts, message)
+
+
+def test_exact_roots_at_the_limit() -> None:
+    parts = given_lines(FOUR)
+    moved(parts)
+    entry = parts[1]["exact"][0]
+    by = 4000 - entry["bits"]
+    entry["center"] = [str(int(m) << by) for m in entry["center"]]
+    entry["radius"], entry["bits"] = str(int(entry["radius"]) << by).rjust(4000, "0"), 4000
+    assert verified_lines(parts)["distinct"] == 16
+
+
+def test_exact_roots_are_given_once() -> None:
+    parts = given_lines(FOUR)
+    moved(parts, 1, 2)
+    parts[2]["exact"] *= 2
+    refused_lines(parts, "root 6 is given twice")
+    parts = given_lines(FOUR)
+    moved(parts, 1, 2)
+    parts[2]["exact"][0]["root"] = 3
+    refused_lines(parts, "root 6 is given twice or not at all")
+    parts[2]["exact"][0]["root"] = 4
+    refused_lines(parts, "block 1 has no root 4")
+
+
+def test_letters_of_exact_roots() -> None:
+    parts = given_lines(EXACT)
+    letters = [entry["assignment"] for entry in parts[1]["exact"]]
+    assert all("F" in text for text in letters)
+    for index, text in enumerate(letters):
+        for k, letter in enumerate(text):
+            for other in {*"MVFU?"} - {letter}:
+                forged = given_lines(EXACT)
+                claimed = text[:k] + other + text[k + 1 :]
+                forged[1]["exact"][index]["assignment"] = claimed
+                if other == "U":
+                    verified_lines(forged)
+                else:
+                    refused_lines(forged, f"root {index}: folds are {text}, not {claimed}")
+
+
+# --- the end -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda parts: parts.pop(), "the claims are missing"),
+        (lambda parts: parts.append(parts[-1]), "something follows the claims"),
+        (lambda parts: parts.__delitem__(slice(3, None)), "only 2 of 4 blocks are there"),
+        (
+            lambda parts: parts[-1].update(more=1),
+            "the last line: expected an object with the keys claims",
+        ),
+        (
+            lambda parts: parts[-1]["claims"].pop("sha256"),
+            "claims: expected an object with the keys interior boundary folds degrees_of_freedom "
+            "sha256 distinct with_multiplicity real nonreal true_branches",
+        ),
+    ],
+)
+def test_files_that_end_otherwise(change: Callable[[Lines], Any], message: str) -> None:
+    parts = given_lines(FOUR)
+    change(parts)
+    refused_lines(parts, message)
+
+
+def test_every_claim_is_compared() -> None:
+    for name in (EXACT, "compact-reflex"):
+        for key, fact in given_lines(name)[-1]["claims"].items():
+            others = [fact + 1, str(fact), [fact]] if type(fact) is int else [fact + " ", None]
+            for other in [*others, False] if fact == 0 else others:
+                forged = given_lines(name)
+                forged[-1]["claims"][key] = other
+                refused_lines(forged, f"{key} = {other!a} is {fact!a}")
+
+
+# --- workers -------------------------------------------------------------------------------------
+
+
+def test_a_worker_that_was_not_started_checks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compact, "_sheet", None)
+    with pytest.raises(RuntimeError, match="the worker was not started"):
+        compact.check_line("{}", 0)
+
+
+def test_what_workers_answer() -> None:
+    parts = given_lines(FOUR)
+    compact.start_worker(json.dumps(parts[0]))
+    text = json.dumps(parts[2])
+    assert compact.check_line(text, 1) is None
+    assert compact.check_line(text, 0) == "block 0 is expected, but here is block 1"
+    bad = json.dumps({**parts[2], "open": [["a", "b"]]})
+    assert compact.check_line(bad, 1) == "malformed: TypeError in block 1"
+
+
+def test_engines_may_be_others() -> None:
+    started, seen = [], []
+
+    def work(text: str, number: int) -> str | None:
+        seen.append((json.loads(text)["block"], number))
+        return "no" if number == 2 else None
+
+    engine = compact.Engine(started.append, work, 1)
+    with pytest.raises(CertificateError, match=r"^no$"):
+        compact.check(str(FIXTURES / f"{FOUR}.txt"), 1, engine)
+    assert seen == [(0, 0), (1, 1), (2, 2)]
+    assert [json.loads(text) for text in started] == given_lines(FOUR)[:1]
+    engine = compact.Engine(started.append, lambda text, number: None, 5)
+    claims = checker.verify(FIXTURES / f"{FOUR}.txt", 2, engine)  # too few blocks for processes
+    assert claims == given_lines(FOUR)[-1]["claims"]
+    assert base64.b64decode(given_lines(FOUR)[1]["radii"])

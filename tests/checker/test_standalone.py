@@ -1,0 +1,236 @@
+"""The checker runs alone: as a folder, as a module, as a zipapp, on certificates of every kind."""
+
+from __future__ import annotations
+
+import ast
+import json
+import shutil
+import subprocess
+import sys
+import zipapp
+from pathlib import Path
+from typing import Any
+
+import pytest
+from compact_files import bodies, chained, put, raw
+
+from exactfold import checker
+
+PACKAGE = Path(checker.__file__).parent
+FIXTURES = Path(__file__).parent.parent / "fixtures" / "certificates"
+KINDS = {
+    "listing-isolated.json": "VALID: 8 branches (8 with multiplicity, 8 real) of the sheet with 3",
+    "algebraic-grid.json": "VALID: 11 branches (16 with multiplicity, 11 real) of the sheet with 4",
+    "rigid-nested.json": "VALID: 0 branches (0 with multiplicity, 0 real) of the sheet with 3",
+    "single-vertex-nine-folds.json": "VALID: 1 branches (1 with multiplicity, 1 real) of the sheet",
+    "compact-blocks-of-4.txt": "VALID: 16 branches (16 with multiplicity, 16 real) of the sheet",
+    "branch-reflex.json": "VALID: exactly one branch has the vertex signs +0- (3); 10 of 10",
+}
+WAYS = ("folder", "zipapp", "module")
+
+
+@pytest.fixture(scope="module")
+def copies(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The package copied to a place of its own, as a folder and as a zipapp."""
+    place = tmp_path_factory.mktemp("alone")
+    shutil.copytree(PACKAGE, place / "judge", ignore=shutil.ignore_patterns("__pycache__"))
+    zipapp.create_archive(place / "judge", place / "judge.pyz")
+    return {"folder": place / "judge", "zipapp": place / "judge.pyz"}
+
+
+class Run:
+    """One way of running the checker, in a folder that holds nothing but the files to check."""
+
+    def __init__(self, way: str, copies: dict[str, Path], folder: Path) -> None:
+        self.folder = folder
+        isolated = [sys.executable, "-I", "-S"]
+        if way == "module":  # `-I -m` finds the package where a path is given to it only
+            root = str(PACKAGE.parent.parent)
+            code = f"import runpy, sys; sys.path.insert(0, {root!r}); "
+            code += "runpy.run_module('exactfold.checker', run_name='__main__', alter_sys=True)"
+            self.command = [*isolated, "-c", code]
+        else:
+            self.command = [*isolated, str(copies[way])]
+
+    def __call__(self, *arguments: str) -> tuple[int, str, str]:
+        done = subprocess.run(
+            [*self.command, *arguments],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        return done.returncode, done.stdout, done.stderr
+
+
+@pytest.fixture(params=WAYS)
+def run(request: pytest.FixtureRequest, copies: dict[str, Path], tmp_path: Path) -> Run:
+    return Run(request.param, copies, tmp_path)
+
+
+def test_package_is_out_of_reach_of_the_copy(copies: dict[str, Path], tmp_path: Path) -> None:
+    run = Run("folder", copies, tmp_path)
+    run.command[-1:] = ["-c", "import exactfold"]
+    assert "ModuleNotFoundError" in run()[2]
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_certificates_of_every_kind_are_verified(run: Run, name: str) -> None:
+    shutil.copy(FIXTURES / name, run.folder)
+    code, out, err = run(name)
+    assert (code, err) == (0, "")
+    assert out.startswith(KINDS[name])
+    assert out.count("\n") == 1
+
+
+def test_exit_codes(run: Run) -> None:
+    document: dict[str, Any] = json.loads((FIXTURES / "listing-two-vertices.json").read_text())
+    document["claims"]["distinct"] = 3
+    (run.folder / "false.json").write_text(json.dumps(document))
+    (run.folder / "cut.json").write_text(json.dumps(document)[:-5])
+    assert run("false.json") == (1, "INVALID: claim distinct = 3, but it is 4\n", "")
+    for file in ("cut.json", "none.json"):
+        code, out, err = run(file)
+        assert (code, out) == (3, "")
+        assert err.startswith("not a certificate: ")
+    usage = (2, "", "usage: python exactfold/checker CERTIFICATE [WORKERS]\n")
+    assert run() == usage
+    assert run("a", "1", "2") == usage
+    for workers in ("x", "", "-1", "\u0662", "9" * 5000):
+        assert run("false.json", workers) == usage
+
+
+def test_false_branches_are_refused(run: Run) -> None:
+    document: dict[str, Any] = json.loads((FIXTURES / "branch-convex.json").read_text())
+    document["claims"]["vertex_signs"][2] *= -1
+    (run.folder / "false.json").write_text(json.dumps(document))
+    assert run("false.json") == (1, "INVALID: vertex 6 has another sign\n", "")
+
+
+def test_several_processes_say_the_same(run: Run) -> None:
+    written = (FIXTURES / "compact-blocks-of-4.txt").read_bytes()
+    (run.folder / "good.txt").write_bytes(written)
+    lines = bodies(written)
+    folds = raw(lines[2], "folds")
+    folds[0] ^= 1
+    put(lines[2], "folds", folds)
+    false = chained(lines)
+    (run.folder / "bad.txt").write_bytes(false)
+    (run.folder / "cut.txt").write_bytes(written[:-1])
+    rows = false.splitlines(keepends=True)
+    (run.folder / "both.txt").write_bytes(b"".join([*rows[:3], rows[3][:-9] + b"\n", *rows[4:]]))
+    # Whichever comes first in the file is what is said, however many look at it.
+    for name, code in (("good", 0), ("bad", 1), ("cut", 3), ("both", 1)):
+        assert run(f"{name}.txt")[0] == code
+        assert run(f"{name}.txt", "2") == run(f"{name}.txt")
+
+
+def test_a_pipe_is_read_once(copies: dict[str, Path], tmp_path: Path) -> None:
+    run = Run("folder", copies, tmp_path)
+    for name in ("compact-blocks-of-4.txt", "listing-isolated.json"):
+        with open(FIXTURES / name, "rb") as stream:
+            command = [*run.command, "/dev/stdin"]
+            done = subprocess.run(
+                command, input=stream.read(), cwd=tmp_path, capture_output=True, check=False
+            )
+        assert (done.returncode, done.stdout[:6], done.stderr) == (0, b"VALID:", b"")
+
+
+def test_the_module_runs_as_documented(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "exactfold.checker", str(FIXTURES / "branch-dart.json")]
+    done = subprocess.run(
+        command,
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(PACKAGE.parent.parent)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("VALID: exactly one branch")
+
+
+def test_modules_import_the_standard_library_and_each_other_only() -> None:
+    modules = sorted(PACKAGE.glob("*.py"))
+    names = {path.stem for path in modules}
+    assert len(names) > 10
+    assert names & set(sys.stdlib_module_names) == set()  # the folder stands on the import path
+    for path in modules:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.level:
+                assert node.level == 1
+                inside = {node.module} if node.module else {alias.name for alias in node.names}
+                assert inside <= names
+            elif isinstance(node, ast.Import | ast.ImportFrom):
+                aliases = [alias.name for alias in node.names]
+                found = [node.module or ""] if isinstance(node, ast.ImportFrom) else aliases
+                allowed = set(sys.stdlib_module_names)
+                if path.stem == "__main__":
+                    allowed |= {"exactfold_checker"}
+                assert {name.split(".")[0] for name in found} <= allowed
+
+
+def test_modules_are_small() -> None:
+    for path in PACKAGE.glob("*.py"):
+        assert len(path.read_text().splitlines()) <= 300
+
+
+def test_formulas_of_single_branches_are_their_own() -> None:
+    """Of the geometry they share the verified sheet and what K_v = 0 leaves to folds, no more."""
+    found = set()
+    for name in ("branch", "branch_proof"):
+        for node in ast.walk(ast.parse((PACKAGE / f"{name}.py").read_text())):
+            if isinstance(node, ast.ImportFrom) and node.level:
+                found |= {(node.module, alias.name) for alias in node.names}
+    shared = {pair for pair in found if pair[0] not in ("reading", "formats", "branch_proof")}
+    assert shared == {
+        ("sheet", "Sheet"),
+        ("sheet", "Edge"),
+        ("sheet", "turn"),
+        ("sheet", "read_sheet"),
+        ("flat_folds", "close_flat"),
+    }
+    for name in ("branch", "branch_proof"):
+        text = (PACKAGE / f"{name}.py").read_text()
+        assert ".curvature(" not in text
+        assert ".sign_of_vertex(" not in text
+
+
+# --- main in this process ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"\xff\xfe", "codec can't decode"),
+        (b"", "not JSON, or cut off"),
+        (b"[]", 'no "format": "exactfold certificate"'),
+        (b'{"format": "exactfold certificate"}', "version None is not known"),
+        (b'{"format": "exactfold branch", "version": 1.0}', "a certificate holds no floats"),
+        (b'{"format": "exactfold branch", "version": 3}', "version 3 is not known"),
+        (b'{"format": "exactfold compact certificate"}', "line 1 is cut off or was altered"),
+    ],
+)
+def test_main_refuses_other_files(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], content: bytes, message: str
+) -> None:
+    path = tmp_path / "c.json"
+    path.write_bytes(content)
+    assert checker.main([str(path)]) == 3
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("not a certificate: ")
+    assert message in captured.err
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_main_prints_the_verdict(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert checker.main([str(FIXTURES / name)]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    assert captured.out.startswith(KINDS[name])
+
+
+def test_main_names_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert checker.main([str(tmp_path)]) == 3
+    assert "Is a directory" in capsys.readouterr().err
