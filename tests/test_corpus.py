@@ -15,6 +15,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from certifiers import CERTIFIERS, Certifier
 from flint import fmpq, fmpq_mat
 from sheets import SQUARE, reflex_corners, scrambled, straight_side
 
@@ -35,10 +36,7 @@ from exactfold.algebra.exact_solution import ExactSolution
 from exactfold.algebra.hermite import hermite_counts
 from exactfold.algebra.msolve import find_msolve, msolve_classes
 from exactfold.algebra.quotient import QuotientAlgebra, from_groebner_basis
-from exactfold.certify.arb_krawczyk import arb_krawczyk
 from exactfold.certify.box import IsolatingBox
-from exactfold.certify.interval_newton import interval_newton
-from exactfold.certify.krawczyk import krawczyk
 from exactfold.errors import UsageError
 from exactfold.exact.linalg import from_fmpq, inertia
 from exactfold.pattern.degenerate import (
@@ -212,12 +210,12 @@ def test_as_many_paths_end_at_a_zero_as_its_multiplicity(name: str, method: str)
 
 
 @pytest.mark.parametrize("name", FEW)
-@pytest.mark.parametrize("certify", [krawczyk, interval_newton, arb_krawczyk])
+@pytest.mark.parametrize("certifier", CERTIFIERS, ids=str)
 def test_certifiers_accept_simple_zeros_and_refuse_multiple_ones(
-    name: str, certify: object
+    name: str, certifier: Certifier
 ) -> None:
     points = [root.point for root in roots_of(name)]
-    results = certify(chart_of(name).system, points, precisions=(106, 212))  # type: ignore[operator]
+    results = certifier.certify(chart_of(name).system, points, precisions=(106, 212))
     for root, result in zip(roots_of(name), results, strict=True):
         assert isinstance(result, IsolatingBox) == (root.multiplicity == 1)
     check_boxes(name, [result for result in results if isinstance(result, IsolatingBox)])

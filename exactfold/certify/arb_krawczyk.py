@@ -18,6 +18,8 @@ from exactfold.certify.points import (
     Points,
     exact_candidates,
     is_within_reach,
+    largest,
+    to_arb,
 )
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
@@ -159,7 +161,7 @@ class _Balls:
         """Newton's method on midpoints, until the steps vanish to the working precision."""
         n = self.system.size
         entries = [
-            self._number(_arb(x), _arb(y)).mid()
+            self._number(to_arb(x), to_arb(y)).mid()
             for x, y in zip(candidate.real, candidate.imag, strict=True)
         ]
         x = self.matrix(n, 1, entries)
@@ -169,7 +171,7 @@ class _Balls:
             x = (x - step).mid()
             if not all(entry.is_finite() for entry in x.entries()):
                 raise ZeroDivisionError
-            if _largest(step) <= _largest(x) * arb((1, 4 - ctx.prec)):
+            if largest(step) <= largest(x) * arb((1, 4 - ctx.prec)):
                 break
         return x
 
@@ -207,9 +209,9 @@ class _Balls:
         middle = [(low + high) / 2 for entry in x.entries() for low, high in _ends(entry)]
         if self.ball is not arb:
             middle = middle[::2] + middle[1::2]
-        largest = max(map(abs, middle))
-        exponent = largest.numerator.bit_length() - largest.denominator.bit_length()
-        bits = max(0, precision - max(exponent, -precision)) if largest else precision
+        extent = max(map(abs, middle))
+        exponent = extent.numerator.bit_length() - extent.denominator.bit_length()
+        bits = max(0, precision - max(exponent, -precision)) if extent else precision
         centre = [round(value * (1 << bits)) for value in middle]
         point = self._cube(centre, 0, bits)
         inverse = self._derivatives(point)[0].mid().inv().mid()
@@ -253,15 +255,6 @@ class _Balls:
         except ZeroDivisionError:
             return UNDECIDED
         return PROVED if self._is_proved(box, inverse) else UNDECIDED
-
-
-def _arb(value: Fraction) -> arb:
-    return arb(value.numerator) / arb(value.denominator)
-
-
-def _largest(column: Matrix) -> arb:
-    """About the largest absolute value."""
-    return max(abs(entry).mid() for entry in column.entries())
 
 
 def _ends(value: Ball) -> list[Ends]:

@@ -11,7 +11,15 @@ import mpmath
 from flint import arb, arb_mat, ctx
 
 from exactfold.certify.box import IsolatingBox, Uncertified
-from exactfold.certify.points import REACH, Candidate, Point, Points, exact_candidates
+from exactfold.certify.points import (
+    REACH,
+    Candidate,
+    Point,
+    Points,
+    exact_candidates,
+    largest,
+    to_arb,
+)
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
@@ -192,20 +200,20 @@ class _Worker:
 
     def _newton(self, candidate: Point, precision: int) -> Column:
         """Newton's method on midpoints, at the precision of FLINT's context."""
-        start = x = arb_mat(self.size, 1, [_arb(c).mid() for c in candidate])
+        start = x = arb_mat(self.size, 1, [to_arb(c).mid() for c in candidate])
         allowed = None
         if self.reach is not None:
-            allowed = (max([arb(1), *map(abs, start.entries())]) * _arb(self.reach)).mid()
+            allowed = (max([arb(1), *map(abs, start.entries())]) * to_arb(self.reach)).mid()
         slow, last = 0, arb("inf")
         for _ in range(_NEWTON_STEPS):
             jacobian, values = self._approx_derivatives(x)
             step = (jacobian.inv().mid() * values).mid()
             x = (x - step).mid()
-            if allowed is not None and not _largest(x - start) <= allowed:
+            if allowed is not None and not largest(x - start) <= allowed:
                 raise _LeftError("Newton's method left the candidate")
-            length = _largest(step)
+            length = largest(step)
             slow, last = slow + 1 if 8 * length > last else 0, length
-            if slow > _SLOW_STEPS or length <= _largest(x) * arb((1, 4 - precision)):
+            if slow > _SLOW_STEPS or length <= largest(x) * arb((1, 4 - precision)):
                 break
         return x
 
@@ -360,15 +368,6 @@ def _magnitude(value: Interval, bits: int) -> int:
 def _text(value: int, bits: int) -> str:
     """About value / 2^bits, in powers of two so that nothing overflows."""
     return f"2^{value.bit_length() - bits}" if value else "0"
-
-
-def _arb(value: Fraction) -> arb:
-    return arb(value.numerator) / arb(value.denominator)
-
-
-def _largest(column: Column) -> arb:
-    """About the largest absolute value."""
-    return max(abs(entry).mid() for entry in column.entries())
 
 
 def _rounded(x: Column, precision: int) -> tuple[int, list[int]]:

@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+from flint import arb
 
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.errors import UsageError
@@ -78,6 +79,16 @@ def is_within_reach(box: IsolatingBox, start: Point, reach: Fraction | None) -> 
     scale = Fraction(1, 1 << box.bits)
     centre = (*box.real, *box.imag)
     return all(abs(c * scale - s) <= allowed for c, s in zip(centre, start, strict=True))
+
+
+def to_arb(value: Fraction) -> arb:
+    """A ball about the number, at the precision of FLINT's context."""
+    return arb(value.numerator) / arb(value.denominator)
+
+
+def largest(column: Any) -> arb:
+    """About the largest absolute value in a matrix of balls: no bound, to choose what to try."""
+    return max(abs(entry).mid() for entry in column.entries())
 
 
 def _exact_parts(value: Any) -> tuple[Fraction, Fraction] | None:

@@ -1,6 +1,7 @@
 """One suite for every certifier: boxes are right, narrow, and refused where there is no proof.
 
-Exact Krawczyk in integers, interval Newton on mpmath, and Krawczyk's operator on Arb's balls.
+They are listed in tests/certifiers.py: exact Krawczyk in integers, interval Newton on mpmath, and
+Krawczyk's operator on Arb's balls.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from certifiers import CERTIFIERS, Certify, Decide
 from known_systems import (
     CIRCLE_AND_AXES,
     Root,
@@ -28,27 +30,17 @@ from known_systems import (
     system_of,
 )
 
-from exactfold.certify import arb_krawczyk as balls
-from exactfold.certify import interval_newton as intervals
-from exactfold.certify import krawczyk as integers
-from exactfold.certify.arb_krawczyk import arb_krawczyk
 from exactfold.certify.box import IsolatingBox, Uncertified
-from exactfold.certify.interval_newton import interval_newton
-from exactfold.certify.krawczyk import krawczyk
 from exactfold.errors import UsageError
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
-Certifier = Callable[..., list[IsolatingBox | Uncertified]]
-Decider = Callable[[QuadraticSystem, IsolatingBox], Verdict]
-
-CERTIFIERS = [krawczyk, interval_newton, arb_krawczyk]
-DECIDERS = [module.decide_contains_one_zero for module in (integers, intervals, balls)]
-every = pytest.mark.parametrize("certify", CERTIFIERS)
-every_decider = pytest.mark.parametrize("decide", DECIDERS, ids=["integers", "intervals", "balls"])
+NAMES = list(map(str, CERTIFIERS))
+every = pytest.mark.parametrize("certify", [c.certify for c in CERTIFIERS], ids=NAMES)
+every_decider = pytest.mark.parametrize("decide", [c.decide for c in CERTIFIERS], ids=NAMES)
 
 
-def check_all(certify: Certifier, system: QuadraticSystem, roots: list[Root]) -> None:
+def check_all(certify: Certify, system: QuadraticSystem, roots: list[Root]) -> None:
     """Each root gets a box of its own, which is narrow and holds it and no other root."""
     boxes = certify(system, np.array([approx(root) for root in roots]))
     assert len(boxes) == len(roots)
@@ -68,21 +60,21 @@ def check_all(certify: Certifier, system: QuadraticSystem, roots: list[Root]) ->
 
 
 @every
-def test_circle_and_line_pair(certify: Certifier) -> None:
+def test_circle_and_line_pair(certify: Certify) -> None:
     check_all(certify, CIRCLE_AND_AXES, circle_and_axes())
 
 
 @every
 @pytest.mark.parametrize("n", [1, 2, 3, 4])
 @pytest.mark.parametrize("seed", [0, 1])
-def test_products_of_rational_forms(certify: Certifier, n: int, seed: int) -> None:
+def test_products_of_rational_forms(certify: Certify, n: int, seed: int) -> None:
     pairs = random_pairs(seed, n)
     check_all(certify, system_of(pairs), roots_of(pairs))
 
 
 @every
 @pytest.mark.parametrize("n", [1, 2, 3])
-def test_nonreal_zeros_over_the_gaussian_rationals(certify: Certifier, n: int) -> None:
+def test_nonreal_zeros_over_the_gaussian_rationals(certify: Certify, n: int) -> None:
     pairs = random_pairs(10 + n, n, conjugate=(n + 1) // 2)
     roots = roots_of(pairs)
     assert not all(map(is_real, roots))
@@ -91,7 +83,7 @@ def test_nonreal_zeros_over_the_gaussian_rationals(certify: Certifier, n: int) -
 
 @every
 @pytest.mark.parametrize("seed", range(5))
-def test_planted_root_of_a_random_system(certify: Certifier, seed: int) -> None:
+def test_planted_root_of_a_random_system(certify: Certify, seed: int) -> None:
     source = random.Random(seed)
     n = 5
     root = [Fraction(source.randint(-50, 50), source.randint(1, 50)) for _ in range(n)]
@@ -108,7 +100,7 @@ def test_planted_root_of_a_random_system(certify: Certifier, seed: int) -> None:
 
 
 @every
-def test_coefficients_of_seventy_bits(certify: Certifier) -> None:
+def test_coefficients_of_seventy_bits(certify: Certify) -> None:
     source = random.Random(7)
     big = [source.randint(2**69, 2**70) * source.choice((1, -1)) for _ in range(12)]
     forms = [tuple(Fraction(x) for x in big[k : k + 3]) for k in range(0, 12, 3)]
@@ -117,7 +109,7 @@ def test_coefficients_of_seventy_bits(certify: Certifier) -> None:
 
 
 @every
-def test_unknowns_of_very_different_size(certify: Certifier) -> None:
+def test_unknowns_of_very_different_size(certify: Certify) -> None:
     one, zero, big = Fraction(1), Fraction(0), Fraction(2**70 + 12345)
     pairs = [
         real_pair((one, zero, -big), (one, zero, big + 3)),
@@ -138,13 +130,13 @@ def cluster(gap: Fraction) -> tuple[QuadraticSystem, list[Root]]:
 
 
 @every
-def test_cluster_at_distance_1e_8(certify: Certifier) -> None:
+def test_cluster_at_distance_1e_8(certify: Certify) -> None:
     system, roots = cluster(Fraction(2, 10**8))
     check_all(certify, system, roots)
 
 
 @every
-def test_cluster_below_double_precision_gives_a_true_box_or_none(certify: Certifier) -> None:
+def test_cluster_below_double_precision_gives_a_true_box_or_none(certify: Certify) -> None:
     system, roots = cluster(Fraction(1, 10**20))
     for result in certify(system, np.array([approx(root) for root in roots])):
         if isinstance(result, IsolatingBox):
@@ -165,7 +157,7 @@ def nonreal_cluster(gap: Fraction) -> tuple[QuadraticSystem, list[Root]]:
 @pytest.mark.parametrize("digits", [8, 12, 16, 20, 30, 60])
 @pytest.mark.parametrize("build", [cluster, nonreal_cluster])
 def test_cluster_from_exact_candidates(
-    certify: Certifier, build: Callable[[Fraction], Any], digits: int
+    certify: Certify, build: Callable[[Fraction], Any], digits: int
 ) -> None:
     system, roots = build(Fraction(1, 10**digits))
     nudge = Fraction(1, 10 ** (digits + 2))
@@ -182,7 +174,7 @@ def test_cluster_from_exact_candidates(
 @every
 @pytest.mark.parametrize("digits", [4, 15, 31, 60])
 @pytest.mark.parametrize("sign", [1, -1])
-def test_nearly_double_zero(certify: Certifier, digits: int, sign: int) -> None:
+def test_nearly_double_zero(certify: Certify, digits: int, sign: int) -> None:
     """(x - 1/3)^2 = +-10^(-2 digits) and y = x^2: zeros at distance 2 10^-digits, real or not."""
     gap, third = Fraction(1, 10**digits), Fraction(1, 3)
     system = QuadraticSystem.from_rational(
@@ -205,7 +197,7 @@ def test_nearly_double_zero(certify: Certifier, digits: int, sign: int) -> None:
 
 @every
 @pytest.mark.parametrize("seed", range(3))
-def test_ill_scaled_systems(certify: Certifier, seed: int) -> None:
+def test_ill_scaled_systems(certify: Certify, seed: int) -> None:
     """Unknowns in units of 10^12, 1 and 10^-12, equations in units of 1, 10^40 and 10^-40."""
     units = [Fraction(10) ** k for k in (12, 0, -12)]
     factors = [Fraction(10) ** k for k in (0, 40, -40)]
@@ -236,7 +228,7 @@ DOUBLE: list[tuple[list[list[list[Any]]], list[float]]] = [
 @every
 @pytest.mark.parametrize("offset", [0.0, 1e-300, 1e-40, 1e-12, 1e-5, 1e-3 + 1e-3j, 1e-9j])
 @pytest.mark.parametrize("case", range(5))
-def test_multiple_zero_is_refused(certify: Certifier, case: int, offset: complex) -> None:
+def test_multiple_zero_is_refused(certify: Certify, case: int, offset: complex) -> None:
     matrices, point = DOUBLE[case]
     system = QuadraticSystem.from_rational(matrices)
     (result,) = certify(system, [[x + offset for x in point]])
@@ -247,13 +239,13 @@ def test_multiple_zero_is_refused(certify: Certifier, case: int, offset: complex
 
 @every
 @pytest.mark.parametrize("point", [0.3, 0.0, 1e-3, 2.0 + 1e-12j, -5.0])
-def test_real_candidate_without_a_real_zero(certify: Certifier, point: complex) -> None:
+def test_real_candidate_without_a_real_zero(certify: Certify, point: complex) -> None:
     (result,) = certify(QuadraticSystem.from_rational([[[1, 0], [0, 1]]]), [[point]])
     assert isinstance(result, Uncertified) or not result.is_real
 
 
 @every
-def test_constants_have_no_zeros(certify: Certifier) -> None:
+def test_constants_have_no_zeros(certify: Certify) -> None:
     system = QuadraticSystem.from_rational([[[0, 0], [0, 1]]])
     (result,) = certify(system, [[0.5]])
     assert isinstance(result, Uncertified)
@@ -261,7 +253,7 @@ def test_constants_have_no_zeros(certify: Certifier) -> None:
 
 @every
 @pytest.mark.parametrize("seed", range(10))
-def test_wrong_candidates_give_a_true_box_or_none(certify: Certifier, seed: int) -> None:
+def test_wrong_candidates_give_a_true_box_or_none(certify: Certify, seed: int) -> None:
     source = random.Random(seed)
     pairs = random_pairs(100 + seed, 2, conjugate=seed % 2)
     system, roots = system_of(pairs), roots_of(pairs)
@@ -273,7 +265,7 @@ def test_wrong_candidates_give_a_true_box_or_none(certify: Certifier, seed: int)
 
 
 @every
-def test_candidate_far_from_every_zero_is_refused(certify: Certifier) -> None:
+def test_candidate_far_from_every_zero_is_refused(certify: Certify) -> None:
     wrong = [[1000.0, -993.0], [300.0, 4e5], [0.9, 0.5], [1.0, 0.1], [1 + 0.1j, 0.0], [1j, 2j]]
     for result in certify(CIRCLE_AND_AXES, wrong):
         assert isinstance(result, Uncertified), result
@@ -284,14 +276,14 @@ def test_candidate_far_from_every_zero_is_refused(certify: Certifier) -> None:
 
 @every
 @pytest.mark.parametrize("offset", [Fraction(1, 70), Fraction(1, 60)])
-def test_reach_is_an_exact_bound(certify: Certifier, offset: Fraction) -> None:
+def test_reach_is_an_exact_bound(certify: Certify, offset: Fraction) -> None:
     (result,) = certify(CIRCLE_AND_AXES, [[1 + offset, offset]])
     assert isinstance(result, IsolatingBox) == (offset <= Fraction(1, 64) * (1 + offset))
 
 
 @every
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, complex(0, np.nan), complex(1, np.inf)])
-def test_candidates_that_are_not_finite(certify: Certifier, bad: complex) -> None:
+def test_candidates_that_are_not_finite(certify: Certify, bad: complex) -> None:
     good = [1.0, 0.0]
     first, second, third = certify(CIRCLE_AND_AXES, np.array([good, [bad, 1.0], [0.0, 1.0]]))
     assert isinstance(first, IsolatingBox)
@@ -301,19 +293,19 @@ def test_candidates_that_are_not_finite(certify: Certifier, bad: complex) -> Non
 
 
 @every
-def test_huge_candidates_do_not_break(certify: Certifier) -> None:
+def test_huge_candidates_do_not_break(certify: Certify) -> None:
     for result in certify(CIRCLE_AND_AXES, np.array([[1e300, 1e300], [1e-300, 1.0 + 1e-300]])):
         if isinstance(result, IsolatingBox):
             assert contains(result, circle_and_axes()[2])
 
 
 @every
-def test_no_candidates(certify: Certifier) -> None:
+def test_no_candidates(certify: Certify) -> None:
     assert certify(CIRCLE_AND_AXES, np.empty((0, 2))) == []
 
 
 @every
-def test_no_equation_has_one_zero_and_wrong_rows_are_refused(certify: Certifier) -> None:
+def test_no_equation_has_one_zero_and_wrong_rows_are_refused(certify: Certify) -> None:
     assert certify(QuadraticSystem(()), [[]]) == [IsolatingBox((), (), 1, 0)]
     with pytest.raises(UsageError, match="1 coordinates, not 2"):
         certify(CIRCLE_AND_AXES, [[1.0]])
@@ -327,13 +319,13 @@ def test_each_certifier_confirms_the_boxes_of_the_others(conjugate: int) -> None
     pairs = random_pairs(5, 3, conjugate=conjugate)
     system, roots = system_of(pairs), roots_of(pairs)
     points = np.array([approx(root) for root in roots])
-    found = [certify(system, points) for certify in CERTIFIERS]
+    found = [certifier.certify(system, points) for certifier in CERTIFIERS]
     for boxes in zip(*found, strict=True):
         for box in boxes:
             assert isinstance(box, IsolatingBox)
             assert box.is_real == boxes[0].is_real  # type: ignore[union-attr]
             assert not box.is_disjoint_from(boxes[0])  # type: ignore[arg-type]
-            assert [str(decide(system, box)) for decide in DECIDERS] == ["proved"] * 3
+            assert {certifier.decide(system, box) for certifier in CERTIFIERS} == {PROVED}
 
 
 # --- given boxes ---------------------------------------------------------------------------------
@@ -354,7 +346,7 @@ ONE_ZERO = circle_and_axes()[0]  # (1, 0); the others are at distance 1 or more
 
 @every_decider
 @pytest.mark.parametrize("nonreal", [False, True])
-def test_box_that_is_right_is_proved(decide: Decider, nonreal: bool) -> None:
+def test_box_that_is_right_is_proved(decide: Decide, nonreal: bool) -> None:
     for r in (Fraction(1, 10), Fraction(1, 1000)):
         assert decide(CIRCLE_AND_AXES, box_about(ONE_ZERO, r, nonreal=nonreal)) is PROVED
     off_centre = box_about(ONE_ZERO, Fraction(1, 10), nonreal=nonreal, shift=200)
@@ -365,7 +357,7 @@ def test_box_that_is_right_is_proved(decide: Decider, nonreal: bool) -> None:
 @pytest.mark.parametrize("nonreal", [False, True])
 @pytest.mark.parametrize("r", [Fraction(6, 10), Fraction(9, 10)])
 def test_box_that_is_right_but_too_wide_is_refused(
-    decide: Decider, r: Fraction, nonreal: bool
+    decide: Decide, r: Fraction, nonreal: bool
 ) -> None:
     """It holds one zero, but also a point (t, t) where the Jacobian is singular."""
     box = box_about(ONE_ZERO, r, nonreal=nonreal)
@@ -375,7 +367,7 @@ def test_box_that_is_right_but_too_wide_is_refused(
 
 @every_decider
 @pytest.mark.parametrize("nonreal", [False, True])
-def test_box_with_more_zeros_or_none(decide: Decider, nonreal: bool) -> None:
+def test_box_with_more_zeros_or_none(decide: Decide, nonreal: bool) -> None:
     zero, far = (Fraction(0), Fraction(0)), (Fraction(700), Fraction(0))
     several = box_about((zero, zero), Fraction(11, 10), nonreal=nonreal)
     assert decide(CIRCLE_AND_AXES, several) is UNDECIDED
@@ -384,7 +376,7 @@ def test_box_with_more_zeros_or_none(decide: Decider, nonreal: bool) -> None:
 
 
 @every_decider
-def test_box_that_the_zero_touches_is_not_proved(decide: Decider) -> None:
+def test_box_that_the_zero_touches_is_not_proved(decide: Decide) -> None:
     """The zero is on the boundary: it is in the closed box, but no test can tell."""
     box = IsolatingBox((5, 0), (), 1, 2)  # |x - 5/4| <= 1/4, |y| <= 1/4
     assert contains(box, ONE_ZERO)
@@ -396,7 +388,7 @@ def test_box_that_the_zero_touches_is_not_proved(decide: Decider) -> None:
 @every_decider
 @pytest.mark.parametrize("case", range(5))
 @pytest.mark.parametrize("nonreal", [False, True])
-def test_box_about_a_double_zero_is_refused(decide: Decider, case: int, nonreal: bool) -> None:
+def test_box_about_a_double_zero_is_refused(decide: Decide, case: int, nonreal: bool) -> None:
     matrices, point = DOUBLE[case]
     system = QuadraticSystem.from_rational(matrices)
     root = tuple((Fraction(x).limit_denominator(100), Fraction(0)) for x in point)
@@ -406,7 +398,7 @@ def test_box_about_a_double_zero_is_refused(decide: Decider, case: int, nonreal:
 
 @every_decider
 @pytest.mark.parametrize("digits", [8, 20, 30])
-def test_box_about_a_cluster(decide: Decider, digits: int) -> None:
+def test_box_about_a_cluster(decide: Decide, digits: int) -> None:
     gap = Fraction(1, 10**digits)
     for system, roots in (cluster(gap), nonreal_cluster(gap)):
         root = min(roots, key=lambda r: abs(r[0][0] - Fraction(1, 3)) + abs(r[1][0]))
@@ -428,7 +420,7 @@ def test_box_about_a_cluster(decide: Decider, digits: int) -> None:
 
 @every_decider
 @pytest.mark.parametrize("seed", range(4))
-def test_verdicts_on_random_boxes_are_true(decide: Decider, seed: int) -> None:
+def test_verdicts_on_random_boxes_are_true(decide: Decide, seed: int) -> None:
     """Every verdict against the known zeros; all three occur."""
     source = random.Random(seed)
     pairs = random_pairs(200 + seed, 2, conjugate=seed % 2)
@@ -450,5 +442,5 @@ def test_verdicts_on_random_boxes_are_true(decide: Decider, seed: int) -> None:
 
 
 @every_decider
-def test_no_equation(decide: Decider) -> None:
+def test_no_equation(decide: Decide) -> None:
     assert decide(QuadraticSystem(()), IsolatingBox((), (), 1, 0)) is PROVED
