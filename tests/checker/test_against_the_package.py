@@ -15,7 +15,7 @@ from exactfold.checker import linear, polynomials, reading, stress
 from exactfold.errors import NotApplicableError
 from exactfold.exact.linalg import inertia, nullspace
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 
 # --- every kind of evidence ----------------------------------------------------------------------
 

@@ -13,10 +13,12 @@ from exactfold import certificate, checker, count_branches
 from exactfold.algebra.groebner import groebner
 from exactfold.branches.classify import classify
 from exactfold.branches.roots import AlgebraicRoot
-from exactfold.certify.algebraic import algebraic_evidence, class_entry, prove_algebraic
+from exactfold.certify.algebraic import prove_algebraic
 from exactfold.checker import stress
+from exactfold.evidence.entries import algebraic_evidence, class_entry
 from exactfold.evidence.entries import document as assemble
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.problem.problem import Problem
 from exactfold.problem.branch_system import BranchSystem
 
 
@@ -154,7 +156,7 @@ def test_algebraic_evidence_for_simple_roots_is_accepted():
     chart = BranchSystem(pattern).chart
     proved = prove_algebraic(chart, groebner(chart.system).classes)
     roots = [(AlgebraicRoot(c, k), m) for c, k, m in proved.roots]
-    branches, undecided = classify(pattern, chart, range(5), roots)
+    branches, undecided = classify(Problem.of(pattern), chart, roots)
     assert undecided == []
     entries = [class_entry(proved, b.root.root_class, b.root.index) for b in branches]
     evidence = {

@@ -232,8 +232,9 @@ def test_resealed_pattern_is_rejected_or_counted_the_same(name):
         assert again.status is PROVED
         assert statement(certificate(again)["claims"]) == statement(claims)
         accepted += 1
-    # The evidence for rigidity and for one vertex is robust; boxes of roots are not.
-    assert (accepted > 0) == (name in ("chord", "rigid", "five folds"))
+    # The evidence for rigidity and for one vertex is robust, and so is that of a reflex boundary,
+    # as its chart is in the file; boxes of roots in the chart of the pattern are not.
+    assert (accepted > 0) == (name in ("chord", "reflex", "rigid", "five folds"))
 
 
 def test_another_rational_of_the_same_value_has_the_same_digest():
@@ -272,7 +273,7 @@ def test_repeated_keys_are_refused():
 @pytest.mark.parametrize("number", ["1.0", "2e0", "NaN", "Infinity", "-Infinity", "1E400"])
 def test_floats_are_refused_everywhere(number):
     text = json.dumps(document("one vertex"))
-    for old in ('"distinct": 2', '"version": 2', '"multiplicity": 1', '"bits": 64'):
+    for old in ('"distinct": 2', '"version": 2', '"multiplicity": 1', '"bits": 44'):
         assert old in text
         with pytest.raises(checker.FormatError, match="no floats"):
             checker.load(text.replace(old, old.split(":")[0] + ": " + number))

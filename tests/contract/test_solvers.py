@@ -37,10 +37,9 @@ from exactfold.pattern.families import (
     two_vertex,
 )
 from exactfold.pattern.random_squares import random_square
-from exactfold.problem.branch_system import BranchSystem, Chart
+from exactfold.problem.branch_system import BranchSystem, Chart, chamber_chart
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.candidates import Candidates
-from exactfold.solve.dense_newton import chamber_chart
 from exactfold.solve.homotopy import homotopy
 from exactfold.verdict import PROVED
 

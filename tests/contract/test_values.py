@@ -19,6 +19,7 @@ from exactfold.algebra.quotient import QuotientAlgebra
 from exactfold.certify.box import Uncertified
 from exactfold.pattern.families import H1Triangulation, sample_h1_sequence
 from exactfold.pattern.random_squares import sample_random_square
+from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
 from exactfold.rigidity.kapovich_millson import kapovich_millson
 from exactfold.solve.candidates import Candidates
@@ -54,7 +55,7 @@ VALUES = {
     "branch system": SYSTEM,
     "chart": SYSTEM.chart,
     "quadrics": SYSTEM.chart.system,
-    "sheet": Sheet.of(PATTERN),
+    "sheet": Sheet(Problem.of(PATTERN)),
     "candidates": ENDS,
     "box": exactfold.krawczyk(SYSTEM.chart.system, ENDS.points)[0],
     "complex box": exactfold.krawczyk(
