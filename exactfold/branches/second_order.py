@@ -42,11 +42,12 @@ def second_order_sheet(pattern: CreasePattern, raised: Sequence[Fraction]) -> Se
     `NotApplicableError` where the range of floats is left.
     """
     try:
-        shape, size = _unit_shape(pattern)
-        height = _levelled(shape, np.array([float(z / size) for z in raised]))
-        moved = shape + _in_plane(pattern, shape, height)
-        scale = float(size)
-        error = _length_error(pattern, shape, moved, height)
+        with np.errstate(all="ignore"):  # what leaves the range of floats is refused below
+            shape, size = _unit_shape(pattern)
+            height = _levelled(shape, np.array([float(z / size) for z in raised]))
+            moved = shape + _in_plane(pattern, shape, height)
+            scale = float(size)
+            error = _length_error(pattern, shape, moved, height)
     except (OverflowError, RuntimeError):  # RuntimeError: two vertices are one point in floats
         scale = error = float("nan")
         moved = height = np.empty(0)
@@ -71,7 +72,9 @@ def _unit_shape(pattern: CreasePattern) -> tuple[FloatArray, Fraction]:
         max(p[k] for p in pattern.vertices) - min(p[k] for p in pattern.vertices) for k in (0, 1)
     )
     x, y = pattern.vertices[0]
-    return np.array([[float((a - x) / size), float((b - y) / size)] for a, b in pattern.vertices]), size
+    return np.array(
+        [[float((a - x) / size), float((b - y) / size)] for a, b in pattern.vertices]
+    ), size
 
 
 def _levelled(shape: FloatArray, height: FloatArray) -> FloatArray:
