@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from exactfold.algebra.from_roots import parametrisation_from_roots
     from exactfold.algebra.groebner import groebner, quotient_algebra
     from exactfold.algebra.hermite import hermite_counts
+    from exactfold.branches.angles import fold_angles
     from exactfold.branches.branch import Branch
+    from exactfold.branches.export import export_branch
     from exactfold.branches.result import BranchCount
     from exactfold.bridges.export import (
         to_homotopy_continuation,
@@ -71,7 +73,9 @@ if TYPE_CHECKING:
     from exactfold.solve.popping import popping
 
 _HOMES = {
+    "exactfold.branches.angles": ("fold_angles",),
     "exactfold.branches.branch": ("Branch",),
+    "exactfold.branches.export": ("export_branch",),
     "exactfold.evidence.listing": ("certificate",),
     "exactfold.branches.result": ("BranchCount",),
     "exactfold.certify.arb_krawczyk": ("arb_krawczyk",),
@@ -156,11 +160,13 @@ __all__ = [
     "delaunay",
     "example_path",
     "examples",
+    "export_branch",
     "factor_degrees",
     "families",
     "find_branch",
     "find_branches",
     "find_candidates",
+    "fold_angles",
     "groebner",
     "hermite_counts",
     "homotopy",

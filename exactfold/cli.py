@@ -240,6 +240,53 @@ def branch(
     raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
 
 
+@app.command()
+@reported
+def export(
+    pattern: Pattern,
+    signs: Annotated[
+        str | None,
+        typer.Option(
+            metavar="+-...", help="Vertex signs in the order of the interior vertices; @FILE reads."
+        ),
+    ] = None,
+    up: Annotated[
+        str | None,
+        typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
+    ] = None,
+    place: Annotated[
+        int | None,
+        typer.Option("--branch", min=1, metavar="N", help="Instead: the N-th that `count` lists."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE.fold", help="Default, and -: stdout."),
+    ] = None,
+    amount: Annotated[
+        float | None,
+        typer.Option(metavar="DEG", help="The largest fold angle, in degrees. Default: 30."),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write a branch that is enclosed but not proved, too.")
+    ] = False,
+    as_json: Json = False,
+    snap: Snap = None,
+) -> None:
+    """Write one branch as a FOLD file that simulators can fold.
+
+    The fold angles in it are in proportion to those of the branch, so that a
+    simulator that is driven by them stays on it. A second frame shows the sheet
+    in space, to second order.
+    """
+    from exactfold.commands.export import Wanted
+
+    if (signs is not None) + (up is not None) + (place is not None) != 1:
+        raise UsageError("give one of --signs, --up and --branch")
+    apart(output, pattern)
+    asked = Wanted(pattern, snap, signs, up, place, output, amount, force, as_json)
+    raise typer.Exit(asked.answer())
+
+
 @app.command("random")
 @reported
 def random_(

@@ -190,6 +190,10 @@ class NotApplicableError(ExactfoldError):
     """A construction or method does not apply to this pattern; the message says why."""
 
 
+class UndecidedBranchError(ExactfoldError):
+    """A branch that is not proved was to be exported (exit code 4)."""
+
+
 # --- the exact engine ----------------------------------------------------------------------------
 
 

@@ -13,6 +13,7 @@ from exactfold.verdict import PROVED, UNDECIDED
 
 if TYPE_CHECKING:
     from exactfold.branches.branch import Branch
+    from exactfold.branches.export import BranchExport, ExportedBranch
     from exactfold.branches.result import BranchCount
     from exactfold.count.stream import StreamedCount
     from exactfold.rigidity.facts import PatternFacts
@@ -177,6 +178,23 @@ def branches_report(rows: list[Row]) -> Group:
     for row in rows:
         table.add_row(*row)
     return Group(table)
+
+
+def export_report(output: str, branch: ExportedBranch, export: BranchExport) -> Table:
+    """What `exactfold export` prints of the file it wrote."""
+    sizes = [abs(angle) for angle in export.angles.values()]
+    rows = [
+        ("written", output),
+        ("status", str(export.status).upper()),
+        ("vertex signs", _cut(branch.sign_text)),
+        ("mountain-valley", _cut(branch.assignment_text)),
+        ("fold angles", f"largest {max(sizes):.4g}, smallest {min(sizes):.4g} degrees"),
+        (
+            "folded frame",
+            f"second order: lengths change by up to {100 * export.length_error:.2g} %",
+        ),
+    ]
+    return _facts_table(rows)
 
 
 def _cut(text: str, most: int = 160) -> str:

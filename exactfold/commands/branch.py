@@ -63,10 +63,7 @@ class Asked:
         if self.batch is not None:
             yield from _of_lines(finder, self.batch, bar)
             return
-        signs = self.signs
-        if signs is not None and signs.startswith("@"):
-            signs = "".join(text for _, text in _lines(Path(signs[1:])))
-        given = finder.signs(signs, None if self.up is None else _indices("--up", self.up))
+        given = given_signs(finder, self.signs, self.up)
         if self.pops is None:
             yield "", finder.find(given, progress=bar)
             return
@@ -87,6 +84,16 @@ class Asked:
                 write_certificate(branch_certificate(result), self.certificate)
         else:
             print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
+
+
+def given_signs(finder: BranchFinder, signs: str | None, up: str | None) -> dict[int, int]:
+    """The sign vector that --signs (text, or @FILE with the text in a file) or --up gives.
+
+    Raises `UsageError` and `UnreadableFileError`.
+    """
+    if signs is not None and signs.startswith("@"):
+        signs = "".join(text for _, text in _lines(Path(signs[1:])))
+    return finder.signs(signs, None if up is None else _indices("--up", up))
 
 
 def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str, Branch]]:

@@ -21,23 +21,28 @@ if TYPE_CHECKING:
 
 EXACT_KEY: Final = "vertices_exactfold:coords"
 _ANGLES: Final = {"M": -180, "V": 180, "F": 0, "U": 0, "B": 0}
+_RANGES: Final = {"M": (-180, 0), "V": (0, 180), "F": (0, 0), "U": (0, 0), "B": (0, 0)}
+"""Degrees by letter; FOLD wants 0 where nothing is assigned."""
 
 
 def fold_document(
     pattern: PatternLike,
     assignment: Mapping[Edge, str] | None = None,
     title: str | None = None,
+    angles: Mapping[Edge, float] | None = None,
 ) -> dict[str, Any]:
     """The pattern as a FOLD 1.2 object, ready for `json.dumps`.
 
     `assignment` gives "M", "V", "F" or "U" by fold (i, j), i < j; folds without a letter get "U".
-    Vertex indices are kept. `vertices_coords` has three components (z = 0) as the nearest doubles,
+    Vertex indices are kept. `vertices_coords` has two components, the nearest doubles,
     `vertices_exactfold:coords` the exact "p/q" pairs. `edges_foldAngle` has the sign of the letter
-    (valley positive): 180 for V and -180 for M, the fully folded target that simulators scale down,
-    and 0 for F, U and B.
+    (valley positive), and is 0 for F, U and B: with `angles` the degrees given there by fold,
+    without it 180 for V and -180 for M. A simulator that is told 180 everywhere need not stay on
+    the branch that has these letters: `exactfold.export_branch` writes the angles of a branch.
 
-    Raises `UsageError` for an assignment that is not of a fold of the pattern, and
-    `NotApplicableError` if a coordinate is beyond the range of doubles.
+    Raises `UsageError` for a letter or an angle that is not of a fold of the pattern, or an angle
+    that contradicts its letter, and `NotApplicableError` if a coordinate is beyond the range of
+    doubles.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> document = fold_document(single_vertex(3), {(0, 3): "M"})
@@ -55,6 +60,7 @@ def fold_document(
         if letter not in (("B",) if letters[edge] == "B" else ("M", "V", "F", "U")):
             raise UsageError(f"edge {edge} cannot be assigned {letter!r}")
         letters[edge] = letter
+    targets = _targets(letters, angles)
     document: dict[str, Any] = {
         "file_spec": 1.2,
         "file_creator": "exactfold",
@@ -65,13 +71,14 @@ def fold_document(
     document |= {
         "frame_classes": ["creasePattern"],
         "frame_attributes": ["2D"],
+        # Two components: of three, Origami Simulator's pattern view draws x and z only.
         "vertices_coords": [
-            [_double(v, x), _double(v, y), 0.0] for v, (x, y) in enumerate(pattern.vertices)
+            [_double(v, x), _double(v, y)] for v, (x, y) in enumerate(pattern.vertices)
         ],
         EXACT_KEY: [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
         "edges_vertices": [list(edge) for edge in letters],
         "edges_assignment": list(letters.values()),
-        "edges_foldAngle": [_ANGLES[letter] for letter in letters.values()],
+        "edges_foldAngle": targets,
         "faces_vertices": [list(triangle) for triangle in pattern.triangles],
     }
     return document
@@ -100,10 +107,13 @@ def fold_text(
     assignment: Mapping[Edge, str] | None = None,
     title: str | None = None,
 ) -> str:
-    """`fold_document(pattern, assignment, title)` as JSON text, one vertex, edge or face a line."""
-    document = fold_document(pattern, assignment, title)
-    lines = [f"  {json.dumps(key)}: {_value(value)}" for key, value in document.items()]
-    return "{\n" + ",\n".join(lines) + "\n}\n"
+    """`fold_document(pattern, assignment, title)` as `document_text` writes it."""
+    return document_text(fold_document(pattern, assignment, title))
+
+
+def document_text(document: Mapping[str, Any]) -> str:
+    """A FOLD object as JSON text, one vertex, edge or face a line, frames indented."""
+    return _object(document, "") + "\n"
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:
@@ -133,10 +143,34 @@ def write_text(path: str | PathLike[str], text: str) -> None:
         raise UnwritableFileError(f"cannot write {path}: {reason}") from None
 
 
-def _value(value: object) -> str:
-    """JSON text, lists of lists with one entry a line."""
-    if isinstance(value, list) and value and isinstance(value[0], list):
-        return "[\n" + ",\n".join(f"    {json.dumps(entry)}" for entry in value) + "\n  ]"
+def _targets(
+    letters: Mapping[Edge, str], angles: Mapping[Edge, float] | None
+) -> list[int] | list[float]:
+    """`edges_foldAngle`, in the order of the letters."""
+    if angles is None:
+        return [_ANGLES[letter] for letter in letters.values()]
+    for edge, angle in angles.items():
+        if edge not in letters:
+            raise UsageError(f"{edge} is not an edge (i, j), i < j, of the pattern")
+        least, most = _RANGES[letters[edge]]
+        if not least <= angle <= most:
+            raise UsageError(f"edge {edge} is {letters[edge]!r}: its angle cannot be {angle}")
+    return [float(angles.get(edge, 0)) for edge in letters]
+
+
+def _object(value: Mapping[str, Any], indent: str) -> str:
+    lines = [f"{indent}  {json.dumps(key)}: {_value(v, indent)}" for key, v in value.items()]
+    return "{\n" + ",\n".join(lines) + f"\n{indent}}}"
+
+
+def _value(value: object, indent: str) -> str:
+    """JSON text: lists of lists with one entry a line, objects with one key a line."""
+    if isinstance(value, dict) and value:
+        return _object(value, f"{indent}  ")
+    if isinstance(value, list) and value and isinstance(value[0], list | dict):
+        inner = f"{indent}    "
+        entries = [_object(v, inner) if isinstance(v, dict) else json.dumps(v) for v in value]
+        return "[\n" + ",\n".join(inner + entry for entry in entries) + f"\n{indent}  ]"
     return json.dumps(value)
 
 

@@ -15,7 +15,7 @@ from exactfold.rigidity.functionals import saddle_functional
 SADDLE, CORNER, RIM = "saddle", "corner", "rim"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Gauge:
     """Given heights of the rim of `sheet`, and the one vertex, if any, with a given curvature.
 
@@ -73,6 +73,10 @@ class Gauge:
         """
         named = tuple(v for v in self.sheet.interior if v != self.corner)
         return named if self.corner is None else (*named, self.corner)
+
+    def __repr__(self) -> str:
+        where = "" if self.corner is None else f" {self.corner}"
+        return f"<Gauge: {self.kind}{where}, {len(self.rim)} vertices on the rim>"
 
     @cached_property
     def corner_curvature(self) -> Fraction:

@@ -16,7 +16,7 @@ from exactfold.problem.sign_rows import Functionals
 from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Problem:
     """The equations K_v(h) = 0 of a pattern, reduced to what can fold, in one gauge.
 
@@ -108,6 +108,9 @@ class Problem:
                 for column in zip(*(rows[c] for c in cycle), strict=True)
             )
         return dict(sorted(rows.items()))
+
+    def __repr__(self) -> str:
+        return f"<Problem: {self.size} foldable vertices, {self.gauge!r}>"
 
     def _above(
         self, corners: tuple[int, ...], vertex: int, rows: Mapping[int, tuple[Fraction, ...]]

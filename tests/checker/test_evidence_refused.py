@@ -18,8 +18,8 @@ from exactfold.checker import stress
 from exactfold.evidence.entries import algebraic_evidence, class_entry
 from exactfold.evidence.entries import document as assemble
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.problem import Problem
 from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.problem import Problem
 
 
 def test_box_that_holds_two_roots_is_refused():

@@ -30,7 +30,7 @@ def test_document_has_what_other_programs_need():
     assert document["file_title"] == "test"
     assert document["frame_classes"] == ["creasePattern"]
     assert document["frame_attributes"] == ["2D"]
-    assert document["vertices_coords"][4] == [1 / 3, 0.4, 0.0]
+    assert document["vertices_coords"][4] == [1 / 3, 0.4]
     assert document[EXACT_KEY][4] == ["1/3", "2/5"]
     edges = [tuple(edge) for edge in document["edges_vertices"]]
     letters = dict(zip(edges, document["edges_assignment"], strict=True))

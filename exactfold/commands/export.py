@@ -1,0 +1,113 @@
+"""`exactfold export`: a branch, found by its signs or its place in the listing, as FOLD."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from exactfold.branches.export import AMOUNT, BranchExport, ExportedBranch, exported
+from exactfold.bridges.fold_frames import BRANCH_KEY
+from exactfold.commands.branch import given_signs
+from exactfold.commands.shell import EXIT, Bar
+from exactfold.count.collect import count_branches
+from exactfold.count.find import BranchFinder
+from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.fold import load_fold
+from exactfold.verdict import PROVED, UNDECIDED
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What was asked for on the command line; exactly one of `signs`, `up` and `place` is given."""
+
+    file: Path
+    snap: int | None
+    signs: str | None
+    up: str | None
+    place: int | None
+    output: Path | None
+    amount: float | None
+    force: bool
+    as_json: bool
+
+    def answer(self) -> int:
+        """Find the branch, write it and say so; the exit code.
+
+        Raises the errors of `load_fold`, `BranchFinder`, `count_branches` and `exported`, but for
+        `UndecidedBranchError`, which is said on stderr with what `BranchFinder` gave as a reason.
+        """
+        output = None if self.output is None or str(self.output) == "-" else self.output
+        if output is None and self.as_json:
+            raise UsageError("--json describes the file that is written: name it with -o")
+        with Bar("reading") as bar:
+            pattern = load_fold(self.file, self.snap).pattern
+            branch = self._branch(pattern, bar)
+            bar("writing")
+            try:
+                export = exported(
+                    pattern,
+                    branch,
+                    amount=AMOUNT if self.amount is None else self.amount,
+                    title=self._title,
+                    force=self.force,
+                )
+            except UndecidedBranchError as error:
+                reason = getattr(branch, "reason", "")
+                print(f"exactfold: not written: {error}; {reason}".rstrip("; "), file=sys.stderr)
+                return EXIT[UNDECIDED]
+            if output is not None:
+                export.write(output)
+        if output is None:
+            sys.stdout.write(export.text)
+        elif self.as_json:
+            print(json.dumps(_summary(pattern, branch, export, output)))
+        else:
+            from exactfold import report
+
+            report.show(report.export_report(str(output), branch, export))
+        return EXIT[export.status]
+
+    @property
+    def _title(self) -> str | None:
+        return None if str(self.file) == "/dev/stdin" else self.file.stem
+
+    def _branch(self, pattern: CreasePattern, bar: Bar) -> ExportedBranch:
+        if self.place is None:
+            finder = BranchFinder(pattern)
+            bar("setting up")
+            return finder.find(given_signs(finder, self.signs, self.up), progress=bar)
+        result = count_branches(pattern, progress=bar)
+        if not 1 <= self.place <= len(result.branches):
+            proved = "" if result.status is PROVED else f", undecided: {result.reason}"
+            listed = len(result.branches)
+            raise UsageError(
+                f"--branch {self.place}: `exactfold count` lists "
+                f"{listed or 'no'} branch{'' if listed == 1 else 'es'} of this pattern{proved}"
+            )
+        return result.branches[self.place - 1]
+
+
+def _summary(
+    pattern: CreasePattern, branch: ExportedBranch, export: BranchExport, output: Path
+) -> dict[str, Any]:
+    """The object that --json prints."""
+    facts = export.document[BRANCH_KEY]
+    return {
+        "output": str(output),
+        "pattern": {
+            "interior": pattern.Vi,
+            "boundary": pattern.Ve,
+            "folds": len(pattern.folds),
+            "sha256": pattern.sha256,
+        },
+        "status": str(export.status),
+        "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
+        "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
+        "gauge": facts["gauge"],
+        "angles": {f"{i}-{j}": angle for (i, j), angle in sorted(export.angles.items())},
+        "length_error": export.length_error,
+    }

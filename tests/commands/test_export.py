@@ -1,0 +1,232 @@
+"""`exactfold export`: what it writes, prints and refuses."""
+
+import json
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+from typer.testing import CliRunner
+
+from exactfold import count_branches, example_path, export_branch, find_branch, load_fold
+from exactfold.bridges.fold_frames import BRANCH_KEY
+from exactfold.cli import app
+from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.pattern.degenerate import ringed_square
+from exactfold.pattern.families import two_vertex
+from exactfold.pattern.fold_writing import fold_text
+
+OK, USAGE, BAD_INPUT, UNDECIDED = 0, 2, 3, 4
+TWO = example_path("two-vertex")
+
+
+def run(*arguments, **options):
+    return CliRunner().invoke(app, ["export", *map(str, arguments)], **options)
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "branch.fold"
+
+
+def signs_in(path):
+    return json.loads(path.read_text())[BRANCH_KEY]["vertex_signs"]
+
+
+# --- what is written -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("how", "signs"),
+    [
+        (["--signs", "-+"], "-+"),
+        (["--signs=--"], "--"),
+        (["--up", "4"], "+-"),
+        (["--up", "4,5"], "++"),
+        (["--up", ""], "--"),
+        (["--branch", "1"], "--"),
+        (["--branch", "3"], "+-"),
+    ],
+)
+def test_the_branch_is_named_in_three_ways(out, how, signs):
+    result = run(TWO, *how, "-o", out)
+    assert (result.exit_code, result.stderr) == (OK, "")
+    assert signs_in(out) == signs
+    file = load_fold(out)
+    assert file.pattern == two_vertex()
+    branch = find_branch(two_vertex(), signs)
+    assert {fold: file.assignment[fold] for fold in branch.assignment} == branch.assignment
+    assert "PROVED" in result.stdout
+    assert branch.assignment_text in result.stdout
+
+
+def test_signs_are_read_from_a_file(tmp_path, out):
+    (tmp_path / "signs.txt").write_text("+\n-\n")
+    assert run(TWO, "--signs", f"@{tmp_path / 'signs.txt'}", "-o", out).exit_code == OK
+    assert signs_in(out) == "+-"
+
+
+def test_the_branches_of_the_listing_in_its_order(out):
+    listed = [branch.sign_text for branch in count_branches(two_vertex()).branches]
+    for k, signs in enumerate(listed, 1):
+        assert run(TWO, "--branch", k, "-o", out).exit_code == OK
+        assert signs_in(out) == signs
+
+
+def test_command_and_function_write_the_same(tmp_path, out):
+    assert run(TWO, "--signs", "+-", "--amount", "12.5", "-o", out).exit_code == OK
+    other = tmp_path / "other.fold"
+    branch = find_branch(two_vertex(), "+-")
+    export_branch(two_vertex(), branch, other, amount=12.5, title="two-vertex")
+    assert out.read_bytes() == other.read_bytes()
+
+
+@pytest.mark.parametrize(("options", "largest"), [([], 30), (["--amount", "5"], 5)])
+def test_the_amount_is_the_largest_angle(out, options, largest):
+    assert run(TWO, "--signs", "++", "-o", out, *options).exit_code == OK
+    document = json.loads(out.read_text())
+    assert max(map(abs, document["edges_foldAngle"])) == largest
+    assert document[BRANCH_KEY]["largest_angle"] == largest
+
+
+@pytest.mark.parametrize("name", [[], ["-o", "-"]])
+def test_without_a_name_the_file_goes_to_stdout(out, name):
+    assert run(TWO, "--signs", "+-", "-o", out).exit_code == OK
+    result = run(TWO, "--signs", "+-", *name)
+    assert (result.exit_code, result.stderr) == (OK, "")
+    assert result.stdout == out.read_text()
+
+
+def test_a_pattern_from_standard_input_has_no_title():
+    done = subprocess.run(
+        [sys.executable, "-m", "exactfold", "export", "-", "--signs", "+-"],
+        input=TWO.read_text(),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    document = json.loads(done.stdout)
+    assert document["file_title"] == "branch +-"
+    assert document["frame_exactfold:branch"]["vertex_signs"] == "+-"
+
+
+def test_json_says_what_was_written(out):
+    result = run(TWO, "--signs", "+-", "-o", out, "--json")
+    assert result.exit_code == OK
+    assert result.stdout.count("\n") == 1
+    said, document = json.loads(result.stdout), json.loads(out.read_text())
+    assert said["output"] == str(out)
+    assert said["status"] == "proved"
+    assert said["vertex_signs"] == {"4": 1, "5": -1}
+    assert said["pattern"]["sha256"] == two_vertex().sha256
+    assert said["gauge"] == "saddle"
+    assert 0 < said["length_error"] == document[BRANCH_KEY]["length_error"] < 0.01
+    edges = [f"{i}-{j}" for i, j in document["edges_vertices"]]
+    angles = dict(zip(edges, document["edges_foldAngle"], strict=True))
+    letters = dict(zip(edges, document["edges_assignment"], strict=True))
+    assert said["angles"] == {fold: angles[fold] for fold in said["assignment"]}
+    assert said["assignment"] == {e: a for e, a in letters.items() if a != "B"}
+
+
+# --- what is refused -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ([], "one of --signs, --up and --branch"),
+        (["--signs", "++", "--up", "4"], "one of --signs, --up and --branch"),
+        (["--up", "4", "--branch", "1"], "one of --signs, --up and --branch"),
+        (["--signs", "+-+"], "3 signs for 2 vertices"),
+        (["--signs", "+x"], "'x' is not a vertex sign"),
+        (["--up", "0"], "vertex 0 is not an interior vertex"),
+        (["--up", "a"], "--up takes vertex indices"),
+        (["--branch", "5"], "--branch 5: `exactfold count` lists 4 branches"),
+        (["--signs", "++", "--amount", "0"], "largest fold angle is 0.0 degrees"),
+        (["--signs", "++", "--amount", "200"], "largest fold angle is 200.0 degrees"),
+        (["--signs", "++", "--amount", "nan"], "largest fold angle is nan degrees"),
+    ],
+)
+def test_wrong_usage_is_one_line_and_writes_nothing(out, options, words):
+    result = run(TWO, *options, "-o", out)
+    assert result.exit_code == USAGE
+    assert words in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert result.stdout == ""
+    assert not out.exists()
+
+
+def test_json_needs_a_file_to_speak_of():
+    for name in ([], ["-o", "-"]):
+        result = run(TWO, "--signs", "++", "--json", *name)
+        assert result.exit_code == USAGE
+        assert "name it with -o" in result.stderr
+
+
+def test_the_pattern_is_not_replaced(tmp_path):
+    path = tmp_path / "two.fold"
+    path.write_text(TWO.read_text())
+    assert run(path, "--signs", "++", "-o", path).exit_code == USAGE
+    assert path.read_text() == TWO.read_text()
+
+
+def test_an_output_that_cannot_be_written(tmp_path):
+    result = run(TWO, "--signs", "++", "-o", tmp_path / "none" / "a.fold")
+    assert result.exit_code == BAD_INPUT
+    assert "cannot write" in result.stderr
+
+
+@pytest.fixture
+def undecided(tmp_path):
+    """A sheet with a star that is flat by a symmetry that is not recognised."""
+    path = tmp_path / "ringed.fold"
+    path.write_text(fold_text(ringed_square(4)))
+    return path
+
+
+def test_an_undecided_branch_is_refused_unless_forced(undecided, out):
+    pattern = load_fold(undecided).pattern
+    signs = "+" * pattern.Vi
+    branch = find_branch(pattern, signs)
+    assert str(branch.status) == "undecided"
+    assert branch.heights
+    result = run(undecided, "--signs", signs, "-o", out)
+    assert result.exit_code == UNDECIDED
+    assert "not written" in result.stderr
+    assert branch.reason in result.stderr
+    assert not out.exists()
+    with pytest.raises(UndecidedBranchError, match="not proved"):
+        export_branch(pattern, branch, out)
+    assert not out.exists()
+
+    result = run(undecided, "--signs", signs, "-o", out, "--force")
+    assert result.exit_code == UNDECIDED
+    assert "UNDECIDED" in result.stdout
+    document = json.loads(out.read_text())
+    assert document[BRANCH_KEY]["status"] == "undecided"
+    letters, angles = document["edges_assignment"], document["edges_foldAngle"]
+    unknown = [angle for letter, angle in zip(letters, angles, strict=True) if letter == "U"]
+    assert unknown
+    assert set(unknown) == {0.0}
+
+
+def test_a_branch_without_heights_is_refused_always(out):
+    found = find_branch(two_vertex(), "++")
+    nothing = SimpleNamespace(
+        vertex_signs=found.vertex_signs,
+        assignment=dict.fromkeys(found.assignment, "U"),
+        heights={},
+        sign_text="++",
+        assignment_text="U" * 7,
+    )
+    with pytest.raises(UndecidedBranchError, match="nothing is proved"):
+        export_branch(two_vertex(), nothing, out, force=True)
+    assert not out.exists()
+
+
+def test_a_branch_of_another_pattern_is_refused(out):
+    branch = find_branch(two_vertex(), "++")
+    for other in (load_fold(example_path("waterbomb")).pattern, two_vertex().snapped(64)[0]):
+        with pytest.raises(UsageError, match="another pattern"):
+            export_branch(other, branch, out)
+    assert not out.exists()
