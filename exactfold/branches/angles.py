@@ -10,7 +10,8 @@ from math import isfinite, radians
 
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.rigidity.functionals import fold_functional, sqrt_approximation
+from exactfold.rigidity.functionals import fold_functional
+from exactfold.rigidity.timelike import sqrt_approximation
 
 Bounds = tuple[Fraction, Fraction]
 _BITS = 64
