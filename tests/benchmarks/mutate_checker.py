@@ -30,11 +30,15 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = Path("exactfold", "checker")
 TESTS = {
-    "arithmetic": "krawczyk linear polynomials reading flat_folds boxes listing",
+    "arithmetic": "linear polynomials reading flat_folds",
+    "checker_krawczyk": "krawczyk boxes",
     "sheets_refused": "sheet",
-    "forged_listings": "listing boxes equations stress sheet reading",
-    "forged_classes": "algebraic classes flat_sheets stress boxes listing",
-    "forged_compact": "compact compact_blocks compact_lines command",
+    "forged_listings": "listing reading",
+    "forged_boxes": "boxes equations",
+    "forged_triangles": "stress",
+    "forged_classes": "algebraic classes flat_sheets",
+    "forged_compact": "compact compact_lines command",
+    "forged_blocks": "compact_blocks",
     "forged_branches": "branch branch_proof command",
     "recognised": "command",
     "fixtures": "",
