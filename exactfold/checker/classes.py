@@ -18,14 +18,16 @@ from .polynomials import (
     times,
     value,
 )
-from .reading import items, keys, parse_integer, parse_rational, require, text_of
+from .reading import items, parse_integer, parse_rational, require, text_of
 
 
 class RootClass:
-    """Zeros x_i = w_i(t) / p'(t) of the branch system, one for each root t of p."""
+    """Zeros x_i = w_i(t) / p'(t) of the branch system, one for each root t of p.
+
+    The keys of the entry are verified before, by `check_algebraic`.
+    """
 
     def __init__(self, system: BranchSystem, separating: list[int], entry: Any) -> None:
-        keys(entry, "polynomial numerators flat", "class")
         n = system.size
         self.p = [parse_integer(text_of(c)) for c in items(entry["polynomial"], "polynomial")]
         require(len(self.p) > 1 and self.p[-1], "a class polynomial is constant")

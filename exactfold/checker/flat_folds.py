@@ -13,6 +13,13 @@ from .sheet import Edge, Sheet
 def flat_at(
     sheet: Sheet, vertex: int, folds: tuple[Edge, ...], signs: tuple[int | None, ...]
 ) -> list[Edge]:
+    """The answer of `forced_flat`, remembered."""
+    return forced_flat(sheet, vertex, folds, signs)
+
+
+def forced_flat(
+    sheet: Sheet, vertex: int, folds: tuple[Edge, ...], signs: tuple[int | None, ...]
+) -> list[Edge]:
     """Those of the folds around a vertex that must be flat, given right signs (None where open).
 
     The bends at the vertex that agree with the flat folds span a space on which the curvature form

@@ -421,3 +421,26 @@ def test_completing_claims_finds_what_is_true() -> None:
     """What `stopped_by` rests on: from the evidence alone it restores the claims."""
     for name in (PATH, VERTEX, BOXES, FLAT, "listing-reflex-either-side", "listing-triangles"):
         assert verified(completed(given(name))) == given(name)["claims"]
+
+
+def test_keys_of_classes() -> None:
+    keys = "class: expected an object with the keys polynomial numerators flat"
+    for change in ("polynomial", "numerators", "flat"):
+        forged = given(PATH)
+        del forged["evidence"]["classes"][0][change]
+        refused(forged, keys)
+    forged = given(PATH)
+    forged["evidence"]["classes"][0]["more"] = 1
+    refused(forged, keys)
+    for entry in (None, [], "class"):
+        forged["evidence"]["classes"][0] = entry
+        refused(forged, keys)
+    forged = given(PATH)
+    forged["evidence"]["classes"][0]["flat"] = {"5": 1, "6": 1}
+    refused(forged, "flat vertices is not a list")
+    forged = given(PATH)
+    next(r for r in forged["evidence"]["roots"] if "class" in r)["more"] = 1
+    refused(forged, "root: expected an object with the keys class interval")
+    forged = given(FLAT)
+    next(r for r in forged["evidence"]["roots"] if "flat" in r)["more"] = 1
+    refused(forged, "root: expected an object with the keys bits radius center")
