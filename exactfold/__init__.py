@@ -38,10 +38,12 @@ if TYPE_CHECKING:
     from exactfold.certify.interval_newton import interval_newton
     from exactfold.certify.isolation import isolate
     from exactfold.certify.krawczyk import krawczyk
+    from exactfold.count.batch import count_many
     from exactfold.count.collect import METHODS, count_branches
     from exactfold.count.dask_engine import dask_engine
     from exactfold.count.find import BranchFinder, find_branch, find_branches, neighbours
     from exactfold.count.methods import find_candidates
+    from exactfold.count.pools import dask_pool
     from exactfold.count.stream import StreamedCount, count_streaming
     from exactfold.data import EXAMPLES, example_path, examples
     from exactfold.evidence.check import check_compact
@@ -79,6 +81,7 @@ _HOMES = {
     "exactfold.certify.interval_newton": ("interval_newton",),
     "exactfold.certify.isolation": ("isolate",),
     "exactfold.certify.krawczyk": ("krawczyk",),
+    "exactfold.count.batch": ("count_many",),
     "exactfold.count.collect": ("METHODS", "count_branches"),
     "exactfold.data": ("EXAMPLES", "example_path", "examples"),
     "exactfold.exact.factor_degrees": ("factor_degrees",),
@@ -99,6 +102,7 @@ _HOMES = {
     "exactfold.rigidity.facts": ("pattern_facts",),
     "exactfold.rigidity.self_stress": ("rigidity_matrix", "self_stresses"),
     "exactfold.evidence.check": ("check_compact",),
+    "exactfold.count.pools": ("dask_pool",),
     "exactfold.count.dask_engine": ("dask_engine",),
     "exactfold.evidence.read": ("read_branches",),
     "exactfold.count.stream": ("StreamedCount", "count_streaming"),
@@ -148,9 +152,11 @@ __all__ = [
     "certificate",
     "check_compact",
     "count_branches",
+    "count_many",
     "count_streaming",
     "curvature_form",
     "dask_engine",
+    "dask_pool",
     "decide_all_branches_real",
     "definite_stress",
     "degenerate",

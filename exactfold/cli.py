@@ -19,6 +19,7 @@ from exactfold.commands.shell import (
     Bar,
     Json,
     Pattern,
+    Patterns,
     Snap,
     apart,
     not_a_dash,
@@ -58,7 +59,7 @@ class Method(StrEnum):
 @app.command()
 @reported
 def count(
-    pattern: Pattern,
+    patterns: Patterns,
     method: Annotated[
         Method,
         typer.Option(
@@ -93,12 +94,27 @@ def count(
         int | None,
         typer.Option(min=1, metavar="N", help="Processes of --stream. Default: all cores."),
     ] = None,
+    jsonl: Annotated[
+        Path | None,
+        typer.Option(
+            callback=not_a_dash,
+            metavar="OUT.jsonl",
+            help="Write a line of JSON for each pattern as it is ready; files whose line is there "
+            "already are skipped, so the same command goes on after an interruption.",
+        ),
+    ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            min=1, metavar="N", help="Processes for several patterns. Default: all cores."
+        ),
+    ] = None,
     dask: Annotated[
         str | None,
         typer.Option(
             metavar="ADDRESS",
-            help="Run --stream on the dask.distributed cluster with this scheduler; `local` starts "
-            "one here.",
+            help="Run --stream, or several patterns, on the dask.distributed cluster with this "
+            "scheduler; `local` starts one here.",
         ),
     ] = None,
     as_json: Json = False,
@@ -108,8 +124,23 @@ def count(
 ) -> None:
     """Count the branches of a pattern at the unfolded state, with proof.
 
-    With --stream, Ctrl-C loses one block at most and prints how to go on.
+    With --stream, Ctrl-C loses one block at most and prints how to go on. Several
+    patterns are counted side by side; the exit code is the worst of theirs.
     """
+    if len(patterns) > 1 or jsonl is not None:
+        from exactfold.commands.batch import Batch
+
+        alone = (certificate, stream, workers) != (None, None, None) or resume
+        if alone:
+            raise UsageError(
+                "--certificate, --stream, --resume and --workers go with one pattern and "
+                "without --jsonl"
+            )
+        batch = Batch(patterns, jsonl, jobs, dask, method.value, seed, snap, as_json, everything)
+        raise typer.Exit(batch.run())
+    if jobs is not None:
+        raise UsageError("--jobs goes with several patterns or --jsonl")
+    [pattern] = patterns
     from exactfold import report
     from exactfold.commands.stream import Streaming, advice
     from exactfold.count.collect import count_branches

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console, Group, RenderableType
@@ -157,6 +158,31 @@ def branch_report(result: SignedBranch) -> Group:
         )
     rows.append(("method", f"{result.steps} Newton steps, {result.seconds:.2f} s"))
     return Group(_facts_table(rows))
+
+
+BatchRow = tuple[str, str, int | None, str]
+"""Name, status, number of branches, and what is missing or wrong."""
+
+
+def batch_report(rows: list[BatchRow], summary: Mapping[str, Any], everything: bool) -> Group:
+    """What `exactfold count` prints for several patterns."""
+    table = Table(box=None, pad_edge=False)
+    table.add_column("", overflow="fold")
+    table.add_column("ways", justify="right")
+    table.add_column("status")
+    table.add_column("", overflow="fold")
+    limit = len(rows) if everything else SHOWN
+    for name, status, distinct, message in rows[:limit]:
+        why = "" if status == str(PROVED) else message
+        table.add_row(name, "?" if distinct is None else str(distinct), status, why)
+    parts: list[Any] = [table, *_more(len(rows) - limit), ""] if rows else []
+    counts = ", ".join(f"{summary[key]} {key}" for key in ("proved", "undecided", "failed"))
+    text = f"{summary['files']} patterns: {counts}"
+    if summary["skipped"]:
+        text += f"; {summary['skipped']} of them were there already"
+    if summary["jsonl"]:
+        text += f"; results in {summary['jsonl']}"
+    return Group(*parts, Text(text))
 
 
 Row = tuple[str, str, str, str]

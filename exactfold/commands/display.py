@@ -37,14 +37,14 @@ class Display:
         self.stage: tuple[str, bool] | None = None
         self.progress.start()
 
-    def show(self, stage: str, done: int, total: int) -> None:
+    def show(self, stage: str, done: int, total: int, note: str = "") -> None:
         """Show how far a stage has come; a total of 0 means that it is not known."""
         if (stage, bool(total)) != self.stage:  # a task never loses a total it once had
             for task in self.progress.task_ids:
                 self.progress.remove_task(task)
             self.stage = (stage, bool(total))
             self.progress.add_task(stage, total=total or None, count="")
-        count = f"{done}/{total}" if total else str(done or "")
+        count = (f"{done}/{total}" if total else str(done or "")) + note
         task = self.progress.task_ids[0]
         self.progress.update(task, completed=done, total=total or None, count=count)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import signal
@@ -13,7 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn, ParamSpec, TypeVar
 
 import typer
 
@@ -55,8 +56,10 @@ def reported(command: Callable[P, R]) -> Callable[P, R]:
             output_failed(error)
             raise typer.Exit(OUTPUT_FAILED) from None
         except ExactfoldError as error:
-            print(f"exactfold: {type(error).__name__}: {error}", file=sys.stderr)
-            raise typer.Exit(_code(error)) from None
+            print(f"exactfold: {error}", file=sys.stderr)
+            if kwargs.get("as_json"):
+                print(json.dumps(error_document(error)), flush=True)
+            raise typer.Exit(exit_code(error)) from None
         except KeyboardInterrupt:
             stopped()
         except (typer.Exit, typer.Abort):
@@ -68,10 +71,20 @@ def reported(command: Callable[P, R]) -> Callable[P, R]:
     return wrapped
 
 
-def _code(error: ExactfoldError) -> int:
-    if isinstance(error, WorkerDiedError):
+def exit_code(error: Exception) -> int:
+    """The exit code of a command that ended with an error."""
+    if isinstance(error, WorkerDiedError) or not isinstance(error, ExactfoldError):
         return INTERNAL
     return BAD_INPUT if isinstance(error, InputError) else USAGE
+
+
+def error_document(error: Exception) -> dict[str, Any]:
+    """An error as a JSON object: its class, for programs, and what it says."""
+    return {
+        "format": "exactfold error",
+        "version": 1,
+        "error": {"class": type(error).__name__, "message": str(error)},
+    }
 
 
 def output_failed(error: OSError) -> None:
@@ -123,7 +136,7 @@ class Bar:
 
     def __init__(self, stage: str, delay: float = 1.0) -> None:
         self.lock = threading.RLock()
-        self.state = (stage, 0, 0)
+        self.state = (stage, 0, 0, "")
         self.display: Display | None = None
         self.timer = threading.Timer(delay, self.show)
         self.timer.daemon = True
@@ -136,10 +149,10 @@ class Bar:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def __call__(self, stage: str, done: int = 0, total: int = 0) -> None:
+    def __call__(self, stage: str, done: int = 0, total: int = 0, note: str = "") -> None:
         """Say how far a stage has come; a total of 0 means that it is not known."""
         with self.lock:
-            self.state = (stage, done, total)
+            self.state = (stage, done, total, note)
             if self.display is not None:
                 self.display.show(*self.state)
 
@@ -213,6 +226,14 @@ Pattern = Annotated[
     Path,
     typer.Argument(
         callback=standard_input, help="A FOLD file with triangular faces; - for standard input."
+    ),
+]
+Patterns = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="PATTERN...",
+        callback=lambda paths: [standard_input(path) for path in paths],
+        help="FOLD files with triangular faces; - for standard input.",
     ),
 ]
 Snap = Annotated[

@@ -33,7 +33,9 @@ __all__ = [
     "FoldFile",
     "fold_document",
     "load_fold",
+    "parse_bytes",
     "parse_fold",
+    "read_bytes",
     "read_fold",
     "write_fold",
     "write_text",
@@ -84,15 +86,24 @@ def load_fold(path: str | PathLike[str], snap: int | None = None) -> FoldFile:
     >>> load_fold(example_path("two-vertex")).pattern
     <CreasePattern: 2 interior and 4 boundary vertices>
     """
+    return parse_bytes(read_bytes(path), str(path), snap)
+
+
+def read_bytes(path: str | PathLike[str]) -> bytes:
+    """All of a file; raises `UnreadableFileError`."""
     try:
-        raw = Path(path).read_bytes()
+        return Path(path).read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
         reason = getattr(error, "strerror", None) or str(error)
         raise UnreadableFileError(f"cannot read {path}: {reason}") from None
+
+
+def parse_bytes(raw: bytes, name: str, snap: int | None = None) -> FoldFile:
+    """As `parse_fold`, from the bytes of a file; raises `NotJSONError` if they are not UTF-8."""
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise NotJSONError(f"{path} is not UTF-8 text: byte {error.start} is not valid") from None
+        raise NotJSONError(f"{name} is not UTF-8 text: byte {error.start} is not valid") from None
     return parse_fold(text, snap)
 
 

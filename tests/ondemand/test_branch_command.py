@@ -85,7 +85,7 @@ def test_a_batch_is_read_to_its_end_before_anything_is_found(tmp_path) -> None:
     ]
     path.write_text("-+\n\n+\n")
     result = run(TWO, "--batch", path, "--json")
-    assert (result.exit_code, result.stdout) == (2, "")
+    assert (result.exit_code, json.loads(result.stdout)["error"]["class"]) == (2, "UsageError")
     assert f"{path}, line 3: 1 signs for 2 vertices" in result.stderr
 
 
@@ -141,4 +141,4 @@ def test_wrong_usage_is_exit_code_two(arguments: tuple[str, ...], message: str) 
 def test_a_file_of_signs_that_is_not_there() -> None:
     result = run(TWO, "--signs", "@none.txt")
     assert result.exit_code == 3
-    assert "UnreadableFileError: cannot read none.txt" in result.stderr
+    assert "exactfold: cannot read none.txt" in result.stderr

@@ -1,0 +1,151 @@
+"""`exactfold count` of one pattern: exit codes, JSON with exactly the documented keys, tables."""
+
+import json
+from fractions import Fraction
+
+import pytest
+from files import CORNERS, FACES, written
+from running import (
+    PROVED,
+    UNDECIDED,
+    run,
+)
+from sheets import HEXAGON, TRIANGLE, nested_triangles, scrambled
+
+from exactfold import (
+    EXAMPLES,
+    count_branches,
+    example_path,
+    read_fold,
+    write_fold,
+)
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.families import FAMILIES
+
+PATTERN_KEYS = {"interior", "boundary", "folds", "degrees_of_freedom", "sha256", "snapped"}
+COUNT_KEYS = {
+    *("pattern", "status", "method", "distinct", "with_multiplicity", "real", "nonreal"),
+    *("true_branches", "certificate", "seconds", "branches"),
+}
+EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree"}
+BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
+
+
+def test_count_prints_a_table_and_exits_0(two_vertex):
+    result = run("count", two_vertex)
+    assert result.exit_code == PROVED
+    assert "PROVED" in result.stdout
+    assert "4 distinct, 4 with multiplicity; 4 real, 0 not real" in result.stdout
+    assert result.stderr == ""
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_count_json_has_the_documented_keys(name):
+    path = example_path(name)
+    result = run("count", path, "--json")
+    assert result.exit_code == PROVED
+    assert result.stdout.count("\n") == 1
+    data = json.loads(result.stdout)
+    assert COUNT_KEYS <= set(data) <= COUNT_KEYS | EXTRA_KEYS
+    assert set(data["pattern"]) == PATTERN_KEYS
+    pattern = read_fold(path)
+    assert data["pattern"]["sha256"] == pattern.sha256
+    assert data["pattern"]["snapped"] == "0"
+    assert data["status"] == "proved"
+    assert data["true_branches"] in ("proved", "undecided")
+    assert data["certificate"] is None
+    vectors = []
+    for branch in data["branches"]:
+        assert set(branch) == BRANCH_KEYS
+        assert list(branch["vertex_signs"]) == [str(v) for v in pattern.interior]
+        assert set(branch["vertex_signs"].values()) <= {1, -1, 0}
+        assert set(branch["assignment"]) == {f"{i}-{j}" for i, j in pattern.folds}
+        assert set(branch["assignment"].values()) <= set("MVF")
+        assert set(branch["heights"]) == {str(v) for v in range(len(pattern.vertices))}
+        assert list(branch["heights"].values()).count(["0", "0"]) >= 3
+        vectors.append(list(branch["vertex_signs"].values()))
+    assert vectors == sorted(vectors)
+
+
+def test_count_json_is_exact(two_vertex):
+    data = json.loads(run("count", two_vertex, "--json").stdout)
+    pattern = read_fold(two_vertex)
+    for branch, expected in zip(data["branches"], count_branches(pattern).branches, strict=True):
+        for v, ends in branch["heights"].items():
+            assert tuple(map(Fraction, ends)) == expected.heights[int(v)]
+
+
+@pytest.mark.parametrize("method", ["auto", "nappes", "popping", "homotopy", "groebner"])
+def test_methods(two_vertex, method):
+    data = json.loads(run("count", two_vertex, "--json", "--method", method).stdout)
+    assert data["distinct"] == 4
+    assert data["method"] == ("nappes" if method == "auto" else method)
+
+
+def test_rigid_sheet_has_no_branches(tmp_path):
+    path = tmp_path / "triangle.fold"
+    write_fold(scrambled(1, TRIANGLE, 3), path)
+    result = run("count", path, "--json")
+    assert result.exit_code == PROVED
+    data = json.loads(result.stdout)
+    assert (data["distinct"], data["branches"]) == (0, [])
+
+
+def test_undecided_exits_4(tmp_path):
+    path, out = tmp_path / "hexagon.fold", tmp_path / "out.json"
+    write_fold(scrambled(1, HEXAGON, 2, loose=True), path)
+    result = run("count", path, "--json", "--certificate", out)
+    assert result.exit_code == UNDECIDED
+    data = json.loads(result.stdout)
+    assert data["status"] == "undecided"
+    assert data["distinct"] is None
+    assert data["certificate"] is None
+    assert "D = 3" in data["reason"]
+    assert "no certificate was written" in result.stderr
+    assert not out.exists()
+
+
+def test_undecided_table_lists_what_is_open(tmp_path, monkeypatch):
+    path = tmp_path / "flat.fold"
+    write_fold(FAMILIES["flat-vertex"](), path)
+    monkeypatch.setattr("exactfold.count.attempt.flat_vertices", lambda chart, points: iter(()))
+    result = run("count", path, "--method", "popping")
+    assert result.exit_code == UNDECIDED
+    assert "UNDECIDED" in result.stdout
+    assert "Open" in result.stdout
+    assert "no box around the candidate" in result.stdout
+
+
+def test_long_tables_are_cut_unless_all_is_asked_for():
+    short = run("count", example_path("random-8")).stdout
+    long = run("count", example_path("random-8"), "--all").stdout
+    assert "more (--all shows them)" in short
+    assert "--all" not in long
+    assert len(long.splitlines()) > 256 > len(short.splitlines())
+
+
+def test_table_tells_of_rigid_vertices_and_the_certificate(tmp_path):
+    path, out = tmp_path / "nested.fold", tmp_path / "nested.json"
+    write_fold(nested_triangles(), path)
+    result = run("count", path, "--certificate", out)
+    assert "3 vertices in triangulated triangles stay flat" in result.stdout
+    assert "nested.json" in result.stdout.replace("\n", "").replace(" ", "")
+
+
+def test_snap_records_the_move(tmp_path):
+    document = {"vertices_coords": [*CORNERS[:4], [0.5001, 0.25]], "faces_vertices": FACES}
+    path = written(tmp_path, document)
+    plain = json.loads(run("count", path, "--json").stdout)
+    snapped = json.loads(run("count", path, "--json", "--snap", 100).stdout)
+    assert plain["pattern"]["snapped"] == "0"
+    assert snapped["pattern"]["snapped"] == "1/10000"
+    exact = CreasePattern([*CORNERS[:4], ("1/2", "1/4")], FACES)
+    assert snapped["pattern"]["sha256"] == exact.sha256 != plain["pattern"]["sha256"]
+    assert "moved by up to 0.0001" in run("count", path, "--snap", 100).stdout
+
+
+def test_factors_of_the_branch_polynomial_are_reported(two_vertex):
+    result = run("count", two_vertex, "--method", "groebner")
+    assert "irreducible over Q of degree 4" in result.stdout
+    result = run("count", example_path("flat-vertex"), "--method", "groebner")
+    assert "factors of degrees 1 2" in result.stdout
