@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from exactfold.rigidity.definite_stress import definite_stress
     from exactfold.rigidity.facts import pattern_facts
     from exactfold.rigidity.self_stress import rigidity_matrix, self_stresses
+    from exactfold.schemas import schema
     from exactfold.solve.homotopy import homotopy
     from exactfold.solve.newton_ends import nappe_ends
     from exactfold.solve.popping import popping
@@ -109,6 +110,7 @@ _HOMES = {
     "exactfold.algebra.from_roots": ("parametrisation_from_roots",),
     "exactfold.algebra.groebner": ("groebner", "quotient_algebra"),
     "exactfold.algebra.hermite": ("hermite_counts",),
+    "exactfold.schemas": ("schema",),
     "exactfold.solve.homotopy": ("homotopy",),
     "exactfold.count.methods": ("find_candidates",),
     "exactfold.solve.newton_ends": ("nappe_ends",),
@@ -187,6 +189,7 @@ __all__ = [
     "read_branches",
     "read_fold",
     "rigidity_matrix",
+    "schema",
     "self_stresses",
     "split_form",
     "stress_form",

@@ -22,12 +22,14 @@ from exactfold.commands.shell import (
     Patterns,
     Snap,
     apart,
+    name_of,
     not_a_dash,
     output_failed,
     reported,
     standard_input,
 )
 from exactfold.errors import UsageError
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import one_thread
 
@@ -176,7 +178,7 @@ def count(
         print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
     if as_json:
         more = {} if streamed is None else {"stream": streamed.to_dict()}
-        print(json.dumps(result.to_dict(written) | more))
+        print(json.dumps(result.to_dict(written, name_of(pattern)) | more))
     else:
         shown = report.count_report(result, written, everything=everything, streamed=streamed)
         report.show(shown)
@@ -210,8 +212,9 @@ def check(
         claims, text = check_command.verified(certificate, workers)
     if as_json:
         short = {k: v for k, v in (claims or {}).items() if k not in check_command.LONG}
+        head = {**headed("check"), "name": name_of(certificate)}
         reason = text if claims is None else "every claim holds"
-        print(json.dumps({"valid": claims is not None, "reason": reason, "claims": short}))
+        print(json.dumps({**head, "valid": claims is not None, "reason": reason, "claims": short}))
     else:
         print(f"INVALID: {text}" if claims is None else text)
     raise typer.Exit(0 if claims is not None else 1)
@@ -314,10 +317,9 @@ def info(pattern: Pattern, as_json: Json = False, snap: Snap = None) -> None:
 
     with Bar("reading") as bar:
         facts = pattern_facts(load_fold(pattern, snap).pattern, bar)
-        shown = {**facts.to_dict(), "expected": report.expectation(facts)} if as_json else None
-        table = report.info_report(facts)
-    if shown is not None:
-        print(json.dumps(shown))
+        expected, table = report.expectation(facts), report.info_report(facts)
+    if as_json:
+        print(json.dumps({**facts.to_dict(name_of(pattern)), "expected": expected}))
     else:
         report.show(table)
 

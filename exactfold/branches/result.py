@@ -10,9 +10,10 @@ from typing import Any
 
 from exactfold.branches.branch import Branch
 from exactfold.branches.named import UPSIDE_DOWN
-from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.verdict import UNDECIDED, Verdict
+from exactfold.pattern.described import described
+from exactfold.schemas import headed
+from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 
 @dataclass(frozen=True)
@@ -49,28 +50,30 @@ class BranchCount:
     snapped: Fraction = Fraction(0)
     seconds: float = 0.0
 
-    def to_dict(self, certificate: str | None = None) -> dict[str, Any]:
-        """The object printed by `exactfold count --json`."""
+    @property
+    def by(self) -> str | None:
+        """How what is stated was proved: by "enumeration", by the "theorem" alone, or None."""
+        if self.method == "theorem":
+            return "theorem"
+        return "enumeration" if self.status is PROVED else None
+
+    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold count --json`: `schema("count")`."""
         return {
-            "pattern": {
-                "interior": self.pattern.Vi,
-                "boundary": self.pattern.Ve,
-                "folds": len(self.pattern.folds),
-                "degrees_of_freedom": self.pattern.degrees_of_freedom,
-                "sha256": self.pattern.sha256,
-                "snapped": format_rational(self.snapped),
-            },
+            **headed("count"),
+            "pattern": described(self.pattern, name, self.snapped),
             "status": str(self.status),
             "reason": self.reason,
+            "by": self.by,
             "method": self.method,
             "why": self.why,
             "distinct": self.distinct,
-            "with_multiplicity": self.with_multiplicity,
+            "with_multiplicity": _number(self.with_multiplicity),
             "real": self.real,
             "nonreal": self.nonreal,
             "true_branches": str(self.true_branches),
             "dimension": self.dimension,
-            "degree": self.degree,
+            "degree": _number(self.degree),
             "certificate": certificate,
             "seconds": round(self.seconds, 3),
             "open_questions": list(self.open_questions),
@@ -136,3 +139,10 @@ class BranchCount:
             rf"$B = {self.distinct}\ \text{{({self.status})}},\quad "
             rf"V_i = {self.pattern.Vi},\ V_e = {self.pattern.Ve},\ V_t = {self.pattern.Vt}$"
         )
+
+
+def _number(value: int | None) -> int | str | None:
+    """A number of solutions as JSON: beyond what all programs read exactly, as a power of two."""
+    if value is None or value < 1 << 53:
+        return value
+    return f"2^{value.bit_length() - 1}"

@@ -11,6 +11,8 @@ from typing import Any
 from exactfold.branches.named import NamedBranch
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.described import described
+from exactfold.schemas import headed
 from exactfold.verdict import Verdict
 
 
@@ -69,15 +71,11 @@ class SignedBranch(NamedBranch):
         """The folds whose letter is not decided, in order."""
         return tuple(fold for fold, letter in sorted(self.assignment.items()) if letter == "U")
 
-    def to_dict(self) -> dict[str, Any]:
-        """The object printed by `exactfold branch --json`."""
+    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold branch --json`: `schema("branch")`."""
         return {
-            "pattern": {
-                "interior": self.pattern.Vi,
-                "boundary": self.pattern.Ve,
-                "folds": len(self.pattern.folds),
-                "sha256": self.pattern.sha256,
-            },
+            **headed("branch"),
+            "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,
             "vertex_signs": {str(v): s for v, s in sorted(self.vertex_signs.items())},

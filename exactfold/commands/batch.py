@@ -16,6 +16,7 @@ from exactfold.commands.jsonl import Lines
 from exactfold.commands.shell import (
     EXIT,
     INTERNAL,
+    STDIN,
     Bar,
     apart,
     error_document,
@@ -27,11 +28,9 @@ from exactfold.count.batch import Job, count_job, read_source
 from exactfold.count.dask_engine import LOCAL
 from exactfold.count.pools import Pool, dask_pool, process_pool
 from exactfold.errors import UnwritableFileError, UsageError, WorkerDiedError
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import available_cores
-
-FORMAT, VERSION = "exactfold batch line", 1
-SUMMARY = "exactfold batch"
 
 FAILED = "failed"
 """In place of a status: there is an error."""
@@ -94,7 +93,7 @@ class Batch:
         """
         from exactfold import report
 
-        if Path("/dev/stdin") in self.patterns:
+        if STDIN in self.patterns:
             raise UsageError("a pattern from standard input is counted by itself")
         if self.jobs is not None and self.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --jobs goes with --dask local")
@@ -103,7 +102,7 @@ class Batch:
         with ExitStack() as stack:
             lines = None
             if self.out is not None:
-                lines = Lines(self.out, FORMAT)
+                lines = Lines(self.out, headed("batch-line")["format"])
                 stack.callback(lines.close)
             stack.enter_context(self._resumable())
             for line in stack.enter_context(closing(self._lines(lines, tally))):
@@ -169,8 +168,7 @@ class Batch:
 
     def _summary(self, tally: Tally) -> dict[str, Any]:
         return {
-            "format": SUMMARY,
-            "version": VERSION,
+            **headed("batch"),
             "files": len(self.patterns),
             **{status: tally.statuses[status] for status in STATUSES},
             "skipped": tally.skipped,
@@ -208,15 +206,15 @@ def line_of(job: Job) -> Line:
 def line_for(job: Job, result: BranchCount | Exception) -> Line:
     """The line of a result."""
     data = {
-        "format": FORMAT,
-        "version": VERSION,
+        **headed("batch-line"),
         "name": job.name,
         "sha256": _digest(job),
         "asked": _asked(job),
     }
     if isinstance(result, BranchCount):
         status, code = str(result.status), EXIT[result.status]
-        data |= {"status": status, "exit_code": code, "error": None, "result": result.to_dict()}
+        data |= {"status": status, "exit_code": code, "error": None}
+        data["result"] = result.to_dict(name=job.name)
         return Line(job.name, status, code, json.dumps(data), result.distinct, result.reason)
     code = exit_code(result)
     error = error_document(result)["error"]

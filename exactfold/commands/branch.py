@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.branches.signed import SignedBranch
-from exactfold.commands.shell import Bar
+from exactfold.commands.shell import Bar, name_of
 from exactfold.count.find import BranchFinder
 from exactfold.errors import UnreadableFileError, UsageError
 from exactfold.pattern.fold import load_fold
@@ -29,6 +29,11 @@ class Asked:
     certificate: Path | None
     as_json: bool
 
+    @property
+    def name(self) -> str:
+        """The pattern as it was named."""
+        return name_of(self.pattern)
+
     def answer(self) -> bool:
         """Find, prove and print; whether all branches were proved.
 
@@ -44,7 +49,7 @@ class Asked:
             for name, result in self._found(finder, bar):
                 proved &= result.status is PROVED
                 if self.as_json:
-                    print(json.dumps(result.to_dict()), flush=True)
+                    print(json.dumps(result.to_dict(self.name)), flush=True)
                 elif name:
                     rows.append(report.branch_row(name, result))
         if not self._is_many:

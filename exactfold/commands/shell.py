@@ -25,6 +25,7 @@ from exactfold.errors import (
     UsageError,
     WorkerDiedError,
 )
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ EXIT = {PROVED: 0, REFUTED: 1, UNDECIDED: 4}
 USAGE, BAD_INPUT = 2, 3
 INTERNAL, OUTPUT_FAILED = 70, 74
 INTERRUPTED = 130
+
+STDIN = Path("/dev/stdin")
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -81,8 +84,7 @@ def exit_code(error: Exception) -> int:
 def error_document(error: Exception) -> dict[str, Any]:
     """An error as a JSON object: its class, for programs, and what it says."""
     return {
-        "format": "exactfold error",
-        "version": 1,
+        **headed("error"),
         "error": {"class": type(error).__name__, "message": str(error)},
     }
 
@@ -185,9 +187,14 @@ def apart(output: Path | None, *others: Path | None) -> None:
             raise UsageError(f"{output} is also read or written otherwise: name another file")
 
 
+def name_of(path: Path) -> str:
+    """A file as it was named on the command line."""
+    return "-" if path == STDIN else str(path)
+
+
 def standard_input(path: Path) -> Path:
     """`-` means standard input."""
-    return Path("/dev/stdin") if str(path) == "-" else path
+    return STDIN if str(path) == "-" else path
 
 
 def not_a_dash(path: Path | None) -> Path | None:
@@ -207,7 +214,7 @@ def regular(path: Path) -> Iterator[Path]:
         yield path
         return
     with tempfile.TemporaryDirectory(prefix="exactfold-") as folder:
-        copy = Path(folder, "stdin" if str(path) == "/dev/stdin" else path.name)
+        copy = Path(folder, "stdin" if path == STDIN else path.name)
         try:
             source = open(path, "rb")  # noqa: SIM115 - closed below
         except OSError as error:

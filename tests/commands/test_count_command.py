@@ -22,10 +22,13 @@ from exactfold import (
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES
 
-PATTERN_KEYS = {"interior", "boundary", "folds", "degrees_of_freedom", "sha256", "snapped"}
+PATTERN_KEYS = {
+    *("name", "interior", "boundary", "folds", "degrees_of_freedom", "sha256", "snapped"),
+    *("vertices", "faces"),
+}
 COUNT_KEYS = {
     *("pattern", "status", "method", "distinct", "with_multiplicity", "real", "nonreal"),
-    *("true_branches", "certificate", "seconds", "branches"),
+    *("true_branches", "certificate", "seconds", "branches", "format", "version", "by"),
 }
 EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree"}
 BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}

@@ -53,10 +53,11 @@ def test_info_agrees_with_count(name):
     data = json.loads(run("info", example_path(name), "--json").stdout)
     counted = json.loads(run("count", example_path(name), "--json").stdout)
     for key in ("interior", "boundary", "folds", "degrees_of_freedom", "sha256"):
-        assert data[key] == counted["pattern"][key]
+        assert data["pattern"][key] == counted["pattern"][key]
     table = run("info", example_path(name))
     assert table.exit_code == 0
-    assert f"{data['interior']} interior, {data['boundary']} boundary" in table.stdout
+    numbers = data["pattern"]
+    assert f"{numbers['interior']} interior, {numbers['boundary']} boundary" in table.stdout
 
 
 @pytest.mark.parametrize(

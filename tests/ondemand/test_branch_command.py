@@ -17,7 +17,16 @@ from exactfold.pattern.fold_writing import fold_text
 
 TWO = example_path("two-vertex")
 KEYS = {
-    *("pattern", "status", "reason", "vertex_signs", "undecided_vertices", "assignment"),
+    *(
+        "format",
+        "version",
+        "pattern",
+        "status",
+        "reason",
+        "vertex_signs",
+        "undecided_vertices",
+        "assignment",
+    ),
     *("gauge", "saddle", "centres", "radius", "squared_distance", "steps", "seconds"),
 }
 
@@ -38,7 +47,7 @@ def test_json_is_the_result() -> None:
     result = run(TWO, "--signs", "-+", "--json")
     data = json.loads(result.stdout)
     assert set(data) == KEYS
-    expected = find_branch(read_fold(TWO), "-+").to_dict()
+    expected = find_branch(read_fold(TWO), "-+").to_dict(str(TWO))
     for key in KEYS - {"seconds"}:
         assert data[key] == expected[key]
 
