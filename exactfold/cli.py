@@ -13,14 +13,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from exactfold.commands.parameters import Command, Group, Json, Pattern, Patterns, Snap, flag
 from exactfold.commands.shell import (
     EXIT,
     OUTPUT_FAILED,
     Bar,
-    Json,
-    Pattern,
-    Patterns,
-    Snap,
     apart,
     name_of,
     not_a_dash,
@@ -44,7 +41,7 @@ app = typer.Typer(
     "3 bad input, 4 undecided, 130 interrupted.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    add_completion=False,
+    cls=Group,
 )
 
 
@@ -58,7 +55,7 @@ class Method(StrEnum):
     groebner = "groebner"
 
 
-@app.command()
+@app.command(cls=Command)
 @reported
 def count(
     patterns: Patterns,
@@ -90,7 +87,7 @@ def count(
         ),
     ] = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Continue the FILE that an interrupted run left.")
+        bool, flag("--resume", text="Continue the FILE that an interrupted run left.")
     ] = False,
     workers: Annotated[
         int | None,
@@ -121,8 +118,10 @@ def count(
     ] = None,
     as_json: Json = False,
     snap: Snap = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the complex homotopy.")] = 0,
-    everything: Annotated[bool, typer.Option("--all", help="List every branch.")] = False,
+    seed: Annotated[
+        int, typer.Option(min=0, metavar="S", help="Seed of the complex homotopy.")
+    ] = 0,
+    everything: Annotated[bool, flag("--all", text="List every branch.")] = False,
 ) -> None:
     """Count the branches of a pattern at the unfolded state, with proof.
 
@@ -144,11 +143,11 @@ def count(
         raise UsageError("--jobs goes with several patterns or --jsonl")
     [pattern] = patterns
     from exactfold import report
+    from exactfold.commands.patterns import read
     from exactfold.commands.stream import Streaming, advice
     from exactfold.count.collect import count_branches
     from exactfold.evidence.entries import write_certificate
     from exactfold.evidence.listing import certificate as certificate_of
-    from exactfold.pattern.fold import load_fold
 
     apart(certificate, pattern, stream)
     streamed: StreamedCount | None = None
@@ -161,7 +160,7 @@ def count(
         raise UsageError("--resume, --workers and --dask go with --stream")
     else:
         with Bar("reading") as bar:
-            file = load_fold(pattern, snap)
+            file = read(pattern, snap)
             if (better := advice(file.pattern)) is not None:
                 print(f"exactfold: {better}", file=sys.stderr)
             bar("solving")
@@ -185,7 +184,7 @@ def count(
     raise typer.Exit(EXIT[result.status])
 
 
-@app.command()
+@app.command(cls=Command)
 @reported
 def check(
     certificate: Annotated[
@@ -220,7 +219,7 @@ def check(
     raise typer.Exit(0 if claims is not None else 1)
 
 
-@app.command()
+@app.command(cls=Command)
 @reported
 def branch(
     pattern: Pattern,
@@ -273,7 +272,7 @@ def branch(
     raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
 
 
-@app.command("random")
+@app.command("random", cls=Command)
 @reported
 def random_(
     interior: Annotated[int, typer.Option(min=1, metavar="N", help="Number of interior vertices.")],
@@ -283,8 +282,9 @@ def random_(
     ] = 1024,
     redraw: Annotated[
         bool,
-        typer.Option(
-            help="Draw points of degree 3 anew, not the whole sample: for hundreds of points."
+        flag(
+            "--redraw",
+            text="Draw points of degree 3 anew, not the whole sample: for hundreds of points.",
         ),
     ] = False,
     output: Annotated[
@@ -307,21 +307,39 @@ def random_(
         write_text(output, text)
 
 
-@app.command()
+@app.command(cls=Command)
 @reported
 def info(pattern: Pattern, as_json: Json = False, snap: Snap = None) -> None:
     """Report what is exactly known of a pattern without solving for its branches."""
     from exactfold import report
-    from exactfold.pattern.fold import load_fold
+    from exactfold.commands.patterns import read
     from exactfold.rigidity.facts import pattern_facts
 
     with Bar("reading") as bar:
-        facts = pattern_facts(load_fold(pattern, snap).pattern, bar)
+        facts = pattern_facts(read(pattern, snap).pattern, bar)
         expected, table = report.expectation(facts), report.info_report(facts)
     if as_json:
         print(json.dumps({**facts.to_dict(name_of(pattern)), "expected": expected}))
     else:
         report.show(table)
+
+
+@app.command(cls=Command)
+@reported
+def examples(as_json: Json = False) -> None:
+    """List the patterns that come with exactfold; their names stand for files in every command."""
+    from exactfold import report
+    from exactfold.data import example_path
+    from exactfold.data import examples as described
+
+    if as_json:
+        rows = [
+            {"name": name, "description": text, "path": str(example_path(name))}
+            for name, text in described().items()
+        ]
+        print(json.dumps({**headed("examples"), "examples": rows}))
+    else:
+        report.show(report.examples_report(described()))
 
 
 def _version(value: bool) -> None:
@@ -335,7 +353,7 @@ def _version(value: bool) -> None:
 @app.callback()
 def _options(
     show: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+        bool, flag("--version", text="Show the version.", callback=_version, is_eager=True)
     ] = False,
 ) -> None:
     """Proven branch counts of triangulated origami near the unfolded state."""

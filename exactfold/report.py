@@ -270,6 +270,17 @@ def expectation(facts: PatternFacts) -> str:
     return f"{UNDECIDED}: branches of dimension {pattern.degrees_of_freedom} are not counted"
 
 
+def examples_report(examples: Mapping[str, str]) -> Group:
+    """What `exactfold examples` prints."""
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column()
+    for name, text in examples.items():
+        table.add_row(name, text)
+    use = "A name stands for the file in every command: exactfold count two-vertex"
+    return Group(table, "", Text(use))
+
+
 def show(content: RenderableType) -> None:
     """Print to stdout; off a terminal without styles and trailing blanks, 80 columns wide."""
     out = console()

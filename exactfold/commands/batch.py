@@ -13,6 +13,7 @@ from typing import Any
 
 from exactfold.branches.result import BranchCount
 from exactfold.commands.jsonl import Lines
+from exactfold.commands.patterns import located
 from exactfold.commands.shell import (
     EXIT,
     INTERNAL,
@@ -24,10 +25,10 @@ from exactfold.commands.shell import (
     interruptible,
     stopped,
 )
-from exactfold.count.batch import Job, count_job, read_source
+from exactfold.count.batch import Job, Source, count_job, read_source
 from exactfold.count.dask_engine import LOCAL
 from exactfold.count.pools import Pool, dask_pool, process_pool
-from exactfold.errors import UnwritableFileError, UsageError, WorkerDiedError
+from exactfold.errors import UnknownPatternError, UnwritableFileError, UsageError, WorkerDiedError
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import available_cores
@@ -128,7 +129,7 @@ class Batch:
 
         def jobs() -> Iterator[Job]:
             for path in self.patterns:
-                job = Job(str(path), read_source(path), self.method, self.seed, self.snap)
+                job = Job(str(path), _source(path), self.method, self.seed, self.snap)
                 found = known.take(job, names)
                 if found is None:
                     yield job
@@ -196,6 +197,13 @@ class Known:
             return None
         lines.remove(fitting[0])
         return fitting[0]
+
+
+def _source(path: Path) -> Source:
+    try:
+        return read_source(located(path))
+    except UnknownPatternError as error:
+        return error
 
 
 def line_of(job: Job) -> Line:

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.branches.signed import SignedBranch
+from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, name_of
 from exactfold.count.find import BranchFinder
 from exactfold.errors import UnreadableFileError, UsageError
-from exactfold.pattern.fold import load_fold
 from exactfold.verdict import PROVED
 
 
@@ -44,7 +44,7 @@ class Asked:
 
         proved, rows = True, []
         with Bar("reading") as bar:
-            finder = BranchFinder(load_fold(self.pattern, self.snap).pattern)
+            finder = BranchFinder(read(self.pattern, self.snap).pattern)
             bar("setting up")
             for name, result in self._found(finder, bar):
                 proved &= result.status is PROVED

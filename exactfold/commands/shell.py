@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 
 import typer
 
@@ -227,24 +227,3 @@ def regular(path: Path) -> Iterator[Path]:
 def _is_special(path: Path) -> bool:
     """Whether a path is there and neither a file nor a folder."""
     return path.exists() and not path.is_file() and not path.is_dir()
-
-
-Pattern = Annotated[
-    Path,
-    typer.Argument(
-        callback=standard_input, help="A FOLD file with triangular faces; - for standard input."
-    ),
-]
-Patterns = Annotated[
-    list[Path],
-    typer.Argument(
-        metavar="PATTERN...",
-        callback=lambda paths: [standard_input(path) for path in paths],
-        help="FOLD files with triangular faces; - for standard input.",
-    ),
-]
-Snap = Annotated[
-    int | None,
-    typer.Option(min=1, metavar="DEN", help="Round coordinates to multiples of 1/DEN first."),
-]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]

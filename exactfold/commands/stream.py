@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from exactfold.branches.result import BranchCount
+from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
 from exactfold.compact_checker import MOST_UNKNOWNS
 from exactfold.count.collect import count_branches
@@ -23,7 +24,6 @@ from exactfold.errors import (
     WorkerDiedError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold import load_fold
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import available_cores
 
@@ -68,7 +68,7 @@ class Streaming:
         if self.file.exists() and not self.file.is_file():
             raise UsageError(f"{self.file} is not a file")
         with Bar("reading") as bar:
-            file = load_fold(self.pattern, self.snap)
+            file = read(self.pattern, self.snap)
             _require_streamable(file.pattern)
             if self.file.exists() and not self.resume:
                 raise UsageError(f"{self.file} is there already; --resume continues it")

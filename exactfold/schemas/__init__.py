@@ -14,6 +14,7 @@ VERSIONS: Final = {
     "branch": 1,
     "info": 1,
     "check": 1,
+    "examples": 1,
     "batch-line": 1,
     "batch": 1,
     "error": 1,

@@ -97,6 +97,7 @@ def test_other_counts(tmp_path: Path, pattern: CreasePattern) -> None:
 def test_errors_and_invalid_certificates(tmp_path: Path) -> None:
     out = tmp_path / "c.json"
     printed("error", "count", tmp_path / "none.fold")
+    printed("examples", "examples")
     printed("error", "info", written(tmp_path, "{"))
     assert run("count", example_path("two-vertex"), "--certificate", out).exit_code == PROVED
     out.write_text(out.read_text().replace('"distinct":4', '"distinct":5'))
