@@ -63,8 +63,8 @@ def count(
         Method,
         typer.Option(
             metavar="METHOD",
-            help="auto, nappes, popping, homotopy or groebner: how solutions are found. The proof "
-            "does not depend on it.",
+            help="How solutions are found: auto, nappes (Newton, one start per sign vector), "
+            "popping, homotopy or groebner. The proof does not depend on it.",
         ),
     ] = Method.auto,
     certificate: Annotated[
@@ -121,9 +121,12 @@ def count(
     seed: Annotated[
         int, typer.Option(min=0, metavar="S", help="Seed of the complex homotopy.")
     ] = 0,
-    everything: Annotated[bool, flag("--all", text="List every branch.")] = False,
+    everything: Annotated[bool, flag("--all", text="List every way.")] = False,
+    verbose: Annotated[
+        bool, flag("--verbose", text="Also say how it was found and proved.")
+    ] = False,
 ) -> None:
-    """Count the branches of a pattern at the unfolded state, with proof.
+    """Count the ways in which a pattern starts to fold (its branches), with proof.
 
     With --stream, Ctrl-C loses one block at most and prints how to go on. Several
     patterns are counted side by side; the exit code is the worst of theirs.
@@ -179,7 +182,9 @@ def count(
         more = {} if streamed is None else {"stream": streamed.to_dict()}
         print(json.dumps(result.to_dict(written, name_of(pattern)) | more))
     else:
-        shown = report.count_report(result, written, everything=everything, streamed=streamed)
+        shown = report.count_report(
+            result, written, everything=everything, streamed=streamed, verbose=verbose
+        )
         report.show(shown)
     raise typer.Exit(EXIT[result.status])
 
@@ -309,7 +314,14 @@ def random_(
 
 @app.command(cls=Command)
 @reported
-def info(pattern: Pattern, as_json: Json = False, snap: Snap = None) -> None:
+def info(
+    pattern: Pattern,
+    exact: Annotated[
+        bool, flag("--exact", text="Also ranks, self stresses, curvature forms and the digest.")
+    ] = False,
+    as_json: Json = False,
+    snap: Snap = None,
+) -> None:
     """Report what is exactly known of a pattern without solving for its branches."""
     from exactfold import report
     from exactfold.commands.patterns import read
@@ -317,7 +329,7 @@ def info(pattern: Pattern, as_json: Json = False, snap: Snap = None) -> None:
 
     with Bar("reading") as bar:
         facts = pattern_facts(read(pattern, snap).pattern, bar)
-        expected, table = report.expectation(facts), report.info_report(facts)
+        expected, table = report.expectation(facts), report.info_report(facts, exact=exact)
     if as_json:
         print(json.dumps({**facts.to_dict(name_of(pattern)), "expected": expected}))
     else:

@@ -14,6 +14,7 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import described
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.wording import counted
 
 
 @dataclass(frozen=True)
@@ -115,8 +116,8 @@ class BranchCount:
         return sum(count for count in counts.values() if count > 1)
 
     def __repr__(self) -> str:
-        found = "?" if self.distinct is None else str(self.distinct)
-        return f"<BranchCount: {self.status}, {found} branches, {self.pattern!r}>"
+        found = counted("?" if self.distinct is None else self.distinct, "branch")
+        return f"<BranchCount: {self.status}, {found}, {self.pattern!r}>"
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -127,7 +128,7 @@ class BranchCount:
         more = len(self.branches) - 64
         tail = f"<p>... and {more} more</p>" if more > 0 else ""
         head = "<tr><th>vertex signs</th><th>mountain-valley</th><th>multiplicity</th></tr>"
-        count = "" if self.distinct is None else f"{self.distinct} branches, "
+        count = "" if self.distinct is None else f"{counted(self.distinct, 'branch')}, "
         return (
             f"<p>{count}<b>{self.status}</b> ({self.reason})</p><table>{head}{rows}</table>{tail}"
         )

@@ -25,6 +25,7 @@ from exactfold.errors import (
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import agreeing, counted
 from exactfold.workers import available_cores
 
 ADVISED = 14
@@ -138,8 +139,8 @@ def _culprits(streamed: StreamedCount) -> str:
     if not zeros:
         return "for each other the reason is below"
     flat = ", ".join(str(names[k]) for k in sorted(zeros))
-    several = "vertices" if len(zeros) > 1 else "vertex"
-    text = f"on the others {several} {flat} look{'' if len(zeros) > 1 else 's'} flat"
+    noun, verb = agreeing(len(zeros), "vertex"), agreeing(len(zeros), "looks")
+    text = f"on the others {noun} {flat} {verb} flat"
     if streamed.foldable > HANDED_OVER:
         text += ": count without --stream also looks for multiple roots"
     return text
@@ -155,7 +156,7 @@ def _questions(streamed: StreamedCount) -> Iterator[str]:
         if "0" not in root.limit:
             yield f"sign vector {root.signs}: {root.reason}"
     if (rest := streamed.unproved - len(streamed.open_roots)) > 0:
-        yield f"{rest} more sign vectors, not listed"
+        yield f"{counted(rest, 'more sign vector')}, not listed"
 
 
 def advice(pattern: CreasePattern) -> str | None:

@@ -32,6 +32,7 @@ from exactfold.problem.branch_system import Chart
 from exactfold.rigidity.rigid_triangles import RigidTriangle
 from exactfold.solve.candidates import Candidates
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import counted
 
 Progress = Callable[[str, int, int], None]
 
@@ -88,7 +89,8 @@ def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
     roots: list[tuple[Root, int]] = [(BoxRoot(box), 1) for box in isolation.boxes if box.is_real]
     branches, open_signs = classify(attempt.pattern, attempt.chart, attempt.labels, roots)
     result = attempt.undecided(
-        f"all {attempt.total} solutions isolated, but signs are undecided on {len(open_signs)}",
+        f"all {counted(attempt.total, 'solution')} isolated, but signs are undecided on "
+        f"{len(open_signs)}",
         branches=tuple(branches),
         settings={**candidates.settings, "lost": len(candidates.lost)},
         open_questions=(*candidates.lost, *_failures(isolation), *_signs(open_signs)),
@@ -96,8 +98,8 @@ def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
     if isolation.complete is not PROVED:
         return replace(
             result,
-            reason=f"{len(isolation.boxes)} of {attempt.total} solutions isolated: the others are "
-            "multiple, at infinity or were not found",
+            reason=f"{len(isolation.boxes)} of {counted(attempt.total, 'solution')} isolated: what "
+            "is missing is multiple, at infinity or was not found",
         )
     more = recognised(attempt.chart, Zeros(boxes=list(isolation.boxes)), open_signs)
     if more is not None:
@@ -109,8 +111,7 @@ def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
     boxes = [branch.root.box for branch in branches if isinstance(branch.root, BoxRoot)]
     return attempt.proved(
         result,
-        f"{attempt.total} solution{'s' * (attempt.total > 1)} isolated; by refined Bezout there "
-        "are no others",
+        f"{counted(attempt.total, 'solution')} isolated; by refined Bezout there are no others",
         {"kind": "isolated", "roots": [box_entry(box) for box in boxes]},
         distinct=isolation.real + isolation.nonreal,
         real=isolation.real,
@@ -246,4 +247,6 @@ def _failures(isolation: Isolation) -> list[str]:
 def _signs(undecided: list[Undecided]) -> tuple[str, ...]:
     """What is not decided, and on how many roots."""
     counts = Counter(", ".join(item.what) for item in undecided)
-    return tuple(f"sign not decided on {count} roots: {what}" for what, count in counts.items())
+    return tuple(
+        f"sign not decided on {counted(count, 'root')}: {what}" for what, count in counts.items()
+    )

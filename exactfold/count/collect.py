@@ -16,6 +16,7 @@ from exactfold.problem.branch_system import BranchSystem, notch_chart
 from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import counted
 
 __all__ = ["METHODS", "count_branches"]
 
@@ -162,8 +163,8 @@ def _in_chart(attempt: Attempt, method: str, seed: int) -> BranchCount:
         return result
     if size > GROEBNER_LIMIT:
         advice = (
-            f"the exact engine is tried up to {GROEBNER_LIMIT} unknowns, here are {size} "
-            "(--method groebner insists)"
+            f"the exact engine is tried up to {counted(GROEBNER_LIMIT, 'unknown')}, not with "
+            f"{size} (--method groebner insists)"
         )
         return replace(result, reason=f"{result.reason}; {advice}")
     exactly = solved_exactly(

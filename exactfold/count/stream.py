@@ -21,6 +21,7 @@ from exactfold.evidence.journal import Journal
 from exactfold.evidence.streamed import block_line, claims_line, header_line
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.wording import counted
 from exactfold.workers import become_worker, held_interrupts, worker_environment
 
 Progress = Callable[[int, int], None]
@@ -173,9 +174,9 @@ def count_streaming(
         pattern,
         journal.path,
         PROVED if proved else UNDECIDED,
-        f"{total} solutions isolated; by refined Bezout there are no others"
+        f"{counted(total, 'solution')} isolated; by refined Bezout there are no others"
         if proved
-        else f"{total - tally.unproved} of {total} solutions isolated",
+        else f"{total - tally.unproved} of {counted(total, 'solution')} isolated",
         total if proved else None,
         1 << pattern.Vi if proved else None,
         tuple(tally.open_roots),

@@ -27,6 +27,7 @@ from exactfold.exact.numbers import over_common_denominator, parse_rational, sho
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
 from exactfold.pattern.fold_writing import EXACT_KEY, fold_document, write_fold, write_text
 from exactfold.pattern.planar import trace_faces
+from exactfold.wording import agreeing, counted
 
 __all__ = [
     "EXACT_KEY",
@@ -222,7 +223,8 @@ def _index_lists(
                 raise NotFoldError(f"{kind} {k} in `{key}`: {shown(v)} is not a vertex index")
             if not 0 <= v < count:
                 raise NotFoldError(
-                    f"{kind} {k} in `{key}` uses vertex {shown(v)}, but there are {count} vertices"
+                    f"{kind} {k} in `{key}` uses vertex {shown(v)}, but there "
+                    f"{agreeing(count, 'is')} {counted(count, 'vertex')}"
                 )
         result.append(tuple(entry))
     return result
@@ -328,7 +330,9 @@ def _check_triangle(index: int, face: tuple[int, ...], rebuilt: bool) -> None:
             "triangulate the pattern first"
         )
     if len(face) < 3:
-        raise NotFoldError(f"face {index}{origin} has only {len(face)} vertices: {shown(face)}")
+        raise NotFoldError(
+            f"face {index}{origin} has only {counted(len(face), 'vertex')}: {shown(face)}"
+        )
 
 
 def _letters(document: Mapping[str, Any], count: int) -> list[str]:

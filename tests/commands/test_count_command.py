@@ -1,6 +1,7 @@
 """`exactfold count` of one pattern: exit codes, JSON with exactly the documented keys, tables."""
 
 import json
+import re
 from fractions import Fraction
 
 import pytest
@@ -10,12 +11,13 @@ from running import (
     UNDECIDED,
     run,
 )
-from sheets import HEXAGON, TRIANGLE, nested_triangles, scrambled
+from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
 
 from exactfold import (
     EXAMPLES,
     count_branches,
     example_path,
+    random_square,
     read_fold,
     write_fold,
 )
@@ -37,9 +39,79 @@ BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "
 def test_count_prints_a_table_and_exits_0(two_vertex):
     result = run("count", two_vertex)
     assert result.exit_code == PROVED
-    assert "PROVED" in result.stdout
-    assert "4 distinct, 4 with multiplicity; 4 real, 0 not real" in result.stdout
+    text = " ".join(result.stdout.split())
+    assert re.match(
+        r"4 ways to start folding - PROVED \(\d+\.\d\d s\); all real, each counted once, every one "
+        "continues to a true motion way 4 5 folds 1 down down VVVVVVM 2 down up VVMMVVM",
+        text,
+    )
+    for word in ("Bezout", "nappe", "chart", "sha256", "distinct", "sign vector"):
+        assert word not in text
     assert result.stderr == ""
+
+
+def test_verbose_also_says_how(two_vertex):
+    text = " ".join(run("count", two_vertex, "--verbose").stdout.split())
+    for words in (
+        "by refined Bezout there are no others",
+        "4 distinct, 4 with multiplicity; 4 real, 0 not real",
+        "2 pairs of opposite ones, 2 branches each",
+        "method Newton, one start per sign vector",
+        read_fold(two_vertex).sha256,
+    ):
+        assert words in text
+    assert "nappe" not in text
+
+
+@pytest.mark.parametrize(
+    ("pattern", "said"),
+    [
+        (scrambled(1, TRIANGLE, 3), r"0 ways to start folding - PROVED \(.*\); the sheet is rigid"),
+        (
+            with_point(CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), 0, (1, 1, 1)),
+            r"1 way to start folding - PROVED \(.*\); it is real, 2 with multiplicity, as flat "
+            "vertices count double, it continues to a true motion",
+        ),
+        (
+            FAMILIES["waterbomb"](),
+            r"infinitely many ways to start folding - PROVED \(.*\); they form one family of "
+            "dimension 3",
+        ),
+        (
+            FAMILIES["flat-vertex"](),
+            r"3 ways to start folding - PROVED \(.*\); all real, 4 with multiplicity, as flat "
+            "vertices count double, not decided whether each continues to a true motion",
+        ),
+        (
+            scrambled(1, HEXAGON, 2, loose=True),
+            r"the number of ways to start folding is UNDECIDED \(.*\): with D = 3 branches are no",
+        ),
+    ],
+    ids=["none", "one", "infinitely many", "flat", "undecided"],
+)
+def test_the_answer_in_plain_words(tmp_path, pattern, said):
+    path = tmp_path / "p.fold"
+    write_fold(pattern, path)
+    for more in ((), ("--verbose",)):
+        assert re.match(said, " ".join(run("count", path, *more).stdout.split()))
+
+
+def test_one_way_has_no_plural(tmp_path):
+    path = tmp_path / "p.fold"
+    write_fold(with_point(CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), 0, (1, 1, 1)), path)
+    text = run("count", path, "--verbose").stdout + run("info", path, "--exact").stdout
+    assert not re.search(
+        r"(?<![\d.-])1 (\w+ )?(pairs|vertices|branches|solutions|ways|folds)", text
+    )
+
+
+def test_many_vertices_are_listed_and_not_in_columns(tmp_path):
+    path = tmp_path / "p.fold"
+    write_fold(random_square(9, seed=1), path)
+    head, first, second = run("count", path).stdout.splitlines()[3:6]
+    assert head.split() == ["way", "vertices", "up", "folds"]
+    assert first.split()[:2] == ["1", "none"]
+    assert second.split()[:2] == ["2", str(read_fold(path).interior[-1])]
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -148,7 +220,7 @@ def test_snap_records_the_move(tmp_path):
 
 
 def test_factors_of_the_branch_polynomial_are_reported(two_vertex):
-    result = run("count", two_vertex, "--method", "groebner")
+    result = run("count", two_vertex, "--method", "groebner", "--verbose")
     assert "irreducible over Q of degree 4" in result.stdout
-    result = run("count", example_path("flat-vertex"), "--method", "groebner")
+    result = run("count", example_path("flat-vertex"), "--method", "groebner", "--verbose")
     assert "factors of degrees 1 2" in result.stdout

@@ -1,5 +1,6 @@
 """The line of progress and colours: on a terminal only."""
 
+import re
 import signal
 
 import pytest
@@ -79,5 +80,9 @@ def test_colours_on_a_terminal_only(monkeypatch):
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("TERM", "xterm")
     styled = run("count", example_path("two-vertex")).stdout
-    assert "\x1b[" in styled
     assert "\x1b[" not in plain
+    for styled_word in ("[1;32mPROVED", "[31mM", "[34mV", "[32mup", "[35mdown"):
+        assert f"\x1b{styled_word}" in styled
+    monkeypatch.setenv("NO_COLOR", "1")
+    bare = run("count", example_path("two-vertex")).stdout
+    assert not re.search(r"\x1b\[[\d;]*3\d", bare)

@@ -64,10 +64,17 @@ def test_info_agrees_with_count(name):
     ("pattern", "expected"),
     [
         (CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), "nothing to count"),
-        (scrambled(1, TRIANGLE, 2), "rigid: 0 branches"),
-        (nested_triangles(), "2^6 solutions with multiplicity, 2^3 branches"),
-        (FAMILIES["waterbomb"](), "one branch (single vertex)"),
-        (scrambled(1, HEXAGON, 2, loose=True), "undecided: branches of dimension 3"),
+        (scrambled(1, TRIANGLE, 2), "rigid: 0 ways to start folding"),
+        (
+            nested_triangles(),
+            "2^3 ways to start folding, fewer if a vertex is flat on some of them; with "
+            "multiplicity 2^6",
+        ),
+        (
+            FAMILIES["waterbomb"](),
+            "one family of ways to start folding, of dimension 3 (single",
+        ),
+        (scrambled(1, HEXAGON, 2, loose=True), "undecided: families of dimension 3"),
     ],
 )
 def test_info_says_what_to_expect(tmp_path, pattern, expected):
@@ -75,3 +82,10 @@ def test_info_says_what_to_expect(tmp_path, pattern, expected):
     write_fold(pattern, path)
     assert expected in json.loads(run("info", path, "--json").stdout)["expected"]
     assert run("info", path).exit_code == 0
+
+
+def test_info_shows_forms_and_digests_when_asked(two_vertex):
+    plain, exact = run("info", two_vertex).stdout, run("info", two_vertex, "--exact").stdout
+    for words in ("inertia", "self stresses", "rank of rigidity matrix", "sha256"):
+        assert words in exact
+        assert words not in plain

@@ -66,7 +66,7 @@ def test_a_flat_vertex_is_shown() -> None:
     assert result.exit_code == 0
     text = " ".join(result.stdout.split())
     assert "0 at vertex 5, where it is flat; it is a solution of multiplicity 2" in text
-    assert "vertex signs +0 mountain-valley MFFMFFF" in text
+    assert "up vertex 4 down none flat vertex 5 mountain-valley MFFMFFF" in text
 
 
 def test_signs_from_a_file_and_a_batch(tmp_path) -> None:
@@ -95,7 +95,7 @@ def test_a_batch_is_read_to_its_end_before_anything_is_found(tmp_path) -> None:
     path.write_text("-+\n\n+\n")
     result = run(TWO, "--batch", path, "--json")
     assert (result.exit_code, json.loads(result.stdout)["error"]["class"]) == (2, "UsageError")
-    assert f"{path}, line 3: 1 signs for 2 vertices" in result.stderr
+    assert f"{path}, line 3: 1 sign for 2 vertices" in result.stderr
 
 
 def test_nothing_asked_for_is_wrong_usage(tmp_path) -> None:
@@ -133,7 +133,7 @@ def test_neighbours(pops: str, letters: int) -> None:
     [
         ((), "give one of"),
         (("--signs", "++", "--up", "4"), "give one of"),
-        (("--signs", "+"), "1 signs for 2 vertices"),
+        (("--signs", "+"), "1 sign for 2 vertices"),
         (("--signs", "+?"), "'?' is not a vertex sign"),
         (("--up", "0"), "vertex 0 is not an interior vertex"),
         (("--up", "x"), "not 'x'"),
