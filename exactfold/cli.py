@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import sys
 from dataclasses import replace
 from enum import StrEnum
@@ -23,7 +22,9 @@ from exactfold.commands.shell import (
     not_a_dash,
     output_failed,
     reported,
+    say,
     standard_input,
+    standard_streams,
 )
 from exactfold.errors import UsageError
 from exactfold.schemas import headed
@@ -165,7 +166,7 @@ def count(
         with Bar("reading") as bar:
             file = read(pattern, snap)
             if (better := advice(file.pattern)) is not None:
-                print(f"exactfold: {better}", file=sys.stderr)
+                say(better)
             bar("solving")
             result = count_branches(file.pattern, method=method.value, seed=seed, progress=bar)
         result = replace(result, snapped=file.snapped)
@@ -175,9 +176,9 @@ def count(
         write_certificate(certificate_of(result), certificate)
         written = str(certificate)
     elif certificate is not None and result.status is PROVED:
-        print(f"exactfold: the proof is in {stream}; no other was written", file=sys.stderr)
+        say(f"the proof is in {stream}; no other was written")
     elif certificate is not None:
-        print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
+        say("no certificate was written: nothing is proved")
     if as_json:
         more = {} if streamed is None else {"stream": streamed.to_dict()}
         print(json.dumps(result.to_dict(written, name_of(pattern)) | more))
@@ -374,8 +375,7 @@ def _options(
 def main() -> None:
     """Entry point of the `exactfold` command."""
     one_thread()
-    if sys.stdout is None:  # it was closed before the start
-        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
+    standard_streams()
     if isinstance(sys.stdout, io.TextIOWrapper):  # names of files that the terminal cannot show
         sys.stdout.reconfigure(errors="backslashreplace")
     try:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.branches.signed import SignedBranch
 from exactfold.commands.patterns import read
-from exactfold.commands.shell import Bar, name_of
+from exactfold.commands.shell import Bar, name_of, say
 from exactfold.count.find import BranchFinder
 from exactfold.errors import UnreadableFileError, UsageError
 from exactfold.verdict import PROVED
@@ -91,7 +90,7 @@ class Asked:
             with Bar("writing"):
                 write_certificate(branch_certificate(result), self.certificate)
         else:
-            print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
+            say("no certificate was written: nothing is proved")
 
 
 def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str, SignedBranch]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import json
 import os
 import shutil
@@ -11,13 +13,14 @@ import tempfile
 import threading
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 
 import typer
 
+from exactfold.commands.guard import INTERRUPTED, NO_MEMORY, memory_is_limited
 from exactfold.errors import (
     ExactfoldError,
     InputError,
@@ -34,7 +37,6 @@ if TYPE_CHECKING:
 EXIT = {PROVED: 0, REFUTED: 1, UNDECIDED: 4}
 USAGE, BAD_INPUT = 2, 3
 INTERNAL, OUTPUT_FAILED = 70, 74
-INTERRUPTED = 130
 
 STDIN = Path("/dev/stdin")
 
@@ -58,8 +60,15 @@ def reported(command: Callable[P, R]) -> Callable[P, R]:
         except OSError as error:
             output_failed(error)
             raise typer.Exit(OUTPUT_FAILED) from None
+        except (MemoryError, ImportError) as error:
+            if isinstance(error, ImportError) and not memory_is_limited():
+                with suppress(OSError):
+                    traceback.print_exc()
+                raise typer.Exit(INTERNAL) from None
+            say(f"not enough memory: {error}".rstrip(": "))
+            raise typer.Exit(NO_MEMORY) from None
         except ExactfoldError as error:
-            print(f"exactfold: {error}", file=sys.stderr)
+            say(str(error))
             if kwargs.get("as_json"):
                 print(json.dumps(error_document(error)), flush=True)
             raise typer.Exit(exit_code(error)) from None
@@ -68,10 +77,17 @@ def reported(command: Callable[P, R]) -> Callable[P, R]:
         except (typer.Exit, typer.Abort):
             raise
         except Exception:  # a defect: never to be read as one of the documented codes
-            traceback.print_exc()
+            with suppress(OSError):
+                traceback.print_exc()
             raise typer.Exit(INTERNAL) from None
 
     return wrapped
+
+
+def say(text: str) -> None:
+    """A line on stderr; where that cannot be written nothing is said, and no exit code changes."""
+    with suppress(OSError):
+        print(f"exactfold: {text}", file=sys.stderr, flush=True)
 
 
 def exit_code(error: Exception) -> int:
@@ -92,13 +108,34 @@ def error_document(error: Exception) -> dict[str, Any]:
 def output_failed(error: OSError) -> None:
     """Say that standard output cannot be written, unless its reader has left, and drop the rest."""
     if not isinstance(error, BrokenPipeError):
-        print(f"exactfold: cannot write the output: {error.strerror}", file=sys.stderr)
+        say(f"cannot write the output: {error.strerror}")
     sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
+
+
+class _Closed(io.TextIOBase):
+    """Standard output that was closed before the start: it cannot be written."""
+
+    def write(self, text: str, /) -> int:
+        raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+
+
+def standard_streams() -> None:
+    """Make output that was closed before the start fail when it is written, and not sooner.
+
+    No file that is opened later takes its number.
+    """
+    while (number := os.open(os.devnull, os.O_RDWR)) < 3:
+        pass
+    os.close(number)
+    if sys.stdout is None:
+        sys.stdout = _Closed()
+    if sys.stderr is None:  # what would be said there must not go to standard output
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
 
 
 def stopped(advice: str = "") -> NoReturn:
     """End after Ctrl-C or SIGTERM with an exit code of its own."""
-    print(f"exactfold: interrupted{'; ' if advice else ''}{advice}", file=sys.stderr)
+    say(f"interrupted{'; ' if advice else ''}{advice}")
     raise typer.Exit(INTERRUPTED) from None
 
 

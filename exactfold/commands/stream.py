@@ -12,7 +12,7 @@ from pathlib import Path
 from exactfold.branches.result import BranchCount
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
-from exactfold.compact_checker import MOST_UNKNOWNS
+from exactfold.count.by_theorem import is_too_many, too_many
 from exactfold.count.collect import count_branches
 from exactfold.count.dask_engine import LOCAL, dask_engine
 from exactfold.count.stream import StreamedCount, count_streaming
@@ -162,10 +162,8 @@ def _questions(streamed: StreamedCount) -> Iterator[str]:
 def advice(pattern: CreasePattern) -> str | None:
     """Where plain `count` is the slow way: what to do instead."""
     foldable = pattern.Vi - pattern.Vt
-    if pattern.Ve != 4 or foldable < ADVISED:
+    if pattern.Ve != 4 or foldable < ADVISED or is_too_many(pattern):
         return None
-    if foldable > MOST_UNKNOWNS:
-        return f"2^{foldable} branches are too many to list; `exactfold branch` proves single ones"
     return f"2^{foldable} branches are proved faster with --stream FILE"
 
 
@@ -179,5 +177,5 @@ def _require_streamable(pattern: CreasePattern) -> None:
             "--stream takes sheets with four boundary vertices and a foldable vertex; "
             "count this one without it"
         )
-    if pattern.Vi - pattern.Vt > MOST_UNKNOWNS:
-        raise NotApplicableError(str(advice(pattern)))
+    if is_too_many(pattern):
+        raise NotApplicableError(too_many(pattern).reason)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from exactfold.branches.result import BranchCount
 from exactfold.count.attempt import Attempt, isolated, solved_exactly, with_flat_vertices
+from exactfold.count.by_theorem import is_too_many, too_many
 from exactfold.count.methods import METHODS, Choice, choose, find_candidates
 from exactfold.errors import NoInteriorVertexError
 from exactfold.evidence.entries import triangle_evidence
@@ -40,6 +41,7 @@ def count_branches(
     all vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For D >= 2 only
     the single-vertex pattern is settled. `method` is one of `METHODS`; "auto" takes Newton's
     method on the nappes and turns to the exact engine where that does not settle a small pattern.
+    With more than 40 foldable vertices nothing is listed: `too_many` says what is known, at once.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
     `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.
@@ -54,6 +56,8 @@ def count_branches(
         raise NoInteriorVertexError(
             "the pattern has no interior vertex: there is no curvature equation to solve"
         )
+    if is_too_many(pattern):
+        return too_many(pattern)
     start = time.perf_counter()
     triangles = certify_rigid_triangles(pattern)
     if triangles is None:

@@ -122,9 +122,9 @@ def _motion(result: BranchCount) -> str:
 
 def _undecided(result: BranchCount, took: str) -> Text:
     if result.by == "theorem":
-        free = result.pattern.Vi - result.pattern.Vt
         return Text.assemble(
-            f"at most 2^{free} ways to start folding, all real, by a theorem; how many exactly is ",
+            f"2^{result.pattern.Vi} ways to start folding with multiplicity, all real, by Theorem "
+            "2; how many differ is ",
             status_text(UNDECIDED),
             f"{took}: {result.reason}",
         )

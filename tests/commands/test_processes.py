@@ -119,13 +119,6 @@ def test_one_thread_unless_the_environment_says_otherwise():
         assert result.stdout.splitlines()[-1] == expected
 
 
-def test_closed_standard_output(two_vertex):
-    script = "import sys; sys.stdout = None; from exactfold.cli import main; main()"
-    command = [sys.executable, "-c", script, "count", str(two_vertex)]
-    result = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (result.returncode, result.stderr) == (PROVED, "")
-
-
 def test_a_name_that_the_terminal_cannot_show(tmp_path, two_vertex):
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     arguments = ["count", two_vertex.absolute(), "--certificate", "z\u00e4hlung.json"]

@@ -15,6 +15,7 @@ from typer.testing import CliRunner, Result
 from exactfold import example_path, families, random_square, write_fold
 from exactfold.cli import app
 from exactfold.commands import stream as stream_command
+from exactfold.count import by_theorem
 from exactfold.count import chambers as chambers_module
 from exactfold.count.stream import count_streaming
 from exactfold.errors import UnwritableFileError, WorkerDiedError
@@ -153,7 +154,7 @@ def test_options_that_do_not_go_together(options: list[str], word: str) -> None:
 
 def test_patterns_that_are_not_streamed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stream_command, "ADVISED", 2)
-    monkeypatch.setattr(stream_command, "MOST_UNKNOWNS", 3)
+    monkeypatch.setattr(by_theorem, "LIMIT", 3)
     triangle = CreasePattern([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])
     for k, (pattern, code, word) in enumerate(
         (
@@ -175,8 +176,8 @@ def test_large_counts_are_told_of_the_faster_way(monkeypatch: pytest.MonkeyPatch
     assert result.exit_code == PROVED
     assert result.stderr == "exactfold: 2^2 branches are proved faster with --stream FILE\n"
     assert stream_command.advice(families.single_vertex(5)) is None
-    monkeypatch.setattr(stream_command, "MOST_UNKNOWNS", 1)
-    assert "exactfold branch" in str(stream_command.advice(random_square(2, seed=1)))
+    monkeypatch.setattr(by_theorem, "LIMIT", 1)
+    assert stream_command.advice(random_square(2, seed=1)) is None  # nothing is counted
 
 
 def test_unwritable_files_are_bad_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
