@@ -39,9 +39,11 @@ if TYPE_CHECKING:
     from exactfold.certify.interval_newton import interval_newton
     from exactfold.certify.isolation import isolate
     from exactfold.certify.krawczyk import krawczyk
+    from exactfold.count.batch import count_many
     from exactfold.count.collect import count_branches
     from exactfold.count.dask_engine import dask_engine
     from exactfold.count.find import BranchFinder, find_branch, find_branches, neighbours
+    from exactfold.count.pools import dask_pool
     from exactfold.count.solvers import METHODS, find_candidates, register_solver, solvers
     from exactfold.count.stream import StreamedCount, stream_branches
     from exactfold.data import EXAMPLES, example_path, examples
@@ -67,6 +69,7 @@ if TYPE_CHECKING:
     from exactfold.rigidity.definite_stress import definite_stress
     from exactfold.rigidity.facts import pattern_facts
     from exactfold.rigidity.self_stress import rigidity_matrix, self_stresses
+    from exactfold.schemas import schema
     from exactfold.solve.candidates import Candidates
     from exactfold.solve.homotopy import homotopy
     from exactfold.solve.newton_ends import nappe_ends
@@ -84,6 +87,7 @@ _HOMES = {
     "exactfold.certify.isolation": ("isolate",),
     "exactfold.certify.krawczyk": ("krawczyk",),
     "exactfold.count.collect": ("count_branches",),
+    "exactfold.count.batch": ("count_many",),
     "exactfold.data": ("EXAMPLES", "example_path", "examples"),
     "exactfold.exact.factor_degrees": ("factor_degrees",),
     "exactfold.exact.forms": ("QuadraticForm",),
@@ -102,12 +106,14 @@ _HOMES = {
     "exactfold.rigidity.facts": ("pattern_facts",),
     "exactfold.rigidity.self_stress": ("rigidity_matrix", "self_stresses"),
     "exactfold.evidence.check": ("check_compact",),
+    "exactfold.count.pools": ("dask_pool",),
     "exactfold.count.dask_engine": ("dask_engine",),
     "exactfold.evidence.read": ("read_branches",),
     "exactfold.count.stream": ("StreamedCount", "stream_branches"),
     "exactfold.algebra.from_roots": ("parametrisation_from_roots",),
     "exactfold.algebra.groebner": ("groebner", "quotient_algebra"),
     "exactfold.algebra.hermite": ("hermite_counts",),
+    "exactfold.schemas": ("schema",),
     "exactfold.solve.homotopy": ("homotopy",),
     "exactfold.count.solvers": ("METHODS", "find_candidates", "register_solver", "solvers"),
     "exactfold.solve.candidates": ("Candidates",),
@@ -152,8 +158,10 @@ __all__ = [
     "certificate",
     "check_compact",
     "count_branches",
+    "count_many",
     "curvature_form",
     "dask_engine",
+    "dask_pool",
     "decide_all_branches_real",
     "definite_stress",
     "degenerate",
@@ -187,6 +195,7 @@ __all__ = [
     "read_fold",
     "register_solver",
     "rigidity_matrix",
+    "schema",
     "self_stresses",
     "solvers",
     "split_form",

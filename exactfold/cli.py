@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import sys
 from dataclasses import replace
 from enum import StrEnum
@@ -13,21 +12,23 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from exactfold.commands.parameters import Command, Group, Json, Pattern, Patterns, Snap, flag
 from exactfold.commands.shell import (
     EXIT,
     OUTPUT_FAILED,
     Bar,
-    Json,
-    Pattern,
-    Snap,
     apart,
+    name_of,
     not_a_dash,
     output_failed,
     reported,
+    say,
     standard_input,
+    standard_streams,
 )
 from exactfold.count.solvers import ALIASES, METHODS
 from exactfold.errors import UsageError
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import one_thread
 
@@ -43,7 +44,7 @@ app = typer.Typer(
     "3 bad input, 4 undecided, 130 interrupted.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    add_completion=False,
+    cls=Group,
 )
 
 
@@ -57,10 +58,10 @@ else:
     Method = StrEnum("Method", {name: name for name in (*METHODS, *ALIASES)})
 
 
-@app.command()
+@app.command(cls=Command)
 @reported
 def count(
-    pattern: Pattern,
+    patterns: Patterns,
     method: Annotated[
         Method,
         typer.Option(
@@ -88,35 +89,70 @@ def count(
         ),
     ] = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Continue the FILE that an interrupted run left.")
+        bool, flag("--resume", text="Continue the FILE that an interrupted run left.")
     ] = False,
     workers: Annotated[
         int | None,
         typer.Option(min=1, metavar="N", help="Processes of --stream. Default: all cores."),
     ] = None,
+    jsonl: Annotated[
+        Path | None,
+        typer.Option(
+            callback=not_a_dash,
+            metavar="OUT.jsonl",
+            help="Write a line of JSON for each pattern as it is ready; files whose line is there "
+            "already are skipped, so the same command goes on after an interruption.",
+        ),
+    ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            min=1, metavar="N", help="Processes for several patterns. Default: all cores."
+        ),
+    ] = None,
     dask: Annotated[
         str | None,
         typer.Option(
             metavar="ADDRESS",
-            help="Run --stream on the dask.distributed cluster with this scheduler; `local` starts "
-            "one here.",
+            help="Run --stream, or several patterns, on the dask.distributed cluster with this "
+            "scheduler; `local` starts one here.",
         ),
     ] = None,
     as_json: Json = False,
     snap: Snap = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the complex homotopy.")] = 0,
-    everything: Annotated[bool, typer.Option("--all", help="List every branch.")] = False,
+    seed: Annotated[
+        int, typer.Option(min=0, metavar="S", help="Seed of the complex homotopy.")
+    ] = 0,
+    everything: Annotated[bool, flag("--all", text="List every way.")] = False,
+    verbose: Annotated[
+        bool, flag("--verbose", text="Also say how it was found and proved.")
+    ] = False,
 ) -> None:
-    """Count the branches of a pattern at the unfolded state, with proof.
+    """Count the ways in which a pattern starts to fold (its branches), with proof.
 
-    With --stream, Ctrl-C loses one block at most and prints how to go on.
+    With --stream, Ctrl-C loses one block at most and prints how to go on. Several
+    patterns are counted side by side; the exit code is the worst of theirs.
     """
+    if len(patterns) > 1 or jsonl is not None:
+        from exactfold.commands.batch import Batch
+
+        alone = (certificate, stream, workers) != (None, None, None) or resume
+        if alone:
+            raise UsageError(
+                "--certificate, --stream, --resume and --workers go with one pattern and "
+                "without --jsonl"
+            )
+        batch = Batch(patterns, jsonl, jobs, dask, method.value, seed, snap, as_json, everything)
+        raise typer.Exit(batch.run())
+    if jobs is not None:
+        raise UsageError("--jobs goes with several patterns or --jsonl")
+    [pattern] = patterns
     from exactfold import report
+    from exactfold.commands.patterns import read
     from exactfold.commands.stream import Streaming, advice
     from exactfold.count.collect import count_branches
     from exactfold.evidence.entries import write_certificate
     from exactfold.evidence.listing import certificate as certificate_of
-    from exactfold.pattern.fold import load_fold
 
     apart(certificate, pattern, stream)
     result: BranchCount
@@ -130,9 +166,9 @@ def count(
         raise UsageError("--resume, --workers and --dask go with --stream")
     else:
         with Bar("reading") as bar:
-            file = load_fold(pattern, snap)
+            file = read(pattern, snap)
             if (better := advice(file.pattern)) is not None:
-                print(f"exactfold: {better}", file=sys.stderr)
+                say(better)
             bar("solving")
             result = count_branches(file.pattern, method=method.value, seed=seed, progress=bar)
         result = replace(result, snapped=file.snapped)
@@ -142,18 +178,20 @@ def count(
         write_certificate(certificate_of(result), certificate)
         written = str(certificate)
     elif certificate is not None and result.status is PROVED:
-        print(f"exactfold: the proof is in {stream}; no other was written", file=sys.stderr)
+        say(f"the proof is in {stream}; no other was written")
     elif certificate is not None:
-        print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
+        say("no certificate was written: nothing is proved")
     if as_json:
-        print(json.dumps(result.to_dict(written)))
+        print(json.dumps(result.to_dict(written, name_of(pattern))))
     else:
-        shown = report.count_report(result, written, everything=everything, streamed=streamed)
+        shown = report.count_report(
+            result, written, everything=everything, streamed=streamed, verbose=verbose
+        )
         report.show(shown)
     raise typer.Exit(EXIT[result.status])
 
 
-@app.command()
+@app.command(cls=Command)
 @reported
 def check(
     certificate: Annotated[
@@ -180,14 +218,15 @@ def check(
         claims, text = check_command.verified(certificate, workers)
     if as_json:
         short = {k: v for k, v in (claims or {}).items() if k not in check_command.LONG}
+        head = {**headed("check"), "name": name_of(certificate)}
         reason = text if claims is None else "every claim holds"
-        print(json.dumps({"valid": claims is not None, "reason": reason, "claims": short}))
+        print(json.dumps({**head, "valid": claims is not None, "reason": reason, "claims": short}))
     else:
         print(f"INVALID: {text}" if claims is None else text)
     raise typer.Exit(0 if claims is not None else 1)
 
 
-@app.command()
+@app.command(cls=Command)
 @reported
 def branch(
     pattern: Pattern,
@@ -240,7 +279,7 @@ def branch(
     raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
 
 
-@app.command()
+@app.command(cls=Command)
 @reported
 def export(
     pattern: Pattern,
@@ -297,8 +336,9 @@ def random_(
     ] = 1024,
     redraw: Annotated[
         bool,
-        typer.Option(
-            help="Draw points of degree 3 anew, not the whole sample: for hundreds of points."
+        flag(
+            "--redraw",
+            text="Draw points of degree 3 anew, not the whole sample: for hundreds of points.",
         ),
     ] = False,
     output: Annotated[
@@ -321,22 +361,46 @@ def random_(
         write_text(output, text)
 
 
-@app.command()
+@app.command(cls=Command)
 @reported
-def info(pattern: Pattern, as_json: Json = False, snap: Snap = None) -> None:
+def info(
+    pattern: Pattern,
+    exact: Annotated[
+        bool, flag("--exact", text="Also ranks, self stresses, curvature forms and the digest.")
+    ] = False,
+    as_json: Json = False,
+    snap: Snap = None,
+) -> None:
     """Report what is exactly known of a pattern without solving for its branches."""
     from exactfold import report
-    from exactfold.pattern.fold import load_fold
+    from exactfold.commands.patterns import read
     from exactfold.rigidity.facts import pattern_facts
 
     with Bar("reading") as bar:
-        facts = pattern_facts(load_fold(pattern, snap).pattern, bar)
-        shown = {**facts.to_dict(), "expected": report.expectation(facts)} if as_json else None
-        table = report.info_report(facts)
-    if shown is not None:
-        print(json.dumps(shown))
+        facts = pattern_facts(read(pattern, snap).pattern, bar)
+        expected, table = report.expectation(facts), report.info_report(facts, exact=exact)
+    if as_json:
+        print(json.dumps({**facts.to_dict(name_of(pattern)), "expected": expected}))
     else:
         report.show(table)
+
+
+@app.command(cls=Command)
+@reported
+def examples(as_json: Json = False) -> None:
+    """List the patterns that come with exactfold; their names stand for files in every command."""
+    from exactfold import report
+    from exactfold.data import example_path
+    from exactfold.data import examples as described
+
+    if as_json:
+        rows = [
+            {"name": name, "description": text, "path": str(example_path(name))}
+            for name, text in described().items()
+        ]
+        print(json.dumps({**headed("examples"), "examples": rows}))
+    else:
+        report.show(report.examples_report(described()))
 
 
 def _version(value: bool) -> None:
@@ -350,7 +414,7 @@ def _version(value: bool) -> None:
 @app.callback()
 def _options(
     show: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+        bool, flag("--version", text="Show the version.", callback=_version, is_eager=True)
     ] = False,
 ) -> None:
     """Proven branch counts of triangulated origami near the unfolded state."""
@@ -359,8 +423,7 @@ def _options(
 def main() -> None:
     """Entry point of the `exactfold` command."""
     one_thread()
-    if sys.stdout is None:  # it was closed before the start
-        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
+    standard_streams()
     if isinstance(sys.stdout, io.TextIOWrapper):  # names of files that the terminal cannot show
         sys.stdout.reconfigure(errors="backslashreplace")
     try:

@@ -4,7 +4,6 @@ import os
 import re
 import runpy
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -27,7 +26,6 @@ def examples(page: Path) -> list[tuple[str, str]]:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "exactfold" / "data", tmp_path / "exactfold" / "data")
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"}
     for command, expected in examples(page):
         words = shlex.split(command)
@@ -42,6 +40,47 @@ def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> Non
         )
         pattern = re.escape(expected.rstrip()).replace(re.escape("..."), r"\S+")
         assert re.fullmatch(pattern, run.stdout.rstrip()), f"{command}\n{run.stdout}{run.stderr}"
+
+
+def commands(page: Path) -> list[str]:
+    """The commands of a page in their order: `$` lines of console blocks, first cells of tables."""
+    text = page.read_text(encoding="utf-8")
+    return [a or b for a, b in re.findall(r"(?m)^(?:\$ (.*)|\| `(exactfold [^`]*)` \|.*)$", text)]
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/tutorial.md"])
+def test_all_commands_run_as_printed_in_their_order(name: str, tmp_path: Path) -> None:
+    """In an empty directory and a shell that finds `exactfold`, as after the first command."""
+    program = tmp_path / "bin" / "exactfold"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec {sys.executable} -m exactfold "$@"\n')
+    program.chmod(0o755)
+    place = tmp_path / "empty"
+    place.mkdir()
+    path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
+    found = commands(ROOT / name)
+    assert len(found) > 2
+    for command in found:
+        done = subprocess.run(
+            command,
+            shell=True,
+            cwd=place,
+            env={**os.environ, "PYTHONPATH": str(ROOT), "PATH": path},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert (done.returncode, done.stderr) == (0, ""), command
+        assert done.stdout or "-o" in command
+
+
+def test_the_first_commands_of_the_readme_leave_exactfold_where_a_shell_finds_it() -> None:
+    first = re.findall(
+        r"(?m)^python3 -m venv .*$", (ROOT / "README.md").read_text(encoding="utf-8")
+    )
+    assert len(first) == 2
+    assert all(". .venv/bin/activate && pip install" in line for line in first)
+    assert first[0].endswith("&& exactfold count random-8")
 
 
 def test_examples_are_found() -> None:

@@ -12,6 +12,8 @@ from exactfold.branches.letters import SIGNS, UPSIDE_DOWN
 from exactfold.branches.roots import EnclosedRoot, Root
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.described import described
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, Verdict
 
 Row = tuple[Fraction, ...]
@@ -155,16 +157,12 @@ class Branch:
             },
         }
 
-    def report(self) -> dict[str, Any]:
-        """The object printed by `exactfold branch --json`."""
+    def report(self, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold branch --json`: `schema("branch")`."""
         radius, squared = self.radius, self.squared_distance
         return {
-            "pattern": {
-                "interior": self.pattern.Vi,
-                "boundary": self.pattern.Ve,
-                "folds": len(self.pattern.folds),
-                "sha256": self.pattern.sha256,
-            },
+            **headed("branch"),
+            "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,
             "vertex_signs": {str(v): s for v, s in sorted(self.vertex_signs.items())},

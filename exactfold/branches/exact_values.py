@@ -10,7 +10,8 @@ import sympy
 from flint import fmpq, fmpq_mat, fmpq_poly
 
 from exactfold.algebra.exact_solution import RootClass
-from exactfold.exact.univariate import isolate_real_roots, to_rational_poly
+from exactfold.exact.real_roots import isolate_real_roots
+from exactfold.exact.univariate import to_rational_poly
 
 
 def value_at_root(

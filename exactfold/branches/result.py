@@ -12,11 +12,13 @@ from typing import Any
 from exactfold.branches.branch import Branch
 from exactfold.certify.algebraic import AlgebraicProof
 from exactfold.errors import UsageError
-from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.described import described
 from exactfold.problem.branch_system import Chart
 from exactfold.rigidity.rigid_triangles import RigidTriangle
-from exactfold.verdict import UNDECIDED, Verdict
+from exactfold.schemas import headed
+from exactfold.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.wording import counted
 
 
 @dataclass(frozen=True)
@@ -103,28 +105,30 @@ class BranchCount:
             groups.setdefault(branch.sign_text, []).append(branch)
         return groups
 
-    def to_dict(self, certificate: str | None = None) -> dict[str, Any]:
-        """The object printed by `exactfold count --json`."""
+    @property
+    def by(self) -> str | None:
+        """How what is stated was proved: by "enumeration", by the "theorem" alone, or None."""
+        if self.method == "theorem":
+            return "theorem"
+        return "enumeration" if self.status is PROVED else None
+
+    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold count --json`: `schema("count")`."""
         return {
-            "pattern": {
-                "interior": self.pattern.Vi,
-                "boundary": self.pattern.Ve,
-                "folds": len(self.pattern.folds),
-                "degrees_of_freedom": self.pattern.degrees_of_freedom,
-                "sha256": self.pattern.sha256,
-                "snapped": format_rational(self.snapped),
-            },
+            **headed("count"),
+            "pattern": described(self.pattern, name, self.snapped),
             "status": str(self.status),
             "reason": self.reason,
+            "by": self.by,
             "method": self.method,
             "why": self.why,
             "distinct": self.distinct,
-            "with_multiplicity": self.with_multiplicity,
+            "with_multiplicity": _number(self.with_multiplicity),
             "real": self.real,
             "nonreal": self.nonreal,
             "true_branches": str(self.true_branches),
             "dimension": self.dimension,
-            "degree": self.degree,
+            "degree": _number(self.degree),
             "certificate": certificate,
             "seconds": round(self.seconds, 3),
             "open_questions": list(self.open_questions),
@@ -159,8 +163,8 @@ class BranchCount:
         return sum(count for count in counts.values() if count > 1)
 
     def __repr__(self) -> str:
-        found = "?" if self.distinct is None else str(self.distinct)
-        return f"<BranchCount: {self.status}, {found} branches, {self.pattern!r}>"
+        found = counted("?" if self.distinct is None else self.distinct, "branch")
+        return f"<BranchCount: {self.status}, {found}, {self.pattern!r}>"
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -171,7 +175,7 @@ class BranchCount:
         more = len(self.branches) - 64
         tail = f"<p>... and {more} more</p>" if more > 0 else ""
         head = "<tr><th>vertex signs</th><th>mountain-valley</th><th>multiplicity</th></tr>"
-        count = "" if self.distinct is None else f"{self.distinct} branches, "
+        count = "" if self.distinct is None else f"{counted(self.distinct, 'branch')}, "
         return (
             f"<p>{count}<b>{self.status}</b> ({self.reason})</p><table>{head}{rows}</table>{tail}"
         )
@@ -183,3 +187,10 @@ class BranchCount:
             rf"$B = {self.distinct}\ \text{{({self.status})}},\quad "
             rf"V_i = {self.pattern.Vi},\ V_e = {self.pattern.Ve},\ V_t = {self.pattern.Vt}$"
         )
+
+
+def _number(value: int | None) -> int | str | None:
+    """A number of solutions as JSON: beyond what all programs read exactly, as a power of two."""
+    if value is None or value < 1 << 53:
+        return value
+    return f"2^{value.bit_length() - 1}"

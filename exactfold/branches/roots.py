@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from math import lcm
 from typing import TYPE_CHECKING, Any, Protocol
 
 from exactfold.certify.box import IsolatingBox
@@ -46,15 +47,18 @@ class BoxRoot:
         """Bounds of the value over the whole box."""
         box = self.box
         *slopes, constant = row
-        scale = 1 << box.bits
-        value, reach = Fraction(constant) * scale, Fraction(0)
+        common = lcm(*(c.denominator for c in row))  # integers, as fractions reduce at each step
+        value = constant.numerator * (common // constant.denominator) << box.bits
+        reach = 0
         for c, m in zip(slopes, box.real, strict=True):
             if c:
-                value += c * m
-                reach += c if c > 0 else -c
+                whole = c.numerator * (common // c.denominator)
+                value += whole * m
+                reach += abs(whole)
         reach *= box.radius
         value *= self.side
-        return (value - reach) / scale, (value + reach) / scale
+        scale = common << box.bits
+        return Fraction(value - reach, scale), Fraction(value + reach, scale)
 
     def sign(self, row: Row) -> int | None:
         """Sign of an integer row over the whole box, None if the box meets its zero set."""

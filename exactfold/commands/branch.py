@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.branches.branch import Branch
-from exactfold.commands.shell import Bar
+from exactfold.commands.patterns import read
+from exactfold.commands.shell import Bar, name_of, say
 from exactfold.count.find import BranchFinder
 from exactfold.errors import UnreadableFileError, UsageError
-from exactfold.pattern.fold import load_fold
 from exactfold.verdict import PROVED
 
 
@@ -29,6 +28,11 @@ class Asked:
     certificate: Path | None
     as_json: bool
 
+    @property
+    def name(self) -> str:
+        """The pattern as it was named."""
+        return name_of(self.pattern)
+
     def answer(self) -> bool:
         """Find, prove and print; whether all branches were proved.
 
@@ -39,12 +43,12 @@ class Asked:
 
         proved, rows = True, []
         with Bar("reading") as bar:
-            finder = BranchFinder(load_fold(self.pattern, self.snap).pattern)
+            finder = BranchFinder(read(self.pattern, self.snap).pattern)
             bar("setting up")
             for name, result in self._found(finder, bar):
                 proved &= result.status is PROVED
                 if self.as_json:
-                    print(json.dumps(result.report()), flush=True)
+                    print(json.dumps(result.report(self.name)), flush=True)
                 elif name:
                     rows.append(report.branch_row(name, result))
         if not self._is_many:
@@ -83,7 +87,7 @@ class Asked:
             with Bar("writing"):
                 write_certificate(branch_certificate(result), self.certificate)
         else:
-            print("exactfold: no certificate was written: nothing is proved", file=sys.stderr)
+            say("no certificate was written: nothing is proved")
 
 
 def given_signs(finder: BranchFinder, signs: str | None, up: str | None) -> dict[int, int]:

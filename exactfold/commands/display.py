@@ -9,6 +9,9 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn
 from rich.text import Text
 
+LARGEST = 1 << 31
+"""Totals beyond this are shown as parts of 1."""
+
 
 class TimeColumn(ProgressColumn):
     """The time left where the total is known, else the time since the stage began."""
@@ -37,16 +40,19 @@ class Display:
         self.stage: tuple[str, bool] | None = None
         self.progress.start()
 
-    def show(self, stage: str, done: int, total: int) -> None:
+    def show(self, stage: str, done: int, total: int, note: str = "") -> None:
         """Show how far a stage has come; a total of 0 means that it is not known."""
         if (stage, bool(total)) != self.stage:  # a task never loses a total it once had
             for task in self.progress.task_ids:
                 self.progress.remove_task(task)
             self.stage = (stage, bool(total))
-            self.progress.add_task(stage, total=total or None, count="")
-        count = f"{done}/{total}" if total else str(done or "")
+            self.progress.add_task(stage, total=1 if total else None, count="")
+        count = (f"{done}/{total}" if total else str(done or "")) + note
         task = self.progress.task_ids[0]
-        self.progress.update(task, completed=done, total=total or None, count=count)
+        part: float = done
+        if total > LARGEST:  # rich turns numbers into those of C
+            part, total = done / total, 1
+        self.progress.update(task, completed=part, total=total or None, count=count)
 
     def close(self) -> None:
         """Take the line away."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import io
+import json
 import os
 import shutil
 import signal
@@ -10,13 +13,14 @@ import tempfile
 import threading
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 
 import typer
 
+from exactfold.commands.guard import INTERRUPTED, NO_MEMORY, memory_is_limited
 from exactfold.errors import (
     ExactfoldError,
     InputError,
@@ -24,6 +28,7 @@ from exactfold.errors import (
     UsageError,
     WorkerDiedError,
 )
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
 if TYPE_CHECKING:
@@ -32,7 +37,8 @@ if TYPE_CHECKING:
 EXIT = {PROVED: 0, REFUTED: 1, UNDECIDED: 4}
 USAGE, BAD_INPUT = 2, 3
 INTERNAL, OUTPUT_FAILED = 70, 74
-INTERRUPTED = 130
+
+STDIN = Path("/dev/stdin")
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -54,36 +60,82 @@ def reported(command: Callable[P, R]) -> Callable[P, R]:
         except OSError as error:
             output_failed(error)
             raise typer.Exit(OUTPUT_FAILED) from None
+        except (MemoryError, ImportError) as error:
+            if isinstance(error, ImportError) and not memory_is_limited():
+                with suppress(OSError):
+                    traceback.print_exc()
+                raise typer.Exit(INTERNAL) from None
+            say(f"not enough memory: {error}".rstrip(": "))
+            raise typer.Exit(NO_MEMORY) from None
         except ExactfoldError as error:
-            print(f"exactfold: {type(error).__name__}: {error}", file=sys.stderr)
-            raise typer.Exit(_code(error)) from None
+            say(str(error))
+            if kwargs.get("as_json"):
+                print(json.dumps(error_document(error)), flush=True)
+            raise typer.Exit(exit_code(error)) from None
         except KeyboardInterrupt:
             stopped()
         except (typer.Exit, typer.Abort):
             raise
         except Exception:  # a defect: never to be read as one of the documented codes
-            traceback.print_exc()
+            with suppress(OSError):
+                traceback.print_exc()
             raise typer.Exit(INTERNAL) from None
 
     return wrapped
 
 
-def _code(error: ExactfoldError) -> int:
-    if isinstance(error, WorkerDiedError):
+def say(text: str) -> None:
+    """A line on stderr; where that cannot be written nothing is said, and no exit code changes."""
+    with suppress(OSError):
+        print(f"exactfold: {text}", file=sys.stderr, flush=True)
+
+
+def exit_code(error: Exception) -> int:
+    """The exit code of a command that ended with an error."""
+    if isinstance(error, WorkerDiedError) or not isinstance(error, ExactfoldError):
         return INTERNAL
     return BAD_INPUT if isinstance(error, InputError) else USAGE
+
+
+def error_document(error: Exception) -> dict[str, Any]:
+    """An error as a JSON object: its class, for programs, and what it says."""
+    return {
+        **headed("error"),
+        "error": {"class": type(error).__name__, "message": str(error)},
+    }
 
 
 def output_failed(error: OSError) -> None:
     """Say that standard output cannot be written, unless its reader has left, and drop the rest."""
     if not isinstance(error, BrokenPipeError):
-        print(f"exactfold: cannot write the output: {error.strerror}", file=sys.stderr)
+        say(f"cannot write the output: {error.strerror}")
     sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
+
+
+class _Closed(io.TextIOBase):
+    """Standard output that was closed before the start: it cannot be written."""
+
+    def write(self, text: str, /) -> int:
+        raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+
+
+def standard_streams() -> None:
+    """Make output that was closed before the start fail when it is written, and not sooner.
+
+    No file that is opened later takes its number.
+    """
+    while (number := os.open(os.devnull, os.O_RDWR)) < 3:
+        pass
+    os.close(number)
+    if sys.stdout is None:
+        sys.stdout = _Closed()
+    if sys.stderr is None:  # what would be said there must not go to standard output
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
 
 
 def stopped(advice: str = "") -> NoReturn:
     """End after Ctrl-C or SIGTERM with an exit code of its own."""
-    print(f"exactfold: interrupted{'; ' if advice else ''}{advice}", file=sys.stderr)
+    say(f"interrupted{'; ' if advice else ''}{advice}")
     raise typer.Exit(INTERRUPTED) from None
 
 
@@ -123,7 +175,7 @@ class Bar:
 
     def __init__(self, stage: str, delay: float = 1.0) -> None:
         self.lock = threading.RLock()
-        self.state = (stage, 0, 0)
+        self.state = (stage, 0, 0, "")
         self.display: Display | None = None
         self.timer = threading.Timer(delay, self.show)
         self.timer.daemon = True
@@ -136,10 +188,10 @@ class Bar:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def __call__(self, stage: str, done: int = 0, total: int = 0) -> None:
+    def __call__(self, stage: str, done: int = 0, total: int = 0, note: str = "") -> None:
         """Say how far a stage has come; a total of 0 means that it is not known."""
         with self.lock:
-            self.state = (stage, done, total)
+            self.state = (stage, done, total, note)
             if self.display is not None:
                 self.display.show(*self.state)
 
@@ -172,9 +224,14 @@ def apart(output: Path | None, *others: Path | None) -> None:
             raise UsageError(f"{output} is also read or written otherwise: name another file")
 
 
+def name_of(path: Path) -> str:
+    """A file as it was named on the command line."""
+    return "-" if path == STDIN else str(path)
+
+
 def standard_input(path: Path) -> Path:
     """`-` means standard input."""
-    return Path("/dev/stdin") if str(path) == "-" else path
+    return STDIN if str(path) == "-" else path
 
 
 def not_a_dash(path: Path | None) -> Path | None:
@@ -194,7 +251,7 @@ def regular(path: Path) -> Iterator[Path]:
         yield path
         return
     with tempfile.TemporaryDirectory(prefix="exactfold-") as folder:
-        copy = Path(folder, "stdin" if str(path) == "/dev/stdin" else path.name)
+        copy = Path(folder, "stdin" if path == STDIN else path.name)
         try:
             source = open(path, "rb")  # noqa: SIM115 - closed below
         except OSError as error:
@@ -207,16 +264,3 @@ def regular(path: Path) -> Iterator[Path]:
 def _is_special(path: Path) -> bool:
     """Whether a path is there and neither a file nor a folder."""
     return path.exists() and not path.is_file() and not path.is_dir()
-
-
-Pattern = Annotated[
-    Path,
-    typer.Argument(
-        callback=standard_input, help="A FOLD file with triangular faces; - for standard input."
-    ),
-]
-Snap = Annotated[
-    int | None,
-    typer.Option(min=1, metavar="DEN", help="Round coordinates to multiples of 1/DEN first."),
-]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]

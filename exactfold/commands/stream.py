@@ -8,8 +8,9 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from exactfold.checker.formats import MOST_UNKNOWNS
+from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
+from exactfold.count.by_theorem import is_too_many, too_many
 from exactfold.count.dask_engine import LOCAL, dask_engine
 from exactfold.count.stream import StreamedCount, stream_branches
 from exactfold.errors import (
@@ -20,7 +21,6 @@ from exactfold.errors import (
     WorkerDiedError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold import load_fold
 from exactfold.workers import available_cores
 
 ADVISED = 14
@@ -61,7 +61,7 @@ class Streaming:
         if self.file.exists() and not self.file.is_file():
             raise UsageError(f"{self.file} is not a file")
         with Bar("reading") as bar:
-            file = load_fold(self.pattern, self.snap)
+            file = read(self.pattern, self.snap)
             _require_streamable(file.pattern)
             if self.file.exists() and not self.resume:
                 raise UsageError(f"{self.file} is there already; --resume continues it")
@@ -98,10 +98,8 @@ class Streaming:
 def advice(pattern: CreasePattern) -> str | None:
     """Where plain `count` is the slow way: what to do instead."""
     foldable = pattern.Vi - pattern.Vt
-    if pattern.Ve != 4 or foldable < ADVISED:
+    if pattern.Ve != 4 or foldable < ADVISED or is_too_many(pattern):
         return None
-    if foldable > MOST_UNKNOWNS:
-        return f"2^{foldable} branches are too many to list; `exactfold branch` proves single ones"
     return f"2^{foldable} branches are proved faster with --stream FILE"
 
 
@@ -115,5 +113,5 @@ def _require_streamable(pattern: CreasePattern) -> None:
             "--stream takes sheets with four boundary vertices and a foldable vertex; "
             "count this one without it"
         )
-    if pattern.Vi - pattern.Vt > MOST_UNKNOWNS:
-        raise NotApplicableError(str(advice(pattern)))
+    if is_too_many(pattern):
+        raise NotApplicableError(too_many(pattern).reason)

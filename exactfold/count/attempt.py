@@ -14,6 +14,7 @@ from exactfold.problem.chart_change import from_chart, to_chart
 from exactfold.problem.problem import Problem
 from exactfold.solve.candidates import Candidates
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import counted
 
 Progress = Callable[[str, int, int], None]
 
@@ -56,8 +57,7 @@ class Attempt:
     def isolated(self, found: BranchCount, **counts: Any) -> BranchCount:
         """The same count, proved: 2^n disjoint boxes are all zeros, by refined Bezout."""
         reason = (
-            f"{self.total} solution{'s' * (self.total > 1)} isolated; by refined Bezout there "
-            "are no others"
+            f"{counted(self.total, 'solution')} isolated; by refined Bezout there are no others"
         )
         distinct = counts["real"] + counts["nonreal"]
         return self.proved(

@@ -10,6 +10,7 @@ from exactfold.branches.branch import Branch
 from exactfold.branches.result import BranchCount, Proof
 from exactfold.checker.formats import MOST_UNKNOWNS
 from exactfold.count.attempt import Attempt
+from exactfold.count.by_theorem import is_too_many, too_many
 from exactfold.count.conveyor import LISTED_BITS, Conveyor
 from exactfold.count.hand_over import isolated, solved_exactly, with_flat_vertices
 from exactfold.count.solvers import METHODS, NEWTON, Choice, choose, find_candidates
@@ -22,6 +23,7 @@ from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_tria
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.newton_ends import candidates_of
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import counted
 
 __all__ = ["METHODS", "count_branches"]
 
@@ -48,7 +50,8 @@ def count_branches(
     and decide all vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For
     D >= 2 only the single-vertex pattern is settled. `method` is one of `METHODS`; "auto" takes
     Newton's method, one start for each sign vector, and turns to the exact engine where that does
-    not settle a small pattern.
+    not settle a small pattern. With more than 40 foldable vertices nothing is listed: `too_many`
+    says what is known, at once.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
     `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.
@@ -60,6 +63,8 @@ def count_branches(
     """
     choice = choose(method)
     check_countable(pattern)
+    if is_too_many(pattern):
+        return too_many(pattern)
     start = time.perf_counter()
     triangles = certify_rigid_triangles(pattern)
     if triangles is None:
@@ -211,8 +216,8 @@ def _in_chart(attempt: Attempt, ends: Candidates | None, method: str, seed: int)
         return result
     if size > GROEBNER_LIMIT:
         advice = (
-            f"the exact engine is tried up to {GROEBNER_LIMIT} unknowns, here are {size} "
-            "(--method groebner insists)"
+            f"the exact engine is tried up to {counted(GROEBNER_LIMIT, 'unknown')}, not with "
+            f"{size} (--method groebner insists)"
         )
         return replace(result, reason=f"{result.reason}; {advice}")
     exactly = solved_exactly(

@@ -50,6 +50,21 @@ def dask_engine(
     answers or no worker joins within `timeout` seconds; the engine raises `WorkerDiedError` if one
     block kills worker after worker or the scheduler is lost.
     """
+    with cluster_client(address, workers, timeout=timeout) as client:
+
+        def engine(
+            conveyor: Conveyor, left: range
+        ) -> Generator[tuple[ProvedBlock, str], None, None]:
+            return _blocks(client, conveyor, left)
+
+        yield engine
+
+
+@contextmanager
+def cluster_client(
+    address: str, workers: int | None = None, *, timeout: float = 30.0
+) -> Iterator[Any]:
+    """A client of the cluster at an address, or of one started here, as for `dask_engine`."""
     try:
         import distributed
     except ImportError:
@@ -80,13 +95,7 @@ def dask_engine(
             raise ClusterError(f"no worker or no scheduler answers at {address}") from None
         except (OSError, ValueError) as error:
             raise ClusterError(f"no scheduler at {address}: {error}") from None
-
-        def engine(
-            conveyor: Conveyor, left: range
-        ) -> Generator[tuple[ProvedBlock, str], None, None]:
-            return _blocks(client, conveyor, left)
-
-        yield engine
+        yield client
 
 
 def _require_address(address: str) -> None:

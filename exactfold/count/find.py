@@ -33,6 +33,7 @@ from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.sparse_newton import End, solve
 from exactfold.solve.sparse_sheet import FloatArray, FloatSheet
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import counted
 
 Signs = str | Mapping[int, int] | Sequence[int]
 Rim = Mapping[int, RationalLike]
@@ -171,7 +172,8 @@ class BranchFinder:
             if len(values) != len(keys):
                 inside = self.pattern.Vi - len(names)
                 also = f" (or {self.pattern.Vi}, 0 for those that stay flat)" if inside else ""
-                raise UsageError(f"{len(values)} signs for {len(names)} vertices{also}")
+                some, wanted = counted(len(values), "sign"), counted(len(names), "vertex")
+                raise UsageError(f"{some} for {wanted}{also}")
             given = dict(zip(keys, values, strict=True))
         for v, sign in given.items():
             if v in self._names:

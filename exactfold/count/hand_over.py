@@ -21,6 +21,7 @@ from exactfold.count.multiple_roots import Zeros, recognised, solve_flat
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.flat_guess import flat_vertices
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import counted
 
 
 def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
@@ -31,7 +32,8 @@ def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
     ]
     branches, open_signs = classify(attempt.problem, attempt.chart, roots)
     result = attempt.undecided(
-        f"all {attempt.total} solutions isolated, but signs are undecided on {len(open_signs)}",
+        f"all {counted(attempt.total, 'solution')} isolated, but signs are undecided on "
+        f"{len(open_signs)}",
         branches=tuple(branches),
         settings={**candidates.settings, "lost": len(candidates.lost)},
         open_questions=(*candidates.lost, *_failures(isolation), *_signs(open_signs)),
@@ -39,8 +41,8 @@ def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
     if isolation.complete is not PROVED:
         return replace(
             result,
-            reason=f"{len(isolation.boxes)} of {attempt.total} solutions isolated: the others are "
-            "multiple, at infinity or were not found",
+            reason=f"{len(isolation.boxes)} of {counted(attempt.total, 'solution')} isolated: what "
+            "is missing is multiple, at infinity or was not found",
         )
     more = recognised(attempt.chart, Zeros(boxes=list(isolation.boxes)), open_signs)
     if more is not None:
@@ -173,4 +175,6 @@ def _failures(isolation: Isolation) -> list[str]:
 def _signs(undecided: list[Undecided]) -> tuple[str, ...]:
     """What is not decided, and on how many roots."""
     counts = Counter(", ".join(item.what) for item in undecided)
-    return tuple(f"sign not decided on {count} roots: {what}" for what, count in counts.items())
+    return tuple(
+        f"sign not decided on {counted(count, 'root')}: {what}" for what, count in counts.items()
+    )

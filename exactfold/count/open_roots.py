@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from exactfold.branches.blocks import OpenEnd, ProvedBlock
 from exactfold.count.conveyor import Conveyor
+from exactfold.wording import agreeing, counted
 
 MOST_LISTED = 1000
 
@@ -66,8 +67,8 @@ class Tally:
         if not zeros:
             return "for each other the reason is below"
         flat = ", ".join(str(foldable[k]) for k in sorted(zeros))
-        several = "vertices" if len(zeros) > 1 else "vertex"
-        return f"on the others {several} {flat} look{'' if len(zeros) > 1 else 's'} flat"
+        noun, verb = agreeing(len(zeros), "vertex"), agreeing(len(zeros), "looks")
+        return f"on the others {noun} {flat} {verb} flat"
 
     def questions(self) -> Iterator[str]:
         """Groups of sign vectors that seem to meet, then what is open by itself."""
@@ -79,4 +80,4 @@ class Tally:
             if "0" not in root.limit:
                 yield f"sign vector {root.signs}: {root.reason}"
         if (rest := self.unproved - len(self.open_roots)) > 0:
-            yield f"{rest} more sign vectors, not listed"
+            yield f"{counted(rest, 'more sign vector')}, not listed"

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from exactfold.exact.numbers import decimal_above
+from exactfold.wording import agreeing
 
 
 def named(vertices: Sequence[int]) -> str:
@@ -16,7 +17,7 @@ def named(vertices: Sequence[int]) -> str:
     """
     more = f" and {len(vertices) - 3} more" if len(vertices) > 3 else ""
     names = ", ".join(map(str, vertices[:3]))
-    return f"{'vertex' if len(vertices) == 1 else 'vertices'} {names}{more}"
+    return f"{agreeing(len(vertices), 'vertex')} {names}{more}"
 
 
 def proved(error: Fraction, flat: Sequence[int], emptied: bool) -> str:

@@ -22,6 +22,7 @@ from exactfold.evidence.journal import Journal
 from exactfold.evidence.streamed import claims_line, header_line
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import counted
 
 Progress = Callable[[str, int, int], None]
 
@@ -65,7 +66,7 @@ class StreamedCount(BranchCount):
         """The open roots whose paths seem to meet others, by the sign vector they share there."""
         return by_limit(self.open_roots)
 
-    def to_dict(self, certificate: str | None = None) -> dict[str, Any]:
+    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
         """The object printed by `exactfold count --stream --json`."""
         stream = {
             "file": self.path,
@@ -79,7 +80,7 @@ class StreamedCount(BranchCount):
             },
             "cpu_seconds": {name: round(value, 3) for name, value in self.cpu_seconds.items()},
         }
-        return {**super().to_dict(certificate), "stream": stream}
+        return {**super().to_dict(certificate, name), "stream": stream}
 
 
 def stream_branches(
@@ -176,7 +177,7 @@ def _proved(pattern: CreasePattern, total: int) -> BranchCount:
         pattern,
         PROVED,
         "streaming",
-        f"{total} solutions isolated; by refined Bezout there are no others",
+        f"{counted(total, 'solution')} isolated; by refined Bezout there are no others",
         why="a block of sign vectors at a time",
         distinct=total,
         with_multiplicity=weight,
@@ -197,7 +198,7 @@ def _open(pattern: CreasePattern, conveyor: Conveyor, tally: Tally) -> BranchCou
         pattern,
         UNDECIDED,
         "streaming",
-        f"{total - tally.unproved} of {total} solutions isolated; {culprits}",
+        f"{total - tally.unproved} of {counted(total, 'solution')} isolated; {culprits}",
         why="a block of sign vectors at a time",
         open_questions=tuple(tally.questions()),
     )

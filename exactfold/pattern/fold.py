@@ -27,13 +27,16 @@ from exactfold.exact.numbers import over_common_denominator, parse_rational, sho
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
 from exactfold.pattern.fold_writing import EXACT_KEY, fold_document, write_fold, write_text
 from exactfold.pattern.planar import trace_faces
+from exactfold.wording import agreeing, counted
 
 __all__ = [
     "EXACT_KEY",
     "FoldFile",
     "fold_document",
     "load_fold",
+    "parse_bytes",
     "parse_fold",
+    "read_bytes",
     "read_fold",
     "write_fold",
     "write_text",
@@ -84,15 +87,24 @@ def load_fold(path: str | PathLike[str], snap: int | None = None) -> FoldFile:
     >>> load_fold(example_path("two-vertex")).pattern
     <CreasePattern: 2 interior and 4 boundary vertices>
     """
+    return parse_bytes(read_bytes(path), str(path), snap)
+
+
+def read_bytes(path: str | PathLike[str]) -> bytes:
+    """All of a file; raises `UnreadableFileError`."""
     try:
-        raw = Path(path).read_bytes()
+        return Path(path).read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
         reason = getattr(error, "strerror", None) or str(error)
         raise UnreadableFileError(f"cannot read {path}: {reason}") from None
+
+
+def parse_bytes(raw: bytes, name: str, snap: int | None = None) -> FoldFile:
+    """As `parse_fold`, from the bytes of a file; raises `NotJSONError` if they are not UTF-8."""
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise NotJSONError(f"{path} is not UTF-8 text: byte {error.start} is not valid") from None
+        raise NotJSONError(f"{name} is not UTF-8 text: byte {error.start} is not valid") from None
     return parse_fold(text, snap)
 
 
@@ -211,7 +223,8 @@ def _index_lists(
                 raise NotFoldError(f"{kind} {k} in `{key}`: {shown(v)} is not a vertex index")
             if not 0 <= v < count:
                 raise NotFoldError(
-                    f"{kind} {k} in `{key}` uses vertex {shown(v)}, but there are {count} vertices"
+                    f"{kind} {k} in `{key}` uses vertex {shown(v)}, but there "
+                    f"{agreeing(count, 'is')} {counted(count, 'vertex')}"
                 )
         result.append(tuple(entry))
     return result
@@ -317,7 +330,9 @@ def _check_triangle(index: int, face: tuple[int, ...], rebuilt: bool) -> None:
             "triangulate the pattern first"
         )
     if len(face) < 3:
-        raise NotFoldError(f"face {index}{origin} has only {len(face)} vertices: {shown(face)}")
+        raise NotFoldError(
+            f"face {index}{origin} has only {counted(len(face), 'vertex')}: {shown(face)}"
+        )
 
 
 def _letters(document: Mapping[str, Any], count: int) -> list[str]:

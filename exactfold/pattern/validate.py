@@ -21,6 +21,7 @@ from exactfold.errors import (
     PinchError,
 )
 from exactfold.exact.numbers import format_rational, shown
+from exactfold.wording import agreeing, counted
 
 Point = tuple[Fraction, Fraction]
 IntPoint = tuple[int, int]
@@ -90,7 +91,8 @@ def triples(triangles: Iterable[Sequence[int]], count: int) -> list[Triangle]:
                 )
             if not 0 <= int(v) < count:
                 raise MalformedPatternError(
-                    f"face {face} uses vertex {shown(v)}, but there are {count} vertices",
+                    f"face {face} uses vertex {shown(v)}, but there "
+                    f"{agreeing(count, 'is')} {counted(count, 'vertex')}",
                     faces=[face],
                 )
         a, b, c = (int(v) for v in triangle)

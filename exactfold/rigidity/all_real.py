@@ -8,6 +8,7 @@ from fractions import Fraction
 from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.wording import counted
 
 
 @dataclass(frozen=True)
@@ -58,13 +59,13 @@ def decide_all_branches_real(pattern: PatternLike) -> Reality:
     if pattern.Ve == 4:
         shape = "convex" if pattern.is_convex else "reflex, its notch closed by a triangle"
         text = (
-            f"boundary quadrilateral ({shape}): {count} branches with multiplicity, all real; a "
-            "branch with f flat vertices counts 2^f times, and if none has any there are exactly "
-            "two for each pair of opposite vertex sign vectors"
+            f"boundary quadrilateral ({shape}): {counted(count, 'branch')} with multiplicity, all "
+            "real; a branch with f flat vertices counts 2^f times, and if none has any there are "
+            "exactly two for each pair of opposite vertex sign vectors"
         )
         return Reality(PROVED, text, count, stress)
     text = (
-        f"convex boundary: {count} solutions with multiplicity for any given boundary heights, all "
-        "real; one with f flat vertices counts 2^f times"
+        f"convex boundary: {counted(count, 'solution')} with multiplicity for any given boundary "
+        "heights, all real; one with f flat vertices counts 2^f times"
     )
     return Reality(PROVED, text, count, stress)

@@ -10,9 +10,11 @@ from typing import Any
 from exactfold.exact.linalg import Inertia
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.described import described
 from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.self_stress import rigidity_rank
+from exactfold.schemas import headed
 
 Progress = Callable[[str, int, int], None]
 
@@ -37,16 +39,14 @@ class PatternFacts:
             f"{self.pattern!r}>"
         )
 
-    def to_dict(self) -> dict[str, Any]:
-        """The object printed by `exactfold info --json`."""
+    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold info --json`, without what to expect of a count."""
         pattern = self.pattern
         return {
-            "interior": pattern.Vi,
-            "boundary": pattern.Ve,
+            **headed("info"),
+            "pattern": described(pattern, name),
             "triangles": len(pattern.triangles),
             "edges": len(pattern.edges),
-            "folds": len(pattern.folds),
-            "degrees_of_freedom": pattern.degrees_of_freedom,
             "area": format_rational(pattern.area),
             "convex": pattern.is_convex,
             "straight_boundary_vertices": [
@@ -63,7 +63,6 @@ class PatternFacts:
             "rigidity_rank_by": self.rank_by,
             "self_stresses": self.self_stresses,
             "inertia": {str(v): list(i) for v, i in self.inertias.items()},
-            "sha256": pattern.sha256,
         }
 
     @property

@@ -17,7 +17,16 @@ from exactfold.pattern.fold_writing import fold_text
 
 TWO = example_path("two-vertex")
 KEYS = {
-    *("pattern", "status", "reason", "vertex_signs", "undecided_vertices", "assignment"),
+    *(
+        "format",
+        "version",
+        "pattern",
+        "status",
+        "reason",
+        "vertex_signs",
+        "undecided_vertices",
+        "assignment",
+    ),
     *("gauge", "saddle", "centres", "radius", "squared_distance", "steps", "seconds"),
 }
 
@@ -38,7 +47,7 @@ def test_json_is_the_result() -> None:
     result = run(TWO, "--signs", "-+", "--json")
     data = json.loads(result.stdout)
     assert set(data) == KEYS
-    expected = find_branch(read_fold(TWO), "-+").report()
+    expected = find_branch(read_fold(TWO), "-+").report(str(TWO))
     for key in KEYS - {"seconds"}:
         assert data[key] == expected[key]
 
@@ -57,7 +66,7 @@ def test_a_flat_vertex_is_shown() -> None:
     assert result.exit_code == 0
     text = " ".join(result.stdout.split())
     assert "0 at vertex 5, where it is flat; it is a solution of multiplicity 2" in text
-    assert "vertex signs +0 mountain-valley MFFMFFF" in text
+    assert "up vertex 4 down none flat vertex 5 mountain-valley MFFMFFF" in text
 
 
 def test_signs_from_a_file_and_a_batch(tmp_path) -> None:
@@ -85,8 +94,8 @@ def test_a_batch_is_read_to_its_end_before_anything_is_found(tmp_path) -> None:
     ]
     path.write_text("-+\n\n+\n")
     result = run(TWO, "--batch", path, "--json")
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert f"{path}, line 3: 1 signs for 2 vertices" in result.stderr
+    assert (result.exit_code, json.loads(result.stdout)["error"]["class"]) == (2, "UsageError")
+    assert f"{path}, line 3: 1 sign for 2 vertices" in result.stderr
 
 
 def test_nothing_asked_for_is_wrong_usage(tmp_path) -> None:
@@ -124,7 +133,7 @@ def test_neighbours(pops: str, letters: int) -> None:
     [
         ((), "give one of"),
         (("--signs", "++", "--up", "4"), "give one of"),
-        (("--signs", "+"), "1 signs for 2 vertices"),
+        (("--signs", "+"), "1 sign for 2 vertices"),
         (("--signs", "+?"), "'?' is not a vertex sign"),
         (("--up", "0"), "vertex 0 is not an interior vertex"),
         (("--up", "x"), "not 'x'"),
@@ -141,4 +150,4 @@ def test_wrong_usage_is_exit_code_two(arguments: tuple[str, ...], message: str) 
 def test_a_file_of_signs_that_is_not_there() -> None:
     result = run(TWO, "--signs", "@none.txt")
     assert result.exit_code == 3
-    assert "UnreadableFileError: cannot read none.txt" in result.stderr
+    assert "exactfold: cannot read none.txt" in result.stderr

@@ -49,10 +49,11 @@ def test_to_dict_agrees_with_the_pattern(pattern):
     data = json.loads(json.dumps(pattern_facts(pattern).to_dict()))
     assert data["edges"] == len(pattern.edges) == 3 * len(pattern.vertices) - 3 - pattern.Ve
     assert data["triangles"] == 2 * len(pattern.vertices) - 2 - pattern.Ve
-    assert data["folds"] == data["edges"] - data["boundary"]
-    assert data["interior"] + data["boundary"] == len(pattern.vertices)
-    assert data["degrees_of_freedom"] == data["boundary"] - 3
-    assert data["sha256"] == pattern.sha256
+    shape = data["pattern"]
+    assert shape["folds"] == data["edges"] - shape["boundary"]
+    assert shape["interior"] + shape["boundary"] == len(pattern.vertices) == len(shape["vertices"])
+    assert shape["degrees_of_freedom"] == shape["boundary"] - 3
+    assert shape["sha256"] == pattern.sha256
     inside = [v for entry in data["triangulated_triangles"] for v in entry["inside"]]
     assert sorted(inside + data["foldable_vertices"]) == list(pattern.interior)
 

@@ -1,0 +1,33 @@
+"""Patterns as they are named on the command line: a file, `-`, or a shipped example."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from exactfold.commands.shell import STDIN
+from exactfold.data import EXAMPLES, example_path
+from exactfold.errors import UnknownPatternError
+from exactfold.pattern.fold import FoldFile, load_fold
+
+
+def located(path: Path) -> Path:
+    """The file that is meant; a file that is there comes before an example of the same name.
+
+    Raises `UnknownPatternError` for a bare name that is neither.
+    """
+    name = str(path)
+    if path == STDIN or (path.exists() and not path.is_dir()):
+        return path
+    if name in EXAMPLES:
+        return example_path(name)
+    if path.exists() or path.suffix or len(path.parts) != 1:
+        return path  # reading it says what is wrong
+    raise UnknownPatternError(
+        f"{name} is neither a file nor a shipped pattern; the shipped patterns are: "
+        f"{', '.join(EXAMPLES)}"
+    )
+
+
+def read(path: Path, snap: int | None) -> FoldFile:
+    """The pattern that is meant; raises the errors of `located` and `load_fold`."""
+    return load_fold(located(path), snap)

@@ -1,0 +1,119 @@
+"""Many patterns, counted independently of each other on all cores or on a cluster."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Generator, Iterable, Sized
+from contextlib import closing
+from dataclasses import dataclass, replace
+
+from exactfold.branches.result import BranchCount
+from exactfold.count.collect import count_branches
+from exactfold.count.pools import Pool, process_pool
+from exactfold.count.solvers import choose
+from exactfold.data import EXAMPLES, example_path
+from exactfold.errors import InputError, UnreadableFileError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.fold import FoldFile, parse_bytes, read_bytes
+from exactfold.pattern.load import PatternLike
+
+Progress = Callable[[str, int, int], None]
+
+Source = bytes | CreasePattern | InputError
+"""What is sent to a worker: the bytes of a FOLD file, a pattern, or why there is neither."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A pattern to count, and how: as for `count_branches` and `load_fold`."""
+
+    name: str
+    source: Source
+    method: str = "auto"
+    seed: int = 0
+    snap: int | None = None
+
+    @property
+    def file(self) -> FoldFile:
+        """The pattern, read; raises the errors of `load_fold`."""
+        if isinstance(self.source, InputError):
+            raise self.source
+        if isinstance(self.source, bytes):
+            return parse_bytes(self.source, self.name, self.snap)
+        if self.snap is None:
+            return FoldFile(self.source)
+        return FoldFile(*self.source.snapped(self.snap))
+
+
+def read_source(path: str | os.PathLike[str]) -> bytes | UnreadableFileError:
+    """The bytes of a file, or why they cannot be read."""
+    try:
+        return read_bytes(path)
+    except UnreadableFileError as error:
+        return error
+
+
+def count_job(job: Job) -> BranchCount | Exception:
+    """The count of one pattern, or the error that it ended with, which stops no other."""
+    try:
+        file = job.file
+        result = count_branches(file.pattern, method=job.method, seed=job.seed)
+        return replace(result, snapped=file.snapped)
+    except Exception as error:  # also a defect: the other patterns are counted all the same
+        return error
+
+
+def count_many(
+    patterns: Iterable[PatternLike],
+    *,
+    jobs: int = 1,
+    engine: Pool | None = None,
+    method: str = "auto",
+    seed: int = 0,
+    snap: int | None = None,
+    progress: Progress | None = None,
+) -> Generator[tuple[str, BranchCount | Exception], None, None]:
+    """The counts of many patterns (anything `load` takes), each with its name, as they are ready.
+
+    The name of a file or an example is its text, that of a pattern its place ("0", "1", ...). What
+    `count_branches` raises for one pattern is its result, and the others go on; a pattern whose
+    process died has a `WorkerDiedError`. With `jobs` > 1 that many processes share the work, and a
+    script needs the usual `if __name__ == "__main__"`; an `engine`, such as `dask_pool`, takes
+    their place. Files are read here, a few at a time, and sent to the workers.
+    `progress("counting", done, total)` has a total of 0 where `patterns` has no length.
+
+    Raises `UsageError` for an unknown method, a negative seed or fewer jobs than 1, before
+    anything is counted.
+
+    >>> from exactfold.pattern.families import two_vertex
+    >>> for name, result in count_many([two_vertex(), "none.fold"]):
+    ...     print(name, repr(result))
+    0 <BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary
+    vertices>>
+    none.fold UnreadableFileError('cannot read none.fold: No such file or directory')
+    """
+    choose(method)
+    if seed < 0:
+        raise UsageError(f"the seed must not be negative: {seed}")
+    if jobs < 1:
+        raise UsageError(f"at least one job is needed, not {jobs}")
+
+    def job(place: int, given: PatternLike) -> Job:
+        if isinstance(given, FoldFile):
+            given = given.pattern
+        if isinstance(given, CreasePattern):
+            return Job(str(place), given, method, seed, snap)
+        path = example_path(given) if isinstance(given, str) and given in EXAMPLES else given
+        return Job(os.fspath(given), read_source(path), method, seed, snap)
+
+    total = len(patterns) if isinstance(patterns, Sized) else 0
+    given = (job(place, pattern) for place, pattern in enumerate(patterns))
+
+    def counted() -> Generator[tuple[str, BranchCount | Exception], None, None]:
+        with closing((engine or process_pool(jobs))(count_job, given)) as results:
+            for done, (finished, result) in enumerate(results, 1):
+                if progress is not None:
+                    progress("counting", done, total)
+                yield finished.name, result
+
+    return counted()

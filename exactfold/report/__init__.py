@@ -1,0 +1,21 @@
+"""What people read: answers in plain words and tables, with rich."""
+
+from exactfold.report.batch import batch_report
+from exactfold.report.branch import branch_report, branch_row, branches_report, export_report
+from exactfold.report.count import count_report
+from exactfold.report.info import examples_report, expectation, info_report
+from exactfold.report.terminal import console, show
+
+__all__ = [
+    "batch_report",
+    "branch_report",
+    "branch_row",
+    "branches_report",
+    "console",
+    "count_report",
+    "examples_report",
+    "expectation",
+    "export_report",
+    "info_report",
+    "show",
+]

@@ -1,0 +1,38 @@
+"""What `exactfold count` prints for several patterns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from exactfold.report.terminal import SHOWN, more_text, status_text
+from exactfold.verdict import PROVED
+from exactfold.wording import counted
+
+BatchRow = tuple[str, str, int | None, str]
+"""Name, status, number of branches, and what is missing or wrong."""
+
+
+def batch_report(rows: list[BatchRow], summary: Mapping[str, Any], everything: bool) -> Group:
+    """A line for each pattern, and how many are proved."""
+    table = Table(box=None, pad_edge=False)
+    table.add_column("", overflow="fold")
+    table.add_column("ways", justify="right")
+    table.add_column("status")
+    table.add_column("", overflow="fold")
+    limit = len(rows) if everything else SHOWN
+    for name, status, distinct, message in rows[:limit]:
+        why = "" if status == str(PROVED) else message
+        table.add_row(name, "?" if distinct is None else str(distinct), status_text(status), why)
+    parts: list[Any] = [table, *more_text(len(rows) - limit), ""] if rows else []
+    counts = ", ".join(f"{summary[key]} {key}" for key in ("proved", "undecided", "failed"))
+    text = f"{counted(summary['files'], 'pattern')}: {counts}"
+    if summary["skipped"]:
+        text += f"; {summary['skipped']} counted before"
+    if summary["jsonl"]:
+        text += f"; results in {summary['jsonl']}"
+    return Group(*parts, Text(text))

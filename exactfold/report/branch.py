@@ -1,0 +1,85 @@
+"""What `exactfold branch` prints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from exactfold.exact.numbers import decimal_above
+from exactfold.report.terminal import facts_table, letters_text, status_text
+from exactfold.wording import counted
+
+if TYPE_CHECKING:
+    from exactfold.branches.branch import Branch
+    from exactfold.branches.export import BranchExport, ExportedBranch
+
+Row = tuple[str, str, str, str]
+
+
+def branch_report(result: Branch) -> Group:
+    """One branch: what is proved, which vertices pop up, and the folds."""
+    rows: list[tuple[str, str | Text]] = [
+        ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
+        ("up", _cut(_with_sign(result, 1))),
+        ("down", _cut(_with_sign(result, -1))),
+    ]
+    if flat := _with_sign(result, 0):
+        rows.append(("flat", _cut(flat)))
+    if result.radius is not None:
+        rows.append(("mountain-valley", letters_text(_cut(result.assignment_text))))
+        if undecided := len(result.undecided_folds):
+            rows.append(("undecided", counted(undecided, "fold")))
+        rows.append(
+            ("heights", f"each within {decimal_above(result.radius, 2)} (--json lists them)")
+        )
+    rows.append(("method", f"{counted(result.steps, 'Newton step')}, {result.seconds:.2f} s"))
+    return Group(facts_table(list(rows)))
+
+
+def _with_sign(result: Branch, sign: int) -> str:
+    chosen = [str(v) for v, s in sorted(result.vertex_signs.items()) if s == sign]
+    if not chosen:
+        return "none" if sign else ""
+    return f"{'vertex' if len(chosen) == 1 else 'vertices'} {', '.join(chosen)}"
+
+
+def branch_row(name: str, result: Branch) -> Row:
+    """The row of a branch in `branches_report`."""
+    return name, str(result.status), _cut(result.sign_text), _cut(result.assignment_text)
+
+
+def branches_report(rows: list[Row]) -> Group:
+    """The table for a batch or for neighbours."""
+    table = Table(box=None, pad_edge=False)
+    table.add_column("")
+    table.add_column("status")
+    table.add_column("vertex signs", overflow="fold")
+    table.add_column("mountain-valley", overflow="fold")
+    for name, status, signs, letters in rows:
+        table.add_row(name, status_text(status), signs, letters_text(letters))
+    return Group(table)
+
+
+def export_report(output: str, branch: ExportedBranch, export: BranchExport) -> Table:
+    """What `exactfold export` prints of the file it wrote."""
+    sizes = [abs(angle) for angle in export.angles.values()]
+    return facts_table(
+        [
+            ("written", output),
+            ("status", status_text(export.status)),
+            ("vertex signs", _cut(branch.sign_text)),
+            ("mountain-valley", letters_text(_cut(branch.assignment_text))),
+            ("fold angles", f"largest {max(sizes):.4g}, smallest {min(sizes):.4g} degrees"),
+            (
+                "folded frame",
+                f"second order: lengths change by up to {100 * export.length_error:.2g} %",
+            ),
+        ]
+    )
+
+
+def _cut(text: str, most: int = 160) -> str:
+    return text if len(text) <= most else f"{text[:most]}... (--json has all)"

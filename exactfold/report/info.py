@@ -1,0 +1,96 @@
+"""What `exactfold info` and `exactfold examples` print."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from exactfold.exact.numbers import format_rational
+from exactfold.report.terminal import facts_table
+from exactfold.verdict import UNDECIDED
+
+if TYPE_CHECKING:
+    from exactfold.rigidity.facts import PatternFacts
+
+LISTED = 8
+"""Entries of a list in the table of `exactfold info`."""
+
+
+def info_report(facts: PatternFacts, *, exact: bool = False) -> Table:
+    """The table; with `exact` also ranks, stresses, forms and the digest."""
+    pattern = facts.pattern
+    rows = [
+        ("vertices", f"{pattern.Vi} interior, {pattern.Ve} boundary"),
+        (
+            "faces, edges, folds",
+            f"{len(pattern.triangles)}, {len(pattern.edges)}, {len(pattern.folds)}",
+        ),
+        ("degrees of freedom", f"D = Ve - 3 = {pattern.degrees_of_freedom}"),
+        ("boundary", "convex" if pattern.is_convex else f"reflex at {pattern.reflex_corner}"),
+        ("area", format_rational(pattern.area)),
+        (
+            "interior degrees",
+            ", ".join(f"{n} of degree {d}" for d, n in facts.degree_counts.items()) or "none",
+        ),
+        (
+            "triangles that stay flat",
+            _listed(
+                [
+                    f"{corners} around {_listed(list(map(str, inside)), ', ')}"
+                    for corners, inside in pattern.triangulated_triangles
+                ]
+            ),
+        ),
+        ("folds that split the sheet", _listed([f"{i}-{j}" for i, j in pattern.chords], ", ")),
+        ("expected", expectation(facts)),
+    ]
+    if exact:
+        rank = f"{facts.rigidity_rank}, by {facts.rank_by}"
+        if facts.rank_by == "theorem":
+            rank += " (2V - 3 for every triangulated disk)"
+        inertias = _listed([f"{v}: {i}" for v, i in facts.inertias.items()])
+        rows += [
+            ("rank of rigidity matrix", rank),
+            ("self stresses", str(facts.self_stresses)),
+            ("inertia of curvature forms", inertias),
+            ("sha256", pattern.sha256),
+        ]
+    return facts_table(list(rows))
+
+
+def _listed(entries: list[str], separator: str = "; ") -> str:
+    rest = len(entries) - LISTED
+    more = [f"... and {rest} more (--json lists all)"] if rest > 0 else []
+    return separator.join(entries[:LISTED] + more) or "none"
+
+
+def expectation(facts: PatternFacts) -> str:
+    """What `count` will settle, from the counts alone."""
+    pattern = facts.pattern
+    free = pattern.Vi - pattern.Vt
+    if not pattern.interior:
+        return "no interior vertex: nothing to count"
+    if pattern.degrees_of_freedom == 0:
+        return "rigid: 0 ways to start folding"
+    if pattern.degrees_of_freedom == 1:
+        ways = f"2^{free} ways to start folding, fewer if a vertex is flat on some of them"
+        return ways if free == pattern.Vi else f"{ways}; with multiplicity 2^{pattern.Vi}"
+    if free == 1 and not pattern.without_rigid_parts()[0].chords:
+        dimension = pattern.degrees_of_freedom
+        return f"one family of ways to start folding, of dimension {dimension} (single vertex)"
+    return f"{UNDECIDED}: families of dimension {pattern.degrees_of_freedom} are not counted"
+
+
+def examples_report(examples: Mapping[str, str]) -> Group:
+    """The shipped patterns, and how to use their names."""
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column()
+    for name, text in examples.items():
+        table.add_row(name, text)
+    use = "A name stands for the file in every command: exactfold count two-vertex"
+    return Group(table, "", Text(use))

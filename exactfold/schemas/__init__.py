@@ -1,0 +1,65 @@
+"""The JSON that exactfold prints: a format and a version in every object, and a schema for each."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Final
+
+from exactfold.errors import UsageError
+
+VERSIONS: Final = {
+    "count": 1,
+    "count-stream": 1,
+    "branch": 1,
+    "info": 1,
+    "check": 1,
+    "examples": 1,
+    "batch-line": 1,
+    "batch": 1,
+    "error": 1,
+}
+"""The kinds of output and their versions; a version changes when a key goes or changes."""
+
+_PARTS: Final = ("pattern", "stream")
+_URN: Final = "urn:exactfold:schema:"
+
+
+def headed(kind: str) -> dict[str, Any]:
+    """The first two keys of an object of a kind.
+
+    >>> headed("count")
+    {'format': 'exactfold count', 'version': 1}
+    """
+    return {"format": f"exactfold {kind}", "version": VERSIONS[kind]}
+
+
+def schema(name: str) -> dict[str, Any]:
+    """The JSON Schema (draft 2020-12) of a kind of output, whole: it refers to no other file.
+
+    Raises `UsageError` for a name not in `VERSIONS`.
+
+    >>> schema("count")["properties"]["format"]
+    {'const': 'exactfold count'}
+    """
+    if name not in VERSIONS:
+        raise UsageError(f"no schema {name!r}; there are: {', '.join(VERSIONS)}")
+    found = _read(name)
+    parts = _parts(found)
+    return found | ({"$defs": parts} if parts else {})
+
+
+def _parts(found: dict[str, Any]) -> dict[str, Any]:
+    """The schemas that one refers to, and those that they refer to, by name."""
+    text, parts = json.dumps(found), {}
+    for name in (*VERSIONS, *_PARTS):
+        if f'"$ref": "{_URN}{name}"' in text:
+            parts[name] = _read(name)
+            parts |= _parts(parts[name])
+    return parts
+
+
+def _read(name: str) -> dict[str, Any]:
+    path = Path(__file__).with_name(f"{name}.schema.json")
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return found

@@ -1,0 +1,36 @@
+"""Numbers of things, as they are said."""
+
+from __future__ import annotations
+
+_OWN = {"vertex": "vertices", "has": "have", "is": "are", "stays": "stay", "looks": "look"}
+
+
+def plural(word: str) -> str:
+    """The plural of a noun, or of one of a few verbs.
+
+    >>> [plural(word) for word in ("fold", "vertex", "branch", "unknown", "is")]
+    ['folds', 'vertices', 'branches', 'unknowns', 'are']
+    """
+    if word in _OWN:
+        return _OWN[word]
+    return f"{word}es" if word.endswith(("ch", "sh", "s", "x")) else f"{word}s"
+
+
+def counted(number: int | str, noun: str) -> str:
+    """A number of things; the noun is the last word of `noun`, and text is never one.
+
+    >>> counted(1, "vertex"), counted(2, "sign vector"), counted("2^41", "branch")
+    ('1 vertex', '2 sign vectors', '2^41 branches')
+    """
+    first, _, last = noun.rpartition(" ")
+    word = last if number == 1 else plural(last)
+    return f"{number} {first}{' ' if first else ''}{word}"
+
+
+def agreeing(number: int, verb: str) -> str:
+    """A verb after a number of things, or their noun without the number.
+
+    >>> agreeing(1, "stays"), agreeing(2, "stays")
+    ('stays', 'stay')
+    """
+    return verb if number == 1 else plural(verb)

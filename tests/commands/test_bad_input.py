@@ -1,0 +1,171 @@
+"""Bad input: one line that names the culprit, exit code 3, nothing written."""
+
+import json
+from fractions import Fraction
+
+import pytest
+from files import CORNERS, FACES, written
+from running import BAD_INPUT, PROVED, error_class, run
+from sheets import SQUARE, with_point
+
+from exactfold import (
+    random_square,
+    write_fold,
+)
+from exactfold.pattern.crease_pattern import CreasePattern
+
+SQUARE_FOLD = {"vertices_coords": CORNERS, "faces_vertices": FACES}
+
+
+def with_vertex(k, row):
+    rows = json.loads(json.dumps(CORNERS))
+    rows[k] = row
+    return {**SQUARE_FOLD, "vertices_coords": rows}
+
+
+def text_with(number):
+    return json.dumps(with_vertex(4, ["@", 0.25])).replace('"@"', number)
+
+
+BAD = {
+    "empty": ("", "NotJSONError", ""),
+    "not JSON": ("crease pattern", "NotJSONError", ""),
+    "cut off": (json.dumps(SQUARE_FOLD)[:-9], "NotJSONError", ""),
+    "a list": ("[1, 2]", "NotFoldError", ""),
+    "not FOLD": ('{"name": "x"}', "FoldError", ""),
+    "no coordinates": ({"faces_vertices": FACES}, "MissingCoordinatesError", "vertices_coords"),
+    "empty vertex": (with_vertex(3, []), "MissingCoordinatesError", "vertex 3"),
+    "NaN": (text_with("NaN"), "NotANumberError", "vertex 4"),
+    "Infinity": (text_with("-Infinity"), "NotANumberError", "vertex 4"),
+    "text": (text_with('"left"'), "NotANumberError", "vertex 4"),
+    "null": (text_with("null"), "NotANumberError", "vertex 4"),
+    "boolean": (text_with("true"), "NotANumberError", "vertex 4"),
+    "off the plane": (
+        {**SQUARE_FOLD, "vertices_coords": [[*p, int(k == 2)] for k, p in enumerate(CORNERS)]},
+        "OffPlaneError",
+        "vertex 2",
+    ),
+    "duplicate": (with_vertex(4, [1, 1]), "DuplicateVertexError", "vertices 2 and 4"),
+    "isolated": (
+        {**SQUARE_FOLD, "vertices_coords": [*CORNERS, [2, 2]]},
+        "IsolatedVertexError",
+        "vertex 5",
+    ),
+    "degenerate": (
+        {"vertices_coords": [[0, 0], [1, 0], [2, 0]], "faces_vertices": [[0, 1, 2]]},
+        "DegenerateFaceError",
+        "face 0",
+    ),
+    "clockwise mixed": (
+        {**SQUARE_FOLD, "faces_vertices": [*FACES[:3], [0, 3, 4]]},
+        "MixedOrientationError",
+        "face 3",
+    ),
+    "vertex pulled across": (with_vertex(4, [0.5, -1]), "MixedOrientationError", "face 0"),
+    "overlap": (
+        {
+            "vertices_coords": [[0, 0], [4, 0], [4, 4], [1, 1], [5, 0.5], [2, 4]],
+            "faces_vertices": [[0, 1, 3], [1, 2, 3], [3, 4, 5]],
+        },
+        "Error",
+        "3",
+    ),
+    "edge on three faces": (
+        {
+            "vertices_coords": [[0, 0], [1, 0], [0, 1], [1, 1], [0.2, 2]],
+            "faces_vertices": [[0, 1, 2], [1, 3, 2], [1, 4, 2]],
+        },
+        "NonManifoldEdgeError",
+        "edge 1-2",
+    ),
+    "two disks": (
+        {
+            "vertices_coords": [[0, 0], [1, 0], [0, 1], [5, 0], [6, 0], [5, 1]],
+            "faces_vertices": [[0, 1, 2], [3, 4, 5]],
+        },
+        "DisconnectedError",
+        "vertex 0 to 3",
+    ),
+    "hole": (
+        {
+            "vertices_coords": [[0, 0], [9, 0], [0, 9], [2, 2], [4, 2], [2, 4]],
+            "faces_vertices": [
+                *([0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]),
+            ],
+        },
+        "HoleError",
+        "vertices 0 and 3",
+    ),
+    "pinch": (
+        {
+            "vertices_coords": [[0, 0], [1, 0], [0, 1], [-1, 0], [0, -1]],
+            "faces_vertices": [[0, 1, 2], [0, 3, 4]],
+        },
+        "PinchError",
+        "vertex 0",
+    ),
+    "four sides": (
+        {"vertices_coords": CORNERS[:4], "faces_vertices": [[0, 1, 2, 3]]},
+        "NonTriangularFaceError",
+        "face 0",
+    ),
+    "nothing to count": (
+        {"vertices_coords": CORNERS[:4], "faces_vertices": [[0, 1, 2], [0, 2, 3]]},
+        "NoInteriorVertexError",
+        "no interior vertex",
+    ),
+    "no such vertex": (
+        {**SQUARE_FOLD, "faces_vertices": [*FACES[:3], [3, 0, 9]]},
+        "Error",
+        "9",
+    ),
+}
+
+
+@pytest.mark.parametrize(("document", "error", "culprit"), BAD.values(), ids=BAD.keys())
+def test_bad_input(tmp_path, document, error, culprit):
+    path, out = written(tmp_path, document), tmp_path / "out.json"
+    result = run("count", path, "--json", "--certificate", out)
+    assert result.exit_code == BAD_INPUT
+    assert error_class(result).endswith(error)
+    assert result.stderr.startswith("exactfold: ")
+    assert culprit in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.fold"]
+    informed = run("info", path)
+    if error != "NoInteriorVertexError":
+        assert informed.exit_code == BAD_INPUT
+        assert informed.stderr == result.stderr
+
+
+def test_missing_file(tmp_path):
+    for command in ("count", "info"):
+        missing = tmp_path / "none.fold"
+        result = run(command, missing)
+        assert result.exit_code == BAD_INPUT
+        assert result.stderr == f"exactfold: cannot read {missing}: No such file or directory\n"
+        assert result.stdout == ""
+
+
+def test_folder_instead_of_file(tmp_path):
+    assert run("count", tmp_path).exit_code == BAD_INPUT
+
+
+def test_chord_is_counted_right_and_named(tmp_path):
+    path = tmp_path / "chord.fold"
+    write_fold(with_point(CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), 0, (1, 1, 1)), path)
+    data = json.loads(run("count", path, "--json").stdout)
+    assert (data["status"], data["distinct"], data["with_multiplicity"]) == ("proved", 1, 2)
+    assert "0-2" in run("info", path).stdout
+
+
+def test_huge_denominators(tmp_path):
+    path = tmp_path / "huge.fold"
+    pattern = random_square(2, seed=0)
+    moved = [(x + Fraction(k, 10**60), y) for k, (x, y) in enumerate(pattern.vertices)]
+    write_fold(CreasePattern(moved, pattern.triangles), path)
+    out = tmp_path / "huge.json"
+    result = run("count", path, "--json", "--certificate", out)
+    assert result.exit_code == PROVED
+    assert json.loads(result.stdout)["distinct"] == 4
+    assert run("check", out).exit_code == PROVED

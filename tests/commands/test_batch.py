@@ -1,0 +1,299 @@
+"""`exactfold count` of several files: lines, resumption, failures that stop no other."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from running import (
+    BAD_INPUT,
+    DEFECT,
+    INTERRUPTED,
+    PROVED,
+    UNDECIDED,
+    USAGE,
+    process,
+    run,
+)
+from sheets import HEXAGON, scrambled
+
+from exactfold import count_branches, example_path, random_square, write_fold
+from exactfold.commands import batch
+from exactfold.commands.shell import Bar
+from exactfold.count.batch import count_many
+from exactfold.count.pools import dask_pool, process_pool
+from exactfold.errors import NotJSONError, UnreadableFileError, UsageError, WorkerDiedError
+
+KEYS = {
+    *("format", "version", "name", "sha256", "asked", "status", "exit_code", "error", "result"),
+}
+
+
+def squares(folder: Path, count: int) -> list[Path]:
+    paths = [folder / f"{k}.fold" for k in range(count)]
+    for k, path in enumerate(paths):
+        write_fold(random_square(3, seed=k), path)
+    return paths
+
+
+def lines(path: Path) -> list[dict]:
+    return [json.loads(line) for line in path.read_text().splitlines()]
+
+
+def test_a_line_for_each_file_and_the_worst_exit_code(tmp_path: Path) -> None:
+    good, open_, bad, out = (tmp_path / n for n in ("a.fold", "b.fold", "c.fold", "o.jsonl"))
+    write_fold(random_square(3, seed=1), good)
+    write_fold(scrambled(1, HEXAGON, 2, loose=True), open_)
+    bad.write_text("{")
+    given = ("count", good, open_, bad, tmp_path / "none.fold", "--jobs", 1, "--jsonl", out)
+    result = run(*given)
+    assert result.exit_code == BAD_INPUT
+    assert "4 patterns: 1 proved, 1 undecided, 2 failed; results in" in result.stdout
+    found = lines(out)
+    assert all(set(line) == KEYS for line in found)
+    assert [line["name"] for line in found] == [
+        *map(str, (good, open_, bad, tmp_path / "none.fold"))
+    ]
+    assert [line["status"] for line in found] == ["proved", "undecided", "failed", "failed"]
+    assert [line["exit_code"] for line in found] == [0, 4, 3, 3]
+    assert found[0]["sha256"] == hashlib.sha256(good.read_bytes()).hexdigest()
+    alone = json.loads(run("count", good, "--json").stdout)
+    counted = found[0]["result"]
+    assert {**counted, "seconds": 0} == {**alone, "seconds": 0}
+    assert found[2]["error"]["class"] == "NotJSONError"
+    assert str(tmp_path / "none.fold") in found[3]["error"]["message"]
+    assert found[3]["sha256"] is None
+    assert run("count", good, open_).exit_code == UNDECIDED
+    assert run("count", good, good).exit_code == PROVED
+
+
+def test_the_same_from_one_process_and_from_two(tmp_path: Path) -> None:
+    paths = squares(tmp_path, 5)
+    found = []
+    for jobs in (1, 2):
+        out = tmp_path / f"{jobs}.jsonl"
+        assert run("count", *paths, "--jobs", jobs, "--jsonl", out).exit_code == PROVED
+        found.append({d["name"]: d["result"]["branches"] for d in lines(out)})
+    assert found[0] == found[1]
+    assert set(found[0]) == set(map(str, paths))
+
+
+def test_files_whose_line_is_there_are_skipped(tmp_path: Path) -> None:
+    paths, out = squares(tmp_path, 4), tmp_path / "o.jsonl"
+    bad = tmp_path / "bad.fold"
+    bad.write_text("[]")
+    assert run("count", *paths[:2], bad, "--jsonl", out).exit_code == BAD_INPUT
+    before = out.read_bytes()
+    result = run("count", *paths, bad, "--jsonl", out, "--json")
+    assert result.exit_code == BAD_INPUT  # that of the line that is there
+    summary = json.loads(result.stdout)
+    assert (summary["files"], summary["skipped"]) == (5, 3)
+    assert (summary["proved"], summary["failed"], summary["undecided"]) == (4, 1, 0)
+    assert out.read_bytes().startswith(before)
+    assert sorted(d["name"] for d in lines(out)) == sorted(map(str, [*paths, bad]))
+    write_fold(random_square(3, seed=9), paths[0])  # another pattern under the same name
+    assert json.loads(run("count", *paths, "--jsonl", out, "--json").stdout)["skipped"] == 3
+    moved = paths[1].rename(tmp_path / "moved.fold")  # the same under another name
+    assert json.loads(run("count", moved, "--jsonl", out, "--json").stdout)["skipped"] == 1
+    # What was asked differs: the line there is no answer.
+    snapped = run("count", moved, "--jsonl", out, "--json", "--snap", 1024)
+    assert json.loads(snapped.stdout)["skipped"] == 0
+
+
+def test_two_files_with_one_content_have_a_line_each(tmp_path: Path) -> None:
+    (one,) = squares(tmp_path, 1)
+    two, out = tmp_path / "two.fold", tmp_path / "o.jsonl"
+    two.write_bytes(one.read_bytes())
+    run("count", two, "--jsonl", out)
+    run("count", one, two, "--jsonl", out)
+    assert [d["name"] for d in lines(out)] == [str(two), str(one)]
+
+
+def test_a_torn_last_line_is_dropped(tmp_path: Path) -> None:
+    paths, out = squares(tmp_path, 2), tmp_path / "o.jsonl"
+    run("count", *paths, "--jsonl", out, "--jobs", 1)
+    whole = out.read_bytes()
+    first = whole.index(b"\n") + 1
+    for length in (first + 1, first + 100, len(whole) - 1):
+        out.write_bytes(whole[:length])
+        result = run("count", *paths, "--jsonl", out, "--jobs", 1, "--json")
+        assert json.loads(result.stdout)["skipped"] == 1
+        assert out.read_bytes()[:first] == whole[:first]
+        assert [d["name"] for d in lines(out)] == list(map(str, paths))
+    out.write_bytes(whole[:10])  # not even a line
+    assert json.loads(run("count", *paths, "--jsonl", out, "--json").stdout)["skipped"] == 0
+
+
+@pytest.mark.parametrize("text", ["notes", '{"format": "exactfold count"}\n', "[]\n", "\n"])
+def test_a_file_of_another_kind_is_left_alone(tmp_path: Path, text: str) -> None:
+    (path,), out = squares(tmp_path, 1), tmp_path / "o.jsonl"
+    out.write_text(text)
+    result = run("count", path, "--jsonl", out)
+    assert result.exit_code == BAD_INPUT
+    assert "not a line of results" in result.stderr
+    assert out.read_text() == text
+
+
+def test_options_that_do_not_go_together(tmp_path: Path) -> None:
+    path, out = example_path("two-vertex"), tmp_path / "o.jsonl"
+    for options in (
+        [path, path, "--certificate", "c.json"],
+        [path, "--jsonl", out, "--stream", "s.txt"],
+        [path, path, "--workers", 2],
+        [path, path, "--resume"],
+        [path, "--jobs", 2],
+        [path, "-", "--jsonl", out],
+        [path, "--jsonl", "-"],
+        [path, "--jsonl", path],
+        [path, path, "--dask", "tcp://h:1", "--jobs", 2],
+    ):
+        result = run("count", *options)
+        assert result.exit_code == USAGE
+        assert result.stdout == ""
+    assert not out.exists()
+    assert not Path("c.json").exists()
+
+
+def test_without_a_file_the_lines_are_printed() -> None:
+    names = ("two-vertex", "single-vertex-4")
+    paths = [example_path(name) for name in names]
+    result = run("count", *paths, "--json", "--jobs", 1)
+    assert [json.loads(line)["name"] for line in result.stdout.splitlines()] == [*map(str, paths)]
+    table = run("count", *paths, "--jobs", 1).stdout
+    assert "2 patterns: 2 proved, 0 undecided, 0 failed" in table
+
+
+def test_the_line_of_progress_tells_of_what_is_not_proved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, bad = tmp_path / "a.fold", tmp_path / "b.fold"
+    write_fold(scrambled(1, HEXAGON, 2, loose=True), path)
+    bad.write_text("")
+    seen = []
+    monkeypatch.setattr(Bar, "__call__", lambda self, *state: seen.append(state))
+    run("count", path, example_path("two-vertex"), bad, "--jobs", 1)
+    assert seen == [
+        ("counting", 1, 3, ", 1 undecided"),
+        ("counting", 2, 3, ", 1 undecided"),
+        ("counting", 3, 3, ", 1 undecided, 1 failed"),
+    ]
+    monkeypatch.undo()
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    with Bar("reading", delay=3600) as bar:
+        bar.show()
+        bar("counting", 412, 2000, ", 3 undecided")
+        assert bar.display is not None
+        assert bar.display.progress.tasks[0].fields["count"] == "412/2000, 3 undecided"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_an_interruption_leaves_a_file_that_goes_on(tmp_path: Path, sent: signal.Signals) -> None:
+    """No worker is left behind, although one is in the middle of a long count."""
+    paths, out = squares(tmp_path, 3), tmp_path / "o.jsonl"
+    long = tmp_path / "long.fold"
+    write_fold(random_square(16, seed=1), long)
+    given = ["count", *paths, long, long, long, "--jsonl", out, "--jobs", 2]
+    command = [sys.executable, "-m", "exactfold", *map(str, given)]
+    started = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    while not out.exists() or out.read_bytes().count(b"\n") < 3:
+        assert started.poll() is None
+        time.sleep(0.05)
+    started.send_signal(sent)
+    _, errors = started.communicate(timeout=10)  # also waits for every worker's end of the pipe
+    assert started.returncode == INTERRUPTED
+    assert errors == "exactfold: interrupted; the same command goes on\n"
+    kept = out.read_bytes()
+    result = run("count", *paths, "--jsonl", out, "--json")
+    assert (result.exit_code, json.loads(result.stdout)["skipped"]) == (PROVED, 3)
+    assert out.read_bytes() == kept
+
+
+def test_a_batch_in_one_process_is_a_pipeline(tmp_path: Path) -> None:
+    paths = squares(tmp_path, 2)
+    done = process("count", *paths, "--json", "--jobs", 2)
+    assert (done.returncode, done.stderr) == (PROVED, "")
+    assert len(done.stdout.splitlines()) == 2
+
+
+# --- Python --------------------------------------------------------------------------------------
+
+
+def test_count_many_in_this_process(tmp_path: Path) -> None:
+    (path,), bad = squares(tmp_path, 1), tmp_path / "bad.fold"
+    bad.write_text("x")
+    seen = []
+    given = [path, random_square(2, seed=1), bad, tmp_path / "none"]
+    found = list(count_many(given, progress=lambda *state: seen.append(state)))
+    assert [name for name, _ in found] == [str(path), "1", str(bad), str(tmp_path / "none")]
+    assert found[0][1].distinct == 8
+    assert found[1][1].distinct == 4
+    assert isinstance(found[2][1], NotJSONError)
+    assert isinstance(found[3][1], UnreadableFileError)
+    assert seen == [("counting", k, 4) for k in range(1, 5)]
+
+
+@pytest.mark.parametrize("wrong", [{"method": "guess"}, {"seed": -1}, {"jobs": 0}])
+def test_count_many_refuses_at_once(wrong: dict) -> None:
+    with pytest.raises(UsageError):
+        count_many([random_square(2, seed=1)], **wrong)
+
+
+def test_count_many_on_processes() -> None:
+    patterns = [random_square(3, seed=k) for k in range(4)]
+    found = dict(count_many(patterns, jobs=2))
+    for k, pattern in enumerate(patterns):
+        expected = count_branches(pattern)
+        assert found[str(k)].pattern == pattern
+        assert found[str(k)].distinct == expected.distinct
+        signs = [branch.sign_text for branch in found[str(k)].branches]
+        assert signs == [branch.sign_text for branch in expected.branches]
+
+
+def square_or_die(number: int) -> int:
+    if number == 13:
+        os._exit(9)
+    return number**2
+
+
+def test_a_process_that_dies_takes_no_other_job_with_it() -> None:
+    found = dict(process_pool(2)(square_or_die, range(20)))
+    assert isinstance(found.pop(13), WorkerDiedError)
+    assert found == {k: k**2 for k in range(20) if k != 13}
+
+
+def test_a_dead_process_is_a_line_that_is_tried_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (path,), out = squares(tmp_path, 1), tmp_path / "o.jsonl"
+    with monkeypatch.context() as patch:
+        patch.setattr(batch, "line_of", lambda job: WorkerDiedError("it died"))
+        result = run("count", path, "--jsonl", out, "--json")
+    assert result.exit_code == DEFECT
+    assert lines(out)[0]["error"] == {"class": "WorkerDiedError", "message": "it died"}
+    again = run("count", path, "--jsonl", out, "--json")
+    assert (again.exit_code, json.loads(again.stdout)["skipped"]) == (PROVED, 0)
+    assert [d["status"] for d in lines(out)] == ["failed", "proved"]
+
+
+def test_on_dask(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    patterns = [random_square(2, seed=k) for k in range(5)]
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
+        ) as cluster,
+        dask_pool(cluster.scheduler_address) as pool,
+    ):
+        found = dict(count_many(patterns, engine=pool))
+    assert {name: result.distinct for name, result in found.items()} == {
+        str(k): 4 for k in range(5)
+    }

@@ -1,0 +1,98 @@
+"""Certificates written by `exactfold count`, and what `exactfold check` says of them."""
+
+import json
+
+import pytest
+from running import BAD_INPUT, INVALID, PROVED, error_class, run
+
+from exactfold import (
+    EXAMPLES,
+    example_path,
+)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_certificate_is_written_and_valid(tmp_path, name):
+    out = tmp_path / "c.json"
+    counted = run("count", example_path(name), "--json", "--certificate", out)
+    assert counted.exit_code == PROVED
+    assert json.loads(counted.stdout)["certificate"] == str(out)
+    checked = run("check", out)
+    assert checked.exit_code == PROVED
+    assert checked.stdout.startswith("VALID: ")
+
+
+def test_check_json(certificate):
+    data = json.loads(run("check", certificate, "--json").stdout)
+    assert data["valid"] is True
+    assert data["claims"]["distinct"] == 4
+
+
+def test_tampered_certificate_is_invalid(tmp_path, certificate):
+    document = json.loads(certificate.read_text())
+    document["claims"]["distinct"] = 5
+    bad = tmp_path / "bad.json"
+    bad.write_text(json.dumps(document))
+    result = run("check", bad)
+    assert result.exit_code == INVALID
+    assert result.stdout.startswith("INVALID: claim distinct")
+    as_json = run("check", bad, "--json")
+    assert as_json.exit_code == INVALID
+    assert json.loads(as_json.stdout)["valid"] is False
+
+
+@pytest.mark.parametrize("keep", [0, 1, 100, -2])
+def test_truncated_certificate_is_bad_input(tmp_path, certificate, keep):
+    bad = tmp_path / "bad.json"
+    bad.write_text(certificate.read_text()[:keep])
+    result = run("check", bad)
+    assert result.exit_code == BAD_INPUT
+    assert result.stdout == ""
+    assert error_class(run("check", bad, "--json")) == "CertificateFormatError"
+
+
+@pytest.mark.parametrize(
+    ("change", "culprit"),
+    [
+        ({"format": "other"}, "format"),
+        ({"version": 3}, "version 3"),
+        ({"version": True}, "version True"),
+        ({"extra": 1}, "keys"),
+        ({"pattern": 0.5}, "floats"),
+    ],
+)
+def test_unknown_certificate_is_bad_input(tmp_path, certificate, change, culprit):
+    bad = tmp_path / "bad.json"
+    bad.write_text(json.dumps(json.loads(certificate.read_text()) | change))
+    result = run("check", bad)
+    assert result.exit_code == BAD_INPUT
+    assert error_class(run("check", bad, "--json")) == "CertificateFormatError"
+    assert culprit in result.stderr
+
+
+def test_check_of_undecodable_bytes(tmp_path):
+    bad = tmp_path / "bad.json"
+    bad.write_bytes(b"\xff\xfe\x00")
+    result = run("check", bad)
+    assert result.exit_code == BAD_INPUT
+    assert error_class(run("check", bad, "--json")) == "CertificateFormatError"
+
+
+def test_check_of_a_missing_file(tmp_path):
+    result = run("check", tmp_path / "none.json")
+    assert result.exit_code == BAD_INPUT
+    assert "cannot read" in result.stderr
+    assert "none.json" in result.stderr
+
+
+@pytest.mark.parametrize("place", ["missing/out.json", "folder", "file/out.json"])
+def test_unwritable_certificate(tmp_path, two_vertex, place):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file").write_text("kept")
+    before = sorted(p.name for p in tmp_path.rglob("*"))
+    result = run("count", two_vertex, "--json", "--certificate", tmp_path / place)
+    assert result.exit_code == BAD_INPUT
+    assert error_class(result) == "UnwritableFileError"
+    assert str(tmp_path / place) in result.stderr
+    assert sorted(p.name for p in tmp_path.rglob("*")) == before
+    assert (tmp_path / "file").read_text() == "kept"

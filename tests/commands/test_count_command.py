@@ -1,0 +1,226 @@
+"""`exactfold count` of one pattern: exit codes, JSON with exactly the documented keys, tables."""
+
+import json
+import re
+from fractions import Fraction
+
+import pytest
+from files import CORNERS, FACES, written
+from running import (
+    PROVED,
+    UNDECIDED,
+    run,
+)
+from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
+
+from exactfold import (
+    EXAMPLES,
+    count_branches,
+    example_path,
+    random_square,
+    read_fold,
+    write_fold,
+)
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.families import FAMILIES
+
+PATTERN_KEYS = {
+    *("name", "interior", "boundary", "folds", "degrees_of_freedom", "sha256", "snapped"),
+    *("vertices", "faces"),
+}
+COUNT_KEYS = {
+    *("pattern", "status", "method", "distinct", "with_multiplicity", "real", "nonreal"),
+    *("true_branches", "certificate", "seconds", "branches", "format", "version", "by"),
+}
+EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree"}
+BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
+
+
+def test_count_prints_a_table_and_exits_0(two_vertex):
+    result = run("count", two_vertex)
+    assert result.exit_code == PROVED
+    text = " ".join(result.stdout.split())
+    assert re.match(
+        r"4 ways to start folding - PROVED \(\d+\.\d\d s\); all real, each counted once, every one "
+        "continues to a true motion way 4 5 folds 1 down down VVVVVVM 2 down up VVMMVVM",
+        text,
+    )
+    for word in ("Bezout", "nappe", "chart", "sha256", "distinct", "sign vector"):
+        assert word not in text
+    assert result.stderr == ""
+
+
+def test_verbose_also_says_how(two_vertex):
+    text = " ".join(run("count", two_vertex, "--verbose").stdout.split())
+    for words in (
+        "by refined Bezout there are no others",
+        "4 distinct, 4 with multiplicity; 4 real, 0 not real",
+        "2 pairs of opposite ones, 2 branches each",
+        "method Newton, one start per sign vector",
+        read_fold(two_vertex).sha256,
+    ):
+        assert words in text
+    assert "nappe" not in text
+
+
+@pytest.mark.parametrize(
+    ("pattern", "said"),
+    [
+        (scrambled(1, TRIANGLE, 3), r"0 ways to start folding - PROVED \(.*\); the sheet is rigid"),
+        (
+            with_point(CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), 0, (1, 1, 1)),
+            r"1 way to start folding - PROVED \(.*\); it is real, 2 with multiplicity, as flat "
+            "vertices count double, it continues to a true motion",
+        ),
+        (
+            FAMILIES["waterbomb"](),
+            r"infinitely many ways to start folding - PROVED \(.*\); they form one family of "
+            "dimension 3",
+        ),
+        (
+            FAMILIES["flat-vertex"](),
+            r"3 ways to start folding - PROVED \(.*\); all real, 4 with multiplicity, as flat "
+            "vertices count double, not decided whether each continues to a true motion",
+        ),
+        (
+            scrambled(1, HEXAGON, 2, loose=True),
+            r"the number of ways to start folding is UNDECIDED \(.*\): with D = 3 branches are no",
+        ),
+    ],
+    ids=["none", "one", "infinitely many", "flat", "undecided"],
+)
+def test_the_answer_in_plain_words(tmp_path, pattern, said):
+    path = tmp_path / "p.fold"
+    write_fold(pattern, path)
+    for more in ((), ("--verbose",)):
+        assert re.match(said, " ".join(run("count", path, *more).stdout.split()))
+
+
+def test_one_way_has_no_plural(tmp_path):
+    path = tmp_path / "p.fold"
+    write_fold(with_point(CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), 0, (1, 1, 1)), path)
+    text = run("count", path, "--verbose").stdout + run("info", path, "--exact").stdout
+    assert not re.search(
+        r"(?<![\d.-])1 (\w+ )?(pairs|vertices|branches|solutions|ways|folds)", text
+    )
+
+
+def test_many_vertices_are_listed_and_not_in_columns(tmp_path):
+    path = tmp_path / "p.fold"
+    write_fold(random_square(9, seed=1), path)
+    head, first, second = run("count", path).stdout.splitlines()[3:6]
+    assert head.split() == ["way", "vertices", "up", "folds"]
+    assert first.split()[:2] == ["1", "none"]
+    assert second.split()[:2] == ["2", str(read_fold(path).interior[-1])]
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_count_json_has_the_documented_keys(name):
+    path = example_path(name)
+    result = run("count", path, "--json")
+    assert result.exit_code == PROVED
+    assert result.stdout.count("\n") == 1
+    data = json.loads(result.stdout)
+    assert COUNT_KEYS <= set(data) <= COUNT_KEYS | EXTRA_KEYS
+    assert set(data["pattern"]) == PATTERN_KEYS
+    pattern = read_fold(path)
+    assert data["pattern"]["sha256"] == pattern.sha256
+    assert data["pattern"]["snapped"] == "0"
+    assert data["status"] == "proved"
+    assert data["true_branches"] in ("proved", "undecided")
+    assert data["certificate"] is None
+    vectors = []
+    for branch in data["branches"]:
+        assert set(branch) == BRANCH_KEYS
+        assert list(branch["vertex_signs"]) == [str(v) for v in pattern.interior]
+        assert set(branch["vertex_signs"].values()) <= {1, -1, 0}
+        assert set(branch["assignment"]) == {f"{i}-{j}" for i, j in pattern.folds}
+        assert set(branch["assignment"].values()) <= set("MVF")
+        assert set(branch["heights"]) == {str(v) for v in range(len(pattern.vertices))}
+        assert list(branch["heights"].values()).count(["0", "0"]) >= 3
+        vectors.append(list(branch["vertex_signs"].values()))
+    assert vectors == sorted(vectors)
+
+
+def test_count_json_is_exact(two_vertex):
+    data = json.loads(run("count", two_vertex, "--json").stdout)
+    pattern = read_fold(two_vertex)
+    for branch, expected in zip(data["branches"], count_branches(pattern).branches, strict=True):
+        for v, ends in branch["heights"].items():
+            assert tuple(map(Fraction, ends)) == expected.heights[int(v)]
+
+
+@pytest.mark.parametrize("method", ["auto", "nappes", "popping", "homotopy", "groebner"])
+def test_methods(two_vertex, method):
+    data = json.loads(run("count", two_vertex, "--json", "--method", method).stdout)
+    assert data["distinct"] == 4
+    assert data["method"] == ("nappes" if method == "auto" else method)
+
+
+def test_rigid_sheet_has_no_branches(tmp_path):
+    path = tmp_path / "triangle.fold"
+    write_fold(scrambled(1, TRIANGLE, 3), path)
+    result = run("count", path, "--json")
+    assert result.exit_code == PROVED
+    data = json.loads(result.stdout)
+    assert (data["distinct"], data["branches"]) == (0, [])
+
+
+def test_undecided_exits_4(tmp_path):
+    path, out = tmp_path / "hexagon.fold", tmp_path / "out.json"
+    write_fold(scrambled(1, HEXAGON, 2, loose=True), path)
+    result = run("count", path, "--json", "--certificate", out)
+    assert result.exit_code == UNDECIDED
+    data = json.loads(result.stdout)
+    assert data["status"] == "undecided"
+    assert data["distinct"] is None
+    assert data["certificate"] is None
+    assert "D = 3" in data["reason"]
+    assert "no certificate was written" in result.stderr
+    assert not out.exists()
+
+
+def test_undecided_table_lists_what_is_open(tmp_path, monkeypatch):
+    path = tmp_path / "flat.fold"
+    write_fold(FAMILIES["flat-vertex"](), path)
+    monkeypatch.setattr("exactfold.count.attempt.flat_vertices", lambda chart, points: iter(()))
+    result = run("count", path, "--method", "popping")
+    assert result.exit_code == UNDECIDED
+    assert "UNDECIDED" in result.stdout
+    assert "Open" in result.stdout
+    assert "no box around the candidate" in result.stdout
+
+
+def test_long_tables_are_cut_unless_all_is_asked_for():
+    short = run("count", example_path("random-8")).stdout
+    long = run("count", example_path("random-8"), "--all").stdout
+    assert "more (--all shows them)" in short
+    assert "--all" not in long
+    assert len(long.splitlines()) > 256 > len(short.splitlines())
+
+
+def test_table_tells_of_rigid_vertices_and_the_certificate(tmp_path):
+    path, out = tmp_path / "nested.fold", tmp_path / "nested.json"
+    write_fold(nested_triangles(), path)
+    result = run("count", path, "--certificate", out)
+    assert "3 vertices in triangulated triangles stay flat" in result.stdout
+    assert "nested.json" in result.stdout.replace("\n", "").replace(" ", "")
+
+
+def test_snap_records_the_move(tmp_path):
+    document = {"vertices_coords": [*CORNERS[:4], [0.5001, 0.25]], "faces_vertices": FACES}
+    path = written(tmp_path, document)
+    plain = json.loads(run("count", path, "--json").stdout)
+    snapped = json.loads(run("count", path, "--json", "--snap", 100).stdout)
+    assert plain["pattern"]["snapped"] == "0"
+    assert snapped["pattern"]["snapped"] == "1/10000"
+    exact = CreasePattern([*CORNERS[:4], ("1/2", "1/4")], FACES)
+    assert snapped["pattern"]["sha256"] == exact.sha256 != plain["pattern"]["sha256"]
+    assert "moved by up to 0.0001" in run("count", path, "--snap", 100).stdout
+
+
+def test_factors_of_the_branch_polynomial_are_reported(two_vertex):
+    result = run("count", two_vertex, "--method", "groebner", "--verbose")
+    assert "irreducible over Q of degree 4" in result.stdout
+    result = run("count", example_path("flat-vertex"), "--method", "groebner", "--verbose")
+    assert "factors of degrees 1 2" in result.stdout

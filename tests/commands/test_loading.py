@@ -1,0 +1,51 @@
+"""What commands load, and public names."""
+
+import subprocess
+import sys
+
+import pytest
+
+import exactfold
+from exactfold import (
+    cli,
+)
+
+HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "idle"),
+    [
+        (["--help"], ("numpy", "flint", "multiprocessing", *HEAVY)),
+        (["random", "--interior", "3", "--seed", "1"], ("numpy", "flint", "rich", *HEAVY)),
+        (["info"], ("numpy", "multiprocessing", *HEAVY)),
+        (["branch", "--up", "4"], ("flint", "multiprocessing", "exactfold.algebra", *HEAVY)),
+        (["count"], HEAVY),
+    ],
+    ids=lambda value: value[0],
+)
+def test_commands_load_what_they_need(two_vertex, arguments, idle):
+    script = (
+        "import sys\n"
+        "from exactfold.cli import main\n"
+        "try: main()\n"
+        "except SystemExit as end: code = end.code\n"
+        f"print(code, *(m for m in {idle!r} if m in sys.modules), file=sys.stderr)"
+    )
+    pattern = [] if arguments[0] in ("--help", "random") else [str(two_vertex)]
+    command = [sys.executable, "-c", script, *arguments, *pattern]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.stderr == "0\n"
+    assert result.stdout != ""
+
+
+def test_public_names():
+    assert set(exactfold._HOME) < set(exactfold.__all__) <= set(dir(exactfold))
+    for name in exactfold.__all__:
+        assert getattr(exactfold, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'brunch'"):
+        exactfold.brunch  # noqa: B018
+
+
+def test_methods_of_the_command_line():
+    assert tuple(method.value for method in cli.Method) == exactfold.METHODS

@@ -1,0 +1,115 @@
+"""Shipped patterns by name, what the shell completes, and what the help shows of flags."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from running import BAD_INPUT, PROVED, run
+
+from exactfold import EXAMPLES, example_path
+
+COMMANDS = ("count", "check", "branch", "random", "info", "examples")
+
+
+@pytest.mark.parametrize("command", [[], *([name] for name in COMMANDS)])
+def test_flags_are_shown_without_a_value(command: list[str]) -> None:
+    text = run(*command, "--help").stdout
+    assert "--help" in text
+    assert "bool" not in text
+    assert "--no-" not in text
+
+
+def test_examples_are_listed_with_a_line_each() -> None:
+    text = run("examples").stdout
+    assert all(name in text for name in EXAMPLES)
+    assert "exactfold count two-vertex" in text
+    rows = json.loads(run("examples", "--json").stdout)["examples"]
+    assert [row["name"] for row in rows] == list(EXAMPLES)
+    for row in rows:
+        assert Path(row["path"]) == example_path(row["name"])
+        assert row["description"].endswith(".")
+
+
+def test_names_stand_for_files_in_every_directory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for command in (["count"], ["info"], ["branch", "--up", "4"], ["count", "--stream", "s.txt"]):
+        result = run(*command, "two-vertex", "--json")
+        assert result.exit_code == PROVED
+        assert json.loads(result.stdout)["pattern"]["name"] == "two-vertex"
+    many = run("count", "two-vertex", "flat-vertex", "--jobs", 1, "--json")
+    assert [json.loads(line)["name"] for line in many.stdout.splitlines()] == [
+        "two-vertex",
+        "flat-vertex",
+    ]
+
+
+def test_a_file_of_that_name_comes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("two-vertex").mkdir()  # a folder is no pattern
+    assert json.loads(run("count", "two-vertex", "--json").stdout)["distinct"] == 4
+    Path("two-vertex").rmdir()
+    shutil.copy(example_path("flat-vertex"), "two-vertex")
+    assert json.loads(run("count", "two-vertex", "--json").stdout)["distinct"] == 3
+
+
+def test_a_name_that_is_neither_gets_the_names() -> None:
+    for command in (["count"], ["info"], ["branch", "--up", "4"], ["count", "two-vertex"]):
+        result = run(*command, "two-vertx")
+        assert result.exit_code == BAD_INPUT
+        said = " ".join((result.stderr + result.stdout).split())
+        assert "two-vertx is neither a file nor a shipped pattern" in said
+        assert all(name in said for name in EXAMPLES)
+    assert "No such file" in run("count", "x.fold").stderr
+    assert "No such file" in run("count", "folder/two-vertex").stderr
+
+
+def completed(line: str, folder: Path) -> list[str]:
+    words = line.split()
+    environment = {
+        **os.environ,
+        "_EXACTFOLD_COMPLETE": "complete_bash",
+        "COMP_WORDS": line,
+        "COMP_CWORD": str(len(words) - (not line.endswith(" "))),
+    }
+    script = "from exactfold.cli import app; app(prog_name='exactfold')"
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env=environment,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stderr == ""
+    return done.stdout.split()
+
+
+def test_the_shell_completes_names_files_and_methods(tmp_path: Path) -> None:
+    (tmp_path / "two.fold").touch()
+    (tmp_path / "two.txt").touch()
+    (tmp_path / "twofold").mkdir()
+    (tmp_path / "twofold" / "a.fold").touch()
+    assert completed("exactfold count two", tmp_path) == ["two-vertex", "two.fold", "twofold/"]
+    assert completed("exactfold info twofold/", tmp_path) == ["twofold/a.fold"]
+    assert completed("exactfold count none/", tmp_path) == []
+    assert set(completed("exactfold info ", tmp_path)) >= {*EXAMPLES, "two.fold"}
+    assert completed("exactfold count --method ho", tmp_path) == ["homotopy"]
+    assert completed("exactfold ex", tmp_path) == ["examples"]
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_script_for_every_shell(shell: str) -> None:
+    environment = {**os.environ, "_EXACTFOLD_COMPLETE": f"source_{shell}"}
+    script = "from exactfold.cli import app; app(prog_name='exactfold')"
+    done = subprocess.run(
+        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=False
+    )
+    assert "_EXACTFOLD_COMPLETE=complete_" in done.stdout

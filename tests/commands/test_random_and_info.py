@@ -1,0 +1,91 @@
+"""`exactfold random` and `exactfold info`."""
+
+import json
+
+import pytest
+from running import (
+    BAD_INPUT,
+    run,
+)
+from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled
+
+from exactfold import (
+    EXAMPLES,
+    example_path,
+    random_square,
+    read_fold,
+    write_fold,
+)
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.families import FAMILIES
+
+
+def test_random_is_deterministic():
+    first, again, other = (
+        run("random", "--interior", 5, "--seed", seed).stdout for seed in (3, 3, 4)
+    )
+    assert first == again != other
+
+
+def test_random_then_count(tmp_path):
+    path = tmp_path / "r.fold"
+    result = run("random", "--interior", 4, "--seed", 11, "--denominator", 64, "-o", path)
+    assert result.exit_code == 0
+    assert result.stdout == ""
+    assert read_fold(path) == random_square(4, 11, 64)
+    assert run("random", "--interior", 4, "--seed", 11, "--denominator", 64).stdout == (
+        path.read_text()
+    )
+    data = json.loads(run("count", path, "--json").stdout)
+    assert data["distinct"] == 16
+    assert data["pattern"]["sha256"] == random_square(4, 11, 64).sha256
+
+
+def test_random_to_an_unwritable_path(tmp_path):
+    result = run("random", "--interior", 2, "--seed", 1, "-o", tmp_path / "no" / "r.fold")
+    assert result.exit_code == BAD_INPUT
+    assert "exactfold: cannot write" in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_info_agrees_with_count(name):
+    data = json.loads(run("info", example_path(name), "--json").stdout)
+    counted = json.loads(run("count", example_path(name), "--json").stdout)
+    for key in ("interior", "boundary", "folds", "degrees_of_freedom", "sha256"):
+        assert data["pattern"][key] == counted["pattern"][key]
+    table = run("info", example_path(name))
+    assert table.exit_code == 0
+    numbers = data["pattern"]
+    assert f"{numbers['interior']} interior, {numbers['boundary']} boundary" in table.stdout
+
+
+@pytest.mark.parametrize(
+    ("pattern", "expected"),
+    [
+        (CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), "nothing to count"),
+        (scrambled(1, TRIANGLE, 2), "rigid: 0 ways to start folding"),
+        (
+            nested_triangles(),
+            "2^3 ways to start folding, fewer if a vertex is flat on some of them; with "
+            "multiplicity 2^6",
+        ),
+        (
+            FAMILIES["waterbomb"](),
+            "one family of ways to start folding, of dimension 3 (single",
+        ),
+        (scrambled(1, HEXAGON, 2, loose=True), "undecided: families of dimension 3"),
+    ],
+)
+def test_info_says_what_to_expect(tmp_path, pattern, expected):
+    path = tmp_path / "p.fold"
+    write_fold(pattern, path)
+    assert expected in json.loads(run("info", path, "--json").stdout)["expected"]
+    assert run("info", path).exit_code == 0
+
+
+def test_info_shows_forms_and_digests_when_asked(two_vertex):
+    plain, exact = run("info", two_vertex).stdout, run("info", two_vertex, "--exact").stdout
+    for words in ("inertia", "self stresses", "rank of rigidity matrix", "sha256"):
+        assert words in exact
+        assert words not in plain

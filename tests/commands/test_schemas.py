@@ -1,0 +1,148 @@
+"""Every JSON object printed is what its schema says, and stands alone."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from files import written
+from jsonschema import Draft202012Validator, ValidationError
+from running import PROVED, UNDECIDED, run
+from sheets import HEXAGON, TRIANGLE, nested_triangles, scrambled
+
+from exactfold import (
+    EXAMPLES,
+    METHODS,
+    CreasePattern,
+    curvature_form,
+    example_path,
+    read_fold,
+    schema,
+    write_fold,
+)
+from exactfold.errors import UsageError
+from exactfold.schemas import VERSIONS
+
+LARGE = ("hypar-2", "random-8")
+"""Too large for the exact engine within a test."""
+
+
+def valid(data: dict[str, Any], kind: str) -> dict[str, Any]:
+    Draft202012Validator(schema(kind)).validate(data)
+    return data
+
+
+def printed(kind: str, *arguments: object) -> dict[str, Any]:
+    (line,) = run(*arguments, "--json").stdout.splitlines()
+    return valid(json.loads(line), kind)
+
+
+@pytest.mark.parametrize("kind", VERSIONS)
+def test_schemas_are_schemas(kind: str) -> None:
+    Draft202012Validator.check_schema(schema(kind))
+    assert schema(kind)["$id"] == f"urn:exactfold:schema:{kind}"
+
+
+def test_a_kind_that_there_is_not() -> None:
+    with pytest.raises(UsageError, match="count-stream"):
+        schema("fold")
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_counts(name: str, method: str) -> None:
+    if name in LARGE and method == "groebner":
+        method = "homotopy"
+    path = example_path(name)
+    data = printed("count", "count", path, "--method", method)
+    assert (data["status"], data["by"]) == ("proved", "enumeration")
+    assert data["pattern"]["name"] == str(path)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_other_command(name: str, tmp_path: Path) -> None:
+    path, out, lines = example_path(name), tmp_path / "c.json", tmp_path / "o.jsonl"
+    printed("info", "info", path)
+    printed("count", "count", path, "--certificate", out)
+    assert printed("check", "check", out)["name"] == str(out)
+    pattern = read_fold(path)
+    up = ",".join(map(str, pattern.foldable_vertices))
+    if pattern.Ve == 4:
+        printed("count-stream", "count", path, "--stream", tmp_path / "s.txt")
+        printed("branch", "branch", path, "--up", up)
+        many = run(
+            "branch", path, "--up", up, "--neighbours", pattern.foldable_vertices[0], "--json"
+        )
+        assert [valid(json.loads(line), "branch") for line in many.stdout.splitlines()] != []
+    printed("batch", "count", path, tmp_path / "none", "--jobs", 1, "--jsonl", lines)
+    counted, failed = (valid(json.loads(x), "batch-line") for x in lines.read_text().splitlines())
+    assert (counted["error"], failed["result"]) == (None, None)
+
+
+@pytest.mark.parametrize(
+    "pattern",
+    [scrambled(1, HEXAGON, 2, loose=True), scrambled(1, TRIANGLE, 3), nested_triangles()],
+    ids=["undecided", "rigid", "nested"],
+)
+def test_other_counts(tmp_path: Path, pattern: CreasePattern) -> None:
+    write_fold(pattern, tmp_path / "p.fold")
+    data = printed("count", "count", tmp_path / "p.fold")
+    assert data["by"] == ("enumeration" if data["status"] == "proved" else None)
+    printed("info", "info", tmp_path / "p.fold")
+
+
+def test_errors_and_invalid_certificates(tmp_path: Path) -> None:
+    out = tmp_path / "c.json"
+    printed("error", "count", tmp_path / "none.fold")
+    printed("examples", "examples")
+    printed("error", "info", written(tmp_path, "{"))
+    assert run("count", example_path("two-vertex"), "--certificate", out).exit_code == PROVED
+    out.write_text(out.read_text().replace('"distinct":4', '"distinct":5'))
+    data = printed("check", "check", out)
+    assert (data["valid"], data["claims"]) == (False, {})
+
+
+@pytest.mark.parametrize("name", ["two-vertex", "h1-4"])
+def test_a_count_stands_alone(name: str) -> None:
+    """The pattern and the curvature of every branch, from what was printed and nothing else."""
+    data = printed("count", "count", example_path(name))
+    pattern = CreasePattern(data["pattern"]["vertices"], data["pattern"]["faces"])
+    assert pattern == read_fold(example_path(name))
+    for branch in data["branches"]:
+        ends = {int(v): map(Fraction, pair) for v, pair in branch["heights"].items()}
+        heights = {v: sum(pair) / 2 for v, pair in ends.items()}
+        for v in pattern.interior:
+            assert abs(curvature_form(pattern, v)(heights)) < Fraction(1, 10**12)
+
+
+def test_schemas_refuse_what_is_not_documented() -> None:
+    data = printed("count", "count", example_path("two-vertex"))
+    for key in data:
+        with pytest.raises(ValidationError):
+            valid({k: v for k, v in data.items() if k != key}, "count")
+    for wrong in (
+        {"more": 1},
+        {"distinct": None},
+        {"distinct": 4.5},
+        {"version": 2},
+        {"format": "exactfold branch"},
+        {"by": None},
+        {"status": "undecided"},
+        {"branches": [{**data["branches"][0], "heights": {"0": [0.5, 0.5]}}]},
+        {"pattern": {**data["pattern"], "vertices": [[0, 0], [1, 0], [0, 1]]}},
+    ):
+        with pytest.raises(ValidationError):
+            valid({**data, **wrong}, "count")
+    with pytest.raises(ValidationError):
+        valid(data, "count-stream")
+
+
+def test_an_undecided_count_has_no_numbers(tmp_path: Path) -> None:
+    write_fold(scrambled(1, HEXAGON, 2, loose=True), tmp_path / "p.fold")
+    result = run("count", tmp_path / "p.fold", "--json")
+    assert result.exit_code == UNDECIDED
+    with pytest.raises(ValidationError):
+        valid(json.loads(result.stdout) | {"distinct": 4}, "count")
