@@ -20,7 +20,7 @@ from exactfold import (
     families,
 )
 from exactfold.exact.linalg import inertia
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Ruling, Script, run
 
 NAME = "branch_counts"

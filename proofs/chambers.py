@@ -23,7 +23,7 @@ from exactfold.branches.functionals import integer_row
 from exactfold.branches.roots import BoxRoot
 from exactfold.errors import NotApplicableError
 from exactfold.exact.linalg import Inertia, from_fmpq, inertia, to_flint
-from exactfold.rigidity.timelike import vertex_sign_functional
+from exactfold.rigidity.functionals import vertex_sign_functional
 from exactfold.solve.homotopy import homotopy
 from exactfold.verdict import PROVED, Verdict
 

@@ -12,7 +12,7 @@ if not __package__:  # run as a file
 import sympy
 
 from exactfold import BranchSystem, CreasePattern, count_branches, families
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.mountain_valley import half_bend, sector
 

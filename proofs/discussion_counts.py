@@ -24,7 +24,7 @@ from exactfold import (
     random_square,
 )
 from exactfold.exact.linalg import from_fmpq, inertia, nullspace, rank, to_flint
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.vertex_forms import star
 

@@ -30,7 +30,7 @@ if not __package__:  # run as a file
 import sympy
 
 from exactfold import CreasePattern, curvature_form, families
-from exactfold.rigidity.timelike import fold_functional, vertex_sign_functional
+from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
 from proofs.framework import Proof, Ruling, Script, run
 
 NAME = "mountain_valley"

@@ -31,7 +31,7 @@ from exactfold import (
 from exactfold.branches.branch import Branch
 from exactfold.branches.result import BranchCount
 from exactfold.problem.perturbed import perturbed
-from exactfold.rigidity.timelike import vertex_sign_functional
+from exactfold.rigidity.functionals import vertex_sign_functional
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.h1_triangulations import is_h1
 

@@ -13,7 +13,7 @@ import sympy
 
 from exactfold import CreasePattern, curvature_form, families, rigidity_matrix
 from exactfold.exact.linalg import rank
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.length_equations import CROSS, Heights, is_solution
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 from exactfold import CreasePattern
 from exactfold.exact.linalg import from_fmpq, to_flint
 from exactfold.pattern.crease_pattern import Edge, Point
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 
 Weights = Mapping[int, Mapping[int, Fraction]]
 """For each interior vertex positive weights of its neighbours, of sum 1."""

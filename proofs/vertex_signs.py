@@ -14,7 +14,7 @@ if not __package__:  # run as a file
 from exactfold import CreasePattern, definite_stress, random_square
 from exactfold.exact.linalg import rank
 from exactfold.pattern.families import flat_octahedron_in_square
-from exactfold.rigidity.timelike import vertex_sign_functional
+from exactfold.rigidity.functionals import vertex_sign_functional
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.patterns import SPIKY
 from proofs.vertex_forms import cot, csc, dot, star, symbols, unit

@@ -39,7 +39,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES, hypar, two_vertex
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 
 SHEETS = {
     **{name: build() for name, build in FAMILIES.items()},

@@ -79,9 +79,11 @@ def split_form(pattern: PatternLike, vertex: int) -> Splitting:
     pattern = as_pattern(pattern)
     discriminant = area_product(pattern, vertex)
     form = curvature_form(pattern, vertex)
-    (a, left), (b, right) = _two_squares(form)
-    if a < 0:
-        (a, left), (b, right) = (b, right), (a, left)
+    squares = form.diagonalised  # K_v = a left^2 + b right^2, as the form has rank two
+    (b, right), (a, left) = sorted(
+        (weight, dict(zip(form.labels, row, strict=True)))
+        for weight, row in zip(squares.weights, squares.rows, strict=True)
+    )
     ratio = -b / a
     whole, root = _without_squares(ratio.numerator * ratio.denominator)
     factor = Fraction(root, ratio.denominator)  # ratio = whole factor^2
@@ -90,27 +92,6 @@ def split_form(pattern: PatternLike, vertex: int) -> Splitting:
     if _is_square(discriminant) != found.is_rational:
         raise ArithmeticError(f"areas and form disagree at vertex {vertex}")
     return found
-
-
-def _two_squares(form: QuadraticForm) -> list[tuple[Fraction, dict[int, Fraction]]]:
-    """Lagrange's reduction of a form of rank two: (a, l) and (b, m) with K = a l^2 + b m^2."""
-    rest = [list(row) for row in form.matrix]
-    size = len(rest)
-    squares: list[tuple[Fraction, dict[int, Fraction]]] = []
-    while len(squares) < 2:
-        k = next((i for i in range(size) if rest[i][i]), None)
-        if k is None:  # 2 c x_i x_j + ...: go on along x_i + x_j
-            i, j = next((i, j) for i in range(size) for j in range(size) if rest[i][j])
-            direction = {i: Fraction(1), j: Fraction(1)}
-        else:
-            direction = {k: Fraction(1)}
-        row = [
-            sum((c * rest[i][j] for i, c in direction.items()), Fraction(0)) for j in range(size)
-        ]
-        value = sum((c * row[i] for i, c in direction.items()), Fraction(0))
-        squares.append((1 / value, dict(zip(form.labels, row, strict=True))))
-        rest = [[rest[i][j] - row[i] * row[j] / value for j in range(size)] for i in range(size)]
-    return squares
 
 
 def _check(form: QuadraticForm, found: Splitting) -> None:

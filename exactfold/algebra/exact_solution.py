@@ -15,10 +15,10 @@ from exactfold.errors import ParametrisationError
 from exactfold.exact.divisibility import are_multiples, is_squarefree
 from exactfold.exact.factor_degrees import irreducibility_primes
 from exactfold.exact.numbers import over_common_denominator
+from exactfold.exact.real_roots import isolate_real_roots
 from exactfold.exact.univariate import (
     Interval,
     from_rational_poly,
-    isolate_real_roots,
     quotients_on_interval,
     to_rational_poly,
 )
@@ -211,16 +211,30 @@ class RootClass:
         try:
             while True:
                 ctx.prec = precision + modulus.height_bits()
-                roots = [root for root, _ in modulus.complex_roots()]
+                roots = self._root_balls(precision)
                 points = [self._approx_point(root) for root in roots]
                 found = [point for point in points if point is not None]
                 if len(found) == len(points):
                     return np.array(found, dtype=np.complex128).reshape(self.degree, -1)
                 precision *= 2
-                if precision > _MOST_BITS:
+                if precision > _MOST_BITS + modulus.height_bits():
                     raise OverflowError("zeros too close or too far off for floating point")
         finally:
             ctx.prec = before
+
+    def _root_balls(self, bits: int) -> list[acb]:
+        """All roots t: the real ones from `real_roots`, the others, if there are any, from FLINT.
+
+        FLINT finds all of them, but takes up to minutes where some are very close.
+        """
+        real = [
+            acb(arb(fmpq(a.numerator, a.denominator)).union(fmpq(b.numerator, b.denominator)))
+            for a, b in self.real_roots(bits)
+        ]
+        if len(real) == self.degree:
+            return real
+        found = (root for root, _ in fmpz_poly(list(self.polynomial)).complex_roots())
+        return [*real, *(root for root in found if root.imag != 0)]
 
     def _approx_point(self, root: acb) -> list[complex] | None:
         """Coordinates at one root by ball arithmetic; None if the balls are too wide."""

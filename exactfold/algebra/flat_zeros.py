@@ -22,7 +22,7 @@ from exactfold.errors import ParametrisationError
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 from exactfold.solve.near_zeros import BoolArray, FloatArray, near_zeros
 
 Row = tuple[Fraction, ...]

@@ -10,7 +10,7 @@ from functools import cached_property
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.problem.branch_system import Chart
-from exactfold.rigidity.timelike import (
+from exactfold.rigidity.functionals import (
     fold_functional,
     saddle_functional,
     vertex_sign_functional,

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.near_degenerate import near_degenerate
 
 
 def warnings(pattern: CreasePattern) -> list[str]:
-    """Sentences for stderr, one for each way in which the numbers of a pattern mislead.
-
-    HOOK: `near_degenerate` (vertices that are almost flat, collinear creases that are almost so)
-    is to be called here once `exactfold.pattern` has it, each finding as one sentence that names
-    the vertex, the nearest pattern with smaller denominators, and --snap.
-    """
-    return []
+    """A sentence for stderr if numbers are almost, but not, those of a simpler pattern."""
+    found = near_degenerate(pattern)
+    if found is None:
+        return []
+    advice = "what follows is true of these numbers, and may be of no use for what was meant"
+    if found.denominator is not None:
+        advice += f"; --snap {found.denominator} rounds to the simpler pattern"
+    return [f"warning: {'; '.join(found.sentences)}: {advice}"]

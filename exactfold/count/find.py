@@ -27,7 +27,7 @@ from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.validate import orientation
 from exactfold.problem.sheet import Sheet
-from exactfold.rigidity.timelike import saddle_functional
+from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.sparse_newton import End, solve
 from exactfold.solve.sparse_sheet import FloatArray, FloatSheet
 from exactfold.verdict import PROVED, UNDECIDED

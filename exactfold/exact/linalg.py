@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from typing import TypeAlias
 
-from flint import fmpq, fmpq_mat
+from flint import fmpq, fmpq_mat, nmod_mat
 
 Matrix: TypeAlias = Sequence[Sequence[Fraction | int]]
 Inertia: TypeAlias = tuple[int, int, int]
@@ -32,6 +32,21 @@ def rank(matrix: Matrix) -> int:
     1
     """
     return int(to_flint(matrix).rank()) if matrix and len(matrix[0]) else 0
+
+
+def rank_modulo(rows: Sequence[Mapping[int, int]], columns: int, prime: int) -> int:
+    """Rank over F_p of integer rows, given as entries by column; at most the rank over Q.
+
+    A minor that is not zero modulo p is not zero. The prime must be below 2^64.
+
+    >>> rank_modulo([{0: 1, 1: 2}, {0: 2, 1: 1}], 2, 7), rank_modulo([{0: 1, 1: 2}, {0: 2}], 2, 2)
+    (2, 1)
+    """
+    matrix = nmod_mat(len(rows), columns, prime)
+    for i, row in enumerate(rows):
+        for j, value in row.items():
+            matrix[i, j] = value % prime
+    return int(matrix.rank())
 
 
 def nullspace(matrix: Matrix) -> list[list[Fraction]]:
@@ -65,43 +80,60 @@ def inertia(matrix: Matrix) -> Inertia:
     >>> inertia([[0, 1, 0], [1, 0, 0], [0, 0, 0]])
     (1, 1, 1)
     """
-    size = len(matrix)
-    if any(matrix[i][j] != matrix[j][i] for i in range(size) for j in range(i)):
-        raise ValueError("inertia needs a symmetric matrix")
+    _check_symmetric(matrix)
     coefficients = list(to_flint(matrix).charpoly())
     zero = next(k for k, c in enumerate(coefficients) if c != 0)
     signs = [(k, c > 0) for k, c in enumerate(coefficients) if c != 0]
     positive = sum(a != b for (_, a), (_, b) in pairwise(signs))
-    return positive, size - zero - positive, zero
+    return positive, len(matrix) - zero - positive, zero
+
+
+def sum_of_squares(matrix: Matrix) -> list[tuple[Fraction, list[Fraction]]]:
+    """Weights w_k, not 0, and independent rows r_k with x^T M x = sum_k w_k (r_k . x)^2, exactly.
+
+    Lagrange's reduction of a symmetric rational matrix, the largest diagonal entry first; where the
+    diagonal is zero, along x_i + x_j for the first entry m_ij that is not. Each row is 1 along the
+    direction it was taken in. By Sylvester's law of inertia the signs of the weights are those of
+    the eigenvalues other than zero. Raises `ValueError` if the matrix is not symmetric.
+
+    >>> [(int(w), [int(x) for x in row]) for w, row in sum_of_squares([[2, 2], [2, 1]])]
+    [(2, [1, 1]), (-1, [0, 1])]
+    """
+    _check_symmetric(matrix)
+    rest = [[Fraction(x) for x in row] for row in matrix]
+    size = range(len(rest))
+    squares: list[tuple[Fraction, list[Fraction]]] = []
+    while len(squares) < len(rest):
+        k = max(size, key=lambda i: abs(rest[i][i]))
+        image, weight = list(rest[k]), rest[k][k]
+        if not weight:
+            pair = next(((i, j) for i in size for j in size if rest[i][j]), None)
+            if pair is None:
+                break
+            i, j = pair
+            image = [a + b for a, b in zip(rest[i], rest[j], strict=True)]
+            weight = image[i] + image[j]
+        row = [x / weight for x in image]
+        squares.append((weight, row))
+        for i in size:
+            for j in range(i + 1) if image[i] else ():
+                if row[j]:
+                    rest[i][j] = rest[j][i] = rest[i][j] - image[i] * row[j]
+    return squares
 
 
 def inertia_by_elimination(matrix: Matrix) -> Inertia:
-    """The same counts by Lagrange's reduction to a sum of squares; independent of `inertia`.
+    """The same counts from `sum_of_squares`; independent of `inertia`.
 
     >>> inertia_by_elimination([[0, 1, 0], [1, 0, 0], [0, 0, 0]])
     (1, 1, 1)
     """
-    work = [[Fraction(x) for x in row] for row in matrix]
-    size = len(work)
-    positive = negative = 0
-    live = list(range(size))
-    while live:
-        k = next((i for i in live if work[i][i] != 0), None)
-        if k is None:
-            pair = next(((i, j) for i in live for j in live if work[i][j] != 0), None)
-            if pair is None:
-                break
-            k, j = pair  # x_k -> x_k, x_j -> x_j + x_k makes the diagonal entry 2 a_kj
-            for c in range(size):
-                work[k][c] += work[j][c]
-            for r in range(size):
-                work[r][k] += work[r][j]
-        pivot = work[k][k]
-        positive, negative = positive + (pivot > 0), negative + (pivot < 0)
-        live.remove(k)
-        for i in live:
-            factor = work[i][k] / pivot
-            if factor:
-                for c in live:
-                    work[i][c] -= factor * work[k][c]
-    return positive, negative, size - positive - negative
+    weights = [weight for weight, _ in sum_of_squares(matrix)]
+    positive = sum(weight > 0 for weight in weights)
+    return positive, len(weights) - positive, len(matrix) - len(weights)
+
+
+def _check_symmetric(matrix: Matrix) -> None:
+    size = len(matrix)
+    if any(matrix[i][j] != matrix[j][i] for i in range(size) for j in range(i)):
+        raise ValueError("the matrix of a quadratic form must be symmetric")

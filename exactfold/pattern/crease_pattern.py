@@ -294,6 +294,8 @@ class CreasePattern:
     def snapped(self, denominator: int) -> tuple[CreasePattern, Fraction]:
         """The pattern on the grid of multiples of 1/denominator, and the largest coordinate move.
 
+        Raises a `PatternError` that mentions the rounding if this leaves no valid pattern.
+
         >>> pattern = CreasePattern([(0, 0), ("0.99999999", 0), (0, 1)], [(0, 1, 2)])
         >>> pattern.snapped(8)[1]
         Fraction(1, 100000000)
@@ -301,7 +303,8 @@ class CreasePattern:
         moved = tuple((snap(x, denominator), snap(y, denominator)) for x, y in self.vertices)
         pairs = zip(self.vertices, moved, strict=True)
         largest = max(abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
-        return CreasePattern(moved, self.triangles), largest
+        with validate.rounded_to(denominator):
+            return CreasePattern(moved, self.triangles), largest
 
     # --- identity --------------------------------------------------------------------------------
 

@@ -13,7 +13,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.rigidity.timelike import saddle_functional, vertex_sign_functional
+from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functional
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.numbers import RationalLike, as_rational, over_common_denominator
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.rigidity.timelike import saddle_functional
+from exactfold.rigidity.functionals import saddle_functional
 
 IntArray = npt.NDArray[np.intp]
 BigArray = npt.NDArray[np.object_]

@@ -49,9 +49,9 @@ def info_report(facts: PatternFacts, *, exact: bool = False) -> Table:
         ("expected", expectation(facts)),
     ]
     if exact:
-        rank = str(facts.rigidity_rank)
-        if facts.rigidity_rank == 2 * len(pattern.vertices) - 3:
-            rank += " = 2V - 3"
+        rank = f"{facts.rigidity_rank}, by {facts.rank_by}"
+        if facts.rank_by == "theorem":
+            rank += " (2V - 3 for every triangulated disk)"
         inertias = _listed([f"{v}: {i}" for v, i in facts.inertias.items()])
         rows += [
             ("rank of rigidity matrix", rank),

@@ -13,6 +13,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
 from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.self_stress import rigidity_rank
 from exactfold.schemas import headed
 
 Progress = Callable[[str, int, int], None]
@@ -20,12 +21,17 @@ Progress = Callable[[str, int, int], None]
 
 @dataclass(frozen=True)
 class PatternFacts:
-    """Exact facts of a pattern: counts, rank of the rigidity matrix, inertia of each vertex."""
+    """Exact facts of a pattern: counts, rank of the rigidity matrix, inertia of each vertex.
+
+    `rank_by` says what proves the rank: "elimination", or for large sheets a "theorem", see
+    `exactfold.rigidity.self_stress.rigidity_rank`.
+    """
 
     pattern: CreasePattern
     rigidity_rank: int
     self_stresses: int
     inertias: dict[int, Inertia]
+    rank_by: str
 
     def __repr__(self) -> str:
         return (
@@ -54,6 +60,7 @@ class PatternFacts:
             ],
             "foldable_vertices": list(pattern.foldable_vertices),
             "rigidity_rank": self.rigidity_rank,
+            "rigidity_rank_by": self.rank_by,
             "self_stresses": self.self_stresses,
             "inertia": {str(v): list(i) for v, i in self.inertias.items()},
         }
@@ -73,20 +80,10 @@ def pattern_facts(pattern: PatternLike, progress: Progress | None = None) -> Pat
     (9, 1, {5: (1, 2, 3)})
     """
     pattern = as_pattern(pattern)
-    rank = rigidity_rank(pattern)
+    rank, rank_by = rigidity_rank(pattern)
     inertias = {}
     for k, v in enumerate(pattern.interior):
         if progress is not None and k % 100 == 0:
             progress("curvature forms", k, pattern.Vi)
         inertias[v] = curvature_form(pattern, v).inertia
-    return PatternFacts(pattern, rank, len(pattern.edges) - rank, inertias)
-
-
-def rigidity_rank(pattern: CreasePattern) -> int:
-    """Rank over Q of the rigidity matrix: 2V - 3, as for every triangulated disk.
-
-    A face is infinitesimally rigid in the plane, its vertices not being collinear. Two such bodies
-    with two points in common are one, and the faces of a disk are connected through their sides.
-    So nothing but the three rigid motions is in the kernel.
-    """
-    return 2 * len(pattern.vertices) - 3
+    return PatternFacts(pattern, rank, len(pattern.edges) - rank, inertias, rank_by)

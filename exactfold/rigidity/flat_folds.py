@@ -17,7 +17,7 @@ from math import isqrt
 from exactfold.exact.linalg import nullspace
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 
 
 def flat_folds(pattern: CreasePattern, signs: Mapping[Edge, int | None]) -> frozenset[Edge]:

@@ -1,12 +1,11 @@
-"""Rational timelike vectors and the linear functionals whose signs are vertex signs."""
+"""Rational timelike vectors of the curvature forms, near the round cones."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from math import isqrt
 
-from exactfold.exact.numbers import over_common_denominator
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form, spokes
 
 
@@ -32,58 +31,3 @@ def round_cone(pattern: CreasePattern, vertex: int, bits: int = 16) -> dict[int,
         if form(cone) > 0:
             return cone
         bits *= 2
-
-
-def vertex_sign_functional(pattern: CreasePattern, vertex: int) -> dict[int, int]:
-    """Integer coefficients of h -> K_v(t, h), t timelike and pointing up, by vertex.
-
-    On the null cone of K_v its sign is +1 where the vertex is popped up, -1 where it is popped
-    down, and 0 exactly where the star of the vertex is flat (docs/conventions.md).
-    """
-    coefficients = curvature_form(pattern, vertex).functional(round_cone(pattern, vertex))
-    integers, _ = over_common_denominator(coefficients.values())
-    return dict(zip(coefficients, integers, strict=True))
-
-
-def fold_functional(pattern: CreasePattern, fold: Edge) -> dict[int, int]:
-    """Integer coefficients of the bend across a fold: positive for a valley, negative for a
-    mountain, seen from +z.
-
-    The affine dependency of the four corners, positive at the two corners off the fold: a valley
-    is where the sheet is locally convex, so that these lie above the plane of the other face.
-    """
-    i, j = fold
-    left, right = pattern.opposite(fold)
-    points, _ = pattern.integer_vertices
-    corners = (i, j, left, right)
-
-    def area(a: int, b: int, c: int) -> int:
-        (ax, ay), (bx, by), (cx, cy) = points[a], points[b], points[c]
-        return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-
-    # Cramer: sum_k (-1)^k det(the other three) h_k vanishes on affine functions.
-    weights = (-area(j, left, right), area(i, left, right), -area(i, j, right), area(i, j, left))
-    return dict(zip(corners, weights, strict=True))
-
-
-def saddle_functional(pattern: CreasePattern) -> dict[int, Fraction]:
-    """For Ve = 4: the functional of the boundary heights that vanishes on planes.
-
-    Normalised to 1 at its first non-zero coefficient, boundary vertices taken in cyclic order from
-    the smallest index. A branch is represented by the ray on which it is positive.
-    """
-    b = pattern.boundary
-    points = pattern.vertices
-
-    def area(i: int, j: int, k: int) -> Fraction:
-        (ax, ay), (bx, by), (cx, cy) = points[i], points[j], points[k]
-        return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-
-    weights = [
-        area(b[1], b[2], b[3]),
-        -area(b[0], b[2], b[3]),
-        area(b[0], b[1], b[3]),
-        -area(b[0], b[1], b[2]),
-    ]
-    first = next(w for w in weights if w)
-    return {v: w / first for v, w in zip(b, weights, strict=True)}

@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from exactfold.errors import NotApplicableError
+from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import BranchSystem, Chart, notch_chart
 from exactfold.rigidity.curvature import curvature_form
@@ -122,12 +123,13 @@ class NappeSystem:
             polar = form.functional(cone)
             hub, scale = polar[v], form(cone) / polar[v] ** 2
             line = [polar[u] / hub for u in form.labels]
-            rest = [
-                [a * b - scale * k for b, k in zip(line, row, strict=True)]
+            rest = tuple(
+                tuple(a * b - scale * k for b, k in zip(line, row, strict=True))
                 for a, row in zip(line, form.matrix, strict=True)
-            ]
+            )
             lift = {k: place[u] for k, u in enumerate(form.labels) if u in place}
-            squares = [(d, _lifted(row, lift, size)) for d, row in sum_of_squares(rest)]
+            found_squares = positive_squares(QuadraticForm(form.labels, rest))
+            squares = [(d, _lifted(row, lift, size)) for d, row in found_squares]
             if v == corner:
                 unit = [Fraction(int(k == size - 1)) for k in range(size)]
                 squares.append((Fraction(1), tuple(unit)))
@@ -297,34 +299,18 @@ def solve_each(matrices: FloatArray, right: FloatArray) -> FloatArray:
         )
 
 
-def sum_of_squares(matrix: list[list[Fraction]]) -> list[tuple[Fraction, list[Fraction]]]:
-    """A positive semidefinite form as a sum of weight * (row . x)^2, exactly (Lagrange).
+def positive_squares(form: QuadraticForm) -> list[tuple[Fraction, Row]]:
+    """A positive semidefinite form as a sum of weight * (row . x)^2, exactly.
 
     Raises `NotApplicableError` if the form takes negative values.
-
-    >>> sum_of_squares([[Fraction(2), Fraction(2)], [Fraction(2), Fraction(2)]])
-    [(Fraction(2, 1), [Fraction(1, 1), Fraction(1, 1)])]
     """
-    size = len(matrix)
-    work, live, squares = [list(row) for row in matrix], list(range(size)), []
-    while live:
-        k = max(live, key=lambda i: work[i][i])
-        lead = work[k][k]
-        if lead <= 0:
-            if any(work[i][j] for i in live for j in live):
-                raise NotApplicableError("the form is not positive semidefinite")
-            break
-        row = [work[k][j] / lead if j in live else Fraction(0) for j in range(size)]
-        squares.append((lead, row))
-        live.remove(k)
-        for i in live:
-            factor = work[i][k]
-            for j in live if factor else ():
-                work[i][j] -= factor * row[j]
-    return squares
+    found = form.diagonalised
+    if any(weight < 0 for weight in found.weights):
+        raise NotApplicableError("the form is not positive semidefinite")
+    return list(zip(found.weights, found.rows, strict=True))
 
 
-def _lifted(row: list[Fraction], lift: dict[int, int], size: int) -> Row:
+def _lifted(row: Sequence[Fraction], lift: dict[int, int], size: int) -> Row:
     """A row over a star as a row on (x, 1); vertices without a place have height 0."""
     full = [Fraction(0)] * size
     for k, place in lift.items():

@@ -13,7 +13,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.chart_change import pattern_size, to_chart
 from exactfold.rigidity.curvature import curvature_form, spokes
-from exactfold.rigidity.timelike import saddle_functional
+from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.candidates import Candidates
 
 FloatArray = npt.NDArray[np.float64]

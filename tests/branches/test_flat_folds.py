@@ -11,7 +11,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, hypar, single_vertex, two_vertex
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.flat_folds import flat_folds
-from exactfold.rigidity.timelike import fold_functional
+from exactfold.rigidity.functionals import fold_functional
 
 CROSS = wheel([(2, 0), (0, 3), (-2, 0), (0, -1)])
 SPOKES = [(0, 4), (1, 4), (2, 4), (3, 4)]

@@ -18,7 +18,7 @@ from sheets import (
 from exactfold import PROVED, UNDECIDED, count_branches, random_square
 from exactfold.pattern.families import flat_vertex_square, hypar, single_vertex, two_vertex
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.rigidity.timelike import saddle_functional
+from exactfold.rigidity.functionals import saddle_functional
 
 PATTERNS = {
     "one vertex": single_vertex(4),

@@ -11,6 +11,8 @@ from exactfold.exact.linalg import (
     inertia_by_elimination,
     nullspace,
     rank,
+    rank_modulo,
+    sum_of_squares,
     to_flint,
 )
 
@@ -59,6 +61,14 @@ def test_rank_is_exact():
     tiny = Fraction(1, 10**50)
     assert rank([[1, 1], [1, 1 + tiny]]) == 2
     assert rank([[tiny, 2 * tiny], [1, 2]]) == 1
+
+
+@quick
+@given(st.lists(st.lists(st.integers(-9, 9), min_size=4, max_size=4), min_size=1, max_size=5))
+def test_rank_modulo_a_prime_is_at_most_the_rank(matrix):
+    rows = [{j: x for j, x in enumerate(row) if x} for row in matrix]
+    assert rank_modulo(rows, 4, 3) <= rank(matrix)
+    assert rank_modulo(rows, 4, (1 << 61) - 1) == rank(matrix)  # minors are below the prime
 
 
 @quick
@@ -131,9 +141,32 @@ def test_inertia(compute, matrix, expected):
     assert compute(matrix) == expected
 
 
-def test_inertia_error():
+@pytest.mark.parametrize("compute", [inertia, inertia_by_elimination, sum_of_squares])
+def test_forms_must_be_symmetric(compute):
     with pytest.raises(ValueError, match="symmetric"):
-        inertia([[0, 1], [2, 0]])
+        compute([[0, 1], [2, 0]])
+
+
+@quick
+@given(symmetric())
+def test_the_squares_add_up_to_the_form_and_are_independent(matrix):
+    squares = sum_of_squares(matrix)
+    n = len(matrix)
+    added = [
+        [sum((w * row[i] * row[j] for w, row in squares), Fraction(0)) for j in range(n)]
+        for i in range(n)
+    ]
+    assert added == [[Fraction(x) for x in row] for row in matrix]
+    assert all(weight != 0 for weight, _ in squares)
+    assert rank([row for _, row in squares]) == len(squares) == rank(matrix)
+
+
+def test_squares_of_a_form_without_a_diagonal():
+    assert sum_of_squares([[0, 1], [1, 0]]) == [
+        (2, [Fraction(1, 2), Fraction(1, 2)]),
+        (Fraction(-1, 2), [1, -1]),
+    ]
+    assert sum_of_squares([[0, 0], [0, 0]]) == []
 
 
 @quick

@@ -1,20 +1,13 @@
-"""Signs, Sturm counts and root isolation against polynomials with known roots."""
+"""Signs, Sturm counts and values on intervals against polynomials with known roots."""
 
 from fractions import Fraction
 from itertools import pairwise
 
-import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from sturm import sturm_count, sturm_sequence
 
-from exactfold.exact.univariate import (
-    evaluate_on_interval,
-    isolate_real_roots,
-    quotients_on_interval,
-    sign_at,
-    sturm_count,
-    sturm_sequence,
-)
+from exactfold.exact.univariate import evaluate_on_interval, quotients_on_interval, sign_at
 
 rationals = st.fractions(min_value=-20, max_value=20, max_denominator=30)
 root_sets = st.sets(rationals, min_size=1, max_size=5).map(sorted)
@@ -82,55 +75,6 @@ def test_sturm_agrees_with_sign_changes_on_a_grid():
 def test_sturm_sequence_of_a_constant():
     assert sturm_sequence((7,)) == [(1,)]
     assert sturm_count((7,)) == 0
-
-
-@settings(max_examples=60)
-@given(root_sets, st.integers(0, 80))
-def test_isolated_rational_roots_are_enclosed_narrowly(roots, bits):
-    found = isolate_real_roots(with_roots(roots), bits)
-    assert len(found) == len(roots)
-    for (low, high), root in zip(found, roots, strict=True):
-        assert low <= root <= high
-        assert (high - low) * 2**bits <= 1
-    assert all(a[1] < b[0] for a, b in pairwise(found))
-
-
-@pytest.mark.parametrize("bits", [0, 3, 64, 400])
-def test_isolated_irrational_roots(bits):
-    polynomial = product((-2, 0, 1), (-3, 0, 1), (1, 0, 1), (-1, 2))
-    found = isolate_real_roots(polynomial, bits)
-    assert len(found) == 5 == sturm_count(polynomial)
-    for low, high in found:
-        assert high - low <= Fraction(1, 2**bits)
-        assert sturm_count(polynomial, low, high) == 1 or low == high
-    assert Fraction(1, 2) in [low for low, _ in found] or found[2][0] < Fraction(1, 2) < found[2][1]
-
-
-def test_isolation_of_close_roots():
-    tiny = Fraction(1, 10**40)
-    polynomial = with_roots([Fraction(1, 3), Fraction(1, 3) + tiny])
-    (a, b), (c, d) = isolate_real_roots(polynomial, 4)
-    assert a <= Fraction(1, 3) <= b < c <= Fraction(1, 3) + tiny <= d
-
-
-def test_isolation_of_very_large_roots():
-    [(low, high)] = isolate_real_roots((-(10**60), 0, 0, 1), 10)
-    assert low <= 10**20 <= high
-
-
-def test_isolation_without_real_roots():
-    assert isolate_real_roots((1, 0, 1), 20) == []
-    assert isolate_real_roots((5,), 20) == []
-
-
-def test_isolation_refuses_multiple_roots_error():
-    with pytest.raises(ValueError, match="squarefree"):
-        isolate_real_roots((1, 2, 1), 10)
-
-
-def test_isolation_of_zero_error():
-    with pytest.raises(ValueError, match="zero polynomial"):
-        isolate_real_roots((0,), 10)
 
 
 @given(

@@ -22,7 +22,7 @@ from exactfold.certify.refinement import Heights, exact, refine
 from exactfold.count.find import BranchFinder
 from exactfold.pattern.random_squares import random_square
 from exactfold.problem.sheet import Sheet
-from exactfold.rigidity.timelike import fold_functional, vertex_sign_functional
+from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
 from exactfold.solve.sparse_newton import solve
 from exactfold.solve.sparse_sheet import FloatSheet
 

@@ -186,6 +186,25 @@ def test_what_is_checked_is_the_snapped_pattern():
         parse_fold(json.dumps(noisy), snap=10)
 
 
+@pytest.mark.parametrize("drop", [("faces_vertices",), ("edges_vertices", "edges_assignment")])
+def test_an_error_that_snapping_makes_mentions_it(drop):
+    near = [[0, 0], [1, 0], [1, 1], [0, 1], [0.75, 0.625]]
+    collapsed = r"vertices 2 and 4 .*, after coordinates were rounded to multiples of 1/1$"
+    with pytest.raises(DuplicateVertexError, match=collapsed) as caught:
+        parse(*drop, vertices_coords=near, snap=1)
+    assert caught.value.vertices == (2, 4)
+    with pytest.raises(DuplicateVertexError, match=collapsed) as caught:
+        parse(*drop, vertices_coords=near).pattern.snapped(1)
+    assert caught.value.vertices == (2, 4)
+
+
+@pytest.mark.parametrize("snap", [None, 4])
+def test_an_error_without_snapping_does_not_mention_it(snap):
+    with pytest.raises(NonTriangularFaceError) as caught:
+        parse(faces_vertices=[[0, 1, 2, 3]], snap=snap)
+    assert "rounded" not in str(caught.value)
+
+
 def test_snapping_everything_in_place_moves_nothing():
     assert parse(snap=4).snapped == 0
     assert parse(snap=4).pattern == parse().pattern

@@ -24,7 +24,7 @@ from exactfold.pattern import families
 from exactfold.pattern.random_squares import random_square
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.rigidity.timelike import vertex_sign_functional
+from exactfold.rigidity.functionals import vertex_sign_functional
 from exactfold.solve.homotopy import homotopy
 from exactfold.solve.popping import popping
 

@@ -9,6 +9,7 @@ from sheets import SQUARE, dart, mapped, mirrored, reflex_corners, rotated, scra
 from exactfold import families, random_square, read_fold
 from exactfold.data import example_path
 from exactfold.errors import NotApplicableError
+from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
@@ -16,9 +17,9 @@ from exactfold.solve.dense_newton import (
     Ends,
     NappeSystem,
     chamber_chart,
+    positive_squares,
     sign_vectors,
     solve_each,
-    sum_of_squares,
 )
 from exactfold.solve.popping import popping
 from exactfold.solve.refined_newton import refined_end
@@ -121,7 +122,9 @@ def test_singular_matrices_spoil_only_their_own_solution() -> None:
 
 def test_forms_with_negative_values_are_refused() -> None:
     with pytest.raises(NotApplicableError):
-        sum_of_squares([[Fraction(0), Fraction(1)], [Fraction(1), Fraction(0)]])
+        positive_squares(
+            QuadraticForm((0, 1), ((Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))))
+        )
 
 
 def test_other_boundaries_are_refused() -> None:

@@ -13,7 +13,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import single_vertex
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.rigidity.timelike import saddle_functional
+from exactfold.rigidity.functionals import saddle_functional
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
 TWO_VERTICES = CreasePattern(

@@ -1,0 +1,47 @@
+"""Patterns whose numbers are almost those of a simpler one."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from running import PROVED, run
+
+from exactfold import EXAMPLES, CreasePattern, example_path, read_fold, write_fold
+from exactfold.exact.numbers import as_rational
+
+
+@pytest.fixture
+def moved(tmp_path: Path) -> Path:
+    """A shipped flat vertex moved by 1e-13."""
+    pattern = read_fold(example_path("flat-vertex"))
+    points = list(pattern.vertices)
+    x, y = points[5]
+    points[5] = (x, y + as_rational("1e-13"))
+    write_fold(CreasePattern(points, pattern.triangles), tmp_path / "moved.fold")
+    return tmp_path / "moved.fold"
+
+
+@pytest.mark.parametrize("command", ["count", "info"])
+@pytest.mark.parametrize("more", [(), ("--json",)])
+def test_a_vertex_that_is_almost_flat_is_named(
+    moved: Path, command: str, more: tuple[str, ...]
+) -> None:
+    result = run(command, moved, *more)
+    assert result.exit_code == PROVED
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("exactfold: warning: vertex 5 is within 1e-13 of (")
+    assert "nearly straight" in line
+    assert line.endswith("rounds to the simpler pattern")
+    snap = line.split("--snap ")[1].split()[0]
+    again = run(command, moved, *more, "--snap", snap)
+    assert (again.exit_code, again.stderr) == (PROVED, "")
+    if command == "count" and more:
+        assert json.loads(result.stdout)["distinct"] == 4
+        assert json.loads(again.stdout)["distinct"] == 3
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_shipped_patterns_have_no_warning(name: str) -> None:
+    assert run("info", name).stderr == ""

@@ -1,0 +1,99 @@
+"""Quadratic forms on labelled variables: values, squares, and their SymPy expressions."""
+
+from fractions import Fraction
+
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from exactfold.errors import UsageError
+from exactfold.exact.forms import QuadraticForm
+from exactfold.pattern.families import single_vertex, two_vertex
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.rigidity.curvature import curvature_form
+
+quick = settings(max_examples=60, deadline=None)
+rationals = st.builds(Fraction, st.integers(-9, 9), st.integers(1, 5))
+
+
+@st.composite
+def forms(draw):
+    size = draw(st.integers(1, 5))
+    labels = draw(st.permutations(range(2 * size)))[:size]
+    upper = {(i, j): draw(rationals) for i in range(size) for j in range(i + 1)}
+    matrix = tuple(tuple(upper[max(i, j), min(i, j)] for j in range(size)) for i in range(size))
+    return QuadraticForm(tuple(labels), matrix)
+
+
+def points(form, data):
+    return {v: data.draw(rationals) for v in form.labels}
+
+
+@quick
+@given(forms(), st.data())
+def test_the_diagonal_has_the_values_of_the_form(form, data):
+    heights = points(form, data)
+    found = form.diagonalised
+    values = [
+        sum(c * heights[v] for c, v in zip(row, form.labels, strict=True)) for row in found.rows
+    ]
+    assert sum(w * x * x for w, x in zip(found.weights, values, strict=True)) == form(heights)
+
+
+@quick
+@given(forms())
+def test_two_ways_to_the_inertia(form):
+    found = form.diagonalised
+    positive, negative, zero = form.inertia
+    assert found.inertia == (positive, negative, zero)
+    assert found.signature == positive - negative
+    assert "\n" not in repr(found)
+
+
+@pytest.mark.parametrize("degree", range(3, 9))
+def test_curvature_forms_have_one_positive_square(degree):
+    found = curvature_form(single_vertex(degree), degree).diagonalised
+    assert [w > 0 for w in found.weights].count(True) == 1
+    assert (len(found.weights), found.zero, found.signature) == (degree - 2, 3, 4 - degree)
+
+
+@settings(max_examples=20, deadline=None)
+@given(forms(), st.data())
+def test_the_expression_has_the_values_of_the_form(form, data):
+    heights = points(form, data)
+    exact = {sympy.Symbol(f"h{v}"): sympy.Rational(str(x)) for v, x in heights.items()}
+    value = form.to_sympy().subs(exact)
+    assert value == sympy.Rational(str(form(heights)))
+
+
+def test_the_expression_is_expanded_in_any_symbols():
+    form = QuadraticForm((4, 7), ((Fraction(1, 3), Fraction(-1)), (Fraction(-1), Fraction(0))))
+    x, y = sympy.symbols("x y")
+    assert form.to_sympy({4: x, 7: y, 9: x}) == x**2 / 3 - 2 * x * y
+    assert form.to_sympy({4: x + y, 7: y}) == x**2 / 3 - sympy.Rational(4, 3) * x * y - (
+        sympy.Rational(5, 3) * y**2
+    )
+    with pytest.raises(UsageError, match="vertex 7"):
+        form.to_sympy({4: x})
+
+
+def test_forms_of_a_system_are_those_it_exports():
+    import exactfold
+
+    system = BranchSystem(two_vertex())
+    exported, symbols = exactfold.to_sympy(system)
+    for expression, form in zip(exported, system.quadrics.values(), strict=True):
+        mine = form.to_sympy()
+        assert mine.free_symbols <= set(symbols)
+        assert sympy.cancel(expression / mine).is_positive  # the export scales to integers
+
+
+def test_a_notebook_shows_small_forms_only():
+    form = curvature_form(two_vertex(), 4)
+    assert form._repr_latex_().startswith("$Q(h) = h_{0}^{2} + ")
+    assert r" + \frac{64125 h_{4}^{2}}{5044} - " in form._repr_latex_()
+    assert curvature_form(single_vertex(12), 12)._repr_latex_() is None
+    zero = QuadraticForm((0,), ((Fraction(0),),))
+    assert zero.to_sympy() == 0
+    assert zero._repr_latex_() == "$Q(h) = 0$"
