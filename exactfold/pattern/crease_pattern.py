@@ -18,6 +18,7 @@ from exactfold.exact.numbers import (
     snap,
 )
 from exactfold.pattern import validate
+from exactfold.pattern.graphs import vertex_graph
 from exactfold.pattern.triangulated_triangles import find_triangulated_triangles
 
 if TYPE_CHECKING:
@@ -163,14 +164,8 @@ class CreasePattern:
 
     @cached_property
     def graph(self) -> nx.Graph:
-        """The edges as a NetworkX graph, with `pos` on nodes and `fold` (bool) on edges."""
-        import networkx as nx  # here, as loading it takes longer than reading a pattern
-
-        graph = nx.Graph()
-        graph.add_nodes_from((v, {"pos": p}) for v, p in enumerate(self.vertices))
-        graph.add_edges_from(self.folds, fold=True)
-        graph.add_edges_from(self.boundary_edges, fold=False)
-        return nx.freeze(graph)
+        """Vertices and edges as a NetworkX graph, see `exactfold.pattern.graphs`."""
+        return vertex_graph(self)
 
     # --- counts ----------------------------------------------------------------------------------
 
