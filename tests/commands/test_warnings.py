@@ -14,11 +14,11 @@ from exactfold.exact.numbers import as_rational
 
 @pytest.fixture
 def moved(tmp_path: Path) -> Path:
-    """A shipped flat vertex moved by 1e-13."""
+    """A vertex of a straight crease path, moved by 1e-13 off the path."""
     pattern = read_fold(example_path("flat-vertex"))
     points = list(pattern.vertices)
-    x, y = points[5]
-    points[5] = (x, y + as_rational("1e-13"))
+    x, y = points[4]
+    points[4] = (x + as_rational("1e-13"), y)
     write_fold(CreasePattern(points, pattern.triangles), tmp_path / "moved.fold")
     return tmp_path / "moved.fold"
 
@@ -31,8 +31,10 @@ def test_a_vertex_that_is_almost_flat_is_named(
     result = run(command, moved, *more)
     assert result.exit_code == PROVED
     (line,) = result.stderr.splitlines()
-    assert line.startswith("exactfold: warning: vertex 5 is within 1e-13 of (")
-    assert "nearly straight" in line
+    assert line.startswith(
+        "exactfold: warning: vertex 4 is within 1e-13 of (1/2, 1/2), but not there"
+    )
+    assert "the path 0-4-2 is nearly straight, but not quite" in line
     assert line.endswith("rounds to the simpler pattern")
     snap = line.split("--snap ")[1].split()[0]
     again = run(command, moved, *more, "--snap", snap)
