@@ -47,6 +47,8 @@ class BoxRoot:
         """Bounds of the value over the whole box."""
         box = self.box
         *slopes, constant = row
+        if not any(slopes):  # a height that is given
+            return Fraction(constant * self.side), Fraction(constant * self.side)
         common = lcm(*(c.denominator for c in row))  # integers, as fractions reduce at each step
         value = constant.numerator * (common // constant.denominator) << box.bits
         reach = 0

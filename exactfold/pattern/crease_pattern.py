@@ -18,6 +18,7 @@ from exactfold.exact.numbers import (
     snap,
 )
 from exactfold.pattern import validate
+from exactfold.pattern.graphs import vertex_graph
 from exactfold.pattern.triangulated_triangles import find_triangulated_triangles
 
 if TYPE_CHECKING:
@@ -163,14 +164,8 @@ class CreasePattern:
 
     @cached_property
     def graph(self) -> nx.Graph:
-        """The edges as a NetworkX graph, with `pos` on nodes and `fold` (bool) on edges."""
-        import networkx as nx  # here, as loading it takes longer than reading a pattern
-
-        graph = nx.Graph()
-        graph.add_nodes_from((v, {"pos": p}) for v, p in enumerate(self.vertices))
-        graph.add_edges_from(self.folds, fold=True)
-        graph.add_edges_from(self.boundary_edges, fold=False)
-        return nx.freeze(graph)
+        """Vertices and edges as a NetworkX graph, see `exactfold.pattern.graphs`."""
+        return vertex_graph(self)
 
     # --- counts ----------------------------------------------------------------------------------
 
@@ -294,6 +289,8 @@ class CreasePattern:
     def snapped(self, denominator: int) -> tuple[CreasePattern, Fraction]:
         """The pattern on the grid of multiples of 1/denominator, and the largest coordinate move.
 
+        Raises a `PatternError` that mentions the rounding if this leaves no valid pattern.
+
         >>> pattern = CreasePattern([(0, 0), ("0.99999999", 0), (0, 1)], [(0, 1, 2)])
         >>> pattern.snapped(8)[1]
         Fraction(1, 100000000)
@@ -301,7 +298,8 @@ class CreasePattern:
         moved = tuple((snap(x, denominator), snap(y, denominator)) for x, y in self.vertices)
         pairs = zip(self.vertices, moved, strict=True)
         largest = max(abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
-        return CreasePattern(moved, self.triangles), largest
+        with validate.rounded_to(denominator):
+            return CreasePattern(moved, self.triangles), largest
 
     # --- identity --------------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from fractions import Fraction
 from os import PathLike
@@ -27,6 +28,7 @@ from exactfold.exact.numbers import over_common_denominator, parse_rational, sho
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
 from exactfold.pattern.fold_writing import EXACT_KEY, fold_document, write_fold, write_text
 from exactfold.pattern.planar import trace_faces
+from exactfold.pattern.validate import rounded_to
 from exactfold.wording import agreeing, counted
 
 __all__ = [
@@ -141,14 +143,22 @@ def parse_fold(text: str, snap: int | None = None) -> FoldFile:
             raise NotFoldError(f"edge {k} has {len(edge)} ends: {shown(edge)}")
     letters = _letters(document, len(edges))
     pairs = [(edge[0], edge[1]) for edge in edges]
+    with nullcontext() if snap is None or not largest else rounded_to(snap):
+        pattern = _pattern(points, pairs, faces)
+    return FoldFile(pattern, largest, exact, _assignment(pattern, pairs, letters))
+
+
+def _pattern(
+    points: Sequence[Point], edges: Sequence[Edge], faces: Sequence[tuple[int, ...]]
+) -> CreasePattern:
+    """The pattern with the faces given, or, if there are none, traced in the planar graph."""
     rebuilt = not faces
     if rebuilt:
         flat, _ = over_common_denominator(x for point in points for x in point)
-        faces = trace_faces(list(zip(flat[::2], flat[1::2], strict=True)), pairs)
+        faces = trace_faces(list(zip(flat[::2], flat[1::2], strict=True)), edges)
     for k, face in enumerate(faces):
         _check_triangle(k, face, rebuilt)
-    pattern = CreasePattern(points, faces)
-    return FoldFile(pattern, largest, exact, _assignment(pattern, pairs, letters))
+    return CreasePattern(points, faces)
 
 
 # --- JSON ----------------------------------------------------------------------------------------

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from fractions import Fraction
 from numbers import Integral
 from typing import Any
@@ -12,6 +13,7 @@ from exactfold.errors import (
     DisconnectedError,
     DuplicateVertexError,
     HoleError,
+    InputError,
     IsolatedVertexError,
     MalformedPatternError,
     MixedOrientationError,
@@ -27,6 +29,19 @@ Point = tuple[Fraction, Fraction]
 IntPoint = tuple[int, int]
 Triangle = tuple[int, int, int]
 Rotation = Mapping[int, Mapping[int, int]]
+
+
+@contextmanager
+def rounded_to(denominator: int) -> Iterator[None]:
+    """Within this block, errors of the input say that coordinates were rounded before."""
+    try:
+        yield
+    except InputError as error:
+        error.args = (
+            f"{error}, after coordinates were rounded to multiples of 1/{denominator}",
+            *error.args[1:],
+        )
+        raise
 
 
 def orientation(a: Sequence[int], b: Sequence[int], c: Sequence[int]) -> int:

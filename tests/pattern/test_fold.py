@@ -5,6 +5,7 @@ import sys
 from fractions import Fraction
 
 import pytest
+from fold_files import SQUARE, parse
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -12,14 +13,12 @@ from exactfold.errors import (
     CrossingEdgesError,
     CutEdgeError,
     DanglingEdgeError,
-    DegenerateFaceError,
     DisconnectedError,
     DuplicateVertexError,
     FoldError,
     InputError,
     IsolatedVertexError,
     MissingCoordinatesError,
-    MixedOrientationError,
     NonTriangularFaceError,
     NotANumberError,
     NotFoldError,
@@ -28,27 +27,13 @@ from exactfold.errors import (
     StaleExactCoordinatesError,
     UnreadableFileError,
     UnwritableFileError,
-    UsageError,
 )
-from exactfold.pattern.families import collinear_folds
 from exactfold.pattern.fold import (
     EXACT_KEY,
     load_fold,
     parse_fold,
     read_fold,
 )
-
-SQUARE = {
-    "vertices_coords": [[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0.25]],
-    "edges_vertices": [[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [1, 4], [2, 4], [3, 4]],
-    "edges_assignment": ["B", "B", "B", "B", "M", "V", "M", "U"],
-    "faces_vertices": [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
-}
-
-
-def parse(*drop, snap=None, **changes):
-    document = {k: v for k, v in (SQUARE | changes).items() if k not in drop}
-    return parse_fold(json.dumps(document), snap)
 
 
 def coordinates(text, snap=None):
@@ -141,60 +126,6 @@ def test_off_plane_error():
     mixed = [[0, 0, 1], *SQUARE["vertices_coords"][1:]]
     with pytest.raises(OffPlaneError, match="vertex 1 has z = 0 and vertex 0 has z = 1"):
         parse(vertices_coords=mixed)
-
-
-# --- snapping ------------------------------------------------------------------------------------
-
-
-def test_snapping_comes_before_validation_and_is_recorded():
-    noisy = {
-        "vertices_coords": [[0, 0], [0.5000000000000001, 0, 1e-17], [1, 0], [0.5, 1]],
-        "faces_vertices": [[0, 1, 3], [1, 2, 3]],
-    }
-    with pytest.raises(OffPlaneError):
-        parse_fold(json.dumps(noisy))
-    file = parse_fold(json.dumps(noisy), snap=1024)
-    assert file.pattern.vertices[1] == (Fraction(1, 2), 0)
-    assert file.snapped == Fraction(1, 10**16)
-
-
-def test_snapping_makes_noisy_creases_straight_again():
-    noisy = {
-        "vertices_coords": [[0, 0], [1, 0], [1, 1], [0, 1], [0.24999999999999994, 0.25]],
-        "faces_vertices": SQUARE["faces_vertices"],
-    }
-    assert collinear_folds(parse_fold(json.dumps(noisy)).pattern) == ()
-    file = parse_fold(json.dumps(noisy), snap=64)
-    assert collinear_folds(file.pattern) == ((0, 4, 2),)
-    assert file.snapped == Fraction(1, 4) - Fraction("0.24999999999999994")
-
-
-def test_what_is_checked_is_the_snapped_pattern():
-    noisy = {
-        "vertices_coords": [[0, 0], [1, 0], [1, 1], [0, 1], [-1e-16, 0.5]],
-        "faces_vertices": [[0, 1, 4], [1, 2, 4], [2, 3, 4]],
-    }
-    assert parse_fold(json.dumps(noisy)).pattern.boundary_turns == (1, 1, 1, 1, 1)
-    assert parse_fold(json.dumps(noisy), snap=10).pattern.boundary_turns == (1, 1, 1, 1, 0)
-    noisy["faces_vertices"].append([0, 4, 3])
-    with pytest.raises(MixedOrientationError):
-        parse_fold(json.dumps(noisy))
-    with pytest.raises(DegenerateFaceError, match="face 3"):
-        parse_fold(json.dumps(noisy), snap=10)
-    noisy["vertices_coords"][4] = [1e-16, 1e-16]
-    with pytest.raises(DuplicateVertexError, match="vertices 0 and 4"):
-        parse_fold(json.dumps(noisy), snap=10)
-
-
-def test_snapping_everything_in_place_moves_nothing():
-    assert parse(snap=4).snapped == 0
-    assert parse(snap=4).pattern == parse().pattern
-    assert parse(snap=3).snapped == Fraction(1, 6)
-
-
-def test_snap_usage_error():
-    with pytest.raises(UsageError, match="multiples of 1/n"):
-        parse(snap=0)
 
 
 # --- exact coordinates ---------------------------------------------------------------------------

@@ -1,0 +1,79 @@
+"""Graphs of patterns against what the package finds with code of its own."""
+
+from collections import Counter
+from itertools import combinations
+
+import networkx as nx
+import pytest
+from hypothesis import given
+from pattern_strategies import patterns, quick
+
+from exactfold.data import EXAMPLES
+from exactfold.pattern.degenerate import DEGENERATE
+from exactfold.pattern.graphs import embedding, face_graph, vertex_graph
+from exactfold.pattern.load import load
+
+PATTERNS = {name: load(name) for name in EXAMPLES} | {n: make() for n, make in DEGENERATE.items()}
+shipped = pytest.mark.parametrize("pattern", PATTERNS.values(), ids=PATTERNS.keys())
+
+
+@shipped
+def test_nodes_and_edges_know_what_they_are(pattern):
+    graph = vertex_graph(pattern)
+    assert {v for v, inside in graph.nodes(data="interior") if inside} == pattern.interior_set
+    assert {v for v, rigid in graph.nodes(data="rigid") if rigid} == pattern.rigid_vertices
+    assert [point for _, point in sorted(graph.nodes(data="pos"))] == list(pattern.vertices)
+    kinds = {(min(i, j), max(i, j)): (d["fold"], d["chord"]) for i, j, d in graph.edges(data=True)}
+    assert tuple(sorted(kinds)) == pattern.edges
+    assert tuple(sorted(e for e, (fold, _) in kinds.items() if fold)) == pattern.folds
+    assert tuple(sorted(e for e, (_, chord) in kinds.items() if chord)) == pattern.chords
+
+
+@shipped
+def test_separating_triangles_are_the_triangulated_ones(pattern):
+    """A second way: what the removal of a 3-cycle of edges cuts off from the boundary."""
+    graph = vertex_graph(pattern)
+    boundary = set(pattern.boundary)
+    rigid = set()
+    for cycle in combinations(graph, 3):
+        if all(graph.has_edge(*side) for side in combinations(cycle, 2)):
+            rest = graph.subgraph(set(graph) - set(cycle))
+            for part in nx.connected_components(rest):
+                if part.isdisjoint(boundary):
+                    rigid |= part
+    assert rigid == pattern.rigid_vertices
+
+
+@shipped
+def test_faces_close_around_interior_vertices_and_part_at_chords(pattern):
+    graph = face_graph(pattern)
+    assert nx.is_connected(graph)
+    assert sorted(fold for *_, fold in graph.edges(data="fold")) == list(pattern.folds)
+    assert graph.size() - graph.order() + 1 == pattern.Vi  # independent cycles
+    bridges = {graph.edges[edge]["fold"] for edge in nx.bridges(graph)}
+    assert bridges == set(pattern.chords)
+    for f, g, fold in graph.edges(data="fold"):
+        assert set(graph.nodes[f]["triangle"]) & set(graph.nodes[g]["triangle"]) == set(fold)
+
+
+@quick
+@given(patterns())
+def test_the_rotation_embeds_the_graph_with_the_triangles_as_faces(pattern):
+    plane = embedding(pattern)
+    plane.check_structure()  # Euler's formula
+    assert nx.check_planarity(vertex_graph(pattern))[0]
+    assert nx.utils.graphs_equal(plane.to_undirected(), nx.Graph(list(pattern.edges)))
+    faces, seen = [], set()
+    for i, j in plane.edges:
+        if (i, j) not in seen:
+            faces.append(tuple(plane.traverse_face(i, j, mark_half_edges=seen)[::-1]))
+    expected = [*pattern.triangles, pattern.boundary]
+    assert Counter(map(frozenset, faces)) == Counter(map(frozenset, expected))
+
+
+@pytest.mark.parametrize("make", [vertex_graph, face_graph, embedding])
+def test_graphs_are_frozen(make):
+    graph = make(PATTERNS["two-vertex"])
+    with pytest.raises(nx.NetworkXError, match=r"[Ff]rozen"):
+        graph.add_edge(0, 2)
+    assert PATTERNS["two-vertex"].graph is PATTERNS["two-vertex"].graph
