@@ -183,7 +183,7 @@ def test_undecided_exits_4(tmp_path):
 def test_undecided_table_lists_what_is_open(tmp_path, monkeypatch):
     path = tmp_path / "flat.fold"
     write_fold(FAMILIES["flat-vertex"](), path)
-    monkeypatch.setattr("exactfold.count.attempt.flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr("exactfold.count.hand_over.flat_vertices", lambda chart, points: iter(()))
     result = run("count", path, "--method", "popping")
     assert result.exit_code == UNDECIDED
     assert "UNDECIDED" in result.stdout

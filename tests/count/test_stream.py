@@ -1,6 +1,5 @@
 """All branches streamed to a compact certificate: right, resumable, and never lost silently."""
 
-import os
 import subprocess
 import sys
 from fractions import Fraction
@@ -25,7 +24,6 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import straight_path
 from exactfold.pattern.random_squares import sample_random_square
 from exactfold.verdict import PROVED, UNDECIDED
-from exactfold.workers import worker_environment
 
 
 def gap(tiny: Fraction) -> CreasePattern:
@@ -266,12 +264,3 @@ def test_a_fold_that_stays_open_costs_its_letter_only(
     path.write_bytes(chained(lines))
     with pytest.raises(CertificateError, match="no letters"):
         list(read_branches(path))
-
-
-def test_the_environment_is_restored(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("OMP_NUM_THREADS", "7")
-    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
-    with worker_environment():
-        assert os.environ["OMP_NUM_THREADS"] == os.environ["OPENBLAS_NUM_THREADS"] == "1"
-    assert os.environ["OMP_NUM_THREADS"] == "7"
-    assert "OPENBLAS_NUM_THREADS" not in os.environ
