@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+from exactfold.branches.angles import FoldAngles, fold_angles
 from exactfold.branches.letters import SIGNS, UPSIDE_DOWN
 from exactfold.branches.roots import EnclosedRoot, Root
 from exactfold.exact.numbers import format_rational
@@ -122,6 +123,14 @@ class Branch:
     def approx_heights(self) -> dict[int, float]:
         """Heights as floats, for pictures."""
         return {v: float((low + high) / 2) for v, (low, high) in self.heights.items()}
+
+    @cached_property
+    def fold_angles(self) -> FoldAngles:
+        """The angles by which the folds start to bend, in proportion (`fold_angles`).
+
+        Raises `UsageError` if nothing is proved of the heights.
+        """
+        return fold_angles(self.pattern, self.heights, self.assignment)
 
     @property
     def radius(self) -> Fraction | None:

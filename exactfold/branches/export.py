@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from os import PathLike
-from typing import Any, Protocol
+from typing import Any
 
-from exactfold.branches.angles import Bounds, FoldAngles, fold_angles
+from exactfold.branches.angles import Bounds, FoldAngles
+from exactfold.branches.branch import Branch
 from exactfold.branches.second_order import second_order_sheet
 from exactfold.bridges.fold_frames import branch_document
-from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.errors import UndecidedBranchError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.fold_writing import document_text, write_text
@@ -19,30 +20,6 @@ from exactfold.verdict import PROVED, Verdict
 
 AMOUNT = 30.0
 """Degrees of the largest fold angle: visible, and still close to the unfolded state."""
-
-
-class ExportedBranch(Protocol):
-    """What an export reads of a branch."""
-
-    @property
-    def vertex_signs(self) -> Mapping[int, int]:
-        """1 up, -1 down, 0 flat by interior vertex."""
-
-    @property
-    def assignment(self) -> Mapping[Edge, str]:
-        """ "M", "V", "F" or "U" by fold."""
-
-    @property
-    def heights(self) -> Mapping[int, Bounds]:
-        """Rational bounds by vertex, empty if nothing is proved."""
-
-    @property
-    def sign_text(self) -> str:
-        """The vertex signs, as in "+-0"."""
-
-    @property
-    def assignment_text(self) -> str:
-        """The letters, as in "MVVF"."""
 
 
 @dataclass(frozen=True)
@@ -69,15 +46,14 @@ class BranchExport:
 
 
 def export_branch(
-    pattern: CreasePattern,
-    branch: ExportedBranch,
+    branch: Branch,
     path: str | PathLike[str],
     *,
     amount: float = AMOUNT,
     title: str | None = None,
     force: bool = False,
 ) -> BranchExport:
-    """Write a branch of a pattern as a FOLD 1.2 file that Origami Simulator and Rabbit Ear open.
+    """Write a branch as a FOLD 1.2 file that Origami Simulator and Rabbit Ear open.
 
     `edges_foldAngle` is proportional to the first-order fold angles f_e(h) L_e / (c c') of the
     branch (`fold_angles`), the largest of size `amount` degrees; a second frame is the sheet in
@@ -85,28 +61,27 @@ def export_branch(
     file. Returns what was written.
 
     Raises `UndecidedBranchError` for a branch that is not proved, which `force` allows if its
-    heights are known; `UsageError` for a branch of another pattern or an amount that is not more
-    than 0 and at most 180; `NotApplicableError` for lengths that floats cannot hold;
+    heights are known; `UsageError` for an amount that is not more than 0 and at most 180;
+    `NotApplicableError` for lengths that floats cannot hold;
     `UnwritableFileError`.
 
     >>> import os, tempfile, exactfold
     >>> pattern = exactfold.families.two_vertex()
     >>> branch = exactfold.find_branch(pattern, "-+")
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     written = export_branch(pattern, branch, os.path.join(folder, "branch.fold"))
+    ...     written = export_branch(branch, os.path.join(folder, "branch.fold"))
     ...     exactfold.load_fold(os.path.join(folder, "branch.fold")).pattern == pattern
     True
     >>> round(written.angles[1, 4], 1), round(written.angles[1, 5], 1), branch.assignment_text
     (30.0, -1.2, 'VVMMVVM')
     """
-    export = exported(pattern, branch, amount=amount, title=title, force=force)
+    export = exported(branch, amount=amount, title=title, force=force)
     export.write(path)
     return export
 
 
 def exported(
-    pattern: CreasePattern,
-    branch: ExportedBranch,
+    branch: Branch,
     *,
     amount: float = AMOUNT,
     title: str | None = None,
@@ -115,15 +90,12 @@ def exported(
     """What `export_branch` writes, not yet written; raises the same errors but the last.
 
     >>> import exactfold
-    >>> pattern = exactfold.families.two_vertex()
-    >>> export = exported(pattern, exactfold.find_branch(pattern, "++"), amount=10)
+    >>> export = exported(exactfold.find_branch("two-vertex", "++"), amount=10)
     >>> export.document["file_title"], export.document["frame_exactfold:branch"]["status"]
     ('branch ++', 'proved')
     """
-    status: Verdict = getattr(branch, "status", PROVED)  # a listed branch is proved, and has none
-    _require_writable(pattern, branch, status, force)
-    heights = branch.heights
-    bends = fold_angles(pattern, heights, branch.assignment)
+    _require_writable(branch, force)
+    pattern, heights, bends = branch.pattern, branch.heights, branch.fold_angles
     angles = {
         fold: angle if branch.assignment[fold] in "MV" else 0.0
         for fold, angle in bends.degrees(amount).items()
@@ -140,8 +112,8 @@ def exported(
             "vertex_signs": branch.sign_text,
             "vertices": list(pattern.interior),
             "assignment": branch.assignment_text,
-            "status": str(status),
-            "gauge": getattr(branch, "gauge", "saddle"),
+            "status": str(branch.status),
+            "gauge": branch.gauge,
             "largest_angle": amount,
             "length_error": folded.length_error,
             "pattern": pattern.sha256,
@@ -150,20 +122,13 @@ def exported(
             [format_rational(bound) for bound in heights[v]] for v in range(len(pattern.vertices))
         ],
     )
-    return BranchExport(document, angles, folded.length_error, status)
+    return BranchExport(document, angles, folded.length_error, branch.status)
 
 
-def _require_writable(
-    pattern: CreasePattern, branch: ExportedBranch, status: Verdict, force: bool
-) -> None:
-    if (
-        set(branch.assignment) != set(pattern.folds)
-        or getattr(branch, "pattern", pattern) != pattern
-    ):
-        raise UsageError("the branch is one of another pattern than the one given")
+def _require_writable(branch: Branch, force: bool) -> None:
     if not branch.heights:
         raise UndecidedBranchError("nothing is proved of the branch: no heights to write")
-    if status is not PROVED and not force:
+    if branch.status is not PROVED and not force:
         raise UndecidedBranchError(
             "the branch is not proved, only its heights are enclosed; force the export to write it "
             "all the same, marked as undecided"

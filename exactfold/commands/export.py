@@ -8,16 +8,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from exactfold.branches.export import AMOUNT, BranchExport, ExportedBranch, exported
-from exactfold.bridges.fold_frames import BRANCH_KEY
+from exactfold.branches.branch import Branch
+from exactfold.branches.export import AMOUNT, BranchExport, exported
 from exactfold.commands.branch import given_signs
-from exactfold.commands.shell import EXIT, Bar
+from exactfold.commands.patterns import read
+from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder
 from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold import load_fold
+from exactfold.pattern.described import described
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import counted
 
 
 @dataclass(frozen=True)
@@ -44,27 +47,25 @@ class Wanted:
         if output is None and self.as_json:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
-            pattern = load_fold(self.file, self.snap).pattern
+            pattern = read(self.file, self.snap).pattern
             branch = self._branch(pattern, bar)
             bar("writing")
             try:
                 export = exported(
-                    pattern,
                     branch,
                     amount=AMOUNT if self.amount is None else self.amount,
                     title=self._title,
                     force=self.force,
                 )
             except UndecidedBranchError as error:
-                reason = getattr(branch, "reason", "")
-                print(f"exactfold: not written: {error}; {reason}".rstrip("; "), file=sys.stderr)
+                say(f"not written: {error}; {branch.reason}".rstrip("; "))
                 return EXIT[UNDECIDED]
             if output is not None:
                 export.write(output)
         if output is None:
             sys.stdout.write(export.text)
         elif self.as_json:
-            print(json.dumps(_summary(pattern, branch, export, output)))
+            print(json.dumps(_summary(branch, export, output, name_of(self.file))))
         else:
             from exactfold import report
 
@@ -75,7 +76,7 @@ class Wanted:
     def _title(self) -> str | None:
         return None if str(self.file) == "/dev/stdin" else self.file.stem
 
-    def _branch(self, pattern: CreasePattern, bar: Bar) -> ExportedBranch:
+    def _branch(self, pattern: CreasePattern, bar: Bar) -> Branch:
         if self.place is None:
             finder = BranchFinder(pattern)
             bar("setting up")
@@ -86,28 +87,23 @@ class Wanted:
             listed = len(result.branches)
             raise UsageError(
                 f"--branch {self.place}: `exactfold count` lists "
-                f"{listed or 'no'} branch{'' if listed == 1 else 'es'} of this pattern{proved}"
+                f"{counted(listed or 'no', 'branch')} of this pattern{proved}"
             )
         return result.branches[self.place - 1]
 
 
 def _summary(
-    pattern: CreasePattern, branch: ExportedBranch, export: BranchExport, output: Path
+    branch: Branch, export: BranchExport, output: Path, name: str | None
 ) -> dict[str, Any]:
-    """The object that --json prints."""
-    facts = export.document[BRANCH_KEY]
+    """The object that --json prints: `schema("export")`."""
     return {
+        **headed("export"),
+        "pattern": described(branch.pattern, name),
         "output": str(output),
-        "pattern": {
-            "interior": pattern.Vi,
-            "boundary": pattern.Ve,
-            "folds": len(pattern.folds),
-            "sha256": pattern.sha256,
-        },
         "status": str(export.status),
         "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
         "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
-        "gauge": facts["gauge"],
+        "gauge": branch.gauge,
         "angles": {f"{i}-{j}": angle for (i, j), angle in sorted(export.angles.items())},
         "length_error": export.length_error,
     }

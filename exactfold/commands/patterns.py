@@ -11,16 +11,14 @@ from exactfold.pattern.fold import FoldFile, load_fold
 
 
 def located(path: Path) -> Path:
-    """The file that is meant; a file that is there comes before an example of the same name.
+    """The file that is meant; the name of an example is that example, as for `load`.
 
     Raises `UnknownPatternError` for a bare name that is neither.
     """
     name = str(path)
-    if path == STDIN or (path.exists() and not path.is_dir()):
-        return path
     if name in EXAMPLES:
         return example_path(name)
-    if path.exists() or path.suffix or len(path.parts) != 1:
+    if path == STDIN or path.exists() or path.suffix or len(path.parts) != 1:
         return path  # reading it says what is wrong
     raise UnknownPatternError(
         f"{name} is neither a file nor a shipped pattern; the shipped patterns are: "

@@ -16,6 +16,7 @@ from exactfold.count.hand_over import isolated, solved_exactly, with_flat_vertic
 from exactfold.count.solvers import METHODS, NEWTON, Choice, choose, find_candidates
 from exactfold.errors import NoInteriorVertexError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.problem.branch_system import BranchSystem, notch_chart
 from exactfold.problem.problem import Problem
 from exactfold.rigidity.definite_stress import definite_stress
@@ -37,7 +38,7 @@ GROEBNER_LIMIT = 6
 
 
 def count_branches(
-    pattern: CreasePattern,
+    pattern: PatternLike,
     *,
     method: str = "auto",
     seed: int = 0,
@@ -61,7 +62,7 @@ def count_branches(
     >>> result.status, result.distinct, result.real
     (<Verdict.PROVED: 'proved'>, 2, 2)
     """
-    choice = choose(method)
+    choice, pattern = choose(method), as_pattern(pattern)
     check_countable(pattern)
     if is_too_many(pattern):
         return too_many(pattern)

@@ -27,6 +27,7 @@ from exactfold.count import reasons
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
 from exactfold.rigidity.functionals import saddle_functional
@@ -44,7 +45,7 @@ _LEVELS = (80, 160, 320)
 
 
 def find_branch(
-    pattern: CreasePattern,
+    pattern: PatternLike,
     signs: Signs | None = None,
     *,
     up: Iterable[int] | None = None,
@@ -71,12 +72,12 @@ def find_branch(
     >>> branch.status, branch.assignment_text, float(branch.radius) < 1e-9
     (<Verdict.PROVED: 'proved'>, 'MMMVMVVMMVVMMVMVMMVVMVVVM', True)
     """
-    finder = BranchFinder(pattern, rim)
+    finder = BranchFinder(as_pattern(pattern), rim)
     return finder.find(finder.signs(signs, up), progress=progress)
 
 
 def find_branches(
-    pattern: CreasePattern,
+    pattern: PatternLike,
     many: Iterable[Signs],
     *,
     rim: Rim | None = None,
@@ -88,13 +89,13 @@ def find_branches(
     >>> [b.sign_text for b in find_branches(random_square(3, seed=0), ["+-+", "---"])]
     ['+-+', '---']
     """
-    finder = BranchFinder(pattern, rim)
+    finder = BranchFinder(as_pattern(pattern), rim)
     for signs in many:
         yield finder.find(finder.signs(signs, None), progress=progress)
 
 
 def neighbours(
-    pattern: CreasePattern,
+    pattern: PatternLike,
     signs: Signs,
     vertices: Iterable[int] | None = None,
     *,
@@ -110,7 +111,7 @@ def neighbours(
     >>> {v: b.sign_text for v, b in neighbours(random_square(3, seed=0), "+-+").items()}
     {4: '--+', 5: '+++', 6: '+--'}
     """
-    finder = BranchFinder(pattern, rim)
+    finder = BranchFinder(as_pattern(pattern), rim)
     return finder.neighbours(finder.signs(signs, None), vertices, progress=progress)
 
 

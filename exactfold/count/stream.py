@@ -21,6 +21,7 @@ from exactfold.evidence.check import FastChecker
 from exactfold.evidence.journal import Journal
 from exactfold.evidence.streamed import claims_line, header_line
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
 
@@ -84,7 +85,7 @@ class StreamedCount(BranchCount):
 
 
 def stream_branches(
-    pattern: CreasePattern,
+    pattern: PatternLike,
     path: str | os.PathLike[str],
     *,
     workers: int = 1,
@@ -121,7 +122,7 @@ def stream_branches(
     >>> result.status, result.distinct, result.unproved
     (<Verdict.PROVED: 'proved'>, 16, 0)
     """
-    start = time.perf_counter()
+    start, pattern = time.perf_counter(), as_pattern(pattern)
     check_countable(pattern)
     conveyor = Conveyor.of(pattern)
     problem, total = conveyor.problem, 1 << conveyor.size

@@ -14,7 +14,7 @@ from exactfold.wording import counted
 
 if TYPE_CHECKING:
     from exactfold.branches.branch import Branch
-    from exactfold.branches.export import BranchExport, ExportedBranch
+    from exactfold.branches.export import BranchExport
 
 Row = tuple[str, str, str, str]
 
@@ -63,7 +63,7 @@ def branches_report(rows: list[Row]) -> Group:
     return Group(table)
 
 
-def export_report(output: str, branch: ExportedBranch, export: BranchExport) -> Table:
+def export_report(output: str, branch: Branch, export: BranchExport) -> Table:
     """What `exactfold export` prints of the file it wrote."""
     sizes = [abs(angle) for angle in export.angles.values()]
     return facts_table(

@@ -12,6 +12,7 @@ VERSIONS: Final = {
     "count": 1,
     "count-stream": 1,
     "branch": 1,
+    "export": 1,
     "info": 1,
     "check": 1,
     "examples": 1,
@@ -29,9 +30,9 @@ def headed(kind: str) -> dict[str, Any]:
     """The first two keys of an object of a kind.
 
     >>> headed("count")
-    {'format': 'exactfold count', 'version': 1}
+    {'format': 'exactfold count result', 'version': 1}
     """
-    return {"format": f"exactfold {kind}", "version": VERSIONS[kind]}
+    return {"format": f"exactfold {kind} result", "version": VERSIONS[kind]}
 
 
 def schema(name: str) -> dict[str, Any]:
@@ -40,7 +41,7 @@ def schema(name: str) -> dict[str, Any]:
     Raises `UsageError` for a name not in `VERSIONS`.
 
     >>> schema("count")["properties"]["format"]
-    {'const': 'exactfold count'}
+    {'const': 'exactfold count result'}
     """
     if name not in VERSIONS:
         raise UsageError(f"no schema {name!r}; there are: {', '.join(VERSIONS)}")

@@ -27,7 +27,7 @@ READERS = Path(__file__).with_name("fold_readers.mjs")
 
 def exported(tmp_path, pattern, branch, **options):
     path = tmp_path / "branch.fold"
-    export_branch(pattern, branch, path, **options)
+    export_branch(branch, path, **options)
     return read(path)
 
 
@@ -76,7 +76,7 @@ def test_what_is_read_back_is_the_pattern_and_the_letters(tmp_path, name):
     texts = set()
     for k, branch in enumerate(branches):
         path = tmp_path / f"{k}.fold"
-        export_branch(pattern, branch, path)
+        export_branch(branch, path)
         file = load_fold(path)
         assert file.pattern == pattern
         assert file.exact
@@ -225,7 +225,7 @@ def test_fold_and_rabbit_ear_read_every_branch(tmp_path, readers):
     branches = count_branches(pattern).branches
     paths = [tmp_path / f"{k}.fold" for k in range(len(branches))]
     for branch, path in zip(branches, paths, strict=True):
-        export_branch(pattern, branch, path, amount=10)
+        export_branch(branch, path, amount=10)
     seen = readers(*paths)
     assert len(seen) == len(branches) == 8
     for branch, path, programs in zip(branches, paths, seen, strict=True):
@@ -237,7 +237,7 @@ def test_fold_and_rabbit_ear_read_flat_folds(tmp_path, readers):
     pattern = families.flat_vertex_square()
     branch = next(b for b in count_branches(pattern).branches if "F" in b.assignment_text)
     path = tmp_path / "flat.fold"
-    export_branch(pattern, branch, path, amount=10)
+    export_branch(branch, path, amount=10)
     (programs,) = readers(path)
     _check_fold_library(pattern, branch, read(path), programs["fold"])
     _check_rabbit_ear(pattern, branch, read(path), programs["ear"])

@@ -27,7 +27,7 @@ def process(*arguments: object, **options: Any) -> subprocess.CompletedProcess[s
 def error_class(result: Any) -> str:
     """The class in the JSON object of an error, whose message is the one line on stderr."""
     data = json.loads(result.stdout)
-    assert (data["format"], data["version"]) == ("exactfold error", 1)
+    assert (data["format"], data["version"]) == ("exactfold error result", 1)
     assert result.stderr.endswith(f"exactfold: {data['error']['message']}\n")
     assert data["error"]["class"] not in result.stderr
     return str(data["error"]["class"])

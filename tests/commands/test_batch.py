@@ -131,7 +131,7 @@ def test_a_torn_last_line_is_dropped(tmp_path: Path) -> None:
     assert json.loads(run("count", *paths, "--jsonl", out, "--json").stdout)["skipped"] == 0
 
 
-@pytest.mark.parametrize("text", ["notes", '{"format": "exactfold count"}\n', "[]\n", "\n"])
+@pytest.mark.parametrize("text", ["notes", '{"format": "exactfold count result"}\n', "[]\n", "\n"])
 def test_a_file_of_another_kind_is_left_alone(tmp_path: Path, text: str) -> None:
     (path,), out = squares(tmp_path, 1), tmp_path / "o.jsonl"
     out.write_text(text)

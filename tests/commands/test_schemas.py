@@ -98,6 +98,7 @@ def test_errors_and_invalid_certificates(tmp_path: Path) -> None:
     out = tmp_path / "c.json"
     printed("error", "count", tmp_path / "none.fold")
     printed("examples", "examples")
+    printed("export", "export", "two-vertex", "--branch", "1", "-o", tmp_path / "b.fold")
     printed("error", "info", written(tmp_path, "{"))
     assert run("count", example_path("two-vertex"), "--certificate", out).exit_code == PROVED
     out.write_text(out.read_text().replace('"distinct":4', '"distinct":5'))
@@ -128,7 +129,7 @@ def test_schemas_refuse_what_is_not_documented() -> None:
         {"distinct": None},
         {"distinct": 4.5},
         {"version": 2},
-        {"format": "exactfold branch"},
+        {"format": "exactfold branch result"},
         {"by": None},
         {"status": "undecided"},
         {"branches": [{**data["branches"][0], "heights": {"0": [0.5, 0.5]}}]},

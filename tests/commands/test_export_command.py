@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from exactfold import count_branches, example_path, export_branch, find_branch, load_fold
 from exactfold.bridges.fold_frames import BRANCH_KEY
 from exactfold.cli import app
-from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.errors import UndecidedBranchError
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.fold_writing import fold_text
@@ -77,7 +77,7 @@ def test_command_and_function_write_the_same(tmp_path, out):
     assert run(TWO, "--signs", "+-", "--amount", "12.5", "-o", out).exit_code == OK
     other = tmp_path / "other.fold"
     branch = find_branch(two_vertex(), "+-")
-    export_branch(two_vertex(), branch, other, amount=12.5, title="two-vertex")
+    export_branch(branch, other, amount=12.5, title="two-vertex")
     assert out.read_bytes() == other.read_bytes()
 
 
@@ -196,7 +196,7 @@ def test_an_undecided_branch_is_refused_unless_forced(undecided, out):
     assert branch.reason in result.stderr
     assert not out.exists()
     with pytest.raises(UndecidedBranchError, match="not proved"):
-        export_branch(pattern, branch, out)
+        export_branch(branch, out)
     assert not out.exists()
 
     result = run(undecided, "--signs", signs, "-o", out, "--force")
@@ -220,13 +220,5 @@ def test_a_branch_without_heights_is_refused_always(out):
         assignment_text="U" * 7,
     )
     with pytest.raises(UndecidedBranchError, match="nothing is proved"):
-        export_branch(two_vertex(), nothing, out, force=True)
-    assert not out.exists()
-
-
-def test_a_branch_of_another_pattern_is_refused(out):
-    branch = find_branch(two_vertex(), "++")
-    for other in (load_fold(example_path("waterbomb")).pattern, two_vertex().snapped(64)[0]):
-        with pytest.raises(UsageError, match="another pattern"):
-            export_branch(other, branch, out)
+        export_branch(nothing, out, force=True)
     assert not out.exists()
