@@ -104,6 +104,13 @@ def reflex_corners(seed: int) -> list[tuple[int, int]]:
             return [a, b, c, d]
 
 
+def star_in(corners: Sequence[Sequence[int]]) -> CreasePattern:
+    """One vertex near the reflex corner, on the diagonal through it, joined to all corners."""
+    (ax, ay), _, (cx, cy), _ = corners
+    near = Fraction(1, 50)
+    return wheel(corners, (ax + near * (cx - ax), ay + near * (cy - ay)))
+
+
 def relabelled(pattern: CreasePattern, order: Sequence[int]) -> CreasePattern:
     """Vertex `order[k]` of `pattern` becomes vertex k."""
     place = {v: k for k, v in enumerate(order)}

@@ -288,7 +288,8 @@ def test_properties_of_random_conics(system):
     solution = groebner(system)
     if solution.dimension is None:
         return
-    assert solution.at_infinity >= 0
+    assert solution.dimension <= 4
+    assert solution.at_infinity == 4 - solution.dimension
     assert sum(c.degree * c.multiplicity for c in solution.classes) == solution.dimension
     for order in permutations(range(2)):
         swapped = groebner(reordered(system, order))

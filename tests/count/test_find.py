@@ -35,7 +35,6 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
-from exactfold.solve.sparse_newton import Point, equations
 from exactfold.solve.sparse_sheet import FloatSheet
 
 CONVEX = {
@@ -406,16 +405,6 @@ def test_signs_are_plain_integers(signs: object) -> None:
     found = find_branch(random_square(3, seed=0), signs)  # type: ignore[arg-type]
     assert [type(s) for s in found.vertex_signs.values()] == [int] * 3
     assert found.sign_text == "+-+"
-
-
-def test_on_a_regular_cone_a_row_is_that_of_its_line() -> None:
-    """N = 0 there, to rounding errors, and its root has no gradient."""
-    lines = np.array([0.5, 0.5, -0.5])
-    excess = lines**2 * [1, 1 - 1e-15, 1 + 1e-15]
-    point = Point(np.zeros(3), np.zeros(0), lines, excess)
-    value, of_lines, of_forms = equations(None, point, np.ones(3))  # type: ignore[arg-type]
-    assert value == pytest.approx(lines, rel=1e-6)
-    assert (of_lines.tolist(), of_forms.tolist()) == ([1] * 3, [0] * 3)
 
 
 def test_where_it_fails_the_vertex_is_named() -> None:

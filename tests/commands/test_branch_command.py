@@ -119,13 +119,14 @@ def test_branches_are_printed_as_they_are_found(monkeypatch) -> None:
     assert events == ["find", "print", "find", "print"]
 
 
-@pytest.mark.parametrize(("pops", "letters"), [("all", 2), ("5", 1), ("5,4", 2)])
-def test_neighbours(pops: str, letters: int) -> None:
+@pytest.mark.parametrize(("pops", "texts"), [("all", "-- ++"), ("5", "++"), ("5,4", "++ --")])
+def test_neighbours(pops: str, texts: str) -> None:
+    """Of 4 up and 5 down: with 4 popped both are down, with 5 popped both are up."""
     result = run(TWO, "--up", "4", "--neighbours", pops, "--json")
     assert result.exit_code == 0
     found = [json.loads(line)["vertex_signs"] for line in result.stdout.splitlines()]
-    assert len(found) == letters
-    assert all(signs in ({"4": -1, "5": -1}, {"4": 1, "5": 1}) for signs in found)
+    sides = {"--": {"4": -1, "5": -1}, "++": {"4": 1, "5": 1}}
+    assert found == [sides[text] for text in texts.split()]
 
 
 @pytest.mark.parametrize(
