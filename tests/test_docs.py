@@ -1,14 +1,19 @@
 """Every console example in README and docs is run and its output compared."""
 
+import importlib
 import os
 import re
 import runpy
 import shlex
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
+
+import exactfold
+from exactfold.schemas import VERSIONS, schema
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -81,6 +86,78 @@ def test_the_first_commands_of_the_readme_leave_exactfold_where_a_shell_finds_it
     assert len(first) == 2
     assert all(". .venv/bin/activate && pip install" in line for line in first)
     assert first[0].endswith("&& exactfold count random-8")
+
+
+def contributing() -> str:
+    return (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+
+
+def test_the_rooms_are_the_layers() -> None:
+    """The table of CONTRIBUTING.md is the list that import-linter holds the code to."""
+    (table,) = re.findall(r"(?m)^\| room \|.*\n(?:\|.*\n)+", contributing())
+    rooms = re.findall(r"(?m)^\| `(\w+)` \| .+ \|$", table)
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    layers, apart = settings["tool"]["importlinter"]["contracts"]
+    assert [f"exactfold.{room}" for room in rooms] == layers["layers"]
+    assert layers["layers"] == apart["forbidden_modules"]
+
+
+def test_what_the_guide_names_is_there() -> None:
+    text = contributing()
+    named = re.findall(r"(?<![\w/])(?:exactfold|tests|docs|proofs)(?:/[\w.-]+)+", text)
+    linked = re.findall(r"\]\((?!http)([^)#]+)\)", text)
+    assert len(named) > 30
+    assert [path for path in (*named, *linked) if not (ROOT / path).exists()] == []
+
+
+def entries() -> list[tuple[str, list[str]]]:
+    """(term, names in code) of the glossary."""
+    text = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
+    found = re.findall(r"(?m)^\*\*(.+?)\*\*(?: \((`[^)]*`)\))?: .+\.$", text)
+    assert len(found) == text.count("\n**")
+    return [(term, re.findall(r"`([^`]+)`", names)) for term, names in found]
+
+
+def test_the_glossary_is_alphabetical_and_linked() -> None:
+    terms = [term for term, _ in entries()]
+    assert len(terms) > 60
+    assert terms == sorted(terms, key=str.lower)
+    for page in ("README.md", "CONTRIBUTING.md", "docs/tutorial.md"):
+        assert "glossary.md)" in (ROOT / page).read_text(encoding="utf-8"), page
+
+
+def is_in_the_code(path: str) -> bool:
+    """Whether a name of the glossary is public, or a module or its contents in a room."""
+    value: object = exactfold
+    for part in path.split("."):
+        if part in getattr(value, "__dataclass_fields__", {}):
+            return path.endswith(f".{part}")
+        if not hasattr(value, part):
+            try:
+                importlib.import_module(f"{getattr(value, '__name__', '')}.{part}")
+            except ModuleNotFoundError:
+                return False
+        value = getattr(value, part)
+    return True
+
+
+@pytest.mark.parametrize("name", sorted({name for _, names in entries() for name in names}))
+def test_names_in_the_glossary_are_names_in_the_code(name: str) -> None:
+    assert is_in_the_code(name)
+    assert not is_in_the_code(f"{name}_of_old")
+
+
+def test_every_key_of_the_json_is_explained() -> None:
+    pages = [(ROOT / "docs" / page).read_text("utf-8") for page in ("glossary.md", "files.md")]
+    words = set(re.findall(r"[a-z_0-9]+", " ".join(re.findall(r"`[^`]+`", "".join(pages)))))
+    words |= {term.replace(" ", "_") for term, _ in entries()}
+    keys = set()
+    for name in VERSIONS:
+        found = schema(name)
+        for part in (found, *found.get("$defs", {}).values()):
+            keys |= set(part.get("properties", {}))
+    assert len(keys) > 60
+    assert sorted(keys - words) == []
 
 
 def test_examples_are_found() -> None:

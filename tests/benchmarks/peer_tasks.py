@@ -98,7 +98,7 @@ def count(size: int, seed: int) -> Found:
 def stream(size: int, seed: int) -> Found:
     """The streaming pipeline on one core."""
     result = stream_branches(read_fold("pattern.fold"), "compact.txt")
-    stages = result.seconds
+    stages = result.cpu_seconds
     return {
         "found": result.distinct or 0,
         "stages": {"solve": stages["solve"], "certify": stages["certify"] + stages["exactly"]},
