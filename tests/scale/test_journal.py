@@ -74,7 +74,7 @@ def test_the_command_names_the_file_in_use(tmp_path: Path) -> None:
         assert CliRunner().invoke(app, given).exit_code == 2  # it is there already
         result = CliRunner().invoke(app, [*given, "--resume"])
         assert result.exit_code == 3
-        assert f"JournalInUseError: another run is writing {path}" in result.stderr
+        assert f"exactfold: another run is writing {path}" in result.stderr
     finally:
         held.close()
 
