@@ -50,7 +50,7 @@ def test_multiple_roots_of_a_large_pattern_are_undecided(monkeypatch):
     monkeypatch.setattr(hand_over, "flat_vertices", lambda chart, points: iter(()))
     result = count_branches(FAMILIES["flat-vertex"]())
     assert result.status is UNDECIDED
-    assert "the exact engine is tried up to 1 unknowns, here are 2" in result.reason
+    assert "the exact engine is tried up to 1 unknown, not with 2" in result.reason
 
 
 def test_flat_vertices_and_the_exact_engine_agree():
