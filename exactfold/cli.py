@@ -309,7 +309,7 @@ def export(
         typer.Option(metavar="DEG", help="The largest fold angle, in degrees. Default: 30."),
     ] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Write a branch that is enclosed but not proved, too.")
+        bool, flag("--force", text="Write a branch that is enclosed but not proved, too.")
     ] = False,
     as_json: Json = False,
     snap: Snap = None,

@@ -6,14 +6,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import BranchSystem, Chart, chamber_chart
 from exactfold.problem.gauge import Gauge
+
+if TYPE_CHECKING:
+    from exactfold.rigidity.rigid_triangles import RigidTriangle
 from exactfold.problem.sign_rows import Functionals
-from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
 
 
 @dataclass(frozen=True, repr=False)
@@ -71,6 +74,8 @@ class Problem:
     @cached_property
     def triangles(self) -> tuple[RigidTriangle, ...] | None:
         """The triangulated triangles with the proof that they stay flat, None if one is missing."""
+        from exactfold.rigidity.rigid_triangles import certify_rigid_triangles  # loads FLINT
+
         return certify_rigid_triangles(self.pattern)
 
     @cached_property

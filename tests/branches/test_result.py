@@ -116,9 +116,10 @@ def test_to_dict_is_json_with_exact_numbers(pattern):
 
 def test_keys_of_the_json_are_fixed():
     data = count_branches(two_vertex()).to_dict()
-    assert set(data) - KEYS <= {"why", "open_questions", "settings"}
+    assert set(data) - KEYS <= {"format", "version", "by", "why", "open_questions", "settings"}
     assert set(data["pattern"]) == {
-        *("interior", "boundary", "folds", "degrees_of_freedom", "sha256", "snapped"),
+        *("name", "interior", "boundary", "folds", "degrees_of_freedom", "sha256", "snapped"),
+        *("vertices", "faces"),
     }
     keys = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
     assert set(data["branches"][0]) == keys

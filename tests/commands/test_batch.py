@@ -287,9 +287,10 @@ def test_a_dead_process_is_a_line_that_is_tried_again(
 def test_on_dask(tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     patterns = [random_square(2, seed=k) for k in range(5)]
+    quiet = {"dashboard_address": "127.0.0.1:0", "dashboard": False}
     with (
         distributed.LocalCluster(
-            n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
+            n_workers=1, processes=False, dashboard_address=None, scheduler_kwargs=quiet
         ) as cluster,
         dask_pool(cluster.scheduler_address) as pool,
     ):

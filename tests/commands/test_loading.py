@@ -6,9 +6,8 @@ import sys
 import pytest
 
 import exactfold
-from exactfold import (
-    cli,
-)
+from exactfold import cli
+from exactfold.count.solvers import ALIASES
 
 HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
 
@@ -48,4 +47,4 @@ def test_public_names():
 
 
 def test_methods_of_the_command_line():
-    assert tuple(method.value for method in cli.Method) == exactfold.METHODS
+    assert tuple(method.value for method in cli.Method) == (*exactfold.METHODS, *ALIASES)

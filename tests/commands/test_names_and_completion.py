@@ -14,7 +14,7 @@ from running import BAD_INPUT, PROVED, run
 
 from exactfold import EXAMPLES, example_path
 
-COMMANDS = ("count", "check", "branch", "random", "info", "examples")
+COMMANDS = ("count", "check", "branch", "export", "random", "info", "examples")
 
 
 @pytest.mark.parametrize("command", [[], *([name] for name in COMMANDS)])
@@ -51,13 +51,18 @@ def test_names_stand_for_files_in_every_directory(
     ]
 
 
-def test_a_file_of_that_name_comes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_name_means_the_same_wherever_it_is_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As for `load`: the example, whatever files there are; ./two-vertex is a file."""
     monkeypatch.chdir(tmp_path)
-    Path("two-vertex").mkdir()  # a folder is no pattern
+    Path("two-vertex").mkdir()
     assert json.loads(run("count", "two-vertex", "--json").stdout)["distinct"] == 4
     Path("two-vertex").rmdir()
     shutil.copy(example_path("flat-vertex"), "two-vertex")
-    assert json.loads(run("count", "two-vertex", "--json").stdout)["distinct"] == 3
+    assert json.loads(run("count", "two-vertex", "--json").stdout)["distinct"] == 4
+    copied = tmp_path / "two-vertex"
+    assert json.loads(run("count", copied, "--json").stdout)["distinct"] == 3
 
 
 def test_a_name_that_is_neither_gets_the_names() -> None:
@@ -102,7 +107,7 @@ def test_the_shell_completes_names_files_and_methods(tmp_path: Path) -> None:
     assert completed("exactfold count none/", tmp_path) == []
     assert set(completed("exactfold info ", tmp_path)) >= {*EXAMPLES, "two.fold"}
     assert completed("exactfold count --method ho", tmp_path) == ["homotopy"]
-    assert completed("exactfold ex", tmp_path) == ["examples"]
+    assert set(completed("exactfold ex", tmp_path)) == {"examples", "export"}
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
