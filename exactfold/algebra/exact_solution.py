@@ -11,6 +11,7 @@ from math import gcd, lcm
 import numpy as np
 from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 
+from exactfold.arrays import ComplexArray
 from exactfold.errors import ParametrisationError
 from exactfold.exact.divisibility import are_multiples, is_squarefree
 from exactfold.exact.factor_degrees import irreducibility_primes
@@ -23,7 +24,7 @@ from exactfold.exact.univariate import (
     to_rational_poly,
 )
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.candidates import Candidates, ComplexArray
+from exactfold.solve.candidates import Candidates
 
 _MOST_BITS = 1 << 10
 

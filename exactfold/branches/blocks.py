@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-import numpy.typing as npt
-
+from exactfold.arrays import BoolArray
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.float_krawczyk import FloatBoxes
 
@@ -46,7 +44,7 @@ class ProvedBlock:
 
     index: int
     boxes: FloatBoxes
-    valleys: npt.NDArray[np.bool_]
+    valleys: BoolArray
     exact: Mapping[int, ExactRoot]
     open: Mapping[int, OpenEnd]
     steps: int = 0

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse import bmat, coo_array, csc_array, identity
 from scipy.sparse.linalg import splu
 
+from exactfold.arrays import FloatArray, IndexArray
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -84,7 +82,7 @@ def _levelled(shape: FloatArray, height: FloatArray) -> FloatArray:
     return np.asarray(height - affine @ plane)
 
 
-def _ends(pattern: CreasePattern) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+def _ends(pattern: CreasePattern) -> tuple[IndexArray, IndexArray]:
     edges = np.array(pattern.edges, dtype=np.intp)
     return edges[:, 0], edges[:, 1]
 

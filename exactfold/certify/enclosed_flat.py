@@ -11,8 +11,9 @@ from fractions import Fraction
 
 import numpy as np
 
+from exactfold.arrays import BigArray
 from exactfold.certify.enclosure import Enclosure, check_hypotheses, nappes
-from exactfold.problem.sheet import BigArray, Sheet
+from exactfold.problem.sheet import Sheet
 
 _MOST_BITS = 64
 """Bits of the common denominator of heights that are tried as exact, that of the rim apart."""

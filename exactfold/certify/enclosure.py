@@ -9,7 +9,8 @@ from math import isqrt
 
 import numpy as np
 
-from exactfold.problem.sheet import BigArray, Sheet
+from exactfold.arrays import BigArray
+from exactfold.problem.sheet import Sheet
 
 _LENGTH_BITS = 64
 _LEAST_COST = 2.0**-500

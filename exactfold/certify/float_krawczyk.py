@@ -29,11 +29,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from exactfold.arrays import BoolArray, FloatArray, IntArray
 from exactfold.problem.quadratic import QuadraticSystem
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
 
 UNPROVED = -1
 """The radius exponent of a candidate around which nothing was proved."""

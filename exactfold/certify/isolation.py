@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from exactfold.arrays import ComplexArray
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.certify.krawczyk import krawczyk
 from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.progress import Steps
 from exactfold.solve.candidates import Candidates
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
-
-ComplexRow = npt.NDArray[np.complex128]
-Progress = Callable[[int, int], None]
 
 _BLOCK = 512
 _FIRST = (64,)
@@ -64,7 +62,7 @@ class Isolation:
 
 
 def isolate(
-    system: QuadraticSystem, candidates: Candidates, *, progress: Progress | None = None
+    system: QuadraticSystem, candidates: Candidates, *, progress: Steps | None = None
 ) -> Isolation:
     """Certify every candidate: exact Krawczyk first, interval Newton for what is left.
 
@@ -78,7 +76,7 @@ def isolate(
     (2, 'proved')
     """
     boxes: list[IsolatingBox] = []
-    unproved: list[ComplexRow] = []
+    unproved: list[ComplexArray] = []
     total = len(candidates.points)
     for start in range(0, total, _BLOCK):
         block = candidates.points[start : start + _BLOCK]
@@ -100,9 +98,9 @@ def isolate(
     return Isolation(system, tuple(disjoint(boxes)), tuple(failures))
 
 
-def _clusters(points: list[ComplexRow]) -> list[list[ComplexRow]]:
+def _clusters(points: list[ComplexArray]) -> list[list[ComplexArray]]:
     """Points that agree to about five digits together; this only chooses what to try."""
-    groups: dict[tuple[complex, ...], list[ComplexRow]] = {}
+    groups: dict[tuple[complex, ...], list[ComplexArray]] = {}
     for point in points:
         scale = float(np.abs(point).max(initial=0.0)) or 1.0
         groups.setdefault(tuple(np.round(point / scale, 5).tolist()), []).append(point)
@@ -110,7 +108,7 @@ def _clusters(points: list[ComplexRow]) -> list[list[ComplexRow]]:
 
 
 def _prove_meeting(
-    system: QuadraticSystem, group: list[ComplexRow]
+    system: QuadraticSystem, group: list[ComplexArray]
 ) -> tuple[list[IsolatingBox], Uncertified | None]:
     """Higher precision and the second certifier for candidates that meet; stops at a failure."""
     found: list[IsolatingBox] = []

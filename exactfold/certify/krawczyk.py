@@ -9,9 +9,9 @@ from functools import cached_property
 from operator import mul
 
 import numpy as np
-import numpy.typing as npt
 from flint import fmpq, fmpq_mat, fmpz, fmpz_mat
 
+from exactfold.arrays import FloatArray
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.certify.points import (
     REACH,
@@ -23,8 +23,6 @@ from exactfold.certify.points import (
 )
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
-
-FloatArray = npt.NDArray[np.float64]
 
 _PRECISIONS = (64, 128, 256, 512, 1024)
 _Y_BITS = 56

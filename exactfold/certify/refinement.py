@@ -7,10 +7,11 @@ from math import ceil, log2
 
 import numpy as np
 
+from exactfold.arrays import BigArray, FloatArray
 from exactfold.certify.enclosure import curvatures
-from exactfold.problem.sheet import BigArray, Sheet
+from exactfold.problem.sheet import Sheet
 from exactfold.solve.sparse_newton import Point, equations
-from exactfold.solve.sparse_sheet import FloatArray, FloatSheet, SingularError, ratio
+from exactfold.solve.sparse_sheet import FloatSheet, SingularError, ratio
 
 _ITERATIONS = 40
 _SPARE = 16

@@ -12,11 +12,10 @@ from exactfold.count.solvers import Choice
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.chart_change import from_chart, to_chart
 from exactfold.problem.problem import Problem
+from exactfold.progress import Progress
 from exactfold.solve.candidates import Candidates
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
-
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)

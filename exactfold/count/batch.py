@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterable, Sized
+from collections.abc import Generator, Iterable, Sized
 from contextlib import closing
 from dataclasses import dataclass, replace
 
@@ -16,8 +16,7 @@ from exactfold.errors import InputError, UnreadableFileError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold import FoldFile, parse_bytes, read_bytes
 from exactfold.pattern.load import PatternLike
-
-Progress = Callable[[str, int, int], None]
+from exactfold.progress import Progress
 
 Source = bytes | CreasePattern | InputError
 """What is sent to a worker: the bytes of a FOLD file, a pattern, or why there is neither."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 
 from exactfold.branches.branch import Branch
@@ -19,6 +18,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.problem.branch_system import BranchSystem, notch_chart
 from exactfold.problem.problem import Problem
+from exactfold.progress import Progress
 from exactfold.rigidity.definite_stress import definite_stress
 from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
 from exactfold.solve.candidates import Candidates
@@ -27,8 +27,6 @@ from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
 
 __all__ = ["METHODS", "count_branches"]
-
-Progress = Callable[[str, int, int], None]
 
 _MEET = 9
 """Digits to which ends agree where a root is multiple: they are as good there as elsewhere."""

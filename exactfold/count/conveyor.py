@@ -17,8 +17,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from exactfold.arrays import BoolArray
 from exactfold.branches.blocks import ExactRoot, OpenEnd, ProvedBlock
 from exactfold.branches.branch import Branch
 from exactfold.branches.classify import BranchMaker
@@ -182,7 +182,7 @@ class Conveyor:
                 yield self._maker.branch(BoxRoot(box), signs[j], letters[j])
 
 
-def letter_rows(valleys: npt.NDArray[np.bool_]) -> list[str]:
+def letter_rows(valleys: BoolArray) -> list[str]:
     """Rows of letters "V" and "M" as texts.
 
     >>> letter_rows(np.array([[True, False]]))

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from exactfold.arrays import FloatArray
 from exactfold.branches.blocks import ExactRoot, OpenEnd
 from exactfold.branches.classify import decide_signs
 from exactfold.branches.letters import LETTERS
@@ -35,7 +35,7 @@ class ExactProver:
     problem: Problem
     _flat_before: set[tuple[int, ...]] = field(default_factory=set)
 
-    def prove(self, signs: Sequence[int], point: npt.NDArray[np.float64]) -> ExactRoot | OpenEnd:
+    def prove(self, signs: Sequence[int], point: FloatArray) -> ExactRoot | OpenEnd:
         """The zero with these vertex signs, proved, or why it was not.
 
         The exact test of `krawczyk` at `point`; if it fails, or finds a zero with other signs, at

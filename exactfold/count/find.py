@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
+from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.branches.letters import LETTERS, sign_value
 from exactfold.branches.roots import EnclosedRoot
@@ -30,16 +31,15 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
+from exactfold.progress import Progress
 from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.sparse_newton import End, solve
-from exactfold.solve.sparse_sheet import FloatArray, FloatSheet
+from exactfold.solve.sparse_sheet import FloatSheet
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
 
 Signs = str | Mapping[int, int] | Sequence[int]
 Rim = Mapping[int, RationalLike]
-Progress = Callable[[str, int, int], None]
-
 _LEVELS = (80, 160, 320)
 """Excess curvatures 2^-level tried one after the other until every fold is decided."""
 

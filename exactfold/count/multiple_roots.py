@@ -9,6 +9,7 @@ import numpy as np
 
 from exactfold.algebra.exact_solution import RootClass
 from exactfold.algebra.flat_zeros import lift, zeros_flat_at
+from exactfold.arrays import FloatArray
 from exactfold.branches.classify import Undecided
 from exactfold.branches.roots import BoxRoot, FlatBoxRoot
 from exactfold.certify.algebraic import FlatBox
@@ -18,7 +19,6 @@ from exactfold.certify.recognition import recognise
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.flat_sheets import flat_sheets
 from exactfold.solve.candidates import Candidates
-from exactfold.solve.flat_guess import FloatArray
 
 _MOST_TOGETHER = 64  # conjugate zeros in one class, for the sake of the checker
 

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol, overload
 
 from exactfold.errors import BadCandidatesError, UsageError
+from exactfold.progress import Steps
 
 if TYPE_CHECKING:
     from exactfold.problem.branch_system import Chart
     from exactfold.solve.candidates import Candidates
 
 # Each solver imports what it needs when it is called: the names alone must not take long to load.
-
-Progress = Callable[[int, int], None]
 
 NEWTON = "newton"
 """Newton's method, one start for each sign vector: the solver of the conveyor."""
@@ -35,7 +34,7 @@ class Solver(Protocol):
     missing point costs the proof, never its truth.
     """
 
-    def __call__(self, chart: Chart, seed: int, progress: Progress | None, /) -> Candidates:
+    def __call__(self, chart: Chart, seed: int, progress: Steps | None, /) -> Candidates:
         """Candidates for all zeros, real and complex."""
 
 
@@ -145,7 +144,7 @@ def choose(method: str) -> Choice:
 
 
 def find_candidates(
-    chart: Chart, method: str = "auto", *, seed: int = 0, progress: Progress | None = None
+    chart: Chart, method: str = "auto", *, seed: int = 0, progress: Steps | None = None
 ) -> Candidates:
     """Candidates for all zeros of the system of a chart; untrusted, whatever the method.
 
@@ -191,7 +190,7 @@ def find_candidates(
 class _Reported:
     """A progress function that remembers whether it raised: that is no failure of the solver."""
 
-    def __init__(self, progress: Progress | None) -> None:
+    def __init__(self, progress: Steps | None) -> None:
         self.progress = progress
         self.failed = False
 
@@ -235,25 +234,25 @@ def _checked(name: str, found: Any, size: int) -> Candidates:
 # --- the solvers of exactfold --------------------------------------------------------------------
 
 
-def _newton(chart: Chart, seed: int, progress: Progress | None) -> Candidates:
+def _newton(chart: Chart, seed: int, progress: Steps | None) -> Candidates:
     from exactfold.solve.newton_ends import nappe_ends
 
     return nappe_ends(chart, progress=progress).finite()
 
 
-def _popping(chart: Chart, seed: int, progress: Progress | None) -> Candidates:
+def _popping(chart: Chart, seed: int, progress: Steps | None) -> Candidates:
     from exactfold.solve.popping import popping
 
     return popping(chart, progress=progress).finite()
 
 
-def _homotopy(chart: Chart, seed: int, progress: Progress | None) -> Candidates:
+def _homotopy(chart: Chart, seed: int, progress: Steps | None) -> Candidates:
     from exactfold.solve.homotopy import homotopy
 
     return homotopy(chart.system, seed=seed, progress=progress).finite()
 
 
-def _groebner(chart: Chart, seed: int, progress: Progress | None) -> Candidates:
+def _groebner(chart: Chart, seed: int, progress: Steps | None) -> Candidates:
     from exactfold.algebra.groebner import groebner
 
     return groebner(chart.system).candidates

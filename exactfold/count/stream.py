@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import closing
 from dataclasses import asdict, dataclass, field, fields
 from dataclasses import replace as changed
@@ -22,10 +22,9 @@ from exactfold.evidence.journal import Journal
 from exactfold.evidence.streamed import claims_line, header_line
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.progress import Progress
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
-
-Progress = Callable[[str, int, int], None]
 
 HANDED_OVER = 12
 """Most foldable vertices of a pattern with open sign vectors that is also counted otherwise."""

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from concurrent.futures import BrokenExecutor
 
 import numpy as np
-import numpy.typing as npt
 
+from exactfold.arrays import BoolArray
 from exactfold.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
 from exactfold.checker import compact
 from exactfold.checker.compact_blocks import Block, CompactSheet
@@ -72,7 +72,7 @@ class FastChecker:
         self.vertices = FloatSigns(tuple(map(tuple, sheet.vertex_rows)))
         self.folds = FloatSigns(tuple(map(tuple, sheet.fold_rows)))
 
-    def verified(self, block: Block) -> npt.NDArray[np.bool_]:
+    def verified(self, block: Block) -> BoolArray:
         """Which roots of the block have one regular zero in their box, and the signs given."""
         count, n = self.sheet.block, self.sheet.size
         raw = np.zeros((count, n, 8), dtype=np.uint8)

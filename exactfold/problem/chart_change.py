@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from exactfold.arrays import FloatArray
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.gauge import pattern_size
-
-FloatArray = npt.NDArray[np.float64]
 
 _INFINITY = 1e-12
 

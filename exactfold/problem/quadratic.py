@@ -9,11 +9,10 @@ from functools import cached_property
 from math import gcd
 
 import numpy as np
-import numpy.typing as npt
 
+from exactfold.arrays import FloatArray
 from exactfold.exact.numbers import over_common_denominator
 
-FloatArray = npt.NDArray[np.float64]
 IntMatrix = tuple[tuple[int, ...], ...]
 
 

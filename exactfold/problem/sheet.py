@@ -9,14 +9,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from exactfold.arrays import BigArray, IndexArray
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.problem import Problem
 
-IntArray = npt.NDArray[np.intp]
-BigArray = npt.NDArray[np.object_]
 """Python integers of any size, as an object array."""
 
 
@@ -118,7 +116,7 @@ class Folds:
     Shapes: `corners` and `weights` (E, 4), the others (E,). All are integers.
     """
 
-    corners: IntArray
+    corners: IndexArray
     weights: BigArray
     left: BigArray
     right: BigArray

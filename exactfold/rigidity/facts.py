@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,11 +11,10 @@ from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
 from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.progress import Progress
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.self_stress import rigidity_rank
 from exactfold.schemas import headed
-
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
-ComplexArray = npt.NDArray[np.complex128]
+from exactfold.arrays import ComplexArray
 
 
 @dataclass(frozen=True, eq=False)

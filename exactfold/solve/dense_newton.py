@@ -19,8 +19,8 @@ from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from exactfold.arrays import BoolArray, FloatArray
 from exactfold.errors import NotApplicableError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.problem.branch_system import Chart
@@ -28,8 +28,6 @@ from exactfold.problem.gauge import Gauge
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 Row = tuple[Fraction, ...]
 
 _ITERATIONS = 100

@@ -7,15 +7,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-import numpy.typing as npt
 
+from exactfold.arrays import BoolArray, FloatArray
 from exactfold.exact.linalg import from_fmpq
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.flat_sheets import FlatSheets, flat_sheets
 from exactfold.rigidity.functionals import fold_functional
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 _FLAT = (1e-5, 1e-4, 1e-3, 1e-2)
 _NEVER_FOLDED = 1e-9

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial.polynomial import polyval
 
+from exactfold.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from exactfold.errors import UsageError
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.candidates import Candidates, ComplexArray
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-Progress = Callable[[int, int], None]
+from exactfold.progress import Steps
+from exactfold.solve.candidates import Candidates
 
 _ORDER = 12
 _BLOCK = 256
@@ -42,7 +38,7 @@ _TIGHT = _Tolerances(predict=1e-10, correct=1e-8, shortest=1e-14, rounds=1500)
 
 
 def homotopy(
-    system: QuadraticSystem, *, seed: int = 0, progress: Progress | None = None
+    system: QuadraticSystem, *, seed: int = 0, progress: Steps | None = None
 ) -> Candidates:
     """Candidates for all complex zeros of n affine quadrics, one path for each of the 2^n.
 
@@ -164,7 +160,7 @@ class _Run:
         return bool((stalled | jumped).any())
 
 
-def _run(scaled: _Balanced, rng: np.random.Generator, progress: Progress | None) -> _Run:
+def _run(scaled: _Balanced, rng: np.random.Generator, progress: Steps | None) -> _Run:
     n = len(scaled.forms)
     tracker = _Tracker(scaled.forms, np.exp(2j * np.pi * rng.random(n)))
     probe = rng.standard_normal((2, n + 1)) + 1j * rng.standard_normal((2, n + 1))
@@ -344,7 +340,7 @@ class _Tracker:
 
     def _correct(
         self, w: ComplexArray, t: FloatArray, inverse: ComplexArray, tolerances: _Tolerances
-    ) -> tuple[ComplexArray, npt.NDArray[np.bool_]]:
+    ) -> tuple[ComplexArray, BoolArray]:
         """Newton with a fixed inverse; good if the first step is short and the next far shorter."""
         shift = t[:, None]
         lengths = []

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from exactfold.problem.branch_system import Chart, chamber_chart
 from exactfold.problem.chart_change import from_chart, to_chart
+from exactfold.progress import Steps
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.dense_newton import Ends, NappeSystem, sign_vectors
-
-Progress = Callable[[int, int], None]
 
 _BLOCK = 1024
 
 
-def nappe_ends(chart: Chart, *, progress: Progress | None = None) -> Candidates:
+def nappe_ends(chart: Chart, *, progress: Steps | None = None) -> Candidates:
     """Candidates for all 2^Vi branches (Ve = 4), each by Newton's method on the nappes.
 
     For each vector e of vertex signs the equations l_v = e_v |A_v h| of `NappeSystem` have one

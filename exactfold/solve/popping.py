@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial.polynomial import polyval
 
+from exactfold.arrays import BoolArray, FloatArray
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.chart_change import to_chart
 from exactfold.problem.gauge import pattern_size
+from exactfold.progress import Steps
 from exactfold.rigidity.curvature import curvature_form, spokes
 from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.dense_newton import sign_vectors
-
-FloatArray = npt.NDArray[np.float64]
-Progress = Callable[[int, int], None]
 
 _ORDER = 8
 _BLOCK = 4096
@@ -28,7 +25,7 @@ _MAX_STEPS = 400
 _MIN_STEP = 1e-12
 
 
-def popping(chart: Chart, *, progress: Progress | None = None) -> Candidates:
+def popping(chart: Chart, *, progress: Steps | None = None) -> Candidates:
     """Candidates for all 2^Vi branches (Ve = 4), each by following its popping path.
 
     With the round cone t_v, l_v(h) = K_v(t_v, h) scaled to hub coefficient 1 and K_v scaled so that
@@ -151,7 +148,7 @@ class _Problem:
         return heights
 
 
-def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, npt.NDArray[np.bool_], int]:
+def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, BoolArray, int]:
     """Follow every row of `signs`: end points, which of them arrived, and steps of the longest."""
     n = problem.size
     lines, level = problem.lines, problem.level
@@ -232,7 +229,7 @@ def _taylor(problem: _Problem, x: FloatArray, t: FloatArray) -> list[FloatArray]
 
 def _correct(
     problem: _Problem, x: FloatArray, t: FloatArray, signs: FloatArray
-) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
+) -> tuple[FloatArray, BoolArray]:
     """Newton at fixed T; good where it converges fast and keeps e_v l_v > 0."""
     good = np.ones(len(x), dtype=bool)
     first = np.zeros(len(x))

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exactfold.solve.sparse_sheet import FloatArray, FloatSheet, SingularError
+from exactfold.arrays import FloatArray
+from exactfold.solve.sparse_sheet import FloatSheet, SingularError
 
 _ITERATIONS = 200
 _HALVINGS = 30

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
-from exactfold.problem.sheet import BigArray, IntArray, Sheet
-
-FloatArray = npt.NDArray[np.float64]
+from exactfold.arrays import BigArray, FloatArray, IndexArray, IntArray
+from exactfold.problem.sheet import Sheet
 
 _DENSE = 150
 
@@ -28,8 +26,8 @@ class FloatSheet:
     V vertices.
     """
 
-    unknowns: IntArray
-    corners: IntArray
+    unknowns: IndexArray
+    corners: IndexArray
     weights: FloatArray
     lengths: FloatArray
     scale: FloatArray
@@ -207,15 +205,15 @@ def _cone_curvature(sheet: Sheet) -> FloatArray:
 class _Pattern:
     """The common pattern of all Jacobians, in compressed columns."""
 
-    position: IntArray
-    rows: IntArray
-    columns: IntArray
-    pointers: IntArray
-    keys: npt.NDArray[np.int64]
-    inner: IntArray
-    upper: IntArray
-    lower: IntArray
-    diagonal: IntArray
+    position: IndexArray
+    rows: IndexArray
+    columns: IndexArray
+    pointers: IndexArray
+    keys: IntArray
+    inner: IndexArray
+    upper: IndexArray
+    lower: IndexArray
+    diagonal: IndexArray
 
     @classmethod
     def of(cls, sheet: FloatSheet) -> _Pattern:
@@ -245,7 +243,7 @@ class _Pattern:
             slot[2 * e :],
         )
 
-    def find(self, rows: IntArray, columns: IntArray) -> IntArray:
+    def find(self, rows: IndexArray, columns: IndexArray) -> IndexArray:
         n = len(self.pointers) - 1
         return np.searchsorted(self.keys, columns.astype(np.int64) * n + rows)
 
