@@ -22,7 +22,7 @@ class UsageError(ExactfoldError):
 
 
 class BadCandidatesError(UsageError):
-    """A solver returned something that is no set of finite points of the right shape."""
+    """A solver returned something other than a set of finite points of the right shape."""
 
 
 # --- numbers -------------------------------------------------------------------------------------
@@ -104,7 +104,7 @@ class ClusterError(InputError):
 
 
 class ForeignJournalError(InputError):
-    """A file to be resumed belongs to another pattern or version, or is no compact certificate."""
+    """A file to be resumed belongs to another pattern or version, or is of another kind."""
 
 
 class JournalInUseError(InputError):

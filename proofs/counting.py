@@ -174,13 +174,13 @@ def _folds(script: Script) -> None:
     square = families.hypar(2), families.two_vertex(), families.single_vertex(4)
     more = script.alter("3 (n + 1) folds", 1, 3)
     script.example(
-        "a triangulated square has 3n + 1 folds, n = Vi - Vt after emptying (Euler with Ve = 4)",
+        "a triangulated square without rigid parts has 3n + 1 folds, n = Vi - Vt (Euler, Ve = 4)",
         all(len(p.folds) == 3 * p.Vi + more for p in square),
     )
-    emptied, _ = families.flat_octahedron_in_square().without_rigid_parts()
+    reduced, _ = families.flat_octahedron_in_square().without_rigid_parts()
     script.example(
-        "the same for the emptied square around a flat octahedron (n = 3)",
-        len(emptied.folds) == 3 * script.alter("vertices of the octahedron counted", 3, 6) + 1,
+        "the same for the square around a flat octahedron without it (n = 3)",
+        len(reduced.folds) == 3 * script.alter("vertices of the octahedron counted", 3, 6) + 1,
     )
     exponent = script.alter("printed exponent n - 1", n, n - 1)
     script.identity(
@@ -276,7 +276,7 @@ def _chambers(script: Script) -> None:
         AS_PRINTED,
         note="each of the Vt inner heights is the value of the plane through the triangle's "
         "corners",
-        code="CreasePattern.emptied",
+        code="CreasePattern.without_rigid_parts",
     )
     script.state(
         "IIIB.1",

@@ -3,9 +3,10 @@
 Multiplicity theorem. Let m vertices lie inside triangulated triangles and w be their heights over
 the planes of the corners, y the other heights in a chart. The m inner forms G(w) have only w = 0 in
 common (definite stress), so they are a regular sequence and A = Q[w] / (G) is a local ring of
-length 2^m. Modulo w the other forms F(y, w) are the forms F(y, 0) of the emptied pattern. If these
-have an isolated zero y0 of multiplicity k, they are a regular sequence on the closed fibre of the
-flat A-algebra A[y], hence on A[y] near y0, with a flat quotient: (y0, 0) has multiplicity 2^m k.
+length 2^m. Modulo w the other forms F(y, w) are the forms F(y, 0) of the pattern without rigid
+parts. If these have an isolated zero y0 of multiplicity k, they are a regular sequence on the
+closed fibre of the flat A-algebra A[y], hence on A[y] near y0, with a flat quotient: (y0, 0) has
+multiplicity 2^m k.
 
 Theorem 3 (docs/theorem.md) says more: every multiplicity is 2^|F|, F the vertices whose star is
 flat. It is compared here with Groebner bases and dual spaces, which know nothing of it.
@@ -48,11 +49,11 @@ HUB = (Fraction(3, 7), Fraction(5, 9))
 
 
 def prove(change: str | None = None) -> Proof:
-    """2^Vt times the multiplicity in the emptied pattern, and 2^(number of flat vertices)."""
+    """2^Vt times the multiplicity without rigid parts, and 2^(number of flat vertices)."""
     script = Script(
         NAME,
         TITLE,
-        ("four boundary vertices; finitely many roots of the emptied pattern (docs/theorem.md)",),
+        ("four boundary vertices; finitely many roots without rigid parts (docs/theorem.md)",),
         change,
     )
     _multiplicity(script)
@@ -62,7 +63,7 @@ def prove(change: str | None = None) -> Proof:
 
 
 def _multiplicity(script: Script) -> None:
-    """2^Vt, times the multiplicity in the emptied pattern; the number of distinct branches."""
+    """2^Vt, times the multiplicity without rigid parts; the number of distinct branches."""
     inner = CreasePattern(
         [(0, 0), (9, 0), (0, 9), *inner_points((0, 0), (9, 0), (0, 9))], OCTAHEDRON
     )
@@ -99,7 +100,7 @@ def _multiplicity(script: Script) -> None:
     script.counterexample(
         "flat-vertex square: 3 roots of multiplicities 1, 1, 2, not 4; with a degree-3 vertex "
         "added "
-        "2, 2, 4: twice those of the emptied pattern, not all 2^Vt = 2",
+        "2, 2, 4: twice those of the pattern without rigid parts, not all 2^Vt = 2",
         _multiplicities(flat) == [1, 1, 2]
         and _multiplicities(extra) == [factor * k for k in (1, 1, 2)]
         and (flat.Vi, flat.Vt, extra.Vt) == (2, 0, 1),
@@ -121,9 +122,9 @@ def _multiplicity(script: Script) -> None:
         r"\text{``the distinct roots of the quadratic equations had multiplicity }2^{V_t}\text{''}",
         Ruling.AS_PRINTED,
         note="reports the systems found; in general 2^|F|, F the vertices that are flat on the "
-        "branch (docs/theorem.md, Theorem 3), that is 2^Vt times the multiplicity in the emptied "
-        "pattern. The square of IIIA.12 with a degree-3 vertex (17/30, 1/15) in 015 has "
-        "multiplicities 2, 2, 4",
+        "branch (docs/theorem.md, Theorem 3), that is 2^Vt times the multiplicity in the pattern "
+        "without rigid parts. The square of IIIA.12 with a degree-3 vertex (17/30, 1/15) in 015 "
+        "has multiplicities 2, 2, 4",
         code="Branch.multiplicity",
     )
 

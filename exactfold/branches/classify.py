@@ -149,10 +149,10 @@ def decide_signs(
 
     None where a sign is not decided; a fold may then be flat.
     """
-    emptied = chart.branch_system.pattern
+    reduced = chart.branch_system.pattern
     vertices = {v: root.sign(row) for v, row in functionals.vertices.items()}
     folds = {fold: root.sign(row) for fold, row in functionals.folds.items()}
-    _add_flat(emptied, folds)
+    _add_flat(reduced, folds)
     for bits in _RISING:
         done = None not in vertices.values() and None not in folds.values()
         # A fold that is still open on a sharp box is most likely flat.
@@ -163,14 +163,14 @@ def decide_signs(
         root = sharper
         _fill(vertices, functionals.vertices, root)
         _fill(folds, functionals.folds, root)
-        _add_flat(emptied, folds)
+        _add_flat(reduced, folds)
     return root, vertices, folds
 
 
-def _add_flat(emptied: CreasePattern, folds: dict[Edge, int | None]) -> None:
+def _add_flat(reduced: CreasePattern, folds: dict[Edge, int | None]) -> None:
     """Enter the folds that the signs of the others prove to be flat."""
     if None in folds.values():
-        for fold in flat_folds(emptied, folds):
+        for fold in flat_folds(reduced, folds):
             folds[fold] = 0
 
 

@@ -235,7 +235,7 @@ def standard_input(path: Path) -> Path:
 
 
 def not_a_dash(path: Path | None) -> Path | None:
-    """`-` is no name of an output: the table or the JSON object goes to standard output."""
+    """`-` does not name an output: the table or the JSON object goes to standard output."""
     if path is not None and str(path) == "-":
         raise typer.BadParameter("an output has a name of its own; write ./- if that is -")
     return path

@@ -47,7 +47,7 @@ def count_branches(
     For D = 1: solve the branch system of the sheet without rigid parts, isolate every solution by
     an exact test, prove by refined Bezout that there are no others (docs/mathematics.md, 3 to 5),
     and decide all vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For
-    D >= 2 only the single-vertex pattern is settled. `method` is one of `METHODS`; "auto" takes
+    D >= 2 only the single-vertex pattern is counted. `method` is one of `METHODS`; "auto" takes
     Newton's method, one start for each sign vector, and turns to the exact engine where that does
     not settle a small pattern. With more than 40 foldable vertices nothing is listed: `too_many`
     says what is known, at once.
@@ -220,6 +220,6 @@ def _in_chart(attempt: Attempt, ends: Candidates | None, method: str, seed: int)
         )
         return replace(result, reason=f"{result.reason}; {advice}")
     exactly = solved_exactly(
-        replace(attempt, choice=Choice("groebner", "numerics did not settle it"))
+        replace(attempt, choice=Choice("groebner", "floating point did not prove it"))
     )
     return result if proved and exactly.status is not PROVED else exactly

@@ -64,7 +64,7 @@ def find_branch(
     is proved flat on the branch gets the sign 0: either sign leads to that branch.
 
     Raises `UsageError` for signs that do not fit the pattern, `NotApplicableError` if Ve is not 4
-    and no rim is given, or if no vertex can pop. An `UNDECIDED` result is no statement that the
+    and no rim is given, or if no vertex can pop. An `UNDECIDED` result does not say that the
     branch does not exist.
 
     >>> from exactfold.pattern.random_squares import random_square

@@ -20,13 +20,13 @@ def named(vertices: Sequence[int]) -> str:
     return f"{agreeing(len(vertices), 'vertex')} {names}{more}"
 
 
-def proved(error: Fraction, flat: Sequence[int], emptied: bool) -> str:
+def proved(error: Fraction, flat: Sequence[int], reduced: bool) -> str:
     """Of a branch whose signs are all proved; `flat` have another sign than the one asked for."""
     what, kind = "these signs", "simple solution"
     if flat:
         what = f"the signs shown, 0 at {named(flat)}, where it is flat"
         kind = f"solution of multiplicity {2 ** len(flat) if len(flat) < 10 else f'2^{len(flat)}'}"
-    inside = " of the pattern with its triangulated triangles emptied" if emptied else ""
+    inside = " of the pattern without its triangulated triangles" if reduced else ""
     where = f" within {decimal_above(error, 1)} of the heights given, in the norm of gradients"
     if not error:
         where = ", and the heights given are exact"

@@ -68,7 +68,7 @@ def register_solver(name: str, solver: Solver, *, description: str) -> None:
     >>> unregister_solver("nothing")
     """
     if not isinstance(name, str) or not _NAME.match(name):
-        raise UsageError(f"{name!r} is no name for a solver: write small letters, digits, - and _")
+        raise UsageError(f"{name!r} cannot name a solver: write small letters, digits, - and _")
     if name in (*METHODS, *ALIASES):
         raise UsageError(f"there is a method {name!r} already")
     if not callable(solver):
@@ -188,7 +188,7 @@ def find_candidates(
 
 
 class _Reported:
-    """A progress function that remembers whether it raised: that is no failure of the solver."""
+    """A progress function that remembers whether it raised: that is not a failure of the solver."""
 
     def __init__(self, progress: Steps | None) -> None:
         self.progress = progress
@@ -227,7 +227,7 @@ def _checked(name: str, found: Any, size: int) -> Candidates:
     if bad:
         raise BadCandidatesError(f"{bad} points of the solver {name!r} are not finite")
     if isinstance(found.lost, str) or not all(isinstance(text, str) for text in found.lost):
-        raise BadCandidatesError(f"`lost` of the solver {name!r} is no sequence of texts")
+        raise BadCandidatesError(f"`lost` of the solver {name!r} is not a sequence of texts")
     return replace(found, method=name, points=points, lost=tuple(found.lost))
 
 

@@ -41,7 +41,7 @@ def check_compact(
     `path`.
 
     Raises `checker.CertificateError` if a claim is not supported, `CertificateFormatError` if the
-    file is no compact certificate or was altered, `UnreadableFileError`, `WorkerDiedError`.
+    file is not a compact certificate or was altered, `UnreadableFileError`, `WorkerDiedError`.
     """
     engine = compact.Engine(start_fast_worker, check_line_fast, LEAST) if fast else compact.INTEGERS
     name = path if name is None else name

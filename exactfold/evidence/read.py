@@ -49,7 +49,7 @@ def _branches(found: Iterator[str]) -> Iterator[Branch]:
     require(
         read_chart(header["evidence"]["chart"]) == chart
         and list(problem.foldable) == known.emptied.interior,
-        "the chart or the emptied sheet is not the one in which exactfold writes branches",
+        "the chart or the sheet without rigid parts is not that in which branches are written",
     )
     maker = BranchMaker(problem, problem.chart)
     size = range(problem.size)

@@ -213,12 +213,12 @@ class CreasePattern:
     def without_rigid_parts(self) -> tuple[CreasePattern, tuple[int, ...]]:
         """The pattern with every triangulated triangle made a single face, and its labels.
 
-        `labels[k]` is the index in this pattern of vertex k of the emptied one; order is kept.
+        `labels[k]` is the index in this pattern of vertex k of the other; order is kept.
 
         >>> wheel = CreasePattern(
         ...     [(0, 0), (3, 0), (0, 3), (1, 1)], [(0, 1, 3), (1, 2, 3), (2, 0, 3)])
-        >>> emptied, labels = wheel.without_rigid_parts()
-        >>> emptied.triangles, labels
+        >>> reduced, labels = wheel.without_rigid_parts()
+        >>> reduced.triangles, labels
         (((0, 1, 2),), (0, 1, 2))
         """
         gone = self.rigid_vertices

@@ -69,7 +69,7 @@ def _listed(entries: list[str], separator: str = "; ") -> str:
 
 
 def expectation(facts: PatternFacts) -> str:
-    """What `count` will settle, from the counts alone."""
+    """What `count` will find, from the numbers of vertices alone."""
     pattern = facts.pattern
     free = pattern.Vi - pattern.Vt
     if not pattern.interior:

@@ -47,7 +47,7 @@ def kapovich_millson(spokes: Iterable[Sequence[RationalLike]]) -> TrackCount:
     multiple of pi. Angles are positive at forward-tracks, negative at back-tracks, and add up to
     2 pi times the winding, which is counted by crossings of the positive x-axis.
 
-    Raises `MalformedPatternError` for fewer than two spokes or a spoke that is no pair,
+    Raises `MalformedPatternError` for fewer than two spokes or a spoke that is not a pair,
     `DegenerateFaceError` where two consecutive spokes are parallel (a zero spoke is parallel to
     everything), and a `NumberError` for a coordinate that is not rational.
 

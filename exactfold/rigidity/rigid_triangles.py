@@ -16,7 +16,7 @@ class RigidTriangle:
     Let w be the heights inside minus the plane through the corners. The curvature forms of the m
     vertices inside depend on w alone, and by the definite stress have no common complex zero but
     w = 0 (see `exactfold.rigidity.definite_stress`): they are a regular sequence of m quadrics with
-    local multiplicity 2^m. The remaining forms at w = 0 are those of the emptied pattern, so every
+    local multiplicity 2^m. The remaining forms at w = 0 are those without its vertices, so every
     isolated root of multiplicity k there has multiplicity 2^m k in the full system (the quotient by
     the inner forms has length 2^m, and the outer ones are a complete intersection over it).
     """

@@ -267,9 +267,9 @@ functions look slower than they are).
 
 {table}
 
-- *Certificate*: Newton's method on the nappes, then Krawczyk's test and the signs of every fold
-  in integers, one branch after the other. *Streaming* does the latter in arrays, too: what is left
-  is Newton's method, and setting up the exact system in fractions, which does not grow
+- *Certificate*: Newton's method from each sign vector, then Krawczyk's test and the signs of every
+  fold in integers, one branch after the other. *Streaming* does the latter in arrays, too:
+  what is left is Newton's method, and setting up the exact system in fractions, which does not grow
   with the number of branches.
 - *Exact from roots* is bound by the size of its answer: `2^Vi` coefficients for each unknown, each
   of them about twice as long for each further vertex. Products of long polynomials, roots refined

@@ -42,12 +42,12 @@ patterns = pytest.mark.parametrize("pattern", PATTERNS.values(), ids=PATTERNS.ke
 
 @patterns
 def test_vertex_signs_do_not_depend_on_the_timelike_vector(pattern):
-    emptied, labels = pattern.without_rigid_parts()
+    reduced, labels = pattern.without_rigid_parts()
     source = random.Random(0)
     result = count_branches(pattern)
     chart = result.proof.chart
-    for k in emptied.interior:
-        form, cone = curvature_form(emptied, k), round_cone(emptied, k)
+    for k in reduced.interior:
+        form, cone = curvature_form(reduced, k), round_cone(reduced, k)
         size = max(map(abs, cone.values()))
         found = 0
         while found < 3:
@@ -144,7 +144,7 @@ def coarse(box, bits):
     return IsolatingBox(box.real, (), box.radius << bits, box.bits)
 
 
-def test_sharper_boxes_settle_what_a_wide_one_leaves_open():
+def test_sharper_boxes_decide_what_a_wide_one_leaves_open():
     pattern = random_square(2, seed=0)
     chart, boxes = chart_and_boxes(pattern)
     wide = [coarse(box, 60) for box in boxes]

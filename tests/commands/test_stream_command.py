@@ -83,7 +83,7 @@ def test_a_file_is_never_overwritten(tmp_path: Path) -> None:
 
 
 def test_multiple_roots_are_named_and_handed_over(tmp_path: Path) -> None:
-    """The streamed run leaves two paths open that meet; the other methods settle them."""
+    """The streamed run leaves two paths open that meet; the other methods prove them."""
     file, certificate = tmp_path / "c.txt", tmp_path / "c.json"
     result = run("count", FLAT, "--stream", file, "--certificate", certificate)
     assert result.exit_code == PROVED

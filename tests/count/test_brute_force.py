@@ -95,7 +95,7 @@ def test_two_vertices_against_a_resultant(pattern):
 
 
 def test_multiplicities_agree_with_the_full_system():
-    """The emptied pattern's roots keep multiplicity 2^Vt: the quotient of the full ideal has
+    """The roots without rigid parts have multiplicity 2^Vt: the quotient of the full ideal has
     dimension 2^Vi, and its radical 2^(Vi - Vt)."""
     pattern = with_point(single_vertex(4), 1, (1, 2, 3))
     forms, unknowns = brute_force_system(pattern)

@@ -115,8 +115,8 @@ solvable = pytest.mark.parametrize("name", SOLVABLE)
 
 @cache
 def chart_of(name: str) -> Chart:
-    emptied, _ = CORPUS[name].without_rigid_parts()
-    return BranchSystem(emptied).chart if emptied.is_convex else notch_chart(emptied)
+    reduced, _ = CORPUS[name].without_rigid_parts()
+    return BranchSystem(reduced).chart if reduced.is_convex else notch_chart(reduced)
 
 
 @cache

@@ -320,7 +320,7 @@ def test_all_ways_to_give_signs_agree() -> None:
     assert finder.signs(None, [names[0], names[2]]) == expected
     found = finder.find(expected)
     assert found.sign_text == text
-    assert "emptied" in found.reason
+    assert "of the pattern without its triangulated triangles" in found.reason
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ def test_flat_vertex_example(method):
     assert bent == {(0, 4), (2, 4)}
 
 
-def test_paths_that_meet_are_settled_by_flat_vertices():
+def test_paths_that_meet_are_proved_by_flat_vertices():
     result = count_branches(FAMILIES["flat-vertex"](), method="popping")
     assert result.status is PROVED
     assert result.method == "popping"
@@ -54,7 +54,7 @@ def test_multiple_roots_of_a_large_pattern_are_undecided(monkeypatch):
 
 
 def test_flat_vertices_and_the_exact_engine_agree():
-    """Two independent ways: strata found by paths, and the quotient algebra of the whole system."""
+    """Two independent ways: flat vertices found by paths, and the whole quotient algebra."""
     for pattern in (FAMILIES["flat-vertex"](), hypar(1, twist=0)):
         paths = count_branches(pattern, method="popping")
         exact = count_branches(pattern, method="groebner")

@@ -288,19 +288,19 @@ def test_nested_triangulated_triangles():
     assert pattern.triangulated_triangles == (((0, 1, 2), (3, 4)), ((1, 5, 2), (6,)))
     assert pattern.Vt == 3
     assert pattern.foldable_vertices == ()
-    emptied, labels = pattern.without_rigid_parts()
+    reduced, labels = pattern.without_rigid_parts()
     assert labels == (0, 1, 2, 5)
-    assert emptied.triangles == ((0, 1, 2), (1, 3, 2))
-    assert emptied.Vt == 0
+    assert reduced.triangles == ((0, 1, 2), (1, 3, 2))
+    assert reduced.Vt == 0
 
 
-def test_emptied_octahedron():
+def test_octahedron_without_its_inside():
     pattern = flat_octahedron_in_square()
-    emptied, labels = pattern.without_rigid_parts()
-    assert (pattern.Vi, pattern.Vt, emptied.Vi, emptied.Vt) == (6, 3, 3, 0)
+    reduced, labels = pattern.without_rigid_parts()
+    assert (pattern.Vi, pattern.Vt, reduced.Vi, reduced.Vt) == (6, 3, 3, 0)
     assert labels == tuple(range(7))
-    assert emptied.area == pattern.area
-    assert emptied.without_rigid_parts()[0] is emptied
+    assert reduced.area == pattern.area
+    assert reduced.without_rigid_parts()[0] is reduced
 
 
 def test_a_pattern_with_three_boundary_vertices_is_one_triangulated_triangle():

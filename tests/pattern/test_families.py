@@ -73,8 +73,8 @@ def test_flat_octahedron():
     assert pattern.triangulated_triangles == (((4, 5, 6), (7, 8, 9)),)
     assert [pattern.degree(v) for v in (7, 8, 9)] == [4, 4, 4]
     assert pattern.foldable_vertices == (4, 5, 6)
-    emptied, _ = pattern.without_rigid_parts()
-    assert min(emptied.degree(v) for v in emptied.interior) >= 4
+    reduced, _ = pattern.without_rigid_parts()
+    assert min(reduced.degree(v) for v in reduced.interior) >= 4
     assert collinear_folds(pattern) == ()
     assert pattern.chords == ()
     # Each outer vertex misses exactly the inner vertex across: the graph is the octahedron's.

@@ -1,4 +1,4 @@
-"""Folds deduced to be flat: everything deduced is true, and crosses are settled."""
+"""Folds deduced to be flat: everything deduced is true, and crosses are decided."""
 
 from fractions import Fraction
 from itertools import product
