@@ -329,7 +329,7 @@ def export(
     raise typer.Exit(asked.answer())
 
 
-@app.command("random")
+@app.command("random", cls=Command)
 @reported
 def random_(
     interior: Annotated[int, typer.Option(min=1, metavar="N", help="Number of interior vertices.")],

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
 from exactfold.branches.angles import FoldAngles, fold_angles
 from exactfold.branches.letters import SIGNS, UPSIDE_DOWN
-from exactfold.branches.roots import EnclosedRoot, Root
+from exactfold.branches.roots import BoxRoot, EnclosedRoot, FlatBoxRoot, Root
+from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import described
@@ -103,6 +104,26 @@ class Branch:
             return heights
         unit = self.root.enclose(self.unit_row)
         return {v: _quotient(bounds, unit) for v, bounds in heights.items()}
+
+    def sharpened(self, bits: int = 64) -> Branch:
+        """The same branch with its root in a box of `bits` bits after the point.
+
+        Branches of a count are listed with bounds as they were proved, about nine digits. Roots
+        that are algebraic numbers or exact are returned as they are. Raises `NotApplicableError`
+        where that is not proved, which does not mean that there is no such box.
+
+        >>> from exactfold.count.collect import count_branches
+        >>> branch = count_branches("two-vertex")["+-"].sharpened(100)
+        >>> low, high = branch.heights[4]
+        >>> high - low < Fraction(1, 10**27)
+        True
+        """
+        if not isinstance(self.root, BoxRoot | FlatBoxRoot) or self.root.box.bits >= bits:
+            return self
+        root = self.root.sharpened(bits)
+        if root is None:
+            raise NotApplicableError(f"no box with {bits} bits was proved for the branch")
+        return replace(self, root=root)
 
     @property
     def exact_heights(self) -> dict[int, Any] | None:

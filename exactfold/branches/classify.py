@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import TypeVar
@@ -11,8 +11,6 @@ from typing import TypeVar
 from exactfold.branches.branch import Branch
 from exactfold.branches.letters import LETTERS, UPSIDE_DOWN
 from exactfold.branches.roots import BoxRoot, ChartRoot, FlatBoxRoot
-from exactfold.certify.box import IsolatingBox
-from exactfold.certify.krawczyk import krawczyk_at
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.problem import Problem
@@ -136,7 +134,7 @@ def _decide(
     """`decide_signs` at the root or, if its saddle is negative, at its mirror image."""
     for bits in _RISING:
         if root.sign(functionals.saddle) is None:
-            root = _sharpen(chart, root, bits) or root
+            root = _sharpen(root, bits) or root
     if root.sign(functionals.saddle) == -1:
         root = root.mirrored()
     return decide_signs(chart, functionals, root)
@@ -157,7 +155,7 @@ def decide_signs(
         done = None not in vertices.values() and None not in folds.values()
         # A fold that is still open on a sharp box is most likely flat.
         likely_flat = bits > _RISING[0] and None not in vertices.values()
-        sharper = None if done or likely_flat else _sharpen(chart, root, bits)
+        sharper = None if done or likely_flat else _sharpen(root, bits)
         if sharper is None:
             break
         root = sharper
@@ -180,11 +178,5 @@ def _fill(signs: dict[K, int | None], rows: Mapping[K, Row], root: ChartRoot) ->
             signs[key] = root.sign(rows[key])
 
 
-def _sharpen(chart: Chart, root: R, bits: int) -> R | None:
-    if not isinstance(root, BoxRoot | FlatBoxRoot) or root.box.bits >= bits:
-        return None
-    system = chart.system if isinstance(root, BoxRoot) else root.sheets.system
-    if system is None:
-        return None
-    sharper = krawczyk_at(system, root.box, bits)
-    return replace(root, box=sharper) if isinstance(sharper, IsolatingBox) else None
+def _sharpen(root: R, bits: int) -> R | None:
+    return root.sharpened(bits) if isinstance(root, BoxRoot | FlatBoxRoot) else None

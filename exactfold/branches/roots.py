@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import lcm
@@ -16,6 +16,7 @@ if TYPE_CHECKING:  # FLINT is loaded where there is an algebraic root
     from exactfold.algebra.exact_solution import RootClass
     from exactfold.exact.univariate import Interval
     from exactfold.problem.flat_sheets import FlatSheets
+    from exactfold.problem.quadratic import QuadraticSystem
 
 Row = tuple[int, ...]
 
@@ -36,12 +37,28 @@ class ChartRoot(Protocol):
         """The value, over that of `unit` if given (`Branch.exact_heights`); None if unknown."""
 
 
+def sharper(system: QuadraticSystem, box: IsolatingBox, bits: int) -> IsolatingBox | None:
+    """A box of the same zero with `bits` bits after the point, by the exact test."""
+    from exactfold.certify.krawczyk import krawczyk_at  # FLINT, for this alone
+
+    if box.bits >= bits:
+        return None
+    found = krawczyk_at(system, box, bits)
+    return found if isinstance(found, IsolatingBox) else None
+
+
 @dataclass(frozen=True)
 class BoxRoot:
-    """The one zero of the system in an isolating box; with side -1, its mirror image."""
+    """The one zero of `system` in an isolating box; with side -1, its mirror image."""
 
     box: IsolatingBox
     side: int = 1
+    system: QuadraticSystem | None = field(default=None, compare=False, repr=False)
+
+    def sharpened(self, bits: int) -> BoxRoot | None:
+        """The same zero in a box with `bits` bits after the point, None if that is not proved."""
+        box = None if self.system is None else sharper(self.system, self.box, bits)
+        return None if box is None else replace(self, box=box)
 
     def enclose(self, row: Sequence[Fraction | int]) -> tuple[Fraction, Fraction]:
         """Bounds of the value over the whole box."""
@@ -97,6 +114,12 @@ class FlatBoxRoot:
     sheets: FlatSheets
     box: IsolatingBox
     side: int = 1
+
+    def sharpened(self, bits: int) -> FlatBoxRoot | None:
+        """The same zero in a box with `bits` bits after the point, None if that is not proved."""
+        system = self.sheets.system
+        box = None if system is None else sharper(system, self.box, bits)
+        return None if box is None else replace(self, box=box)
 
     def enclose(self, row: Sequence[Fraction | int]) -> tuple[Fraction, Fraction]:
         """Bounds of the value over the whole box."""

@@ -167,6 +167,9 @@ class Conveyor:
             },
         )
 
+    def _root(self, box: IsolatingBox) -> BoxRoot:
+        return BoxRoot(box, system=self.problem.chart.system)
+
     def branches(self, block: ProvedBlock) -> Iterator[Branch]:
         """The branches of a block, in the order of the sign vectors; open ones are left out."""
         count, boxes = self.block_size, block.boxes
@@ -176,10 +179,10 @@ class Conveyor:
         for j in range(count):
             if j in block.exact:
                 root = block.exact[j]
-                yield self._maker.branch(BoxRoot(root.box), signs[j], root.assignment)
+                yield self._maker.branch(self._root(root.box), signs[j], root.assignment)
             elif exponents[j] != UNPROVED:
                 box = IsolatingBox(tuple(centers[j]), (), 1 << exponents[j], boxes.bits)
-                yield self._maker.branch(BoxRoot(box), signs[j], letters[j])
+                yield self._maker.branch(self._root(box), signs[j], letters[j])
 
 
 def letter_rows(valleys: BoolArray) -> list[str]:

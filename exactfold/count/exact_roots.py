@@ -80,8 +80,9 @@ class ExactProver:
     def _classified(self, signs: Sequence[int], box: IsolatingBox) -> ExactRoot | str:
         """The box, perhaps sharper, and its folds if its vertex signs are those asked for."""
         labels = self.problem.labels
+        chart = self.problem.chart
         root, found, folds = decide_signs(
-            self.problem.chart, self.problem.functionals, BoxRoot(box)
+            chart, self.problem.functionals, BoxRoot(box, system=chart.system)
         )
         for wanted, (vertex, sign) in zip(signs, found.items(), strict=True):
             if sign != wanted:

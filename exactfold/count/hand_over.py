@@ -28,7 +28,7 @@ def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
     """Boxes around candidates, completeness by refined Bezout, signs on the boxes."""
     isolation = isolate(attempt.chart.system, candidates, progress=attempt.stage("certifying"))
     roots: list[tuple[ChartRoot, int]] = [
-        (BoxRoot(box), 1) for box in isolation.boxes if box.is_real
+        (BoxRoot(box, system=attempt.chart.system), 1) for box in isolation.boxes if box.is_real
     ]
     branches, open_signs = classify(attempt.problem, attempt.chart, roots)
     result = attempt.undecided(
@@ -110,7 +110,7 @@ def _algebraic(attempt: Attempt, found: Zeros, settings: Mapping[str, int | str]
     classes = common_parameter(found.classes, chart.system.size) if found.classes else []
     proof = prove_algebraic(chart, classes, found.boxes, found.flat_boxes)
     given: list[tuple[ChartRoot, int]] = [(AlgebraicRoot(c, k), m) for c, k, m in proof.roots]
-    given += [(BoxRoot(box), 1) for box in proof.boxes]
+    given += [(BoxRoot(box, system=chart.system), 1) for box in proof.boxes]
     given += [(FlatBoxRoot(s, box), 1 << len(s.vertices)) for s, box in proof.flat_boxes]
     branches, open_signs = classify(attempt.problem, chart, given)
     if proof.complete is PROVED and open_signs:

@@ -69,4 +69,4 @@ def _branches(found: Iterator[str]) -> Iterator[Branch]:
                 box = IsolatingBox(center, (), 1 << block.radii[j], block.bits)
                 letters = known.letters(block, j)
             signs = [-1 if block.first + j >> k & 1 else 1 for k in size]
-            yield maker.branch(BoxRoot(box), signs, letters)
+            yield maker.branch(BoxRoot(box, system=problem.chart.system), signs, letters)

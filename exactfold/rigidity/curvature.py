@@ -9,6 +9,7 @@ from exactfold.errors import UsageError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.remembered import remembered
 
 
 def spokes(
@@ -62,7 +63,11 @@ def curvature_form(pattern: PatternLike, vertex: int) -> QuadraticForm:
     >>> curvature_form(single_vertex(5), 5).inertia
     (1, 2, 3)
     """
-    pattern = as_pattern(pattern)
+    return _curvature_form(as_pattern(pattern), vertex)
+
+
+@remembered
+def _curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
     ring, d = spokes(pattern, vertex)
     n = len(ring)
     turned = d[1:] + d[:1]

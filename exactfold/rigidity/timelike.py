@@ -6,6 +6,7 @@ from fractions import Fraction
 from math import isqrt
 
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.remembered import remembered
 from exactfold.rigidity.curvature import curvature_form, spokes
 
 
@@ -22,6 +23,11 @@ def round_cone(pattern: CreasePattern, vertex: int, bits: int = 16) -> dict[int,
     The round cone has K_v(t) = sum_j tan(a_j / 2) > 0 and points up (docs/conventions.md); the
     precision of the lengths is doubled until the rational vector passes the exact test.
     """
+    return dict(_round_cone(pattern, vertex, bits))
+
+
+@remembered
+def _round_cone(pattern: CreasePattern, vertex: int, bits: int) -> dict[int, Fraction]:
     form = curvature_form(pattern, vertex)
     ring, d = spokes(pattern, vertex)
     while True:

@@ -151,7 +151,9 @@ def test_sharper_boxes_decide_what_a_wide_one_leaves_open():
     first = Functionals(chart)
     rows = [*first.vertices.values(), *first.folds.values()]
     assert any(BoxRoot(box).sign(row) is None for box in wide for row in rows)
-    branches, undecided = classify(Problem.of(pattern), chart, [(BoxRoot(b), 1) for b in wide])
+    branches, undecided = classify(
+        Problem.of(pattern), chart, [(BoxRoot(b, system=chart.system), 1) for b in wide]
+    )
     assert undecided == []
     expected = count_branches(pattern).branches
     assert [b.sign_text + b.assignment_text for b in branches] == [
@@ -164,7 +166,9 @@ def test_signs_that_stay_open_are_named(monkeypatch):
     pattern = random_square(2, seed=0)
     chart, boxes = chart_and_boxes(pattern)
     hopeless = IsolatingBox(boxes[0].real, (), boxes[0].radius << 200, boxes[0].bits)
-    branches, undecided = classify(Problem.of(pattern), chart, [(BoxRoot(hopeless), 1)])
+    branches, undecided = classify(
+        Problem.of(pattern), chart, [(BoxRoot(hopeless, system=chart.system), 1)]
+    )
     assert branches == []
     (item,) = undecided
     assert "vertex 4" in item.what

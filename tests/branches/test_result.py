@@ -68,7 +68,14 @@ def test_heights_satisfy_the_curvature_equations(pattern):
 @patterns
 def test_heights_are_narrow_and_not_flat(pattern):
     for branch in count_branches(pattern).branches:
-        assert all(0 <= high - low < Fraction(1, 10**10) for low, high in branch.heights.values())
+        assert all(0 <= high - low < Fraction(1, 10**8) for low, high in branch.heights.values())
+        sharp = branch.sharpened(64).heights
+        assert all(0 <= high - low < Fraction(1, 10**12) for low, high in sharp.values())
+        assert all(
+            a <= c <= d <= b
+            for (a, b), (c, d) in zip(branch.heights.values(), sharp.values(), strict=True)
+            if a < b
+        )
         assert any(low > 0 or high < 0 for low, high in branch.heights.values())
 
 
