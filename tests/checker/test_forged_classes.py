@@ -20,7 +20,10 @@ from forge import (
     without,
 )
 
+from exactfold.checker.equations import BranchSystem
+from exactfold.checker.flat_sheets import FlatSheets
 from exactfold.checker.reading import CertificateError
+from exactfold.checker.sheet import read_sheet
 
 PATH, VERTEX = "algebraic-bent-off-path", "algebraic-flat-vertex-groebner"
 BOXES, FLAT = "algebraic-grid", "algebraic-flat-box"
@@ -401,6 +404,12 @@ def test_boxes_on_sheets_that_are_not_there(flat: list[Any], message: str) -> No
     refused(forged, message)
 
 
+def test_sheets_with_one_unknown_left_are_sheets() -> None:
+    sheet, _ = read_sheet(given(BOXES)["pattern"])
+    system = BranchSystem(sheet, None)
+    assert [FlatSheets(system, flat).size for flat in ([5], [6])] == [1, 2]
+
+
 # --- finitely many zeros -------------------------------------------------------------------------
 
 
@@ -444,3 +453,6 @@ def test_keys_of_classes() -> None:
     forged = given(FLAT)
     next(r for r in forged["evidence"]["roots"] if "flat" in r)["more"] = 1
     refused(forged, "root: expected an object with the keys bits radius center")
+    forged = given(FLAT)
+    next(r for r in forged["evidence"]["roots"] if "flat" in r)["center"] += ["0"]
+    refused(forged, "center has not 2 entries")
