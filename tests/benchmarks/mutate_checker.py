@@ -1,7 +1,7 @@
 """Mutants of the checker: whether its tests notice a line that is weakened.
 
     python tests/benchmarks/mutate_checker.py refusals [MODULE ...]
-    python tests/benchmarks/mutate_checker.py mutmut [MODULE ...]
+    python tests/benchmarks/mutate_checker.py mutmut [--every] [MODULE ...]
     python tests/benchmarks/mutate_checker.py survivors
 
 `refusals` takes out, one at a time, each line of `exactfold/checker` that refuses something, and
@@ -20,12 +20,15 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import FrameType
+
+import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = Path("exactfold", "checker")
@@ -95,13 +98,14 @@ class Refusal(ast.NodeTransformer):
     """Takes out refusal number `chosen` of a module: a `require` or a `raise` that says why."""
 
     def __init__(self, chosen: int) -> None:
-        self.chosen, self.seen, self.text = chosen, -1, ""
+        self.chosen, self.seen, self.text, self.lines = chosen, -1, "", range(0)
 
     def _taken(self, node: ast.stmt) -> ast.stmt:
         self.seen += 1
         if self.seen != self.chosen:
             return node
         self.text = f"line {node.lineno}: {ast.unparse(node)}"
+        self.lines = range(node.lineno, (node.end_lineno or node.lineno) + 1)
         return ast.copy_location(ast.Pass(), node)
 
     def visit_Expr(self, node: ast.Expr) -> ast.AST:
@@ -115,57 +119,95 @@ class Refusal(ast.NodeTransformer):
         return self._taken(node)
 
 
-def refusals(module: str) -> Iterator[tuple[str, str]]:
-    """What is taken out, and the module without it."""
+def refusals(module: str) -> Iterator[tuple[str, range, str]]:
+    """What is taken out, its lines, and the module without it."""
     source = (ROOT / PACKAGE / f"{module}.py").read_text()
     for number in range(1000):
         change = Refusal(number)
         changed = ast.fix_missing_locations(change.visit(ast.parse(source)))
         if not change.text:
             return
-        yield change.text, ast.unparse(changed)
+        yield change.text, change.lines, ast.unparse(changed)
 
 
-def run_refusals(folder: Path, chosen: list[str], jobs: int) -> None:
+class Witness:
+    """A plugin of pytest: which tests make which lines of the checker refuse something."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.test = folder, ""
+        self.seen: dict[str, list[str]] = {}
+        self.seconds: dict[str, float] = {}
+
+    def pytest_runtest_setup(self, item: pytest.Item) -> None:
+        self.test = item.nodeid
+        from exactfold.checker import reading
+
+        for error in (reading.CertificateError, reading.FormatError):
+            if "__init__" not in vars(error):
+                error.__init__ = self._told  # type: ignore[assignment]
+
+    def _told(self, *arguments: object) -> None:
+        frame: FrameType | None = sys._getframe()
+        while frame is not None:
+            path = Path(frame.f_code.co_filename)
+            if path.parts[-3:-1] == PACKAGE.parts:
+                tests = self.seen.setdefault(f"{path.stem}:{frame.f_lineno}", [])
+                if self.test not in tests:
+                    tests.append(self.test)
+            frame = frame.f_back
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.when == "call":
+            self.seconds[report.nodeid] = report.duration
+
+    def of(self, module: str, lines: range) -> list[str]:
+        """The quickest tests that see one of these lines refuse."""
+        found = {test for line in lines for test in self.seen.get(f"{module}:{line}", ())}
+        return sorted(found, key=lambda test: self.seconds.get(test, 0.0))[:8]
+
+
+def forked(place: Path, arguments: list[str], plugins: list[object], seconds: int = 900) -> int:
+    """The exit code of pytest in a process of its own that has everything loaded but exactfold."""
+    child = os.fork()
+    if child:
+        return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    signal.alarm(seconds)
+    os.chdir(place)
+    sys.path[:0] = [str(place)]
+    sys.dont_write_bytecode = True
+    with open(os.devnull, "w") as nothing:
+        os.dup2(nothing.fileno(), 1)
+        os.dup2(nothing.fileno(), 2)
+        code = int(pytest.main(["-q", "-x", "-p", "no:cacheprovider", *arguments], plugins))
+        for plugin in plugins:
+            if isinstance(plugin, Witness):
+                found = [plugin.seen, plugin.seconds]
+                (plugin.folder / "witnesses.json").write_text(json.dumps(found))
+    os._exit(code)
+
+
+def run_refusals(folder: Path, chosen: list[str]) -> None:
     """Take out every refusal; the survivors go to refusals.json."""
-    todo = [(m, *pair) for m in modules(chosen) for pair in refusals(m)]
-    left: list[str] = []
-    places = [folder / f"refusals-{k}" for k in range(jobs)]
-    for place in places:
-        copy(place)
-
-    def one(item: tuple[int, tuple[str, str, str]]) -> None:
-        number, (module, text, changed) = item
-        place = free.pop()
+    copy(folder / "refusals")
+    place, witness = folder / "refusals", Witness(folder)
+    if forked(place, files_of(""), [witness]):
+        raise SystemExit("the tests fail as they are")
+    witness.seen, witness.seconds = json.loads((folder / "witnesses.json").read_text())
+    todo = [(m, *entry) for m in modules(chosen) for entry in refusals(m)]
+    left = []
+    for number, (module, text, lines, changed) in enumerate(todo, 1):
         path = place / PACKAGE / f"{module}.py"
         before = path.read_text()
         path.write_text(changed)
-        command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
-        env = {**os.environ, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"}
         start = time.monotonic()
-        try:
-            done = subprocess.run(
-                [*command, *files_of(module)],
-                cwd=place,
-                env=env,
-                capture_output=True,
-                check=False,
-                timeout=900,
-            )
-            killed = done.returncode == 1
-        except subprocess.TimeoutExpired:
-            killed = True
+        quick = witness.of(module, lines)
+        killed = bool(quick and forked(place, quick, [])) or forked(place, files_of(module), [])
         path.write_text(before)
-        free.append(place)
         if not killed:
             left.append(f"{module} {text}")
         state = "killed" if killed else "SURVIVED"
         seconds = time.monotonic() - start
-        print(f"{number + 1}/{len(todo)} {seconds:.0f} s {state}: {module} {text}", flush=True)
-
-    free = list(places)
-    with ThreadPoolExecutor(jobs) as pool:
-        list(pool.map(one, enumerate(todo)))
+        print(f"{number}/{len(todo)} {seconds:.0f} s {state}: {module} {text}", flush=True)
     result = {"taken out": len(todo), "modules": modules(chosen), "left": sorted(left)}
     (folder / "refusals.json").write_text(json.dumps(result, indent=1))
     print(f"{len(todo)} refusals taken out, {len(left)} not noticed")
@@ -194,23 +236,33 @@ def mutants(folder: Path, module: str) -> Iterator[tuple[str, str, str]]:
 
 
 _STRICT = re.compile(r",? ?strict=(?:True|False|None)\b")
+_TEXT = re.compile(r"""f?(['"]).*\1""")
 
 
-def worth_running(before: str, after: str) -> bool:
-    """False for mutants that change nothing but what cannot matter.
+def worth_running(before: str, after: str, every: bool = False) -> bool:
+    """False for mutants that cannot matter, and unless `every` for those that end in an error.
 
-    The `strict=` of a zip whose parts have been made equally long, and the text of a message.
+    The `strict=` of a zip whose parts have been made equally long, and the text of a message, do
+    not matter. Values and arguments replaced by None or left out, and texts in other letters, raise
+    an error sooner or later in nearly all cases; what is left are mutants of operators, numbers,
+    comparisons, branches and loops.
     """
     if _STRICT.sub("", before) == _STRICT.sub("", after).replace(", )", ")"):
         return False
-    message = re.compile(r"""f?(['"]).*\1""")
+    if before.startswith(("require(", "raise ")) and _TEXT.sub("", before) == _TEXT.sub("", after):
+        return False
+    if every:
+        return True
     return not (
-        before.startswith(("require(", "raise "))
-        and message.sub("", before) == message.sub("", after)
+        after.count("None") > before.count("None")
+        or after.count("XX") > before.count("XX")
+        or after.count(",") < before.count(",")
+        or after.count('""') > before.count('""')
+        or before.lower() == after.lower()
     )
 
 
-def run_mutmut(folder: Path, chosen: list[str], jobs: int) -> None:
+def run_mutmut(folder: Path, chosen: list[str], jobs: int, every: bool) -> None:
     """Make all mutants, and run those of the modules that are worth it."""
     copy(folder)
     tests = "\n".join(f"    {name}" for name in files_of(""))
@@ -223,7 +275,7 @@ def run_mutmut(folder: Path, chosen: list[str], jobs: int) -> None:
         name
         for module in modules(chosen)
         for name, before, after in mutants(folder, module)
-        if worth_running(before, after)
+        if worth_running(before, after, every)
     ]
     print(f"{len(names)} mutants", flush=True)
     subprocess.run([*command, *names], cwd=folder, env=env, check=False)
@@ -241,11 +293,8 @@ def survivors(folder: Path) -> None:
         shown = {name: (old, new) for name, old, new in mutants(folder, module)}
         run = {name: code for name, code in codes.items() if code is not None}
         left = sorted(name for name, code in run.items() if code in (0, 5, 33))
-        skipped = sum(
-            code is None and not worth_running(*shown[name]) for name, code in codes.items()
-        )
-        not_run = len(codes) - len(run) - skipped
-        print(f"{module}: {len(codes)} mutants, {skipped} left out, {not_run} not run, ", end="")
+        told = sum(worth_running(*pair) for pair in shown.values())
+        print(f"{module}: {len(codes)} mutants, {told} of operators; ", end="")
         print(f"{len(run)} run, {len(left)} left")
         for name in left:
             print(f"  {name.rpartition('.')[2]}\n    - {shown[name][0]}\n    + {shown[name][1]}")
@@ -258,11 +307,12 @@ def main() -> None:
     parser.add_argument("modules", nargs="*")
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "mutants")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--every", action="store_true", help="mutants that end in an error, too")
     given = parser.parse_args()
     if given.what == "refusals":
-        run_refusals(given.folder, given.modules, given.jobs)
+        run_refusals(given.folder, given.modules)
     elif given.what == "mutmut":
-        run_mutmut(given.folder, given.modules, given.jobs)
+        run_mutmut(given.folder, given.modules, given.jobs, given.every)
     else:
         survivors(given.folder)
 

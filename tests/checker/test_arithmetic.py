@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import json
+import math
 import random
 from fractions import Fraction
+from itertools import product
+from types import SimpleNamespace
 
 import pytest
 from forge import given, refused, unreadable
 from forge import product as times
 
 from exactfold.checker import flat_folds, linear, polynomials, reading
+from exactfold.checker.classes import AlgebraicRoot
 from exactfold.checker.krawczyk import inverse
 from exactfold.checker.reading import CertificateError, FormatError
-from exactfold.checker.sheet import read_sheet
+from exactfold.checker.sheet import Sheet, read_sheet
 
 Matrix = list[list[Fraction]]
 
@@ -329,3 +333,96 @@ def test_flat_folds_of_a_cross_and_of_a_generic_vertex() -> None:
         folds = tuple((min(4, j), max(4, j)) for j in sheet.star(4))
         assert folds == ((0, 4), (1, 4), (2, 4), (3, 4))
         assert set(flat_folds.flat_at(sheet, 4, folds, signs)) == expected
+
+
+def random_star(source: random.Random, spokes: int) -> Sheet:
+    """A vertex 0 with as many neighbours around it, all angles below pi."""
+    while True:
+        steps = sorted(source.sample(range(24), spokes))
+        if max(b - a for a, b in zip(steps, [*steps[1:], steps[0] + 24], strict=True)) > 10:
+            continue
+        ring = []
+        for k in steps:  # near the angle k pi / 12
+            x, y = round(30 * math.cos(k * math.pi / 12)), round(30 * math.sin(k * math.pi / 12))
+            length = Fraction(source.randint(3, 9), 7)
+            ring.append((x * length, y * length))
+        points = {0: (Fraction(0), Fraction(0)), **dict(enumerate(ring, 1))}
+        faces = [(0, k, k % spokes + 1) for k in range(1, spokes + 1)]
+        return Sheet(points, faces)
+
+
+def test_folds_are_flat_where_the_form_leaves_nothing_else() -> None:
+    """Bends that agree with the flat folds, in dimension 1 or 2, where K_v is definite."""
+    source, seen = random.Random(8), {True: 0, False: 0}
+    for _ in range(250):
+        spokes = source.randint(4, 7)
+        sheet = random_star(source, spokes)
+        folds = tuple((0, j) for j in sheet.star(0))
+        free = sheet.star(0)[2:]
+        flat = source.sample(range(spokes), source.randint(0, spokes - 2))
+        signs = tuple(0 if k in flat else None for k in range(spokes))
+        rows = [[Fraction(sheet.bend(fold).get(j, 0)) for j in free] for fold in folds]
+        basis = linear.kernel([rows[k] for k in flat], len(free))
+        form = linear.matrix_of(sheet.curvature(0), free)
+        inner = [
+            [
+                sum(
+                    (u[i] * form[i][j] * v[j] for i, j in product(range(len(free)), repeat=2)),
+                    Fraction(0),
+                )
+                for v in basis
+            ]
+            for u in basis
+        ]
+        definite = linear.inertia(inner) in ((0, len(basis), 0), (len(basis), 0, 0))
+        found = flat_folds.forced_flat(sheet, 0, folds, signs)
+        if len(basis) <= 2 and definite:
+            assert found == [fold for fold, sign in zip(folds, signs, strict=True) if sign is None]
+            seen[True] += 1
+        elif len(basis) > 2:
+            assert found == []
+            seen[False] += 1
+    assert min(seen.values()) > 30
+
+
+# --- signs at algebraic numbers ------------------------------------------------------------------
+
+
+def root_of(p: list[int], low: object, high: object) -> AlgebraicRoot:
+    """x = t at the root of p between the ends, as a root of a class with the one unknown x."""
+    entry = SimpleNamespace()
+    entry.p = [Fraction(c) for c in p]
+    entry.slope = polynomials.derivative(entry.p)
+    entry.w = [polynomials.remainder([Fraction(0), *entry.slope], entry.p)]
+    return AlgebraicRoot(entry, Fraction(low), Fraction(high))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("low", "high"), [("1", "2"), ("0", "100"), ("-1", "1415/1000")])
+def test_signs_at_the_square_root_of_two(low: str, high: str) -> None:
+    """On either side of it by 10^-40, for the polynomial, its negative and the other root."""
+    unit = 10**40
+    near = math.isqrt(2 * unit * unit)
+    for p in ([-2, 0, 1], [4, 0, -2]):
+        for row, expected in (
+            ([unit, -near], 1),
+            ([unit, -near - 1], -1),
+            ([0, 5], 1),
+            ([0, 0], 0),
+        ):
+            assert root_of(p, low, high).sign(row) == expected
+            turned = root_of(p, -Fraction(high), -Fraction(low))
+            assert turned.sign([-row[0], row[1]]) == expected
+            assert turned.sign([row[0], -row[1]]) == -expected
+
+
+def test_signs_where_halving_meets_the_root() -> None:
+    for low, high in (("0", "2"), ("1", "1"), ("-1/2", "5/2"), ("1/2", "9/8")):
+        for row, expected in (
+            ([1, -1], 0),
+            ([1, -2], -1),
+            ([1, 0], 1),
+            ([-3, 3], 0),
+            ([-1, 0], -1),
+        ):
+            if high != "9/8" or expected:
+                assert root_of([-1, 0, 1], low, high).sign(row) == expected

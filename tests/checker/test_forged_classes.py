@@ -20,7 +20,10 @@ from forge import (
     without,
 )
 
+from exactfold.checker.equations import BranchSystem
+from exactfold.checker.flat_sheets import FlatSheets
 from exactfold.checker.reading import CertificateError
+from exactfold.checker.sheet import read_sheet
 
 PATH, VERTEX = "algebraic-bent-off-path", "algebraic-flat-vertex-groebner"
 BOXES, FLAT = "algebraic-grid", "algebraic-flat-box"
@@ -248,6 +251,25 @@ def test_intervals_without_a_root(interval: list[str]) -> None:
     refused(forged, "an interval shows no root")
 
 
+@pytest.mark.parametrize(
+    "interval",
+    [
+        ["0", "1/4"],  # an end is a root
+        ["-1/4", "0"],
+        ["1/4", "1/2"],
+        ["1/100", "1/50"],  # values are small and have one sign
+        ["3/4", "1"],
+        ["1/4", "1/4"],
+        ["1/4", "-1/4"],
+    ],
+)
+def test_one_rational_root_in_a_point_and_at_the_end_of_an_interval(interval: list[str]) -> None:
+    for place in range(2):
+        forged = cross()
+        forged["evidence"]["roots"][place]["interval"] = interval
+        refused(forged, "an interval shows no root")
+
+
 def test_an_interval_without_a_root_hides_a_zero() -> None:
     """A copy of the second zero, seen at the wrong side, stands for the first."""
     forged = given(VERTEX)
@@ -295,6 +317,20 @@ def test_all_real_roots_left_out() -> None:
     forged = given(VERTEX)
     drop_roots(forged, lambda root: root["class"] == 1, 2)
     assert stopped_by(forged, "a real root is missing")["claims"]["nonreal"] == 2
+
+
+def test_roots_that_are_not_real_are_counted_in_every_class() -> None:
+    """There are none by Theorem 2; without the quadrics, t^2 + 1 may come first, or last."""
+    for first in (True, False):
+        forged = given(PATH)
+        drop_roots(forged, in_box, 2)
+        circle = {"polynomial": ["1", "0", "1"], "numerators": [["1"], ["1"], ["-2"]], "flat": []}
+        classes = forged["evidence"]["classes"]
+        classes.insert(0 if first else 1, circle)
+        next(r for r in forged["evidence"]["roots"] if "class" in r)["class"] = int(first)
+        made = stopped_by(forged, "the parametrisation misses a quadric")
+        assert (made["claims"]["nonreal"], made["claims"]["distinct"]) == (2, 5)
+        assert made["claims"]["true_branches"] == "undecided"
 
 
 # --- how zeros are listed ------------------------------------------------------------------------
@@ -401,6 +437,12 @@ def test_boxes_on_sheets_that_are_not_there(flat: list[Any], message: str) -> No
     refused(forged, message)
 
 
+def test_sheets_with_one_unknown_left_are_sheets() -> None:
+    sheet, _ = read_sheet(given(BOXES)["pattern"])
+    system = BranchSystem(sheet, None)
+    assert [FlatSheets(system, flat).size for flat in ([5], [6])] == [1, 2]
+
+
 # --- finitely many zeros -------------------------------------------------------------------------
 
 
@@ -444,3 +486,6 @@ def test_keys_of_classes() -> None:
     forged = given(FLAT)
     next(r for r in forged["evidence"]["roots"] if "flat" in r)["more"] = 1
     refused(forged, "root: expected an object with the keys bits radius center")
+    forged = given(FLAT)
+    next(r for r in forged["evidence"]["roots"] if "flat" in r)["center"] += ["0"]
+    refused(forged, "center has not 2 entries")
