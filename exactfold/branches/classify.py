@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TypeVar
+from typing import TypeVar, cast
 
 from exactfold.branches.branch import Branch
 from exactfold.branches.letters import LETTERS, UPSIDE_DOWN
@@ -179,4 +179,5 @@ def _fill(signs: dict[K, int | None], rows: Mapping[K, Row], root: ChartRoot) ->
 
 
 def _sharpen(root: R, bits: int) -> R | None:
-    return root.sharpened(bits) if isinstance(root, BoxRoot | FlatBoxRoot) else None
+    found = root.sharpened(bits) if isinstance(root, BoxRoot | FlatBoxRoot) else None
+    return cast("R | None", found)

@@ -5,43 +5,31 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from exactfold.arrays import FloatArray
+from exactfold.branches import reasons
 from exactfold.branches.branch import Branch
-from exactfold.branches.letters import LETTERS, sign_value
-from exactfold.branches.roots import EnclosedRoot
-from exactfold.certify.enclosed_flat import deduced, rational
-from exactfold.certify.enclosure import (
-    Enclosure,
-    enclose,
-    height_radius,
-    root_above,
-    round_up,
-)
-from exactfold.certify.refinement import exact, refine
-from exactfold.count import reasons
+from exactfold.branches.enclosed import not_enclosed, of_enclosure
+from exactfold.branches.letters import sign_value
+from exactfold.certify.enclosed import enclosed
+from exactfold.certify.enclosure import Enclosure
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import RationalLike
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
 from exactfold.progress import Progress
-from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.sparse_newton import End, solve
 from exactfold.solve.sparse_sheet import FloatSheet
-from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
 
 Signs = str | Mapping[int, int] | Sequence[int]
 Rim = Mapping[int, RationalLike]
-_LEVELS = (80, 160, 320)
-"""Excess curvatures 2^-level tried one after the other until every fold is decided."""
 
 
 def find_branch(
@@ -217,9 +205,14 @@ class BranchFinder:
                 steps = end.steps
                 best: Enclosure | None = None
                 if np.isfinite(end.x).all():
-                    best, reason = self._prove(signs, end.x, progress)
+                    best, failed = enclosed(
+                        self.sheet, self._floats, self._vector(signs), end.x, progress
+                    )
+                    reason = reasons.not_found([self.sheet.labels[v] for v in failed])
             if best is not None:
-                return self._result(signs, best, steps, time.perf_counter() - begin)
+                return of_enclosure(
+                    self.sheet, best, signs, steps=steps, seconds=time.perf_counter() - begin
+                )
             if end.failure:
                 reason = end.failure
                 if end.worst is not None:
@@ -227,7 +220,8 @@ class BranchFinder:
                     reason += f", worst at {reasons.named([worst])}"
         except OverflowError:
             reason = "a length or a form is beyond the range of floats"
-        return self._undecided(signs, reason, steps, time.perf_counter() - begin)
+        seconds = time.perf_counter() - begin
+        return not_enclosed(self.problem, signs, reason, steps=steps, seconds=seconds)
 
     def neighbours(
         self,
@@ -260,7 +254,7 @@ class BranchFinder:
                 progress("neighbours", k, len(chosen))
             yield v, self.find({**signs, v: -signs[v]}, start=first)
 
-    # --- the proof -------------------------------------------------------------------------------
+    # --- the proof, and what it means ------------------------------------------------------------
 
     def _vector(self, signs: Mapping[int, int]) -> FloatArray:
         """Signs in the order of the unknowns; a reflex corner pops up."""
@@ -268,108 +262,6 @@ class BranchFinder:
         return np.array(
             [1.0 if v == corner else float(signs[labels[v]]) for v in self.sheet.unknowns]
         )
-
-    def _prove(
-        self, signs: Mapping[int, int], x: FloatArray, progress: Progress | None
-    ) -> tuple[Enclosure | None, str]:
-        """The enclosure of most precision needed or reached, of exactly these signs, or why not."""
-        sheet, vector = self.sheet, self._vector(signs)
-        wanted = dict(zip(sheet.unknowns, vector.astype(int).tolist(), strict=True))
-        heights = exact(sheet, self._floats, x)
-        best, failed = None, tuple[int, ...]()
-        for k, level in enumerate(_LEVELS):
-            if progress is not None:
-                progress("proof", k, len(_LEVELS))
-            refined = refine(sheet, self._floats, vector, heights, level)
-            if refined is None:
-                break
-            heights = refined
-            found = enclose(sheet, heights.values, heights.denominator, heights.bits)
-            if isinstance(found, tuple) or found.signs != wanted:
-                failed = found if isinstance(found, tuple) else ()
-                break
-            best = deduced(sheet, found)
-            if best.complete:
-                break
-        if best is not None and not best.complete:
-            best = rational(sheet, best, wanted) or best
-        if best is None and not failed:
-            rough = enclose(sheet, heights.values, heights.denominator, heights.bits)
-            failed = rough if isinstance(rough, tuple) else ()
-        return best, reasons.not_found([sheet.labels[v] for v in failed])
-
-    def _result(
-        self, signs: Mapping[int, int], proof: Enclosure, steps: int, seconds: float
-    ) -> Branch:
-        """What the enclosure means (`classify`): the signs, letters and heights it proves."""
-        sheet, labels = self.sheet, self.sheet.labels
-        unit = sheet.height_unit
-        squared = round_up(proof.squared_distance * unit**2)
-        centres = self.problem.all_heights(
-            {v: Fraction(int(h), proof.denominator) * unit for v, h in enumerate(proof.heights)}
-        )
-        root = EnclosedRoot(centres, height_radius(sheet, squared), squared)
-        loose = tuple(labels[v] for v in proof.loose)
-        flat = tuple(labels[v] for v in proof.flat_vertices)
-        error = root_above(squared) if squared else Fraction(0)
-        letters = {
-            (labels[i], labels[j]): "F" if k in proof.flat_folds else LETTERS[sign or None]
-            for (k, (i, j)), sign in zip(enumerate(sheet.pattern.folds), proof.letters, strict=True)
-        }
-        return replace(
-            self._undecided(signs, reasons.undecided(error, loose), steps, seconds),
-            status=UNDECIDED if loose else PROVED,
-            reason=reasons.undecided(error, loose)
-            if loose
-            else reasons.proved(error, flat, self.pattern.Vt > 0),
-            vertex_signs=self._all_signs({**signs, **dict.fromkeys(flat, 0)}),
-            undecided_vertices=loose,
-            assignment=self._assignment(letters),
-            root=root,
-            multiplicity=None if loose else 1 << (len(flat) + self.pattern.Vt),
-            saddle=self._saddle(root),
-        )
-
-    def _undecided(
-        self, signs: Mapping[int, int], reason: str, steps: int, seconds: float
-    ) -> Branch:
-        return Branch(
-            pattern=self.pattern,
-            vertex_signs=self._all_signs(signs),
-            assignment=self._assignment({}),
-            root=None,
-            multiplicity=None,
-            gauge=self.problem.gauge.kind,
-            saddle=0,
-            status=UNDECIDED,
-            reason=reason,
-            undecided_vertices=self.poppable,
-            steps=steps,
-            seconds=seconds,
-        )
-
-    # --- back to the pattern that was given ------------------------------------------------------
-
-    def _all_signs(self, signs: Mapping[int, int]) -> dict[int, int]:
-        return {v: signs.get(v, 0) for v in self.pattern.interior}
-
-    def _assignment(self, letters: Mapping[Edge, str]) -> dict[Edge, str]:
-        """Letters of all folds: those with an end in a triangulated triangle are flat."""
-        rigid = self.pattern.rigid_vertices
-        return {
-            fold: letters.get(fold, "U") if rigid.isdisjoint(fold) else "F"
-            for fold in self.pattern.folds
-        }
-
-    def _saddle(self, root: EnclosedRoot) -> int:
-        if self.pattern.Ve != 4:
-            return 0
-        functional = saddle_functional(self.pattern)
-        value = sum((c * root.centres[v] for v, c in functional.items()), Fraction(0))
-        error = Fraction(0)
-        if self.sheet.corner is not None:
-            error = abs(functional[self.sheet.labels[self.sheet.corner]]) * root.radius
-        return 0 if abs(value) <= error else 1 if value > 0 else -1
 
 
 def _value(sign: object) -> int:

@@ -261,7 +261,7 @@ def test_folds_are_not_flat_by_what_is_around_the_reflex_corner(
     # K is 1 there. With K = 0 at a vertex of degree 3 all its folds would be flat.
     pattern = wheel([(4, -4), ("1/10", 0), (4, 4), (-4, 0)], (0, "1/1000"))
     assert find_branch(pattern, "-").assignment_text == "VMVV"
-    monkeypatch.setattr("exactfold.count.find._LEVELS", (6,))  # too rough for fold (1, 4)
+    monkeypatch.setattr("exactfold.certify.enclosed._LEVELS", (6,))  # too rough for fold (1, 4)
     document = branch_certificate(find_branch(pattern, "-"))
     assert document["claims"]["assignment"] == "VUVV"
     checker.check(document)
