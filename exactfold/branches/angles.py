@@ -9,7 +9,8 @@ from functools import cached_property
 from math import isfinite, radians
 
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.crease_pattern import Edge
+from exactfold.pattern.load import PatternLike, as_pattern
 from exactfold.rigidity.functionals import fold_functional
 from exactfold.rigidity.timelike import sqrt_approximation
 
@@ -60,7 +61,7 @@ class FoldAngles:
 
 
 def fold_angles(
-    pattern: CreasePattern,
+    pattern: PatternLike,
     heights: Mapping[int, Bounds],
     assignment: Mapping[Edge, str] | None = None,
 ) -> FoldAngles:
@@ -71,6 +72,7 @@ def fold_angles(
     others, "U" included, get the middle of their bounds. Raises `UsageError` unless `heights` names
     exactly the vertices of the pattern.
 
+    >>> from exactfold.pattern.crease_pattern import CreasePattern
     >>> square = CreasePattern(
     ...     [(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)], [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
     >>> tent = {v: (Fraction(v == 4), Fraction(v == 4)) for v in range(5)}
@@ -80,6 +82,7 @@ def fold_angles(
     >>> angles.degrees(30)
     {(0, 4): -30.0, (1, 4): -30.0, (2, 4): -30.0, (3, 4): -30.0}
     """
+    pattern = as_pattern(pattern)
     if set(heights) != set(range(len(pattern.vertices))):
         raise UsageError("give bounds of the height of every vertex of the pattern, of no other")
     points, denominator = pattern.integer_vertices

@@ -59,7 +59,7 @@ class Branch:
     reason: str = ""
     undecided_vertices: tuple[int, ...] = ()
     steps: int = 0
-    seconds: float = 0.0
+    seconds: float = field(default=0.0, compare=False)
 
     @cached_property
     def sign_text(self) -> str:

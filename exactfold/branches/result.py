@@ -72,7 +72,7 @@ class BranchCount:
     proof: Proof | None = None
     settings: Mapping[str, int | str] = field(default_factory=dict)
     snapped: Fraction = Fraction(0)
-    seconds: float = 0.0
+    seconds: float = field(default=0.0, compare=False)
 
     def __len__(self) -> int:
         return len(self.branches)

@@ -49,11 +49,15 @@ def sharper(system: QuadraticSystem, box: IsolatingBox, bits: int) -> IsolatingB
 
 @dataclass(frozen=True)
 class BoxRoot:
-    """The one zero of `system` in an isolating box; with side -1, its mirror image."""
+    """The one zero of `system` in an isolating box; with side -1, its mirror image.
+
+    `known` is the same zero as an algebraic number, where an exact engine found it.
+    """
 
     box: IsolatingBox
     side: int = 1
     system: QuadraticSystem | None = field(default=None, compare=False, repr=False)
+    known: AlgebraicRoot | None = field(default=None, compare=False, repr=False)
 
     def sharpened(self, bits: int) -> BoxRoot | None:
         """The same zero in a box with `bits` bits after the point, None if that is not proved."""
@@ -100,8 +104,11 @@ class BoxRoot:
         """The mirror image."""
         return replace(self, side=-self.side)
 
-    def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> None:
-        """Nothing: a box holds bounds."""
+    def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> Any:
+        """The value, if an exact engine knows the zero; a box alone holds bounds."""
+        if self.known is None:
+            return None
+        return replace(self.known, side=self.side).exact(row, unit)
 
 
 @dataclass(frozen=True)

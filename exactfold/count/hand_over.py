@@ -7,21 +7,26 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
+from exactfold.algebra.exact_solution import RootClass
 from exactfold.algebra.flat_zeros import common_parameter
 from exactfold.algebra.groebner import groebner
 from exactfold.branches.branch import Branch
 from exactfold.branches.classify import Undecided, classify
 from exactfold.branches.letters import UPSIDE_DOWN
 from exactfold.branches.result import BranchCount
-from exactfold.branches.roots import AlgebraicRoot, BoxRoot, ChartRoot, FlatBoxRoot
+from exactfold.branches.roots import AlgebraicRoot, BoxRoot, ChartRoot, FlatBoxRoot, Root
 from exactfold.certify.algebraic import prove_algebraic
 from exactfold.certify.isolation import Isolation, isolate
 from exactfold.count.attempt import Attempt
 from exactfold.count.multiple_roots import Zeros, recognised, solve_flat
+from exactfold.exact.univariate import Interval
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.flat_guess import flat_vertices
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
+
+_FINE = 80
+"""Bits to which zeros of classes are told apart by the boxes that hold them."""
 
 
 def isolated(attempt: Attempt, candidates: Candidates) -> BranchCount:
@@ -99,9 +104,38 @@ def solved_exactly(attempt: Attempt) -> BranchCount:
             result = isolated(attempt, solution.candidates)
             proved = result if result.status is PROVED else None
     if proved is not None and not proved.undecided_folds:
-        return proved
+        return replace(proved, branches=with_exact_roots(proved.branches, solution.classes))
     exactly = _algebraic(attempt, Zeros(list(solution.classes)), dict(solution.settings))
     return exactly if proved is None or exactly.status is PROVED else proved
+
+
+def with_exact_roots(
+    branches: Sequence[Branch], classes: Sequence[RootClass]
+) -> tuple[Branch, ...]:
+    """The same branches, whose boxes hold all zeros, told which zero of the classes each holds.
+
+    A zero of a class whose bounds meet one box only is the zero in that box.
+    """
+    found = list(branches)
+    for root_class in classes:
+        for index, point in enumerate(root_class.real_points(_FINE)):
+            near = [k for k, branch in enumerate(branches) if _meets(branch.root, point)]
+            if len(near) == 1:
+                root = branches[near[0]].root
+                if isinstance(root, BoxRoot):
+                    known = AlgebraicRoot(root_class, index)
+                    found[near[0]] = replace(branches[near[0]], root=replace(root, known=known))
+    return tuple(found)
+
+
+def _meets(root: Root | None, point: Sequence[Interval]) -> bool:
+    """Whether a box of bounds meets the box of a root."""
+    return isinstance(root, BoxRoot) and all(
+        low <= bounds[1] and bounds[0] <= high
+        for (low, high), bounds in zip(
+            point, (root.box.interval(k) for k in range(len(point))), strict=True
+        )
+    )
 
 
 def _algebraic(attempt: Attempt, found: Zeros, settings: Mapping[str, int | str]) -> BranchCount:

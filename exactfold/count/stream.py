@@ -49,7 +49,7 @@ class StreamedCount(BranchCount):
     blocks: int = 0
     resumed: int = 0
     steps: int = 0
-    cpu_seconds: Mapping[str, float] = field(default_factory=dict)
+    cpu_seconds: Mapping[str, float] = field(default_factory=dict, compare=False)
 
     @property
     def complete(self) -> bool:

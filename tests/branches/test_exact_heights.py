@@ -1,0 +1,94 @@
+"""Heights as exact numbers: inside the proved bounds, and zeros of the curvature forms."""
+
+from fractions import Fraction
+
+import pytest
+import sympy
+from sheets import random_wheel
+
+from exactfold import Branch, count_branches, curvature_form, find_branch
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.families import hypar, single_vertex, two_vertex
+from exactfold.problem.problem import Problem
+
+DART = CreasePattern(
+    [(0, 0), (4, -4), (1, 0), (4, 4), ("1/2", 0)],
+    [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+)
+
+
+def number(value: object) -> sympy.Expr:
+    if isinstance(value, Fraction):
+        return sympy.Rational(value.numerator, value.denominator)
+    assert isinstance(value, sympy.Expr)
+    return value
+
+
+def check(branch: Branch) -> None:
+    exact = branch.exact_heights
+    assert exact is not None
+    values = {v: number(height) for v, height in exact.items()}
+    for v, (low, high) in branch.heights.items():
+        assert number(low) <= values[v] <= number(high)
+    for v in branch.pattern.interior:
+        form = curvature_form(branch.pattern, v)
+        total = sum(
+            number(c) * values[a] * values[b]
+            for a, row in zip(form.labels, form.matrix, strict=True)
+            for b, c in zip(form.labels, row, strict=True)
+        )
+        assert abs(sympy.N(total, 60)) < 10**-50
+
+
+@pytest.mark.parametrize("pattern", [single_vertex(4), DART, two_vertex()])
+def test_heights_of_the_exact_engine(pattern):
+    result = count_branches(pattern, method="groebner")
+    assert len(result) == 1 << pattern.Vi
+    for branch in result:
+        check(branch)
+
+
+def test_degree_two_is_in_radicals():
+    pattern = random_wheel(1, 4)
+    for branch in count_branches(pattern, method="groebner"):
+        check(branch)
+        height = branch.exact_heights[pattern.interior[0]]
+        assert height.is_irrational
+        assert height.has(sympy.sqrt) or any(
+            power.exp == sympy.Rational(1, 2) for power in height.atoms(sympy.Pow)
+        )
+
+
+def test_degree_four_is_a_root_of_its_polynomial():
+    heights = count_branches(two_vertex(), method="groebner")[0].exact_heights
+    values = [heights[v] for v in two_vertex().interior]
+    assert any(isinstance(value, sympy.CRootOf) for value in values)
+
+
+def test_flat_vertices_have_rational_heights():
+    result = count_branches("flat-vertex")
+    (double,) = (branch for branch in result if branch.multiplicity == 2)
+    check(double)
+    assert all(isinstance(height, Fraction) for height in double.exact_heights.values())
+
+
+def test_multiple_roots_of_a_hypar():
+    for branch in count_branches(hypar(1, twist=0)):
+        if branch.multiplicity > 1:
+            check(branch)
+
+
+def test_bounds_alone_are_not_exact():
+    assert count_branches(two_vertex())[0].exact_heights is None
+    assert find_branch(two_vertex(), "+-").exact_heights is None
+
+
+def test_all_methods_share_one_gauge():
+    """Heights of a sheet with a reflex corner agree, whichever chart they were found in."""
+    assert Problem.of(DART).gauge.kind == "corner"
+    for a, b in zip(count_branches(DART), count_branches(DART, method="groebner"), strict=True):
+        assert a.gauge == b.gauge == "saddle"
+        for v in range(len(DART.vertices)):
+            (low, high), (other_low, other_high) = a.heights[v], b.heights[v]
+            assert low <= other_high
+            assert other_low <= high
