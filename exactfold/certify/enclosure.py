@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from heapq import heappop, heappush
 from math import isqrt
 
 import numpy as np
@@ -190,21 +189,15 @@ def height_radius(sheet: Sheet, squared: Fraction) -> Fraction:
     widest = np.maximum(folds.left, folds.right)
     costs = (2 * folds.squared_length / widest).astype(np.float64) ** 0.5
     costs = np.maximum(costs, _LEAST_COST)
-    links: list[list[tuple[int, float]]] = [[] for _ in sheet.pattern.vertices]
-    for (i, j), cost in zip(folds.corners[:, :2].tolist(), costs.tolist(), strict=True):
-        links[i].append((j, cost))
-        links[j].append((i, cost))
-    reached: dict[int, float] = {}
-    heap = [(0.0, v) for v in sheet.pattern.boundary]
-    while heap:
-        far, v = heappop(heap)
-        if v in reached:
-            continue
-        reached[v] = far
-        for w, cost in links[v]:
-            if w not in reached:
-                heappush(heap, (far + cost, w))
-    longest = Fraction(max(reached.values())) * (1 + Fraction(1, 1 << 20))
+    from scipy.sparse import csr_array  # here, as loading SciPy takes longer than a small proof
+    from scipy.sparse.csgraph import dijkstra
+
+    count, ends = len(sheet.pattern.vertices), folds.corners[:, :2]
+    graph = csr_array((costs, (ends[:, 0], ends[:, 1])), shape=(count, count))
+    rim = list(sheet.pattern.boundary)
+    far = dijkstra(graph, directed=False, indices=rim, min_only=True)
+    reached = float(far[list(sheet.pattern.interior)].max(initial=0.0))
+    longest = Fraction(reached) * (1 + Fraction(1, 1 << 20))
     return round_up(longest * root_above(squared))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from fractions import Fraction
 
+import networkx as nx
 import numpy as np
 import pytest
 from independent import big_square, curvature, dirichlet, signs_of
@@ -201,3 +202,20 @@ def test_a_large_sheet_by_the_definitions() -> None:
         assert 0 < curvature(pattern, branch.centres, v) < Fraction(1, 10**20)
         side = sum(c * branch.centres[u] for u, c in vertex_sign_functional(pattern, v).items())
         assert (side > 0) == (sign == "+")
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_the_radius_is_the_longest_shortest_path_from_the_rim(name: str) -> None:
+    """Against NetworkX, on costs from exact squared lengths and areas."""
+    sheet = Sheet(Problem.of(SHEETS[name]))
+    points = sheet.pattern.integer_vertices[0]
+    graph = nx.Graph()
+    for (i, j), left, right in zip(
+        sheet.pattern.folds, sheet.folds.left, sheet.folds.right, strict=True
+    ):
+        squared = sum((a - b) ** 2 for a, b in zip(points[i], points[j], strict=True))
+        graph.add_edge(i, j, cost=(2 * squared / max(left, right)) ** 0.5)
+    rim = [v for v in sheet.pattern.boundary if v in graph]
+    far = nx.multi_source_dijkstra_path_length(graph, rim, weight="cost")
+    radius = height_radius(sheet, Fraction(1, 10**6))
+    assert 1 <= radius * 1000 / Fraction(max(far.values())) <= 1 + Fraction(1, 10**5)

@@ -18,7 +18,7 @@ HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
         (["--help"], ("numpy", "flint", "multiprocessing", *HEAVY)),
         (["random", "--interior", "3", "--seed", "1"], ("numpy", "flint", "rich", *HEAVY)),
         (["info"], ("numpy", "multiprocessing", *HEAVY)),
-        (["branch", "--up", "4"], ("flint", "multiprocessing", "exactfold.algebra", *HEAVY)),
+        (["branch", "--up", "4"], ("flint", "mpmath", "sympy", "networkx", "exactfold.algebra")),
         (["count"], HEAVY),
     ],
     ids=lambda value: value[0],
