@@ -26,23 +26,12 @@ from exactfold.errors import (
 )
 from exactfold.exact.numbers import over_common_denominator, parse_rational, shown, snap
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
-from exactfold.pattern.fold_writing import EXACT_KEY, fold_document, write_fold, write_text
 from exactfold.pattern.planar import trace_faces
 from exactfold.pattern.validate import rounded_to
 from exactfold.wording import agreeing, counted
 
-__all__ = [
-    "EXACT_KEY",
-    "FoldFile",
-    "fold_document",
-    "load_fold",
-    "parse_bytes",
-    "parse_fold",
-    "read_bytes",
-    "read_fold",
-    "write_fold",
-    "write_text",
-]
+EXACT_KEY: Final = "vertices_exactfold:coords"
+"""The key of exact coordinates in a FOLD file, beside the floats of `vertices_coords`."""
 
 ASSIGNMENTS: Final = "MVFUBCJ"
 _PREFIXES: Final = ("file_", "frame_", "vertices_", "edges_", "faces_")

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any, Final
 from exactfold.errors import NotApplicableError, UnwritableFileError, UsageError
 from exactfold.exact.numbers import format_rational, shown
 from exactfold.pattern.crease_pattern import Edge
+from exactfold.pattern.fold import EXACT_KEY
 
 if TYPE_CHECKING:
     from exactfold.pattern.load import PatternLike
 
-EXACT_KEY: Final = "vertices_exactfold:coords"
 _ANGLES: Final = {"M": -180, "V": 180, "F": 0, "U": 0, "B": 0}
 _RANGES: Final = {"M": (-180, 0), "V": (0, 180), "F": (0, 0), "U": (0, 0), "B": (0, 0)}
 """Degrees by letter; FOLD wants 0 where nothing is assigned."""
