@@ -261,7 +261,7 @@ def run_mutmut(folder: Path, chosen: list[str], jobs: int, every: bool) -> None:
     (folder / "setup.cfg").write_text(CONFIG)
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     none = [sys.executable, "-m", "mutmut", "run", "exactfold.checker.formats*"]  # makes all
-    subprocess.run(none, cwd=folder, env=env, check=False, stdout=subprocess.DEVNULL)
+    subprocess.run(none, cwd=folder, env=env, check=False, capture_output=True)
     todo = [
         (module, *mutant)
         for module in modules(chosen)
