@@ -40,6 +40,7 @@ TESTS = {
     "forged_boxes": "boxes equations",
     "forged_triangles": "stress",
     "forged_classes": "algebraic classes flat_sheets",
+    "forged_intervals": "algebraic classes",
     "forged_compact": "compact compact_lines command",
     "forged_blocks": "compact_blocks",
     "forged_branches": "branch branch_proof command",
@@ -52,15 +53,7 @@ CONFIG = """[mutmut]
 source_paths=exactfold
 only_mutate=exactfold/checker/*.py
 do_not_mutate=exactfold/checker/__main__.py
-pytest_add_cli_args=
-    -q
-    -x
-    -p
-    no:cacheprovider
-pytest_add_cli_args_test_selection=
-{tests}
-timeout_multiplier=6
-timeout_constant=10
+pytest_add_cli_args_test_selection=tests/checker/test_recognised.py
 track_dependencies=false
 use_git_change_detection=false
 """
@@ -263,41 +256,61 @@ def worth_running(before: str, after: str, every: bool = False) -> bool:
 
 
 def run_mutmut(folder: Path, chosen: list[str], jobs: int, every: bool) -> None:
-    """Make all mutants, and run those of the modules that are worth it."""
+    """Make all mutants, and run those of the modules that are worth it; survivors are noted."""
     copy(folder)
-    tests = "\n".join(f"    {name}" for name in files_of(""))
-    (folder / "setup.cfg").write_text(CONFIG.format(tests=tests))
+    (folder / "setup.cfg").write_text(CONFIG)
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
-    command = [sys.executable, "-m", "mutmut", "run", "--max-children", str(jobs)]
-    none = [*command, "exactfold.checker.formats*"]  # writes all mutants, runs none
-    subprocess.run(none, cwd=folder, env=env, check=False, stdout=subprocess.DEVNULL)
-    names = [
-        name
+    none = [sys.executable, "-m", "mutmut", "run", "exactfold.checker.formats*"]  # makes all
+    subprocess.run(none, cwd=folder, env=env, check=False, capture_output=True)
+    todo = [
+        (module, *mutant)
         for module in modules(chosen)
-        for name, before, after in mutants(folder, module)
-        if worth_running(before, after, every)
+        for mutant in mutants(folder, module)
+        if worth_running(*mutant[1:], every)
     ]
-    print(f"{len(names)} mutants", flush=True)
-    subprocess.run([*command, *names], cwd=folder, env=env, check=False)
+    shutil.copytree(folder / "tests", folder / "mutants" / "tests", dirs_exist_ok=True)
+    print(f"{len(todo)} mutants", flush=True)
+    children = []
+    for job in range(jobs):
+        child = os.fork()
+        if not child:
+            _run_share(folder, todo[job::jobs], folder / f"mutants-{job}.jsonl")
+            os._exit(0)
+        children.append(child)
+    for child in children:
+        os.waitpid(child, 0)
+
+
+def _run_share(folder: Path, todo: list[tuple[str, str, str, str]], result: Path) -> None:
+    place = folder / "mutants"
+    with open(result, "w") as stream:
+        for number, (module, name, before, after) in enumerate(todo, 1):
+            os.environ["MUTANT_UNDER_TEST"] = name
+            own = [path for path in files_of(module) if module in TESTS[path[19:-3]].split()]
+            code = forked(place, own, [], 300) if own else 0
+            if code in (0, 5):
+                code = forked(place, [path for path in files_of(module) if path not in own], [])
+            entry = {"module": module, "name": name, "before": before, "after": after}
+            print(json.dumps({**entry, "killed": code != 0}), file=stream, flush=True)
+            state = "killed" if code else "SURVIVED"
+            print(f"{number}/{len(todo)} {state} {name}: {before} -> {after}", flush=True)
 
 
 def survivors(folder: Path) -> None:
-    """Print what was run, what was not, and what is left."""
+    """Print what was run and what is left."""
     if (folder / "refusals.json").exists():
         print((folder / "refusals.json").read_text())
+    rows = [
+        json.loads(line)
+        for path in sorted(folder.glob("mutants-*.jsonl"))
+        for line in path.read_text().splitlines()
+    ]
     for module in modules([]):
-        meta = folder / "mutants" / PACKAGE / f"{module}.py.meta"
-        if not meta.exists():
-            continue
-        codes = json.loads(meta.read_text())["exit_code_by_key"]
-        shown = {name: (old, new) for name, old, new in mutants(folder, module)}
-        run = {name: code for name, code in codes.items() if code is not None}
-        left = sorted(name for name, code in run.items() if code in (0, 5, 33))
-        told = sum(worth_running(*pair) for pair in shown.values())
-        print(f"{module}: {len(codes)} mutants, {told} of operators; ", end="")
-        print(f"{len(run)} run, {len(left)} left")
-        for name in left:
-            print(f"  {name.rpartition('.')[2]}\n    - {shown[name][0]}\n    + {shown[name][1]}")
+        here = [row for row in rows if row["module"] == module]
+        left = [row for row in here if not row["killed"]]
+        print(f"{module}: {len(here)} mutants run, {len(left)} left")
+        for row in left:
+            print(f"  - {row['before']}\n  + {row['after']}")
 
 
 def main() -> None:

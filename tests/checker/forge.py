@@ -150,6 +150,21 @@ def drop_roots(document: Document, chosen: Callable[[Document], bool], count: in
         del roots[k], branches[k]
 
 
+def cross() -> Document:
+    """The cross as the class 2 t^2 - t, x = t, of its zeros 0 and 1/2."""
+    made = given("listing-cross")
+    made["evidence"] = {
+        "kind": "algebraic",
+        "triangles": [],
+        "chart": None,
+        "multipliers": ["1"],
+        "separating": [1],
+        "classes": [{"polynomial": ["0", "-1", "2"], "numerators": [["0", "1"]], "flat": []}],
+        "roots": [{"class": 0, "interval": [x, x]} for x in ("0", "1/2")],
+    }
+    return made
+
+
 def in_box(root: Document) -> bool:
     """Whether a root is listed as a box in the unknowns of the system."""
     return "bits" in root and "flat" not in root

@@ -416,6 +416,8 @@ def test_signs_at_the_square_root_of_two(low: str, high: str) -> None:
 
 
 def test_signs_where_halving_meets_the_root() -> None:
+    assert root_of([-1, 1], "1", "1").sign([1, 0]) == 1
+    assert root_of([1, -1], "1", "1").sign([1, 0]) == 1
     for low, high in (("0", "2"), ("1", "1"), ("-1/2", "5/2"), ("1/2", "9/8")):
         for row, expected in (
             ([1, -1], 0),
