@@ -10,7 +10,7 @@ from typing import Any
 
 from exactfold.branches.angles import FoldAngles, fold_angles
 from exactfold.branches.letters import SIGNS, UPSIDE_DOWN
-from exactfold.branches.roots import BoxRoot, EnclosedRoot, FlatBoxRoot, Root
+from exactfold.branches.roots import AlgebraicRoot, BoxRoot, EnclosedRoot, FlatBoxRoot, Root
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -99,6 +99,10 @@ class Branch:
             return {}
         if isinstance(self.root, EnclosedRoot):
             return self.root.heights
+        if self.unit_row and isinstance(self.root, AlgebraicRoot):
+            return {
+                v: self.root.quotient(row, self.unit_row) for v, row in self.height_rows.items()
+            }
         heights = {v: self.root.enclose(row) for v, row in self.height_rows.items()}
         if not self.unit_row:
             return heights

@@ -75,6 +75,7 @@ class BranchMaker:
 
         `signs` in the order of the foldable vertices, `letters` of the folds of the sheet.
         """
+        root = _with_saddle(root, self._saddle)
         if root.sign(self._saddle) == -1:
             root, signs = root.mirrored(), [-s for s in signs]
             letters = letters.translate(UPSIDE_DOWN)
@@ -132,12 +133,18 @@ def _decide(
     chart: Chart, functionals: Functionals, root: ChartRoot
 ) -> tuple[ChartRoot, dict[int, int | None], dict[Edge, int | None]]:
     """`decide_signs` at the root or, if its saddle is negative, at its mirror image."""
-    for bits in _RISING:
-        if root.sign(functionals.saddle) is None:
-            root = _sharpen(root, bits) or root
+    root = _with_saddle(root, functionals.saddle)
     if root.sign(functionals.saddle) == -1:
         root = root.mirrored()
     return decide_signs(chart, functionals, root)
+
+
+def _with_saddle(root: ChartRoot, saddle: Row) -> ChartRoot:
+    """The root, on a sharper box if that decides the sign of the boundary saddle there."""
+    for bits in _RISING:
+        if root.sign(saddle) is None:
+            root = _sharpen(root, bits) or root
+    return root
 
 
 def decide_signs(

@@ -13,6 +13,9 @@ from exactfold.algebra.exact_solution import RootClass
 from exactfold.exact.real_roots import isolate_real_roots
 from exactfold.exact.univariate import to_rational_poly
 
+_FACTORED = 500
+"""Bits of the coefficients up to which a square root is simplified, for which SymPy factors."""
+
 
 def value_at_root(
     root_class: RootClass,
@@ -82,7 +85,7 @@ def _minimal_polynomial(value: fmpq_poly, modulus: fmpq_poly) -> tuple[int, ...]
 
 def _number(polynomial: tuple[int, ...], index: int) -> Any:
     """The `index`-th real root of an irreducible polynomial as a sympy number."""
-    if len(polynomial) > 3:
+    if len(polynomial) > 3 or max(map(abs, polynomial)).bit_length() > _FACTORED:
         return sympy.CRootOf(sympy.Poly(polynomial[::-1], sympy.Symbol("x")), index)
     c, b, a = polynomial
     root = sympy.sqrt(sympy.Rational(b * b - 4 * a * c, 4 * a * a))

@@ -166,6 +166,21 @@ class AlgebraicRoot:
                 return found if self.side > 0 else (-found[1], -found[0])
             bits *= 2
 
+    def quotient(
+        self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int]
+    ) -> tuple[Fraction, Fraction]:
+        """Bounds of the value over the positive one of `unit`, to 2^-64 of 1 or of itself."""
+        bits = 80
+        while True:
+            interval = self.interval(bits)
+            top, low = (self.root_class.value_on(r, interval) for r in (row, unit))
+            if top is not None and low is not None and low[0] * low[1] > 0:
+                ends = [a / b for a in top for b in low]
+                found = min(ends), max(ends)
+                if (found[1] - found[0]) * (1 << 64) <= max(Fraction(1), *map(abs, found)):
+                    return found
+            bits *= 2
+
     def sign(self, row: Row) -> int | None:
         """Sign of the value: 0 exactly if it vanishes modulo the irreducible polynomial."""
         if self.root_class.vanishes(row):

@@ -118,6 +118,8 @@ def krawczyk_at(system: QuadraticSystem, box: IsolatingBox, bits: int) -> Isolat
     Newton steps start from the centre of `box`; the result is returned only if it lies inside it,
     so that both hold the same zero.
     """
+    if system.size == 0:  # no equation: the one point there is
+        return IsolatingBox((), (), box.radius, bits)
     shift = bits - box.bits
     centre = [m << shift if shift >= 0 else m >> -shift for m in box.real]
     result = _Kernel(system)._attempt_exactly(centre, bits)

@@ -11,8 +11,11 @@ Poly = list[Any]
 
 
 def trim(p: Iterable[Any]) -> Poly:
-    """A polynomial (constant term first) without leading zeros."""
-    p = list(p)
+    """A polynomial (constant term first) without leading zeros, over the rationals.
+
+    Integers become fractions here: the quotient of two integers would be a float.
+    """
+    p = [Fraction(c) for c in p]
     while p and not p[-1]:
         p.pop()
     return p

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol, overload
 
@@ -228,6 +228,13 @@ def _checked(name: str, found: Any, size: int) -> Candidates:
         raise BadCandidatesError(f"{bad} points of the solver {name!r} are not finite")
     if isinstance(found.lost, str) or not all(isinstance(text, str) for text in found.lost):
         raise BadCandidatesError(f"`lost` of the solver {name!r} is not a sequence of texts")
+    if not isinstance(found.settings, Mapping) or not all(
+        isinstance(key, str) and isinstance(value, int | str)
+        for key, value in found.settings.items()
+    ):
+        raise BadCandidatesError(
+            f"`settings` of the solver {name!r} are not numbers and texts by name"
+        )
     return replace(found, method=name, points=points, lost=tuple(found.lost))
 
 

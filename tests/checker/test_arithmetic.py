@@ -134,6 +134,9 @@ def test_common_roots() -> None:
     assert polynomials.are_coprime(from_roots(1, 2), from_roots(3))
     assert polynomials.are_coprime(from_roots(1, 2), from_roots(3, 4, "1/2"))
     assert polynomials.are_coprime(from_roots(1), [Fraction(5)])
+    # Integers stay exact: the quotient of two would be a float.
+    assert not polynomials.are_coprime([-3, 10], [-489, 11290, -52300, 67000])
+    assert polynomials.count_real_roots([-(10**400), 0, 0, 0, 1]) == 2
     for p, q in (
         (from_roots(1, 2), from_roots(2, 3)),
         (from_roots(1), from_roots(3, 1, 4)),

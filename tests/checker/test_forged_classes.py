@@ -397,3 +397,36 @@ def test_keys_of_classes() -> None:
     forged = given(FLAT)
     next(r for r in forged["evidence"]["roots"] if "flat" in r)["center"] += ["0"]
     refused(forged, "center has not 2 entries")
+
+
+def test_a_class_that_shares_a_root_of_ten_digits_with_another() -> None:
+    """The double zero once more among the simple ones: with floats 3/10 is no common root."""
+    forged = given(VERTEX)
+    evidence, branches = forged["evidence"], forged["claims"]["branches"]
+    simple = next(entry for entry in evidence["classes"] if not entry["flat"])
+    double = next(entry for entry in evidence["classes"] if entry["flat"])
+    p, q = ([Fraction(c) for c in entry["polynomial"]] for entry in (simple, double))
+    both = [
+        [a + b for a, b in zip(one, two, strict=True)]
+        for one, two in zip(
+            (product([Fraction(c) for c in w], q) for w in simple["numerators"]),
+            (product([Fraction(c) for c in w], p) for w in double["numerators"]),
+            strict=True,
+        )
+    ]
+    at = str(-q[0] / q[1])
+    roots, listed = [], []
+    for root, branch in zip(evidence["roots"], branches, strict=True):
+        if evidence["classes"][root["class"]]["flat"]:
+            roots += [{"class": k, "interval": [at, at]} for k in (0, 1)]
+            listed += [{**branch, "multiplicity": 1}] * 2
+        else:
+            roots.append({**root, "class": 0})
+            listed.append(branch)
+    evidence["classes"] = [
+        {"polynomial": texts(product(p, q)), "numerators": list(map(texts, both)), "flat": []},
+        {**double, "flat": []},
+    ]
+    evidence["roots"], forged["claims"]["branches"] = roots, listed
+    forged["claims"].update(distinct=4, real=4, nonreal=0, true_branches="proved")
+    stopped_by(forged, "two classes share a root")
