@@ -19,7 +19,7 @@ _BITS = 64
 """Of an approximate length: more than a double shows."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FoldAngles:
     """Fold angles of the heights t h to first order in the amplitude t.
 
@@ -36,6 +36,11 @@ class FoldAngles:
     def largest(self) -> Fraction:
         """The largest size of a bend at t = 1; 0 if there are no folds."""
         return max(map(abs, self.bends.values()), default=Fraction(0))
+
+    def __repr__(self) -> str:
+        return (
+            f"<FoldAngles: {len(self.bends)} folds, the largest {float(self.largest):.3g} at t = 1>"
+        )
 
     def degrees(self, amount: float) -> dict[Edge, float]:
         """The angles in degrees, in proportion, the largest of size `amount`.

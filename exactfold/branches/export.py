@@ -12,8 +12,8 @@ from exactfold.branches.angles import Bounds, FoldAngles
 from exactfold.branches.branch import Branch
 from exactfold.branches.second_order import second_order_sheet
 from exactfold.bridges.fold_frames import branch_document
-from exactfold.errors import UndecidedBranchError
-from exactfold.exact.numbers import format_rational
+from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.exact.numbers import format_rational, shown
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.fold_writing import document_text, write_text
 from exactfold.verdict import PROVED, Verdict
@@ -22,7 +22,7 @@ AMOUNT = 30.0
 """Degrees of the largest fold angle: visible, and still close to the unfolded state."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BranchExport:
     """A branch as `export_branch` writes it.
 
@@ -39,6 +39,10 @@ class BranchExport:
     def text(self) -> str:
         """The file."""
         return document_text(self.document)
+
+    def __repr__(self) -> str:
+        name = self.document["file_title"] if "file_title" in self.document else "branch"
+        return f"<BranchExport: {self.status}, {name}, {len(self.angles)} folds>"
 
     def write(self, path: str | PathLike[str]) -> None:
         """Write the file whole or not at all; raises `UnwritableFileError`."""
@@ -94,6 +98,11 @@ def exported(
     >>> export.document["file_title"], export.document["frame_exactfold:branch"]["status"]
     ('branch ++', 'proved')
     """
+    if not isinstance(branch, Branch):
+        raise UsageError(
+            f"{shown(branch)} is not a branch: give what `find_branch` or a count returns, and then "
+            "the path"
+        )
     _require_writable(branch, force)
     pattern, heights, bends = branch.pattern, branch.heights, branch.fold_angles
     angles = {

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, overload
 
 from exactfold.branches.branch import Branch
 from exactfold.certify.algebraic import AlgebraicProof
@@ -83,17 +83,27 @@ class BranchCount:
     def __bool__(self) -> bool:
         return True  # a result, also where no branch is listed
 
-    def __getitem__(self, which: int | str) -> Branch:
-        """A branch by its place in the list or by its vertex signs.
+    def __contains__(self, which: object) -> bool:
+        return which in self._by_signs if isinstance(which, str) else which in self.branches
+
+    @overload
+    def __getitem__(self, which: int | str) -> Branch: ...
+    @overload
+    def __getitem__(self, which: slice) -> tuple[Branch, ...]: ...
+    def __getitem__(self, which: int | str | slice) -> Branch | tuple[Branch, ...]:
+        """A branch by its place in the list or by its vertex signs, as in "+-0"; or a slice.
 
         Raises `KeyError` for signs that no listed branch has, `UsageError` for signs that several
         have, which can be only where the boundary has a reflex corner.
         """
-        if isinstance(which, int):
+        if isinstance(which, int | slice):
             return self.branches[which]
         found = self._by_signs.get(which, [])
         if not found:
-            raise KeyError(f"no branch listed has the vertex signs {which!r}")
+            raise KeyError(
+                f"no branch listed has the vertex signs {which!r}; give one of +, - and 0 for each "
+                f"of {counted(self.pattern.Vi, 'interior vertex')}"
+            )
         if len(found) > 1:
             raise UsageError(f"{len(found)} branches have the vertex signs {which!r}")
         return found[0]

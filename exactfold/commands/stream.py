@@ -10,7 +10,7 @@ from pathlib import Path
 
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
-from exactfold.count.by_theorem import is_too_many, too_many
+from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
 from exactfold.count.dask_engine import LOCAL, dask_engine
 from exactfold.count.stream import StreamedCount, stream_branches
 from exactfold.errors import (
@@ -23,7 +23,7 @@ from exactfold.errors import (
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.workers import available_cores
 
-ADVISED = 14
+ADVISED = 16
 """Foldable vertices from which plain `count` takes ten times as long, and doubles with each."""
 
 
@@ -96,11 +96,11 @@ class Streaming:
 
 
 def advice(pattern: CreasePattern) -> str | None:
-    """Where plain `count` is the slow way: what to do instead."""
+    """Where plain `count` takes much memory: what to do instead."""
     foldable = pattern.Vi - pattern.Vt
-    if pattern.Ve != 4 or foldable < ADVISED or is_too_many(pattern):
+    if pattern.Ve != 4 or foldable < ADVISED or is_too_many(pattern, IN_MEMORY):
         return None
-    return f"2^{foldable} branches are proved faster with --stream FILE"
+    return f"2^{foldable} branches take less memory with --stream FILE"
 
 
 def _require_streamable(pattern: CreasePattern) -> None:

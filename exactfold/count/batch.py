@@ -92,6 +92,8 @@ def count_many(
     none.fold UnreadableFileError('cannot read none.fold: No such file or directory')
     """
     choose(method)
+    if isinstance(patterns, str | os.PathLike):
+        raise UsageError(f"{patterns} is one pattern: give a list of them, or use count_branches")
     if seed < 0:
         raise UsageError(f"the seed must not be negative: {seed}")
     if jobs < 1:

@@ -13,9 +13,13 @@ LIMIT = MOST_UNKNOWNS
 """Most foldable vertices of a sheet whose 2^n branches are listed, in memory or streamed."""
 
 
-def is_too_many(pattern: CreasePattern) -> bool:
+IN_MEMORY = 20
+"""Most foldable vertices of a sheet whose branches are kept in memory: a million of them."""
+
+
+def is_too_many(pattern: CreasePattern, limit: int = LIMIT) -> bool:
     """Whether the branches of a pattern are isolated lines, and too many of them to be listed."""
-    return pattern.Ve == 4 and pattern.Vi - pattern.Vt > LIMIT
+    return pattern.Ve == 4 and pattern.Vi - pattern.Vt > limit
 
 
 def too_many(pattern: CreasePattern) -> BranchCount:
@@ -37,7 +41,9 @@ def too_many(pattern: CreasePattern) -> BranchCount:
         UNDECIDED,
         "theorem",
         f"2^{free} are too many to list; --stream lists those of up to {LIMIT} foldable vertices, "
-        "and `exactfold branch` finds and proves single ones",
+        "and `exactfold branch` finds and proves single ones"
+        if free > LIMIT
+        else f"2^{free} are too many to keep in memory; --stream FILE proves them block by block",
         why="every triangulated quadrilateral has 2^Vi solutions with multiplicity, all real",
         with_multiplicity=1 << pattern.Vi,
         nonreal=0,

@@ -9,7 +9,7 @@ from exactfold.branches.branch import Branch
 from exactfold.branches.result import BranchCount, Proof
 from exactfold.checker.formats import MOST_UNKNOWNS
 from exactfold.count.attempt import Attempt
-from exactfold.count.by_theorem import is_too_many, too_many
+from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
 from exactfold.count.conveyor import LISTED_BITS, Conveyor
 from exactfold.count.hand_over import isolated, solved_exactly, with_flat_vertices
 from exactfold.count.solvers import METHODS, NEWTON, Choice, choose, find_candidates
@@ -49,8 +49,8 @@ def count_branches(
     and decide all vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For
     D >= 2 only the single-vertex pattern is counted. `method` is one of `METHODS`; "auto" takes
     Newton's method, one start for each sign vector, and turns to the exact engine where that does
-    not settle a small pattern. With more than 40 foldable vertices nothing is listed: `too_many`
-    says what is known, at once.
+    not settle a small pattern. With more than 20 foldable vertices nothing is kept in memory:
+    `too_many` says what is known, at once; `stream_branches` goes on to 40.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
     `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.
@@ -62,7 +62,7 @@ def count_branches(
     """
     choice, pattern = choose(method), as_pattern(pattern)
     check_countable(pattern)
-    if is_too_many(pattern):
+    if is_too_many(pattern, IN_MEMORY):
         return too_many(pattern)
     start = time.perf_counter()
     triangles = certify_rigid_triangles(pattern)

@@ -8,7 +8,7 @@ from typing import Any
 from exactfold.branches.branch import Branch
 from exactfold.branches.result import BranchCount, Proof
 from exactfold.branches.roots import AlgebraicRoot, BoxRoot, FlatBoxRoot
-from exactfold.errors import NotApplicableError
+from exactfold.errors import NotApplicableError, UsageError
 from exactfold.evidence.entries import (
     Document,
     algebraic_evidence,
@@ -19,6 +19,7 @@ from exactfold.evidence.entries import (
     flat_box_entry,
     triangle_evidence,
 )
+from exactfold.exact.numbers import shown
 from exactfold.verdict import PROVED
 
 
@@ -33,6 +34,8 @@ def certificate(result: BranchCount) -> Document:
     >>> certificate(count_branches(two_vertex()))["claims"]["distinct"]
     4
     """
+    if not isinstance(result, BranchCount):
+        raise UsageError(f"{shown(result)} is not a count: give what `count_branches` returns")
     if result.status is not PROVED or result.proof is None:
         raise NotApplicableError(f"no certificate: the count is {result.status} ({result.reason})")
     claims: dict[str, Any] = {

@@ -8,6 +8,7 @@ from sheets import random_wheel
 
 from exactfold import Branch, count_branches, curvature_form, find_branch
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.degenerate import chorded_square
 from exactfold.pattern.families import hypar, single_vertex, two_vertex
 from exactfold.problem.problem import Problem
 
@@ -92,3 +93,25 @@ def test_all_methods_share_one_gauge():
             (low, high), (other_low, other_high) = a.heights[v], b.heights[v]
             assert low <= other_high
             assert other_low <= high
+
+
+def test_a_saddle_that_is_nearly_zero_is_decided_by_every_method():
+    """A kite whose saddle is 1e-12 of its size: sides, signs and letters must not depend on bits."""
+    tiny = Fraction(1, 10**12)
+    kite = CreasePattern(
+        [(1, 0), (4 + tiny, 5), (-2, 0), (4 + tiny, -5), (0, 0)],
+        [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+    )
+    seen = {
+        tuple(
+            (b.sign_text, b.assignment_text, b.representative)
+            for b in count_branches(kite, method=method)
+        )
+        for method in ("newton", "popping", "homotopy", "groebner")
+    }
+    assert len(seen) == 1
+
+
+def test_a_branch_without_unknowns_is_as_sharp_as_can_be():
+    branch = count_branches(chorded_square())[0]
+    assert branch.sharpened(200).heights == branch.heights

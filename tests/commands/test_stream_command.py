@@ -174,7 +174,7 @@ def test_large_counts_are_told_of_the_faster_way(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(stream_command, "ADVISED", 2)
     result = run("count", TWO, "--json")
     assert result.exit_code == PROVED
-    assert result.stderr == "exactfold: 2^2 branches are proved faster with --stream FILE\n"
+    assert result.stderr == "exactfold: 2^2 branches take less memory with --stream FILE\n"
     assert stream_command.advice(families.single_vertex(5)) is None
     monkeypatch.setattr(by_theorem, "LIMIT", 1)
     assert stream_command.advice(random_square(2, seed=1)) is None  # nothing is counted
