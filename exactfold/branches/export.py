@@ -41,7 +41,7 @@ class BranchExport:
         return document_text(self.document)
 
     def __repr__(self) -> str:
-        name = self.document["file_title"] if "file_title" in self.document else "branch"
+        name = self.document.get("file_title", "branch")
         return f"<BranchExport: {self.status}, {name}, {len(self.angles)} folds>"
 
     def write(self, path: str | PathLike[str]) -> None:
@@ -100,7 +100,7 @@ def exported(
     """
     if not isinstance(branch, Branch):
         raise UsageError(
-            f"{shown(branch)} is not a branch: give what `find_branch` or a count returns, and then "
+            f"{shown(branch)} is not a branch: give what `find_branch` or a count returns, then "
             "the path"
         )
     _require_writable(branch, force)

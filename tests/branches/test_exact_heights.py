@@ -96,7 +96,7 @@ def test_all_methods_share_one_gauge():
 
 
 def test_a_saddle_that_is_nearly_zero_is_decided_by_every_method():
-    """A kite whose saddle is 1e-12 of its size: sides, signs and letters must not depend on bits."""
+    """A kite whose saddle is 1e-12 of its size: sides, signs and letters are the same."""
     tiny = Fraction(1, 10**12)
     kite = CreasePattern(
         [(1, 0), (4 + tiny, 5), (-2, 0), (4 + tiny, -5), (0, 0)],

@@ -72,7 +72,7 @@ def test_of_other_files_nothing_is_said_but_what_is_wrong(text: str, tmp_path: P
 def test_a_pipe_is_called_by_its_name() -> None:
     code, text = said("/dev/null")
     assert code == 3
-    assert "CertificateFormatError: /dev/null: not JSON, or cut off" in text
+    assert "exactfold: /dev/null: not JSON, or cut off" in text
     done = CliRunner().invoke(app, ["check", str(FIXTURES / "none.json")])
     assert done.exit_code == 3
     assert f"cannot read {FIXTURES / 'none.json'}: No such file" in done.stderr

@@ -5,7 +5,7 @@ from math import gcd
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from exactfold.problem.quadratic import QuadraticSystem
@@ -33,6 +33,11 @@ def form(matrix, x):
     )
 
 
+patient = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+"""Drawing matrices of fractions takes long where other programs run."""
+
+
+@patient
 @given(pairs, points)
 def test_from_rational_is_primitive_and_keeps_the_forms(matrices, x):
     system = QuadraticSystem.from_rational(matrices)
@@ -47,12 +52,14 @@ def test_from_rational_is_primitive_and_keeps_the_forms(matrices, x):
         assert (value > 0) - (value < 0) == (exact > 0) - (exact < 0)
 
 
+@patient
 @given(pairs, st.fractions(min_value=Fraction(1, 50), max_value=50))
 def test_positive_scaling_changes_nothing(matrices, scale):
     scaled = [[[scale * a for a in row] for row in m] for m in matrices]
     assert QuadraticSystem.from_rational(scaled) == QuadraticSystem.from_rational(matrices)
 
 
+@patient
 @given(pairs, points, points)
 def test_realification_is_real_and_imaginary_part(matrices, a, b):
     system = QuadraticSystem.from_rational(matrices)
@@ -70,6 +77,7 @@ def test_realification_is_real_and_imaginary_part(matrices, a, b):
         assert (other > 0) - (other < 0) == (imaginary > 0) - (imaginary < 0)
 
 
+@patient
 @given(pairs)
 def test_float_tensor_has_largest_entry_one(matrices):
     system = QuadraticSystem.from_rational(matrices)
