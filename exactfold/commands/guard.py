@@ -42,6 +42,9 @@ def supervised(run: Callable[[], None]) -> None:
         run()
         return
     code, whole = _in_child(run)
+    if not whole and code == -signal.SIGTERM:  # as without a limit: it ends this process, too
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        os.kill(os.getpid(), signal.SIGTERM)
     if not whole:
         print("exactfold: ended without an answer: not enough memory", file=sys.stderr)
         code = NO_MEMORY

@@ -93,7 +93,16 @@ def test_answers_and_errors_pass_through_the_guard(files: Path, tmp_path: Path) 
         assert free.stderr == limited.stderr
 
 
-def test_a_signal_reaches_the_guarded_program(files: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "code", "said"),
+    [
+        (signal.SIGINT, INTERRUPTED, "exactfold: interrupted\n"),
+        (signal.SIGTERM, -signal.SIGTERM, ""),  # as without a limit, and no shortage of memory
+    ],
+)
+def test_a_signal_reaches_the_guarded_program(
+    files: Path, tmp_path: Path, number: int, code: int, said: str
+) -> None:
     (tmp_path / "numpy.py").write_text("open('begun', 'w').close()\nimport time\ntime.sleep(60)")
     command = f"ulimit -v 4000000; exec {sys.executable} -m exactfold count two-vertex"
     started = subprocess.Popen(
@@ -108,9 +117,9 @@ def test_a_signal_reaches_the_guarded_program(files: Path, tmp_path: Path) -> No
     while not (tmp_path / "begun").exists():
         assert started.poll() is None
         time.sleep(0.05)
-    os.killpg(started.pid, signal.SIGINT)
-    assert started.communicate(timeout=20)[1] == "exactfold: interrupted\n"
-    assert started.returncode == INTERRUPTED
+    (os.killpg if number == signal.SIGINT else os.kill)(started.pid, number)
+    assert started.communicate(timeout=20)[1] == said
+    assert started.returncode == code
 
 
 SIGNALS = "import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(20)\n"
