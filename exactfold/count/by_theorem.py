@@ -17,9 +17,9 @@ IN_MEMORY = 20
 """Most foldable vertices of a sheet whose branches are kept in memory: a million of them."""
 
 
-def is_too_many(pattern: CreasePattern, limit: int = LIMIT) -> bool:
+def is_too_many(pattern: CreasePattern, limit: int | None = None) -> bool:
     """Whether the branches of a pattern are isolated lines, and too many of them to be listed."""
-    return pattern.Ve == 4 and pattern.Vi - pattern.Vt > limit
+    return pattern.Ve == 4 and pattern.Vi - pattern.Vt > (LIMIT if limit is None else limit)
 
 
 def too_many(pattern: CreasePattern) -> BranchCount:

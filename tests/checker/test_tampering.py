@@ -86,6 +86,7 @@ def test_changed_evidence_is_rejected_or_proves_the_same(name):
     assert outcomes[True] > 0 or KINDS[name] == "single vertex"
 
 
+@pytest.mark.slow
 @names
 def test_values_of_other_types_are_rejected_or_harmless(name):
     truth = statement(document(name)["claims"])

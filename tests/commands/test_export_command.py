@@ -3,7 +3,7 @@
 import json
 import subprocess
 import sys
-from types import SimpleNamespace
+from dataclasses import replace
 
 import pytest
 from typer.testing import CliRunner
@@ -15,6 +15,7 @@ from exactfold.errors import UndecidedBranchError
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.fold_writing import fold_text
+from exactfold.verdict import UNDECIDED as UNPROVED
 
 OK, USAGE, BAD_INPUT, UNDECIDED = 0, 2, 3, 4
 TWO = example_path("two-vertex")
@@ -212,13 +213,8 @@ def test_an_undecided_branch_is_refused_unless_forced(undecided, out):
 
 def test_a_branch_without_heights_is_refused_always(out):
     found = find_branch(two_vertex(), "++")
-    nothing = SimpleNamespace(
-        vertex_signs=found.vertex_signs,
-        assignment=dict.fromkeys(found.assignment, "U"),
-        heights={},
-        sign_text="++",
-        assignment_text="U" * 7,
-    )
+    letters = dict.fromkeys(found.assignment, "U")
+    nothing = replace(found, root=None, assignment=letters, status=UNPROVED)
     with pytest.raises(UndecidedBranchError, match="nothing is proved"):
         export_branch(nothing, out, force=True)
     assert not out.exists()

@@ -176,7 +176,7 @@ def test_large_counts_are_told_of_the_faster_way(monkeypatch: pytest.MonkeyPatch
     assert result.exit_code == PROVED
     assert result.stderr == "exactfold: 2^2 branches take less memory with --stream FILE\n"
     assert stream_command.advice(families.single_vertex(5)) is None
-    monkeypatch.setattr(by_theorem, "LIMIT", 1)
+    monkeypatch.setattr(stream_command, "IN_MEMORY", 1)
     assert stream_command.advice(random_square(2, seed=1)) is None  # nothing is counted
 
 

@@ -84,6 +84,7 @@ def test_the_theorem_agrees_with_enumeration(
     listed = count_branches(pattern)
     assert listed.status is PROVED
     monkeypatch.setattr(by_theorem, "LIMIT", 0)
+    monkeypatch.setattr("exactfold.count.collect.IN_MEMORY", 0)
     said = count_branches(pattern)
     assert (said.status, said.by) == (OPEN, "theorem")
     assert said.reason == too_many(pattern).reason

@@ -7,6 +7,7 @@ import pytest
 from exactfold import PROVED, certificate, checker, count_branches, random_square
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("interior", range(2, 9))
 def test_hundred_random_squares_are_proved(interior: int) -> None:
     for seed in range(100):

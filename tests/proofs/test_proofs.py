@@ -29,6 +29,7 @@ def test_is_proved(name: str) -> None:
     assert proof.verdict is PROVED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MODULES)
 def test_every_change_is_refused_and_every_step_refuses_one(name: str) -> None:
     module, proof = importlib.import_module(f"proofs.{name}"), proof_of(name)
