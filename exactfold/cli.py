@@ -12,7 +12,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from exactfold.commands.parameters import Command, Group, Json, Pattern, Patterns, Snap, flag
+from exactfold.commands.parameters import (
+    Command,
+    Group,
+    Json,
+    Pattern,
+    Patterns,
+    Signs,
+    Snap,
+    Up,
+    flag,
+)
 from exactfold.commands.shell import (
     EXIT,
     OUTPUT_FAILED,
@@ -233,16 +243,8 @@ def check(
 @reported
 def branch(
     pattern: Pattern,
-    signs: Annotated[
-        str | None,
-        typer.Option(
-            metavar="+-...", help="Vertex signs in the order of the interior vertices; @FILE reads."
-        ),
-    ] = None,
-    up: Annotated[
-        str | None,
-        typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
-    ] = None,
+    signs: Signs = None,
+    up: Up = None,
     batch: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Instead: one sign vector a line.")
     ] = None,
@@ -286,16 +288,8 @@ def branch(
 @reported
 def export(
     pattern: Pattern,
-    signs: Annotated[
-        str | None,
-        typer.Option(
-            metavar="+-...", help="Vertex signs in the order of the interior vertices; @FILE reads."
-        ),
-    ] = None,
-    up: Annotated[
-        str | None,
-        typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
-    ] = None,
+    signs: Signs = None,
+    up: Up = None,
     place: Annotated[
         int | None,
         typer.Option("--branch", min=1, metavar="N", help="Instead: the N-th that `count` lists."),

@@ -93,3 +93,13 @@ Snap = Annotated[
     typer.Option(min=1, metavar="DEN", help="Round coordinates to multiples of 1/DEN first."),
 ]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]
+Signs = Annotated[
+    str | None,
+    typer.Option(
+        metavar="+-...", help="Vertex signs in the order of the interior vertices; @FILE reads."
+    ),
+]
+Up = Annotated[
+    str | None,
+    typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
+]

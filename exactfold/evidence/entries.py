@@ -14,7 +14,7 @@ from exactfold.checker.formats import LISTING, LISTING_VERSION
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold_writing import write_text
-from exactfold.problem.branch_system import BranchSystem, Chart
+from exactfold.problem.branch_system import Chart
 from exactfold.problem.flat_sheets import FlatSheets
 from exactfold.rigidity.rigid_triangles import RigidTriangle
 
@@ -71,7 +71,7 @@ def chart_evidence(chart: Chart, labels: Sequence[int]) -> Document | None:
     Pinned vertices have height 0 and are left out; `labels` names the vertices in the certificate.
     """
     system = chart.branch_system
-    if chart == system.chart and system.pinned == BranchSystem(system.pattern).pinned:
+    if chart.is_saddle:
         return None
     free = {labels[v]: c for v, c in chart.functional.items() if v not in system.pinned}
     return {str(v): format_rational(c) for v, c in sorted(free.items())}
