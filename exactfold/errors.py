@@ -197,6 +197,10 @@ class UndecidedBranchError(ExactfoldError):
 # --- the exact engine ----------------------------------------------------------------------------
 
 
+class TooManyModesError(ExactfoldError):
+    """A search for the motions of a sheet of panels was given up; the message says where."""
+
+
 class ParametrisationError(ExactfoldError):
     """A parametrisation does not satisfy its system: an error of the solver, not of the input."""
 

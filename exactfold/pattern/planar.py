@@ -12,12 +12,12 @@ from exactfold.errors import (
     DuplicateVertexError,
     IsolatedVertexError,
 )
-from exactfold.pattern.validate import IntPoint, orientation, segments_meet
+from exactfold.pattern.validate import AnyPoint, orientation, segments_meet
 
 Edge = tuple[int, int]
 
 
-def trace_faces(points: Sequence[IntPoint], edges: Iterable[Edge]) -> list[tuple[int, ...]]:
+def trace_faces(points: Sequence[AnyPoint], edges: Iterable[Edge]) -> list[tuple[int, ...]]:
     """The bounded faces of a planar straight-line graph, sorted.
 
     `points` are integer points (scale rational ones by a common denominator), `edges` index pairs;
@@ -47,12 +47,12 @@ def trace_faces(points: Sequence[IntPoint], edges: Iterable[Edge]) -> list[tuple
     # clockwise[v][u] is the neighbour of v that follows u clockwise.
     clockwise: list[dict[int, int]] = []
     for v, around in enumerate(neighbours):
-        order = _counter_clockwise(points, v, around)
+        order = counter_clockwise(points, v, around)
         clockwise.append({u: order[k - 1] for k, u in enumerate(order)})
     return _cycles(points, graph, clockwise)
 
 
-def check_no_crossing(points: Sequence[IntPoint], edges: Sequence[Edge]) -> None:
+def check_no_crossing(points: Sequence[AnyPoint], edges: Sequence[Edge]) -> None:
     """Raise `CrossingEdgesError` if two edges meet anywhere but in a common end.
 
     A sweep over the x-ranges; every decision is the sign of an integer determinant.
@@ -71,7 +71,7 @@ def check_no_crossing(points: Sequence[IntPoint], edges: Sequence[Edge]) -> None
         active.append(box)
 
 
-def _check_pair(points: Sequence[IntPoint], first: Edge, second: Edge) -> None:
+def _check_pair(points: Sequence[AnyPoint], first: Edge, second: Edge) -> None:
     for one, other in ((first, second), (second, first)):
         for v in set(other) - set(one):
             if _inside_edge(points, v, one):
@@ -84,15 +84,15 @@ def _check_pair(points: Sequence[IntPoint], first: Edge, second: Edge) -> None:
         raise CrossingEdgesError(f"edges {_name(first)} and {_name(second)} cross")
 
 
-def _inside_edge(points: Sequence[IntPoint], v: int, edge: Edge) -> bool:
+def _inside_edge(points: Sequence[AnyPoint], v: int, edge: Edge) -> bool:
     (px, py), (ax, ay), (bx, by) = points[v], points[edge[0]], points[edge[1]]
     if orientation((ax, ay), (bx, by), (px, py)) != 0:
         return False
-    return (ax - px) * (bx - px) + (ay - py) * (by - py) < 0
+    return bool((ax - px) * (bx - px) + (ay - py) * (by - py) < 0)
 
 
-def _check_points(points: Sequence[IntPoint]) -> None:
-    seen: dict[IntPoint, int] = {}
+def _check_points(points: Sequence[AnyPoint]) -> None:
+    seen: dict[AnyPoint, int] = {}
     for v, point in enumerate(points):
         if point in seen:
             raise DuplicateVertexError(
@@ -125,7 +125,8 @@ def _check_connected(neighbours: Sequence[Sequence[int]]) -> None:
         )
 
 
-def _counter_clockwise(points: Sequence[IntPoint], v: int, around: Sequence[int]) -> list[int]:
+def counter_clockwise(points: Sequence[AnyPoint], v: int, around: Sequence[int]) -> list[int]:
+    """The neighbours of a vertex in counter-clockwise order, from the direction of +x."""
     x, y = points[v]
 
     def half(u: int) -> int:
@@ -140,7 +141,7 @@ def _counter_clockwise(points: Sequence[IntPoint], v: int, around: Sequence[int]
 
 
 def _cycles(
-    points: Sequence[IntPoint], edges: Sequence[Edge], clockwise: Sequence[dict[int, int]]
+    points: Sequence[AnyPoint], edges: Sequence[Edge], clockwise: Sequence[dict[int, int]]
 ) -> list[tuple[int, ...]]:
     faces = []
     unseen = {half for i, j in edges for half in ((i, j), (j, i))}

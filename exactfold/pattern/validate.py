@@ -27,6 +27,8 @@ from exactfold.wording import agreeing, counted
 
 Point = tuple[Fraction, Fraction]
 IntPoint = tuple[int, int]
+AnyPoint = Sequence[Any]
+"""Two exact coordinates: integers, fractions or surds."""
 Triangle = tuple[int, int, int]
 Rotation = Mapping[int, Mapping[int, int]]
 
@@ -44,8 +46,8 @@ def rounded_to(denominator: int) -> Iterator[None]:
         raise
 
 
-def orientation(a: Sequence[int], b: Sequence[int], c: Sequence[int]) -> int:
-    """Twice the signed area of triangle abc, positive if counter-clockwise; exact on integers."""
+def orientation(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> Any:
+    """Twice the signed area of triangle abc, positive if counter-clockwise; exact."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
@@ -272,8 +274,8 @@ def _meet(vertices: Sequence[IntPoint], first: tuple[int, int], second: tuple[in
     return segments_meet(*(vertices[v] for v in (*first, *second)))
 
 
-def segments_meet(a: IntPoint, b: IntPoint, c: IntPoint, d: IntPoint) -> bool:
-    """Whether the closed segments ab and cd have a common point; exact on integers."""
+def segments_meet(a: AnyPoint, b: AnyPoint, c: AnyPoint, d: AnyPoint) -> bool:
+    """Whether the closed segments ab and cd have a common point; exact on exact numbers."""
     abc, abd = _sign(orientation(a, b, c)), _sign(orientation(a, b, d))
     cda, cdb = _sign(orientation(c, d, a)), _sign(orientation(c, d, b))
     if abc * abd < 0 and cda * cdb < 0:
@@ -286,9 +288,11 @@ def segments_meet(a: IntPoint, b: IntPoint, c: IntPoint, d: IntPoint) -> bool:
     )
 
 
-def _sign(value: int) -> int:
-    return (value > 0) - (value < 0)
+def _sign(value: Any) -> int:
+    return int(value > 0) - int(value < 0)
 
 
-def _between(a: IntPoint, b: IntPoint, p: IntPoint) -> bool:
-    return min(a[0], b[0]) <= p[0] <= max(a[0], b[0]) and min(a[1], b[1]) <= p[1] <= max(a[1], b[1])
+def _between(a: AnyPoint, b: AnyPoint, p: AnyPoint) -> bool:
+    return bool(
+        min(a[0], b[0]) <= p[0] <= max(a[0], b[0]) and min(a[1], b[1]) <= p[1] <= max(a[1], b[1])
+    )

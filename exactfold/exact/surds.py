@@ -1,0 +1,322 @@
+"""Real numbers made of square roots, with exact signs: Q(sqrt a)(sqrt b)..."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import isqrt
+from typing import Final, TypeAlias
+
+from flint import arb, ctx
+
+from exactfold.errors import UsageError
+
+Coefficients: TypeAlias = tuple[Fraction, ...]
+_GUARDED: Final = 60
+"""Bits with which a sign is looked for before it is decided exactly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surd:
+    """A real number in a `SurdField`: sums of products of square roots, every test exact.
+
+    `coefficients[m]` belongs to the product of the roots r_(i+1) over the bits i of m. Numbers of
+    two fields can be combined if one field extends the other; whole numbers and fractions belong to
+    every field. Comparisons and `sign` are exact: a ball of Arb decides where it can, and the
+    signs of a + b r and a^2 - b^2 r^2 where it cannot.
+
+    >>> field = SurdField(()).adjoined(2)
+    >>> root = field.root
+    >>> (root + 1) * (root - 1), root > 1, 1 / root
+    (1, True, 1/2*r1)
+    """
+
+    field: SurdField
+    coefficients: Coefficients
+
+    def __add__(self, other: Number) -> Surd:
+        a, b, field = self._paired(other)
+        return Surd(field, tuple(x + y for x, y in zip(a, b, strict=True)))
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Surd:
+        return Surd(self.field, tuple(-x for x in self.coefficients))
+
+    def __sub__(self, other: Number) -> Surd:
+        a, b, field = self._paired(other)
+        return Surd(field, tuple(x - y for x, y in zip(a, b, strict=True)))
+
+    def __rsub__(self, other: Number) -> Surd:
+        return -self + other
+
+    def __mul__(self, other: Number) -> Surd:
+        if not isinstance(other, Surd):
+            return Surd(self.field, tuple(x * other for x in self.coefficients))
+        a, b, field = self._paired(other)
+        return Surd(field, field.times(a, b))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Number) -> Surd:
+        if not isinstance(other, Surd):
+            return self * (1 / Fraction(other))
+        return self * Surd(other.field, other.field.inverse(other.coefficients))
+
+    def __rtruediv__(self, other: Fraction | int) -> Surd:
+        return Surd(self.field, self.field.inverse(self.coefficients)) * other
+
+    def __bool__(self) -> bool:
+        return any(self.coefficients)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Surd | int | Fraction):
+            return NotImplemented
+        a, b, _ = self._paired(other)
+        return a == b
+
+    def __hash__(self) -> int:
+        a = self.coefficients
+        while len(a) > 1 and not any(a[len(a) // 2 :]):
+            a = a[: len(a) // 2]
+        return hash(a[0]) if len(a) == 1 else hash((self.field.radicands, a))
+
+    def __lt__(self, other: Number) -> bool:
+        return (self - other).sign() < 0
+
+    def __gt__(self, other: Number) -> bool:
+        return (self - other).sign() > 0
+
+    def __le__(self, other: Number) -> bool:
+        return (self - other).sign() <= 0
+
+    def __ge__(self, other: Number) -> bool:
+        return (self - other).sign() >= 0
+
+    def __float__(self) -> float:
+        return float(self.ball(_GUARDED))
+
+    def __repr__(self) -> str:
+        terms = []
+        for mask, c in enumerate(self.coefficients):
+            roots = [f"r{i + 1}" for i in range(mask.bit_length()) if mask >> i & 1]
+            if c:
+                terms.append("*".join(roots if roots and c == 1 else [str(c), *roots]))
+        return " + ".join(terms) or "0"
+
+    def sign(self) -> int:
+        """1, 0 or -1, exactly."""
+        if not self:
+            return 0
+        ball = self.ball(_GUARDED)
+        if not ball.contains(0):
+            return 1 if ball > 0 else -1
+        return self.field.sign(self.coefficients)
+
+    def ball(self, bits: int) -> arb:
+        """An enclosure of the value, computed with `bits` bits."""
+        before = ctx.prec
+        ctx.prec = bits
+        try:
+            total = arb(0)
+            for c, root in zip(self.coefficients, self.field.products(bits), strict=True):
+                if c:
+                    total += root * c.numerator / c.denominator
+        finally:
+            ctx.prec = before
+        return total
+
+    def in_field(self, field: SurdField) -> Surd:
+        """The same number in a field that extends its own."""
+        if field.radicands[: len(self.field.radicands)] != self.field.radicands:
+            raise UsageError("the number is in no subfield of this field")
+        zeros = (Fraction(0),) * (field.dimension - len(self.coefficients))
+        return Surd(field, self.coefficients + zeros)
+
+    def _paired(self, other: Number) -> tuple[Coefficients, Coefficients, SurdField]:
+        if not isinstance(other, Surd):
+            rest = (Fraction(0),) * (self.field.dimension - 1)
+            return self.coefficients, (Fraction(other), *rest), self.field
+        if other.field is self.field or other.field == self.field:
+            return self.coefficients, other.coefficients, self.field
+        if other.field.dimension > self.field.dimension:
+            return self.in_field(other.field).coefficients, other.coefficients, other.field
+        return self.coefficients, other.in_field(self.field).coefficients, self.field
+
+
+Number: TypeAlias = Surd | Fraction | int
+
+
+@dataclass(frozen=True)
+class SurdField:
+    """Q(r_1, ..., r_m), real, with r_k the positive square root of a positive number before it.
+
+    `radicands[k - 1]` are the 2^(k-1) coefficients of r_k^2, which is no square in the field
+    before; `adjoined` sees to that. Q itself is `SurdField(())`.
+
+    >>> field = SurdField(()).adjoined(2).adjoined(3)
+    >>> field.dimension, field.square_root(field.number(8)), field.square_root(field.number(5))
+    (4, 2*r1, None)
+    """
+
+    radicands: tuple[Coefficients, ...]
+
+    @property
+    def dimension(self) -> int:
+        """2^m, the degree over Q."""
+        return 1 << len(self.radicands)
+
+    @property
+    def root(self) -> Surd:
+        """r_m, the last root adjoined; raises `UsageError` in Q."""
+        if not self.radicands:
+            raise UsageError("no root was adjoined to the rational numbers")
+        half = self.dimension // 2
+        return Surd(self, tuple(Fraction(k == half) for k in range(self.dimension)))
+
+    def number(self, value: Number) -> Surd:
+        """The number as an element of this field."""
+        if isinstance(value, Surd):
+            return value.in_field(self)
+        return Surd(self, (Fraction(value), *(Fraction(0),) * (self.dimension - 1)))
+
+    def adjoined(self, radicand: Number) -> SurdField:
+        """The field with the square root of a positive number; itself if that root is in it.
+
+        Raises `UsageError` for a number that is not positive.
+        """
+        value = self.number(radicand)
+        if value.sign() <= 0:
+            raise UsageError(f"the square root of {value} is not a positive real number")
+        if self.square_root(value) is not None:
+            return self
+        return SurdField((*self.radicands, value.coefficients))
+
+    def square_root(self, value: Number) -> Surd | None:
+        """The root >= 0 of a number, None if it is not in this field."""
+        root = self._square_root(self.number(value).coefficients)
+        if root is None:
+            return None
+        found = Surd(self, root)
+        return -found if found.sign() < 0 else found
+
+    def times(self, a: Coefficients, b: Coefficients) -> Coefficients:
+        """The product of two elements of the same level."""
+        if len(a) == 1:
+            return (a[0] * b[0],)
+        half = len(a) // 2
+        a0, a1, b0, b1 = a[:half], a[half:], b[:half], b[half:]
+        low = self.times(a0, b0)
+        if any(a1) and any(b1):
+            high = self.times(self.times(a1, b1), self.radicands[half.bit_length() - 1])
+            low = _sum(low, high)
+        return low + _sum(self.times(a0, b1), self.times(a1, b0))
+
+    def inverse(self, a: Coefficients) -> Coefficients:
+        """1/a; raises `ZeroDivisionError` for zero."""
+        if len(a) == 1:
+            return (1 / a[0],)
+        half = len(a) // 2
+        a0, a1 = a[:half], a[half:]
+        scale = self.inverse(self._norm(a))
+        return self.times(a0, scale) + tuple(-x for x in self.times(a1, scale))
+
+    def sign(self, a: Coefficients) -> int:
+        """The sign of a0 + a1 r from those of a0, a1 and a0^2 - a1^2 r^2, exactly."""
+        if len(a) == 1:
+            return (a[0] > 0) - (a[0] < 0)
+        half = len(a) // 2
+        first, second = self.sign(a[:half]), self.sign(a[half:])
+        if first * second >= 0:
+            return first or second
+        return first * self.sign(self._norm(a))
+
+    def products(self, bits: int) -> tuple[arb, ...]:
+        """Enclosures of the 2^m products of roots."""
+        known = self._enclosed
+        if bits not in known:
+            before = ctx.prec
+            ctx.prec = bits
+            try:
+                found = [arb(1)]
+                for radicand in self.radicands:
+                    terms = zip(radicand, found, strict=True)
+                    square = sum((p * c.numerator / c.denominator for c, p in terms), arb(0))
+                    root = square.sqrt()
+                    found += [p * root for p in found]
+            finally:
+                ctx.prec = before
+            known[bits] = tuple(found)
+        return known[bits]
+
+    @cached_property
+    def _enclosed(self) -> dict[int, tuple[arb, ...]]:
+        return {}
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return SurdField, (self.radicands,)  # enclosures stay behind
+
+    def _norm(self, a: Coefficients) -> Coefficients:
+        half = len(a) // 2
+        a0, a1 = a[:half], a[half:]
+        square = self.times(self.times(a1, a1), self.radicands[half.bit_length() - 1])
+        return tuple(x - y for x, y in zip(self.times(a0, a0), square, strict=True))
+
+    def _square_root(self, a: Coefficients) -> Coefficients | None:
+        """A root of a = a0 + a1 r: (x + y r)^2 has x^2 + y^2 r^2 = a0 and 2 x y = a1.
+
+        With n^2 = a0^2 - a1^2 r^2, x^2 is (a0 + n)/2 or (a0 - n)/2; if a1 = 0 the root is x or y r.
+        """
+        if len(a) == 1:
+            return _rational_root(a[0])
+        half = len(a) // 2
+        a0, a1 = a[:half], a[half:]
+        radicand = self.radicands[half.bit_length() - 1]
+        zero = (Fraction(0),) * half
+        if not any(a1):
+            if (x := self._square_root(a0)) is not None:
+                return x + zero
+            y = self._square_root(self.times(a0, self.inverse(radicand)))
+            return None if y is None else zero + y
+        norm = self._square_root(self._norm(a))
+        if norm is None:
+            return None
+        for n in (norm, tuple(-c for c in norm)):
+            x = self._square_root(tuple((p + q) / 2 for p, q in zip(a0, n, strict=True)))
+            if x is not None and any(x):
+                return x + tuple(c / 2 for c in self.times(a1, self.inverse(x)))
+        return None
+
+
+RATIONALS: Final = SurdField(())
+"""Q, the field without roots."""
+
+
+def sign(value: Number) -> int:
+    """1, 0 or -1 for a surd, a fraction or an integer, exactly."""
+    return value.sign() if isinstance(value, Surd) else (value > 0) - (value < 0)
+
+
+def common_field(values: Iterable[Number]) -> SurdField:
+    """The largest field among those of the numbers; raises `UsageError` if they are no chain."""
+    field = RATIONALS
+    for value in values:
+        if isinstance(value, Surd) and value.field.dimension > field.dimension:
+            value.field.number(1)
+            field = value.field
+    return field
+
+
+def _sum(a: Sequence[Fraction], b: Sequence[Fraction]) -> Coefficients:
+    return tuple(x + y for x, y in zip(a, b, strict=True))
+
+
+def _rational_root(value: Fraction) -> Coefficients | None:
+    if value < 0:
+        return None
+    top, bottom = isqrt(value.numerator), isqrt(value.denominator)
+    if top * top != value.numerator or bottom * bottom != value.denominator:
+        return None
+    return (Fraction(top, bottom),)
