@@ -280,4 +280,6 @@ def _elementary(state: _State) -> ElementaryMode:
         mode, at = at
         chosen.append(mode)
     densities = state.all_densities or {}
-    return ElementaryMode(tuple(sorted(chosen, key=lambda m: m.vertex)), dict(sorted(densities.items())))
+    return ElementaryMode(
+        tuple(sorted(chosen, key=lambda m: m.vertex)), dict(sorted(densities.items()))
+    )

@@ -74,7 +74,9 @@ def _plane(star: Star) -> tuple[list[Number], list[Number]]:
         w: list[Number] = [Fraction(0)] * 4
         # w_i d_i + w_j d_j + w_k d_k = 0 with the brackets of the opposite pairs (Cramer)
         w[i], w[j], w[k] = bracket(d[j], d[k]), bracket(d[k], d[i]), bracket(d[i], d[j])
-        if not found or any(found[0][p] * w[q] != found[0][q] * w[p] for p in range(4) for q in range(p)):
+        if not found or any(
+            found[0][p] * w[q] != found[0][q] * w[p] for p in range(4) for q in range(p)
+        ):
             found.append(w)
         if len(found) == 2:
             break

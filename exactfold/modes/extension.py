@@ -1,0 +1,184 @@
+"""Which elementary modes continue to true motions of the folded sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Final
+
+import networkx as nx
+from flint import arb, ctx
+
+from exactfold.exact.surds import Number, Surd, SurdField
+from exactfold.modes.elementary import ElementaryMode
+from exactfold.modes.local import LocalMode
+from exactfold.modes.stars import Star, edge_of
+from exactfold.modes.transmission import Transmission, composed
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+
+_BITS: Final = 256
+_MOST_NONLINEAR: Final = 6
+_MOST_ROOTS: Final = 5
+
+
+@dataclass(frozen=True)
+class Extension:
+    """Whether a mode is tangent to a true motion: PROVED, REFUTED or UNDECIDED, and by what.
+
+    `cycle` is the loop of vertices that does not close, at `order` in the fold angle, if REFUTED.
+    """
+
+    verdict: Verdict
+    by: str
+    cycle: tuple[int, ...] = ()
+    order: int = 0
+
+
+def extension(pattern: PanelPattern, stars: Mapping[int, Star], mode: ElementaryMode) -> Extension:
+    """Whether the elementary mode continues to a one-parameter motion of rigid panels.
+
+    Each local mode continues to one analytic curve of true motions of its vertex, so a mode extends
+    if its active graph is a forest; or if all transmissions round its loops are linear, as they
+    then close because the mode does; or if round every loop of a cycle basis they close up to the
+    odd order 2^k + 1, with k nonlinear transmissions (docs/panels.md, 4: the composite has bidegree
+    at most (2^k, 2^k), and meets the diagonal at the origin no more often unless it is the
+    diagonal). The first order that fails proves that it does not extend.
+
+    UNDECIDED means that a loop has too many nonlinear transmissions or square roots for this test.
+    """
+    chosen = {local.vertex: local for local in mode.choice}
+    graph = active_graph(chosen)
+    if nx.is_forest(graph):
+        return Extension(PROVED, "forest")
+    nonlinear, highest = False, 0
+    for cycle in cycle_basis(pattern, graph):
+        result = _round(cycle, stars, chosen)
+        if result.verdict is not PROVED:
+            return result
+        highest = max(highest, result.order)
+        nonlinear = nonlinear or result.order > 1
+    if not nonlinear:
+        return Extension(PROVED, "linear transmissions")
+    return Extension(PROVED, f"loops to order {highest}", order=highest)
+
+
+def active_graph(chosen: Mapping[int, LocalMode]) -> nx.Graph:
+    """The active vertices, joined by the active folds that two of them share."""
+    graph = nx.Graph()
+    graph.add_nodes_from(chosen)
+    for local in chosen.values():
+        graph.add_edges_from(e for e in local.folds if e[0] in chosen and e[1] in chosen)
+    return graph
+
+
+def cycle_basis(pattern: PanelPattern, graph: nx.Graph) -> list[tuple[int, ...]]:
+    """Loops of active vertices that generate all: the panels inside, if these are enough.
+
+    A basis has edges - vertices + parts loops. Panels whose sides are all active are independent in
+    a sheet with a border, so that as many of them as that are a basis.
+    """
+    parts: int = nx.number_connected_components(graph)
+    wanted = graph.number_of_edges() - graph.number_of_nodes() + parts
+    inner = [
+        face
+        for face in pattern.faces
+        if all(graph.has_edge(i, j) for i, j in pairwise((*face, face[0])))
+    ]
+    if len(inner) == wanted:
+        return inner
+    return [tuple(cycle) for cycle in nx.minimum_cycle_basis(graph)]
+
+
+def _round(
+    cycle: Sequence[int], stars: Mapping[int, Star], chosen: Mapping[int, LocalMode]
+) -> Extension:
+    """Whether the transmissions round one loop of vertices compose to the identity."""
+    count = len(cycle)
+    folds: list[Edge] = [edge_of(cycle[k - 1], cycle[k]) for k in range(count)]
+    steps = [
+        Transmission(stars[v], chosen[v], folds[k], folds[(k + 1) % count])
+        for k, v in enumerate(cycle)
+    ]
+    bent = sum(not step.is_linear for step in steps)
+    if bent == 0:
+        return Extension(PROVED, "linear transmissions", order=1)
+    where = "-".join(str(v) for v in cycle)
+    if bent > _MOST_NONLINEAR:
+        return Extension(
+            UNDECIDED, f"the loop {where} has {bent} vertices with nonlinear transmissions"
+        )
+    order = 2**bent + 1
+    terms = order // 2 + 1
+    if (failing := _failing_in_balls(steps, terms)) is not None:
+        return _refuted(cycle, failing)
+    field = _field_of(steps)
+    if field is None:
+        return Extension(UNDECIDED, f"the loop {where} closes to {_BITS} bits; it needs many roots")
+    exact = composed([step.series(terms, field.number) for step in steps], field.number)
+    for n in range(1, terms):
+        if exact[n] != 0:
+            return _refuted(cycle, 2 * n + 1)
+    return Extension(PROVED, f"loops to order {order}", order=order)
+
+
+def _refuted(cycle: Sequence[int], order: int) -> Extension:
+    where = "-".join(str(v) for v in cycle)
+    return Extension(
+        REFUTED, f"the loop {where} does not close at order {order}", tuple(cycle), order
+    )
+
+
+def _failing_in_balls(steps: Sequence[Transmission], terms: int) -> int | None:
+    """The first odd order at which an enclosure of the loop leaves the identity out."""
+    before = ctx.prec
+    ctx.prec = _BITS
+    try:
+        series = composed([step.series(terms, _ball) for step in steps], _ball)
+        for n in range(1, terms):
+            if not series[n].contains(0):
+                return 2 * n + 1
+    finally:
+        ctx.prec = before
+    return None
+
+
+def _ball(value: Number) -> Any:
+    return (
+        value.ball(_BITS) if isinstance(value, Surd) else arb(value.numerator) / value.denominator
+    )
+
+
+def _field_of(steps: Sequence[Transmission]) -> _Adjoined | None:
+    """A field that holds every gain and coefficient of the transmissions."""
+    field = _Adjoined()
+    for step in steps:
+        for value in (step.gain, *(step.quadratic or ())):
+            if isinstance(value, Surd):
+                field.include(value)
+    return field if len(field.tower.radicands) <= _MOST_ROOTS else None
+
+
+class _Adjoined:
+    """Numbers of fields that share their coordinates' field, brought into one tower."""
+
+    def __init__(self) -> None:
+        self.tower = SurdField(())
+
+    def include(self, value: Surd) -> None:
+        for k, radicand in enumerate(value.field.radicands):
+            below = SurdField(value.field.radicands[:k])
+            self.tower = self.tower.adjoined(self.number(Surd(below, radicand)))
+
+    def number(self, value: Number) -> Surd:
+        if not isinstance(value, Surd):
+            return self.tower.number(value)
+        if len(value.coefficients) == 1:
+            return self.tower.number(value.coefficients[0])
+        below = SurdField(value.field.radicands[:-1])
+        half = len(value.coefficients) // 2
+        root = self.tower.square_root(self.number(Surd(below, value.field.radicands[-1])))
+        high = self.number(Surd(below, value.coefficients[half:]))
+        low = self.number(Surd(below, value.coefficients[:half]))
+        return low if root is None else low + root * high

@@ -1,0 +1,263 @@
+"""Motions of sheets with vertices of any degree: linear subspaces, and cones where forms are left."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import networkx as nx
+
+from exactfold.errors import TooManyModesError
+from exactfold.exact.surds import Number, Surd, common_field, joined, sign
+from exactfold.modes.kernel import Rows, imposed
+from exactfold.modes.stars import Star, bracket
+from exactfold.pattern.panel_pattern import Edge
+
+Vector = list[Number]
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A part of the motions: a linear space, or its points where the remaining forms vanish.
+
+    `rows` gives each active fold's density as a linear function of `size` parameters. `vertices`
+    are those whose form does not vanish on the space; all of these forms have one sign once and the
+    other at least twice. `dimension` is that of the real solutions: `size` if no form is left,
+    `size - 1` for one form, None if there are more.
+    """
+
+    rows: Mapping[Edge, tuple[Number, ...]]
+    size: int
+    vertices: tuple[int, ...]
+
+    @property
+    def dimension(self) -> int | None:
+        """The dimension, None where several forms are left."""
+        return {0: self.size, 1: self.size - 1}.get(len(self.vertices))
+
+    @property
+    def folds(self) -> tuple[Edge, ...]:
+        """The folds that are not flat on all of it."""
+        return tuple(sorted(self.rows))
+
+
+def leaves(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> list[Leaf]:
+    """The real motions to second order, as a union of leaves none of which lies in another.
+
+    `rows` is the space of first-order motions. On a linear space a form that is semidefinite leaves
+    its kernel; a form of inertia (1, 1) is a product of two linear forms, over the field with the
+    root of its discriminant, and splits the space; other forms stay. Parts of the sheet that share
+    no active fold are independent, as every condition is one at a vertex.
+
+    Raises `TooManyModesError` if more than `most` spaces have to be looked at.
+    """
+    search = _Search(stars, most)
+    found = search.solved(dict(rows), size)
+    return [leaf for leaf in found if leaf.size]
+
+
+class _Search:
+    def __init__(self, stars: Mapping[int, Star], most: int) -> None:
+        self.stars = stars
+        self.most = most
+        self.seen = 0
+
+    def solved(self, rows: Rows, size: int) -> list[Leaf]:
+        """The leaves of one space; the product of those of its independent parts."""
+        total: list[Leaf] = [Leaf({}, 0, ())]
+        for part, part_size in _parts(rows, size, self.stars):
+            part_leaves = _maximal(self._split(part, part_size))
+            total = [_sum(a, b) for a in total for b in part_leaves]
+            if len(total) > self.most:
+                raise TooManyModesError(f"more than {self.most} spaces of motions were found")
+        return total
+
+    def _split(self, rows: Rows, size: int) -> list[Leaf]:
+        self.seen += 1
+        if self.seen > self.most:
+            raise TooManyModesError(f"more than {self.most} spaces of motions were looked at")
+        rows, size, products, left = self._reduced(rows, size)
+        if not products:
+            return [Leaf({e: tuple(row) for e, row in rows.items()}, size, tuple(left))]
+        found: list[Leaf] = []
+        for functional in products[0]:
+            child, child_size = imposed(rows, size, functional)
+            found += self.solved(child, child_size)
+        return found
+
+    def _reduced(
+        self, rows: Rows, size: int
+    ) -> tuple[Rows, int, list[tuple[Vector, Vector]], list[int]]:
+        """The space after all semidefinite forms; pairs of factors; vertices with other forms."""
+        products: list[tuple[Vector, Vector]] = []
+        left: list[int] = []
+        waiting = sorted({v for edge in rows for v in edge if v in self.stars})
+        while waiting:
+            v = waiting.pop(0)
+            squares = _squares(self.stars[v], rows, size)
+            signs = [sign(d) for d, _ in squares]
+            if not squares:
+                continue
+            if abs(sum(signs)) == len(signs):
+                rows, size = imposed(rows, size, *(functional for _, functional in squares))
+                products, left = [], []
+                waiting = sorted({u for edge in rows for u in edge if u in self.stars})
+            elif len(signs) == 2:
+                products.append(_factors(squares))
+            else:
+                left.append(v)
+        return rows, size, products, left
+
+
+def _squares(star: Star, rows: Rows, size: int) -> list[tuple[Number, Vector]]:
+    """The form of a vertex on the space as sum d_i l_i^2, with independent l_i in the parameters."""
+    local = [(d, rows[e]) for e, d in zip(star.folds, star.directions, strict=True) if e in rows]
+    directions = [d for d, _ in local]
+    basis, coordinates = _row_space([row for _, row in local], size)
+    count = len(basis)
+    # The density of fold k is sum_a coordinates[k][a] basis[a].
+    form: list[Vector] = [[Fraction(0)] * count for _ in range(count)]
+    for j, dj in enumerate(directions):
+        for k, dk in enumerate(directions[:j]):
+            c = bracket(dk, dj)
+            if c == 0:
+                continue
+            for a in range(count):
+                if (left := coordinates[k][a]) == 0:
+                    continue
+                for b in range(count):
+                    if coordinates[j][b] != 0:
+                        term = c * left * coordinates[j][b]
+                        form[a][b] = form[a][b] + term
+                        form[b][a] = form[b][a] + term
+    return [(d, _combined(functional, basis, size)) for d, functional in _diagonalised(form)]
+
+
+def _row_space(rows: Sequence[Sequence[Number]], size: int) -> tuple[list[Vector], list[Vector]]:
+    """A basis of the span of the rows taken from them, and every row in that basis."""
+    basis: list[Vector] = []
+    reduced: list[tuple[int, Vector, Vector]] = []  # pivot, reduced row, in terms of the basis
+    coordinates: list[Vector] = []
+    for row in rows:
+        work: Vector = list(row)
+        terms: Vector = [Fraction(0)] * len(rows)
+        for pivot, other, expressed in reduced:
+            if work[pivot] != 0:
+                factor = work[pivot]
+                work = [x - factor * y for x, y in zip(work, other, strict=True)]
+                terms = [x + factor * y for x, y in zip(terms, expressed, strict=True)]
+        pivot = next((k for k, x in enumerate(work) if x != 0), None)
+        if pivot is not None:
+            here = len(basis)
+            basis.append(list(row))
+            scale = _number(work[pivot])
+            expressed = [-x / scale for x in terms]
+            expressed[here] = expressed[here] + 1 / scale
+            reduced.append((pivot, [x / scale for x in work], expressed))
+            terms = [Fraction(int(k == here)) for k in range(len(rows))]
+        coordinates.append(terms)
+    return basis, [terms[: len(basis)] for terms in coordinates]
+
+
+def _diagonalised(form: Sequence[Sequence[Number]]) -> list[tuple[Number, Vector]]:
+    """sum d_i l_i^2 of a symmetric matrix, d_i not 0, by completing squares."""
+    size = len(form)
+    work = [list(row) for row in form]
+    found: list[tuple[Number, Vector]] = []
+    while True:
+        pivot = next((k for k in range(size) if work[k][k] != 0), None)
+        if pivot is None:
+            pair = next(((i, j) for i in range(size) for j in range(i) if work[i][j] != 0), None)
+            if pair is None:
+                return found
+            i, j = pair  # 2 m x y = m ((x + y)^2 - (x - y)^2) / 2, other terms included
+            functional = [work[i][k] + work[j][k] for k in range(size)]
+            value = 2 * work[i][j]
+        else:
+            functional, value = list(work[pivot]), work[pivot][pivot]
+        weight = 1 / _number(value)
+        found.append((weight, functional))
+        for a in range(size):
+            for b in range(size):
+                if functional[a] != 0 and functional[b] != 0:
+                    work[a][b] = work[a][b] - weight * functional[a] * functional[b]
+
+
+def _factors(squares: Sequence[tuple[Number, Vector]]) -> tuple[Vector, Vector]:
+    """d1 l1^2 + d2 l2^2 with signs apart is d1 (l1 - r l2)(l1 + r l2), r^2 = -d2 / d1."""
+    (d1, first), (d2, second) = squares
+    square = -d2 / _number(d1)
+    field = common_field((square, *first, *second)).adjoined(square)
+    root: Number = field.square_root(field.number(square)) or Fraction(0)
+    if isinstance(root, Surd) and not any(root.coefficients[1:]):
+        root = root.coefficients[0]
+    minus = [x - root * y for x, y in zip(first, second, strict=True)]
+    plus = [x + root * y for x, y in zip(first, second, strict=True)]
+    return minus, plus
+
+
+def _combined(weights: Sequence[Number], vectors: Sequence[Vector], size: int) -> Vector:
+    total: Vector = [Fraction(0)] * size
+    for weight, vector in zip(weights, vectors, strict=True):
+        if weight != 0:
+            total = [x + weight * y for x, y in zip(total, vector, strict=True)]
+    return total
+
+
+def _parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[tuple[Rows, int]]:
+    """The space as a direct sum over the parts of the sheet that are connected by active folds."""
+    graph = nx.Graph()
+    for edge, row in rows.items():
+        if any(x != 0 for x in row):
+            ends = [v for v in edge if v in stars]
+            graph.add_edges_from((edge, ("vertex", v)) for v in ends)
+            graph.add_node(edge)
+    groups = [
+        sorted(node for node in group if node[0] != "vertex")
+        for group in nx.connected_components(graph)
+    ]
+    if len(groups) == 1 and len(groups[0]) == len(rows):
+        return [(rows, size)]
+    found = []
+    for group in groups:
+        basis, coordinates = _row_space([rows[edge] for edge in group], size)
+        found.append(({edge: c for edge, c in zip(group, coordinates, strict=True)}, len(basis)))
+    return found
+
+
+def _sum(a: Leaf, b: Leaf) -> Leaf:
+    """The direct sum of leaves on different parts of the sheet."""
+    zeros_a, zeros_b = (Fraction(0),) * a.size, (Fraction(0),) * b.size
+    rows = {edge: row + zeros_b for edge, row in a.rows.items()}
+    rows.update({edge: zeros_a + row for edge, row in b.rows.items()})
+    return Leaf(rows, a.size + b.size, tuple(sorted(a.vertices + b.vertices)))
+
+
+def _maximal(found: Iterable[Leaf]) -> list[Leaf]:
+    """The leaves that lie in no other; of equal ones the first."""
+    kept: list[Leaf] = []
+    for leaf in sorted(found, key=lambda leaf: (-leaf.size, len(leaf.vertices))):
+        if not any(_inside(leaf, other) for other in kept):
+            kept.append(leaf)
+    return kept
+
+
+def _inside(leaf: Leaf, other: Leaf) -> bool:
+    """Whether the space of one leaf lies in that of another, where all the other's forms vanish."""
+    if not set(leaf.rows) <= set(other.rows) or not set(other.vertices) <= set(leaf.vertices):
+        return False
+    folds = list(other.rows)
+    zero = (Fraction(0),) * leaf.size
+    columns = [[*other.rows[edge], *leaf.rows.get(edge, zero)] for edge in folds]
+    columns = joined(columns)
+    both, _ = _row_space(_transposed(columns), len(folds))
+    return len(both) == other.size
+
+
+def _transposed(rows: Sequence[Sequence[Number]]) -> list[Vector]:
+    return [list(column) for column in zip(*rows, strict=True)]
+
+
+def _number(value: Number) -> Surd | Fraction:
+    return value if isinstance(value, Surd) else Fraction(value)
