@@ -1,0 +1,33 @@
+"""A crease pattern as it was drawn: points and lines, before anything is believed of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final, NamedTuple
+
+LETTERS: Final = "BMVFUCJ"
+"""FOLD's letters: border, mountain, valley, flat, unassigned, cut, join."""
+
+
+class Line(NamedTuple):
+    """A straight line of the drawing between two of its points, with a letter of FOLD."""
+
+    start: int
+    end: int
+    letter: str
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Points in the plane, y upwards, exactly as the file states them, and lines between them.
+
+    `source` says in a few words what was read ("SVG of 1200 x 800, colours of Origami Simulator");
+    `remarks` is what the reader left out or took for something, one sentence each. Points may
+    coincide nearly, lines may cross or repeat: `repaired` mends that.
+    """
+
+    points: tuple[tuple[Fraction, Fraction], ...]
+    lines: tuple[Line, ...]
+    source: str
+    remarks: tuple[str, ...] = ()
