@@ -299,6 +299,23 @@ def sign(value: Number) -> int:
     return value.sign() if isinstance(value, Surd) else (value > 0) - (value < 0)
 
 
+def exact(value: Number) -> Surd | Fraction:
+    """The number as one that can be divided by: 1 / exact(2) is a fraction."""
+    return value if isinstance(value, Surd) else Fraction(value)
+
+
+def simple(value: Number) -> Number:
+    """The number as a fraction if it is one.
+
+    >>> root = RATIONALS.adjoined(2).root
+    >>> simple(root * root)
+    Fraction(2, 1)
+    """
+    if isinstance(value, Surd) and not any(value.coefficients[1:]):
+        return value.coefficients[0]
+    return value
+
+
 def common_field(values: Iterable[Number]) -> SurdField:
     """The largest field among those of the numbers; raises `UsageError` if they are no chain."""
     field = RATIONALS
@@ -307,6 +324,17 @@ def common_field(values: Iterable[Number]) -> SurdField:
             value.field.number(1)
             field = value.field
     return field
+
+
+def real_root(value: Number, field: SurdField) -> Number:
+    """The root >= 0 of a number of the field, in it or with one more root adjoined.
+
+    >>> real_root(Fraction(9, 4), RATIONALS), real_root(3, RATIONALS)
+    (Fraction(3, 2), r1)
+    """
+    number = field.number(value)
+    root = field.square_root(number)
+    return field.adjoined(number).root if root is None else simple(root)
 
 
 class JoinedField:

@@ -11,7 +11,7 @@ from typing import Final, TypeAlias
 
 from flint import arb
 
-from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField
+from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField, exact
 
 Factors: TypeAlias = Mapping[int, int]
 _PRECISIONS: Final = (64, 256, 2048)
@@ -45,7 +45,7 @@ class Roots:
         """A gain as a density."""
         if not isinstance(gain, Surd):
             return Density(gain, _NONE, self)
-        below, radicand, low, high = split(gain)
+        radicand, low, high = split(gain)
         if radicand not in self._known:
             if len(self.field.radicands) < self._most:
                 self.field = self.field.adjoined(radicand)
@@ -60,13 +60,13 @@ class Roots:
         return Density(Fraction(1), MappingProxyType({number: 1}), self)
 
 
-def split(gain: Surd) -> tuple[SurdField, Surd, Surd, Surd]:
-    """For a number a + b r with the last root r: the field below, r^2, a and b."""
+def split(gain: Surd) -> tuple[Surd, Surd, Surd]:
+    """r^2, a and b of a number a + b r with the last root r, in the field below it."""
     below = SurdField(gain.field.radicands[:-1])
     half = len(gain.coefficients) // 2
     parts = (gain.field.radicands[-1], gain.coefficients[:half], gain.coefficients[half:])
     radicand, low, high = (Surd(below, part) for part in parts)
-    return below, radicand, low, high
+    return radicand, low, high
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class Density:
 
     def over(self, other: Density) -> Density:
         """The quotient of two densities; equal factors cancel."""
-        quotient = self.base / _divisor(other.base)
+        quotient = self.base / exact(other.base)
         return Density(quotient, self._joined(other, -1), self.roots)
 
     def _joined(self, other: Density, sign: int) -> Factors:
@@ -139,7 +139,7 @@ class Density:
         known: dict[Surd, Surd] = {}
         total = tower.number(self.base)
         for number, power in self.factors.items():
-            _, radicand, low, high = split(self.roots.factors[number])
+            radicand, low, high = split(self.roots.factors[number])
             if radicand not in known:
                 tower = tower.adjoined(radicand)
                 root = tower.square_root(radicand)
@@ -150,10 +150,6 @@ class Density:
             for _ in range(abs(power)):
                 total = total * value if power > 0 else total / value
         return total
-
-
-def _divisor(value: Number) -> Surd | Fraction:
-    return value if isinstance(value, Surd) else Fraction(value)
 
 
 def _ball(value: Number, bits: int) -> arb:

@@ -10,7 +10,7 @@ from typing import Any, Final
 import networkx as nx
 from flint import arb, ctx
 
-from exactfold.exact.surds import Number, Surd, SurdField
+from exactfold.exact.surds import JoinedField, Number, Surd
 from exactfold.modes.elementary import ElementaryMode
 from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, edge_of
@@ -113,10 +113,11 @@ def _round(
     terms = order // 2 + 1
     if (failing := _failing_in_balls(steps, terms)) is not None:
         return _refuted(cycle, failing)
-    field = _field_of(steps)
-    if field is None:
+    values = [x for step in steps for x in (step.gain, *(step.quadratic or ()))]
+    if len({x.field.radicands for x in values if isinstance(x, Surd)}) > _MOST_ROOTS:
         return Extension(UNDECIDED, f"the loop {where} closes to {_BITS} bits; it needs many roots")
-    exact = composed([step.series(terms, field.number) for step in steps], field.number)
+    number = JoinedField(values).number
+    exact = composed([step.series(terms, number) for step in steps], number)
     for n in range(1, terms):
         if exact[n] != 0:
             return _refuted(cycle, 2 * n + 1)
@@ -148,37 +149,3 @@ def _ball(value: Number) -> Any:
     return (
         value.ball(_BITS) if isinstance(value, Surd) else arb(value.numerator) / value.denominator
     )
-
-
-def _field_of(steps: Sequence[Transmission]) -> _Adjoined | None:
-    """A field that holds every gain and coefficient of the transmissions."""
-    field = _Adjoined()
-    for step in steps:
-        for value in (step.gain, *(step.quadratic or ())):
-            if isinstance(value, Surd):
-                field.include(value)
-    return field if len(field.tower.radicands) <= _MOST_ROOTS else None
-
-
-class _Adjoined:
-    """Numbers of fields that share their coordinates' field, brought into one tower."""
-
-    def __init__(self) -> None:
-        self.tower = SurdField(())
-
-    def include(self, value: Surd) -> None:
-        for k, radicand in enumerate(value.field.radicands):
-            below = SurdField(value.field.radicands[:k])
-            self.tower = self.tower.adjoined(self.number(Surd(below, radicand)))
-
-    def number(self, value: Number) -> Surd:
-        if not isinstance(value, Surd):
-            return self.tower.number(value)
-        if len(value.coefficients) == 1:
-            return self.tower.number(value.coefficients[0])
-        below = SurdField(value.field.radicands[:-1])
-        half = len(value.coefficients) // 2
-        root = self.tower.square_root(self.number(Surd(below, value.field.radicands[-1])))
-        high = self.number(Surd(below, value.coefficients[half:]))
-        low = self.number(Surd(below, value.coefficients[:half]))
-        return low if root is None else low + root * high

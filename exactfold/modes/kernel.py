@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import TypeAlias
 
-from exactfold.exact.surds import Number, Surd
+from exactfold.exact.surds import Number, exact
 from exactfold.modes.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
@@ -34,7 +34,7 @@ def first_order(stars: Mapping[int, Star]) -> tuple[Rows, int]:
             if not row:
                 continue
             pivot = min(row, key=lambda edge: (len(users.get(edge, ())), edge))
-            scale = _number(row.pop(pivot))
+            scale = exact(row.pop(pivot))
             solved: dict[Edge, Number] = {edge: -x / scale for edge, x in row.items()}
             for user in users.pop(pivot, set()):
                 weight = pivots[user].pop(pivot)
@@ -74,22 +74,20 @@ def imposed(rows: Rows, size: int, *functionals: Sequence[Number]) -> tuple[Rows
         if pivot is None:
             waiting = [f for f in waiting if any(x != 0 for x in f)]
             continue
-        scale = _number(functional[pivot])
-        solved = [-x / scale for x in functional]
+        scale = exact(functional[pivot])
+        solved: list[Number] = [-x / scale for x in functional]
 
-        def without(
-            row: Sequence[Number], pivot: int = pivot, solved: list[Number] = solved
-        ) -> list[Number]:
-            x = row[pivot]
-            rest = range(len(row))
-            if x == 0:
-                return [row[k] for k in rest if k != pivot]
-            return [row[k] + x * solved[k] for k in rest if k != pivot]
-
-        rows = {edge: without(row) for edge, row in rows.items()}
-        waiting = [without(f) for f in waiting]
+        rows = {edge: _without(row, pivot, solved) for edge, row in rows.items()}
+        waiting = [_without(f, pivot, solved) for f in waiting]
         size -= 1
     return {edge: row for edge, row in rows.items() if any(x != 0 for x in row)}, size
+
+
+def _without(row: Sequence[Number], pivot: int, solved: Sequence[Number]) -> list[Number]:
+    """The row with the parameter `pivot` expressed in the others."""
+    x = row[pivot]
+    rest = [k for k in range(len(row)) if k != pivot]
+    return [row[k] for k in rest] if x == 0 else [row[k] + x * solved[k] for k in rest]
 
 
 def _add(
@@ -108,7 +106,3 @@ def _increase(row: dict[Edge, Number], edge: Edge, value: Number) -> None:
         row.pop(edge, None)
     else:
         row[edge] = total
-
-
-def _number(value: Number) -> Surd | Fraction:
-    return value if isinstance(value, Surd) else Fraction(value)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from exactfold.exact.surds import Number, Surd, SurdField, common_field, sign
+from exactfold.exact.surds import Number, common_field, exact, real_root, simple
 from exactfold.modes.stars import Star, bracket
 from exactfold.pattern.panel_pattern import Edge
 
@@ -26,7 +26,7 @@ class LocalMode:
 
     def gain(self, start: Edge, end: Edge) -> Number:
         """density of `end` / density of `start`."""
-        return self.values[self.folds.index(end)] / _number(self.values[self.folds.index(start)])
+        return self.values[self.folds.index(end)] / exact(self.values[self.folds.index(start)])
 
 
 def local_modes(star: Star) -> tuple[LocalMode, ...]:
@@ -43,9 +43,9 @@ def local_modes(star: Star) -> tuple[LocalMode, ...]:
     ([0, 0], True)
     """
     if len(star.folds) == 2:
-        a, b = star.directions
-        axis = 0 if a[0] != 0 else 1
-        ratio = -a[axis] / _number(b[axis])
+        one, other = star.directions
+        axis = 0 if one[0] != 0 else 1
+        ratio = -one[axis] / exact(other[axis])
         return (_mode(star, 0, (Fraction(1), ratio)),)
     first, second = _plane(star)
     both = [x + y for x, y in zip(first, second, strict=True)]
@@ -54,11 +54,9 @@ def local_modes(star: Star) -> tuple[LocalMode, ...]:
     if a == 0:
         lines: list[tuple[Number, Number]] = [(1, 0), (-c, twice_b)]
     else:
-        square = _number(twice_b * twice_b - 4 * a * c)
-        base = common_field((a, c, square))
-        field = base.adjoined(square)
-        root = _simple(field.square_root(field.number(square)))
-        lines = [((-twice_b + s * root), 2 * a) for s in (1, -1)]
+        square = twice_b * twice_b - 4 * a * c
+        root = real_root(square, common_field((a, c, square)))
+        lines = [(-twice_b + s * root, 2 * a) for s in (1, -1)]
     return tuple(
         _mode(star, k, [x * p + y * q for p, q in zip(first, second, strict=True)])
         for k, (x, y) in enumerate(lines)
@@ -85,21 +83,10 @@ def _plane(star: Star) -> tuple[list[Number], list[Number]]:
 
 def _mode(star: Star, index: int, values: Sequence[Number]) -> LocalMode:
     kept = [k for k, value in enumerate(values) if value != 0]
-    scale = _number(values[kept[0]])
+    scale = exact(values[kept[0]])
     return LocalMode(
         star.vertex,
         index,
         tuple(star.folds[k] for k in kept),
-        tuple(_simple(_number(values[k]) / scale) for k in kept),
+        tuple(simple(exact(values[k]) / scale) for k in kept),
     )
-
-
-def _number(value: Number) -> Surd | Fraction:
-    return value if isinstance(value, Surd) else Fraction(value)
-
-
-def _simple(value: Number | None) -> Number:
-    """The value as a fraction if it is one."""
-    if isinstance(value, Surd) and not any(value.coefficients[1:]):
-        return value.coefficients[0]
-    return value if value is not None else Fraction(0)

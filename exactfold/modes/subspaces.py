@@ -1,20 +1,23 @@
-"""Motions of sheets with vertices of any degree: linear subspaces, and cones where forms are left."""
+"""Motions of sheets with vertices of any degree: linear spaces, and cones where forms are left."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Final, TypeAlias
 
 import networkx as nx
 
 from exactfold.errors import TooManyModesError
-from exactfold.exact.surds import Number, Surd, common_field, joined, sign
+from exactfold.exact.surds import Number, common_field, exact, joined, real_root, sign
 from exactfold.modes.kernel import Rows, imposed
 from exactfold.modes.stars import Star, bracket
 from exactfold.pattern.panel_pattern import Edge
 
-Vector = list[Number]
+Vector: TypeAlias = list[Number]
+Squares: TypeAlias = list[tuple[Number, Vector]]
+_MOST_ROOTS: Final = 5
 
 
 @dataclass(frozen=True)
@@ -81,16 +84,33 @@ class _Search:
         if not products:
             return [Leaf({e: tuple(row) for e, row in rows.items()}, size, tuple(left))]
         found: list[Leaf] = []
-        for functional in products[0]:
+        for functional in self._factors(products, rows):
             child, child_size = imposed(rows, size, functional)
             found += self.solved(child, child_size)
         return found
 
-    def _reduced(
-        self, rows: Rows, size: int
-    ) -> tuple[Rows, int, list[tuple[Vector, Vector]], list[int]]:
-        """The space after all semidefinite forms; pairs of factors; vertices with other forms."""
-        products: list[tuple[Vector, Vector]] = []
+    def _factors(self, products: Sequence[Squares], rows: Rows) -> tuple[Vector, Vector]:
+        """d1 l1^2 + d2 l2^2, signs apart, is d1 (l1 - r l2)(l1 + r l2) with r^2 = -d2 / d1.
+
+        A form that needs no new root is taken first.
+        """
+        field = common_field(x for row in rows.values() for x in row)
+        for squares in products:
+            square = -squares[1][0] / exact(squares[0][0])
+            if field.square_root(field.number(square)) is not None:
+                break
+        else:
+            if len(field.radicands) >= _MOST_ROOTS:
+                raise TooManyModesError(
+                    f"the spaces of motions need more than {_MOST_ROOTS} square roots"
+                )
+        root = real_root(square, field)
+        pairs = list(zip(squares[0][1], squares[1][1], strict=True))
+        return [x - root * y for x, y in pairs], [x + root * y for x, y in pairs]
+
+    def _reduced(self, rows: Rows, size: int) -> tuple[Rows, int, list[Squares], list[int]]:
+        """The space after all semidefinite forms; forms that split; vertices with other forms."""
+        products: list[Squares] = []
         left: list[int] = []
         waiting = sorted({v for edge in rows for v in edge if v in self.stars})
         while waiting:
@@ -104,14 +124,14 @@ class _Search:
                 products, left = [], []
                 waiting = sorted({u for edge in rows for u in edge if u in self.stars})
             elif len(signs) == 2:
-                products.append(_factors(squares))
+                products.append(squares)
             else:
                 left.append(v)
         return rows, size, products, left
 
 
-def _squares(star: Star, rows: Rows, size: int) -> list[tuple[Number, Vector]]:
-    """The form of a vertex on the space as sum d_i l_i^2, with independent l_i in the parameters."""
+def _squares(star: Star, rows: Rows, size: int) -> Squares:
+    """The form of a vertex on the space as sum d_i l_i^2, with independent l_i."""
     local = [(d, rows[e]) for e, d in zip(star.folds, star.directions, strict=True) if e in rows]
     directions = [d for d, _ in local]
     basis, coordinates = _row_space([row for _, row in local], size)
@@ -147,14 +167,14 @@ def _row_space(rows: Sequence[Sequence[Number]], size: int) -> tuple[list[Vector
                 factor = work[pivot]
                 work = [x - factor * y for x, y in zip(work, other, strict=True)]
                 terms = [x + factor * y for x, y in zip(terms, expressed, strict=True)]
-        pivot = next((k for k, x in enumerate(work) if x != 0), None)
-        if pivot is not None:
+        first = next((k for k, x in enumerate(work) if x != 0), None)
+        if first is not None:
             here = len(basis)
             basis.append(list(row))
-            scale = _number(work[pivot])
+            scale = exact(work[first])
             expressed = [-x / scale for x in terms]
             expressed[here] = expressed[here] + 1 / scale
-            reduced.append((pivot, [x / scale for x in work], expressed))
+            reduced.append((first, [x / scale for x in work], expressed))
             terms = [Fraction(int(k == here)) for k in range(len(rows))]
         coordinates.append(terms)
     return basis, [terms[: len(basis)] for terms in coordinates]
@@ -176,25 +196,12 @@ def _diagonalised(form: Sequence[Sequence[Number]]) -> list[tuple[Number, Vector
             value = 2 * work[i][j]
         else:
             functional, value = list(work[pivot]), work[pivot][pivot]
-        weight = 1 / _number(value)
+        weight = 1 / exact(value)
         found.append((weight, functional))
         for a in range(size):
             for b in range(size):
                 if functional[a] != 0 and functional[b] != 0:
                     work[a][b] = work[a][b] - weight * functional[a] * functional[b]
-
-
-def _factors(squares: Sequence[tuple[Number, Vector]]) -> tuple[Vector, Vector]:
-    """d1 l1^2 + d2 l2^2 with signs apart is d1 (l1 - r l2)(l1 + r l2), r^2 = -d2 / d1."""
-    (d1, first), (d2, second) = squares
-    square = -d2 / _number(d1)
-    field = common_field((square, *first, *second)).adjoined(square)
-    root: Number = field.square_root(field.number(square)) or Fraction(0)
-    if isinstance(root, Surd) and not any(root.coefficients[1:]):
-        root = root.coefficients[0]
-    minus = [x - root * y for x, y in zip(first, second, strict=True)]
-    plus = [x + root * y for x, y in zip(first, second, strict=True)]
-    return minus, plus
 
 
 def _combined(weights: Sequence[Number], vectors: Sequence[Vector], size: int) -> Vector:
@@ -222,7 +229,7 @@ def _parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[tuple[Rows,
     found = []
     for group in groups:
         basis, coordinates = _row_space([rows[edge] for edge in group], size)
-        found.append(({edge: c for edge, c in zip(group, coordinates, strict=True)}, len(basis)))
+        found.append((dict(zip(group, coordinates, strict=True)), len(basis)))
     return found
 
 
@@ -257,7 +264,3 @@ def _inside(leaf: Leaf, other: Leaf) -> bool:
 
 def _transposed(rows: Sequence[Sequence[Number]]) -> list[Vector]:
     return [list(column) for column in zip(*rows, strict=True)]
-
-
-def _number(value: Number) -> Surd | Fraction:
-    return value if isinstance(value, Surd) else Fraction(value)
