@@ -23,12 +23,14 @@ _MOST_STATES: Final = 4096
 class Support:
     """The vertices and folds that move together, and in how many ways: `count` elementary modes.
 
-    All modes of a support have these active folds; they differ in the local modes chosen.
+    All modes of a support have these active folds; they differ in the local modes chosen, of which
+    `example` is one choice.
     """
 
     vertices: tuple[int, ...]
     folds: tuple[Edge, ...]
     count: int
+    example: tuple[LocalMode, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,8 @@ class ModeSearch:
         found: list[Support] = []
         for seed in sorted(self.stars):
             for vertices, folds, table in self._grown(seed, listing=False):
-                found.append(Support(vertices, folds, sum(state.count for state in table)))
+                count = sum(state.count for state in table)
+                found.append(Support(vertices, folds, count, _chosen(table[0])))
                 if len(found) > limit:
                     raise TooManyModesError(f"more than {limit} sets of folds move together")
         return found
@@ -273,13 +276,15 @@ def _equal(a: Mapping[Edge, Density], b: Mapping[Edge, Density]) -> bool:
     return a.keys() == b.keys() and all(a[edge].over(b[edge]).is_one() for edge in a)
 
 
-def _elementary(state: _State) -> ElementaryMode:
+def _chosen(state: _State) -> tuple[LocalMode, ...]:
     chosen: list[LocalMode] = []
     at = state.choice
     while at is not None:
         mode, at = at
         chosen.append(mode)
+    return tuple(sorted(chosen, key=lambda mode: mode.vertex))
+
+
+def _elementary(state: _State) -> ElementaryMode:
     densities = state.all_densities or {}
-    return ElementaryMode(
-        tuple(sorted(chosen, key=lambda m: m.vertex)), dict(sorted(densities.items()))
-    )
+    return ElementaryMode(_chosen(state), dict(sorted(densities.items())))

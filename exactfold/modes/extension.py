@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
@@ -11,7 +11,6 @@ import networkx as nx
 from flint import arb, ctx
 
 from exactfold.exact.surds import JoinedField, Number, Surd
-from exactfold.modes.elementary import ElementaryMode
 from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, edge_of
 from exactfold.modes.transmission import Transmission, composed
@@ -36,8 +35,10 @@ class Extension:
     order: int = 0
 
 
-def extension(pattern: PanelPattern, stars: Mapping[int, Star], mode: ElementaryMode) -> Extension:
-    """Whether the elementary mode continues to a one-parameter motion of rigid panels.
+def extension(
+    pattern: PanelPattern, stars: Mapping[int, Star], modes: Iterable[LocalMode]
+) -> Extension:
+    """Whether the elementary mode made of these local modes continues to a motion of rigid panels.
 
     Each local mode continues to one analytic curve of true motions of its vertex, so a mode extends
     if its active graph is a forest; or if all transmissions round its loops are linear, as they
@@ -48,7 +49,7 @@ def extension(pattern: PanelPattern, stars: Mapping[int, Star], mode: Elementary
 
     UNDECIDED means that a loop has too many nonlinear transmissions or square roots for this test.
     """
-    chosen = {local.vertex: local for local in mode.choice}
+    chosen = {local.vertex: local for local in modes}
     graph = active_graph(chosen)
     if nx.is_forest(graph):
         return Extension(PROVED, "forest")

@@ -1,0 +1,286 @@
+"""All motions of a sheet of rigid panels: the complete decomposition, and what truly folds."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import networkx as nx
+
+from exactfold.errors import TooManyModesError
+from exactfold.modes.components import components
+from exactfold.modes.densities import UndecidedDensityError
+from exactfold.modes.elementary import ElementaryMode, ModeSearch, Support
+from exactfold.modes.extension import Extension, extension
+from exactfold.modes.kernel import first_order
+from exactfold.modes.stars import Star, stars
+from exactfold.modes.subspaces import Leaf, leaves
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.progress import Progress
+from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.wording import counted
+
+MOST_SUPPORTS = 20_000
+MOST_LISTED = 1_000
+MOST_DIMENSION = 16
+MOST_SPACES = 20_000
+
+Counts = Mapping[int, int]
+"""{dimension: number of components}."""
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One elementary mode: a one-parameter motion, and whether it truly folds.
+
+    `assignment` holds M or V for each active fold, on one side of the sheet; on the other all
+    letters are exchanged.
+    """
+
+    active: tuple[int, ...]
+    assignment: Mapping[Edge, str]
+    extends: Extension
+
+
+@dataclass(frozen=True)
+class Decomposition:
+    """The ways in which a sheet of rigid panels starts to fold, and which of them truly fold.
+
+    `status` is that of `second_order`, {dimension: number} of the components of all motions to
+    second order, None if it is not known; `true` is the same for the true configurations near the
+    flat state. `rigid` says whether the sheet cannot move at all. `flat` are folds that stay flat
+    in every real motion, `free` those with both ends on the border. `theory` is "modes" if all
+    vertices have at most four folds, else "subspaces".
+    """
+
+    pattern: PanelPattern
+    theory: str
+    status: Verdict
+    rigid: Verdict
+    second_order: Counts | None
+    true: Counts | None
+    flat: tuple[Edge, ...]
+    free: tuple[Edge, ...]
+    modes: tuple[Mode, ...] = ()
+    modes_count: int | None = None
+    reason: str = ""
+    parts: tuple[Part, ...] = ()
+    seconds: float = 0.0
+
+    def __repr__(self) -> str:
+        counts = "" if self.second_order is None else f", {dict(self.second_order)}"
+        return f"<Decomposition: {self.status}{counts}, {self.pattern!r}>"
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the sheet that moves independently: vertices joined by folds that may fold.
+
+    `spaces` are the leaves where vertices have more than four folds; `dimension` is the number of
+    first-order motions, None where it was not needed.
+    """
+
+    vertices: tuple[int, ...]
+    theory: str
+    second_order: Counts | None
+    true: Counts | None
+    supports: tuple[Support, ...] = ()
+    spaces: tuple[Leaf, ...] = ()
+    modes: tuple[Mode, ...] = ()
+    dimension: int | None = None
+    reason: str = ""
+
+
+def decompose(
+    pattern: PanelPattern,
+    *,
+    flat: Iterable[Edge] = (),
+    listed: int = MOST_LISTED,
+    progress: Progress | None = None,
+) -> Decomposition:
+    """Every component of the motions of a sheet of rigid panels, to second order and truly.
+
+    First the folds that cannot fold in any real motion are found (`stars`), at any size. What is
+    left falls into independent parts. Where all vertices have at most four folds the structure
+    theorem gives all components (docs/panels.md, 2); elsewhere linear spaces are split vertex by
+    vertex (`leaves`), if the first-order motions have dimension 16 or less. A motion of true
+    configurations has its lowest order in the second-order motions, so a sheet without these is
+    rigid. `flat` holds folds flat that are in the drawing but are not to fold; up to `listed` modes
+    are listed one by one.
+
+    UNDECIDED means that a part is too large or needs too many square roots; `reason` says which.
+
+    >>> from exactfold.pattern.panel_pattern import PanelPattern
+    >>> cross = PanelPattern([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0), (0, -1), (1, 0),
+    ...                       (0, 1), (-1, 0)],
+    ...                      [(0, 5), (5, 1), (1, 6), (6, 2), (2, 7), (7, 3), (3, 8), (8, 0),
+    ...                       (4, 5), (4, 6), (4, 7), (4, 8)])
+    >>> result = decompose(cross)
+    >>> result, dict(result.true)
+    (<Decomposition: proved, {1: 2}, <PanelPattern: 1 interior vertices, 4 folds, 4 panels>>, {1: 2})
+    """
+    start = time.perf_counter()
+    held = frozenset(flat)
+    moving = stars(pattern, held)
+    interior = set(pattern.interior)
+    free = tuple(e for e in pattern.folds if not interior.intersection(e) and e not in held)
+    active = {edge for star in moving.values() for edge in star.folds}
+    rest = tuple(e for e in pattern.folds if e not in active and e not in free)
+    groups = _groups(moving)
+    found: list[Part] = []
+    for number, group in enumerate(groups):
+        if progress is not None:
+            progress("decomposing", number, len(groups))
+        found.append(_part(pattern, {v: moving[v] for v in group}, listed))
+    result = Decomposition(
+        pattern,
+        "subspaces" if any(part.theory == "subspaces" for part in found) else "modes",
+        PROVED,
+        UNDECIDED,
+        _product((part.second_order for part in found), len(free)),
+        _product((part.true for part in found), len(free)),
+        rest,
+        free,
+        modes=tuple(mode for part in found for mode in part.modes),
+        modes_count=_modes_count(found),
+        parts=tuple(found),
+        seconds=time.perf_counter() - start,
+    )
+    if result.second_order is None:
+        reasons = [part.reason for part in found if part.second_order is None]
+        result = replace(result, status=UNDECIDED, reason="; ".join(dict.fromkeys(reasons)))
+    return replace(result, rigid=_rigidity(result))
+
+
+def _rigidity(result: Decomposition) -> Verdict:
+    """Rigid if nothing moves to second order; not rigid if something truly folds."""
+    if result.second_order is not None and set(result.second_order) == {0}:
+        return PROVED
+    if result.free or any(mode.extends.verdict is PROVED for mode in result.modes):
+        return REFUTED
+    if any(part.true is not None and set(part.true) - {0} for part in result.parts):
+        return REFUTED
+    known = all(part.true is not None and set(part.true) == {0} for part in result.parts)
+    return PROVED if known else UNDECIDED
+
+
+def _modes_count(found: Iterable[Part]) -> int | None:
+    total = 0
+    for part in found:
+        if part.theory != "modes" or part.second_order is None:
+            return None
+        total += sum(support.count for support in part.supports)
+    return total
+
+
+def _groups(moving: Mapping[int, Star]) -> list[tuple[int, ...]]:
+    """Vertices joined by folds that may fold, smallest first."""
+    graph = nx.Graph()
+    graph.add_nodes_from(moving)
+    for v, star in moving.items():
+        graph.add_edges_from((v, u) for edge in star.folds for u in edge if u != v and u in moving)
+    return sorted(tuple(sorted(group)) for group in nx.connected_components(graph))
+
+
+def _part(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) -> Part:
+    vertices = tuple(moving)
+    few = all(len(star.folds) <= 4 for star in moving.values())
+    try:
+        if few:
+            return _by_modes(pattern, moving, listed)
+        return _by_spaces(moving)
+    except (TooManyModesError, UndecidedDensityError) as error:
+        where = f"the part of {counted(len(vertices), 'vertex')} with vertex {vertices[0]}"
+        theory = "modes" if few else "subspaces"
+        return Part(vertices, theory, None, None, reason=f"{where}: {error}")
+
+
+def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) -> Part:
+    """The structure theorem: elementary modes, and which of them extend."""
+    search = ModeSearch(moving, pattern.field)
+    supports = search.supports(MOST_SUPPORTS)
+    modes: list[Mode] = []
+    extending: list[Support] = []
+    decided = True
+    for support in supports:
+        verdict = extension(pattern, moving, support.example)
+        together = verdict.verdict is PROVED and not verdict.order  # for all modes of the support
+        room = listed - len(modes)
+        each: list[ElementaryMode] = []
+        if support.count <= room or (not together and support.count <= MOST_LISTED):
+            each = search.listed(support)
+        if together:
+            extending.append(support)
+            shown = [(mode, verdict) for mode in each]
+        elif each:
+            shown = [(mode, extension(pattern, moving, mode.choice)) for mode in each]
+            good = sum(result.verdict is PROVED for _, result in shown)
+            decided = decided and all(result.verdict is not UNDECIDED for _, result in shown)
+            if good:
+                extending.append(replace(support, count=good))
+        else:
+            decided, shown = False, []
+        if support.count <= room:
+            modes += [_mode(support, mode, result) for mode, result in shown]
+    return Part(
+        tuple(moving),
+        "modes",
+        components(supports, 0),
+        components(extending, 0) if decided else None,
+        supports=tuple(supports),
+        modes=tuple(modes),
+        reason="" if decided else "for some modes it is not known whether they truly fold",
+    )
+
+
+def _mode(support: Support, mode: ElementaryMode, result: Extension) -> Mode:
+    letters = {edge: "V" if s > 0 else "M" for edge, s in mode.signs.items()}
+    return Mode(support.vertices, letters, result)
+
+
+def _by_spaces(moving: Mapping[int, Star]) -> Part:
+    """Linear spaces, split where a form is a product."""
+    rows, size = first_order(moving)
+    vertices = tuple(moving)
+    if size == 0:
+        return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=0)
+    if size > MOST_DIMENSION:
+        raise TooManyModesError(
+            f"its first-order motions have dimension {size}, and are decomposed up to "
+            f"{MOST_DIMENSION}"
+        )
+    spaces = leaves(moving, rows, size, MOST_SPACES)
+    counts: dict[int, int] = {}
+    for leaf in spaces:
+        if leaf.dimension is None:
+            raise TooManyModesError(
+                f"in a space of dimension {leaf.size} the conditions of vertices "
+                f"{', '.join(map(str, leaf.vertices))} are left, and are not solved yet"
+            )
+        counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
+    if not counts:
+        return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size)
+    return Part(
+        vertices,
+        "subspaces",
+        dict(sorted(counts.items())),
+        None,
+        spaces=tuple(spaces),
+        dimension=size,
+        reason="whether motions of vertices with more than four folds truly fold is not decided",
+    )
+
+
+def _product(counts: Iterable[Counts | None], free: int) -> Counts | None:
+    """The components of independent parts: dimensions add, numbers multiply."""
+    total: dict[int, int] = {free: 1}
+    for part in counts:
+        if part is None:
+            return None
+        product: dict[int, int] = {}
+        for a, m in total.items():
+            for b, n in part.items():
+                product[a + b] = product.get(a + b, 0) + m * n
+        total = product
+    return dict(sorted(total.items()))
