@@ -54,8 +54,13 @@ def extension(
     if nx.is_forest(graph):
         return Extension(PROVED, "forest")
     nonlinear, highest = False, 0
+    known: dict[object, Extension] = {}  # loops of one shape close together
     for cycle in cycle_basis(pattern, graph):
-        result = _round(cycle, stars, chosen)
+        steps = _steps(cycle, stars, chosen)
+        shape = tuple(step.key for step in steps)
+        if shape not in known:
+            known[shape] = _round(cycle, steps)
+        result = known[shape]
         if result.verdict is not PROVED:
             return result
         highest = max(highest, result.order)
@@ -92,16 +97,20 @@ def cycle_basis(pattern: PanelPattern, graph: nx.Graph) -> list[tuple[int, ...]]
     return [tuple(cycle) for cycle in nx.minimum_cycle_basis(graph)]
 
 
-def _round(
+def _steps(
     cycle: Sequence[int], stars: Mapping[int, Star], chosen: Mapping[int, LocalMode]
-) -> Extension:
-    """Whether the transmissions round one loop of vertices compose to the identity."""
+) -> list[Transmission]:
+    """The transmissions from fold to fold round a loop of vertices."""
     count = len(cycle)
     folds: list[Edge] = [edge_of(cycle[k - 1], cycle[k]) for k in range(count)]
-    steps = [
+    return [
         Transmission(stars[v], chosen[v], folds[k], folds[(k + 1) % count])
         for k, v in enumerate(cycle)
     ]
+
+
+def _round(cycle: Sequence[int], steps: Sequence[Transmission]) -> Extension:
+    """Whether the transmissions round one loop of vertices compose to the identity."""
     bent = sum(not step.is_linear for step in steps)
     if bent == 0:
         return Extension(PROVED, "linear transmissions", order=1)

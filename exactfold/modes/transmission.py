@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
-from exactfold.exact.surds import Number
+from exactfold.exact.surds import Number, Surd
 from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, bracket, dot
 from exactfold.pattern.panel_pattern import Edge
@@ -48,6 +48,14 @@ class Transmission:
         else:
             near, far = c(1, 2) * c(4, 1), c(2, 3) * c(3, 4)
             self.quadratic = (far, far * dot(d[0], d[0]) - near * dot(d[2], d[2]), 0, -near)
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What tells transmissions apart; equal keys mean equal transmissions."""
+        numbers = (self.gain, *(self.quadratic or ()))
+        return tuple(
+            (x.field.radicands, x.coefficients) if isinstance(x, Surd) else x for x in numbers
+        )
 
     @property
     def is_linear(self) -> bool:
