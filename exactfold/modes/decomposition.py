@@ -9,13 +9,15 @@ from dataclasses import dataclass, replace
 import networkx as nx
 
 from exactfold.errors import TooManyModesError
+from exactfold.exact.surds import exact
 from exactfold.modes.components import components
 from exactfold.modes.densities import UndecidedDensityError
 from exactfold.modes.elementary import ElementaryMode, ModeSearch, Support
 from exactfold.modes.extension import Extension, extension
-from exactfold.modes.kernel import first_order
+from exactfold.modes.kernel import Rows, first_order
+from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, stars
-from exactfold.modes.subspaces import Leaf, leaves
+from exactfold.modes.subspaces import Leaf, independent_parts, leaves
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.progress import Progress
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
@@ -189,7 +191,7 @@ def _part(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) -> Par
     try:
         if few:
             return _by_modes(pattern, moving, listed)
-        return _by_spaces(moving)
+        return _by_spaces(pattern, moving)
     except (TooManyModesError, UndecidedDensityError) as error:
         where = f"the part of {counted(len(vertices), 'vertex')} with vertex {vertices[0]}"
         theory = "modes" if few else "subspaces"
@@ -239,7 +241,7 @@ def _mode(support: Support, mode: ElementaryMode, result: Extension) -> Mode:
     return Mode(support.vertices, letters, result)
 
 
-def _by_spaces(moving: Mapping[int, Star]) -> Part:
+def _by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
     """Linear spaces, split where a form is a product."""
     rows, size = first_order(moving)
     vertices = tuple(moving)
@@ -261,15 +263,44 @@ def _by_spaces(moving: Mapping[int, Star]) -> Part:
         counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
     if not counts:
         return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size)
+    extends = all(_extends(pattern, moving, leaf) for leaf in spaces)
+    ordered = dict(sorted(counts.items()))
     return Part(
         vertices,
         "subspaces",
-        dict(sorted(counts.items())),
-        None,
+        ordered,
+        ordered if extends else None,
         spaces=tuple(spaces),
         dimension=size,
-        reason="whether motions of vertices with more than four folds truly fold is not decided",
+        reason=""
+        if extends
+        else "whether motions of vertices with more than four folds truly fold is not decided",
     )
+
+
+def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> bool:
+    """Whether a linear space is spanned by elementary modes that truly fold, apart from each other.
+
+    Other folds are then held flat, so this can prove that a space extends and never that it does
+    not: a motion might use them at a higher order.
+    """
+    if leaf.vertices:
+        return False
+    for rows, size in independent_parts(dict(leaf.rows), leaf.size, moving):
+        modes = [_local(star, rows) for star in moving.values() if set(star.folds) & set(rows)]
+        if size != 1 or any(len(mode.folds) > 4 for mode in modes):
+            return False
+        stars = {mode.vertex: moving[mode.vertex].only(mode.folds) for mode in modes}
+        if extension(pattern, stars, modes).verdict is not PROVED:
+            return False
+    return True
+
+
+def _local(star: Star, rows: Rows) -> LocalMode:
+    """The motion of one vertex on a space with one parameter."""
+    folds = tuple(edge for edge in star.folds if edge in rows)
+    scale = exact(rows[folds[0]][0])
+    return LocalMode(star.vertex, 0, folds, tuple(rows[edge][0] / scale for edge in folds))
 
 
 def _product(counts: Iterable[Counts | None], free: int) -> Counts | None:

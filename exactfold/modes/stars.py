@@ -36,6 +36,16 @@ class Star:
                 total = total + wk * wj * bracket(dk, dj)
         return total
 
+    def only(self, folds: Iterable[Edge]) -> Star:
+        """The star with these folds, the others held flat."""
+        wanted = set(folds)
+        kept = [k for k, edge in enumerate(self.folds) if edge in wanted]
+        return Star(
+            self.vertex,
+            tuple(self.folds[k] for k in kept),
+            tuple(self.directions[k] for k in kept),
+        )
+
     def foldable(self) -> tuple[int, ...]:
         """Positions of the folds that can fold here; the others are flat in every real motion.
 
@@ -103,9 +113,7 @@ def stars(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int, Star
                 gone.add(edge)
                 if u in pattern.stars:
                     waiting[u] = None
-        found[v] = Star(
-            v, tuple(star.folds[k] for k in kept), tuple(star.directions[k] for k in kept)
-        )
+        found[v] = star.only(star.folds[k] for k in kept)
     return MappingProxyType({v: found[v] for v in pattern.interior if found[v].folds})
 
 

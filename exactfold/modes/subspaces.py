@@ -69,7 +69,7 @@ class _Search:
     def solved(self, rows: Rows, size: int) -> list[Leaf]:
         """The leaves of one space; the product of those of its independent parts."""
         total: list[Leaf] = [Leaf({}, 0, ())]
-        for part, part_size in _parts(rows, size, self.stars):
+        for part, part_size in independent_parts(rows, size, self.stars):
             part_leaves = _maximal(self._split(part, part_size))
             total = [_sum(a, b) for a in total for b in part_leaves]
             if len(total) > self.most:
@@ -212,7 +212,7 @@ def _combined(weights: Sequence[Number], vectors: Sequence[Vector], size: int) -
     return total
 
 
-def _parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[tuple[Rows, int]]:
+def independent_parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[tuple[Rows, int]]:
     """The space as a direct sum over the parts of the sheet that are connected by active folds."""
     graph = nx.Graph()
     for edge, row in rows.items():
