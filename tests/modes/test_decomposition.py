@@ -1,0 +1,95 @@
+"""The complete decompositions of known sheets, by two ways that share little."""
+
+from collections import Counter
+
+import pytest
+from panel_sheets import grid, mesh, miura, tiling
+
+from exactfold.modes.decomposition import decompose
+from exactfold.modes.elementary import ModeSearch
+from exactfold.modes.kernel import first_order
+from exactfold.modes.stars import stars
+from exactfold.modes.subspaces import leaves
+from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.verdict import PROVED, REFUTED
+
+
+def by_spaces(pattern: PanelPattern) -> dict[int | None, int]:
+    moving = stars(pattern)
+    rows, size = first_order(moving)
+    return dict(Counter(leaf.dimension for leaf in leaves(moving, rows, size, 10_000)))
+
+
+@pytest.mark.parametrize("zigzags", [1, 2, 3, 4])
+@pytest.mark.parametrize("rows", [1, 2, 3])
+def test_miura(rows: int, zigzags: int) -> None:
+    known = {1: 2**zigzags} if rows == 1 else {1: 2**zigzags - 1, rows: 1}
+    pattern = miura(rows, zigzags)
+    result = decompose(pattern)
+    assert result.status is PROVED
+    assert result.second_order == result.true == known
+    assert result.rigid is REFUTED
+    assert by_spaces(pattern) == known
+
+
+@pytest.mark.parametrize("count", [1, 2, 20])
+def test_a_strip_in_general_position_has_two_modes_a_vertex(count: int) -> None:
+    result = decompose(mesh(1, count, seed=count))
+    assert result.second_order == result.true == {1: 2**count}
+    assert result.modes_count == 2**count
+    assert len(result.modes) == (2**count if count < 10 else 0)
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(2, 2), (3, 2), (20, 20)])
+def test_a_mesh_in_general_position_is_rigid(columns: int, rows: int) -> None:
+    result = decompose(mesh(columns, rows, seed=5))
+    assert result.second_order == result.true == {0: 1}
+    assert result.rigid is PROVED
+    assert result.modes == ()
+
+
+@pytest.mark.parametrize("size", [2, 4])
+def test_a_tiling_by_any_quadrilateral_folds_in_two_ways(size: int) -> None:
+    pattern = tiling(size, size)
+    result = decompose(pattern)
+    assert result.second_order == result.true == {1: 2}
+    assert {mode.extends.by for mode in result.modes} == {"loops to order 17"}
+    if size == 2:
+        assert by_spaces(pattern) == {1: 2}
+
+
+def test_every_mode_solves_the_conditions_exactly() -> None:
+    pattern = mesh(1, 3, seed=9)
+    moving = stars(pattern)
+    search = ModeSearch(moving, pattern.field)
+    [support] = search.supports(10)
+    modes = search.listed(support)
+    assert len(modes) == support.count == 8
+    assert len({tuple(mode.signs.values()) for mode in modes}) > 1
+    for mode in modes:
+        for local in mode.choice:
+            star = moving[local.vertex]
+            values = dict(zip(local.folds, local.values, strict=True))
+            w = [values.get(edge, 0) for edge in star.folds]
+            assert star.form(w) == 0
+            for axis in (0, 1):
+                assert sum(x * d[axis] for x, d in zip(w, star.directions, strict=True)) == 0
+
+
+def test_folds_from_border_to_border_add_a_dimension() -> None:
+    square = PanelPattern(
+        [(0, 0), (3, 0), (3, 3), (0, 3), (1, 0), (1, 3)],
+        [(0, 4), (4, 1), (1, 2), (2, 5), (5, 3), (3, 0), (4, 5)],
+    )
+    result = decompose(square)
+    assert result.free == ((4, 5),)
+    assert result.second_order == result.true == {1: 1}
+    held = decompose(square, flat=[(4, 5)])
+    assert held.second_order == {0: 1}
+    assert held.rigid is PROVED
+
+
+def test_independent_lines_cross() -> None:
+    """Two lines each way: either both of one direction fold, or both of the other."""
+    result = decompose(grid(3, 3, lambda i, j: (i, j)))
+    assert result.second_order == result.true == {2: 2}
