@@ -36,7 +36,7 @@ from exactfold.commands.shell import (
     standard_input,
     standard_streams,
 )
-from exactfold.count.solvers import ALIASES, METHODS
+from exactfold.count.registry import ALIASES, METHODS
 from exactfold.errors import UsageError
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED

@@ -39,7 +39,7 @@ class ChartRoot(Protocol):
 
 def sharper(system: QuadraticSystem, box: IsolatingBox, bits: int) -> IsolatingBox | None:
     """A box of the same zero with `bits` bits after the point, by the exact test."""
-    from exactfold.certify.krawczyk import krawczyk_at  # FLINT, for this alone
+    from exactfold.certify.exact_krawczyk import krawczyk_at  # FLINT, for this alone
 
     if box.bits >= bits:
         return None

@@ -26,7 +26,7 @@ from exactfold.commands.shell import (
     stopped,
 )
 from exactfold.count.batch import Job, Source, count_job, read_source
-from exactfold.count.dask_engine import LOCAL
+from exactfold.count.on_dask import LOCAL
 from exactfold.count.pools import Pool, dask_pool, process_pool
 from exactfold.errors import UnknownPatternError, UnwritableFileError, UsageError, WorkerDiedError
 from exactfold.schemas import headed

@@ -11,7 +11,7 @@ from pathlib import Path
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
 from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
-from exactfold.count.dask_engine import LOCAL, dask_engine
+from exactfold.count.on_dask import LOCAL, dask_engine
 from exactfold.count.stream import StreamedCount, stream_branches
 from exactfold.errors import (
     NoInteriorVertexError,

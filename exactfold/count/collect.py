@@ -12,14 +12,14 @@ from exactfold.count.attempt import Attempt
 from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
 from exactfold.count.conveyor import LISTED_BITS, Conveyor
 from exactfold.count.hand_over import isolated, solved_exactly, with_flat_vertices
-from exactfold.count.solvers import METHODS, NEWTON, Choice, choose, find_candidates
+from exactfold.count.registry import METHODS, NEWTON, Choice, choose, find_candidates
 from exactfold.errors import NoInteriorVertexError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.problem.branch_system import BranchSystem, notch_chart
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
-from exactfold.rigidity.definite_stress import definite_stress
+from exactfold.rigidity.definite_stresses import definite_stress
 from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.newton_ends import candidates_of

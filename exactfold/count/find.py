@@ -20,7 +20,7 @@ from exactfold.certify.enclosure import Enclosure
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
 from exactfold.progress import Progress

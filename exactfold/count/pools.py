@@ -10,7 +10,7 @@ from itertools import islice
 from multiprocessing import active_children, get_context
 from typing import Any, Protocol, TypeVar
 
-from exactfold.count.dask_engine import cluster_client
+from exactfold.count.on_dask import cluster_client
 from exactfold.errors import ClusterError, WorkerDiedError
 from exactfold.workers import become_worker, held_interrupts, worker_environment
 

@@ -15,7 +15,7 @@ from math import lcm
 from exactfold.errors import InputError
 from exactfold.exact.numbers import decimal_above, format_rational, snap
 from exactfold.pattern.crease_pattern import CreasePattern, Point
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 
 Triple = tuple[int, int, int]
 

@@ -10,7 +10,7 @@ from exactfold.exact.linalg import Inertia
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.progress import Progress
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.self_stress import rigidity_rank

@@ -8,6 +8,8 @@ from typing import Any, Final
 
 from exactfold.errors import UsageError
 
+__all__ = ["VERSIONS", "schema"]
+
 VERSIONS: Final = {
     "count": 1,
     "count-stream": 1,

@@ -16,7 +16,7 @@ from exactfold.solve.dense_newton import Ends, NappeSystem, sign_vectors
 _BLOCK = 1024
 
 
-def nappe_ends(chart: Chart, *, progress: Steps | None = None) -> Candidates:
+def newton(chart: Chart, *, progress: Steps | None = None) -> Candidates:
     """Candidates for all 2^Vi branches (Ve = 4), each by Newton's method on the nappes.
 
     For each vector e of vertex signs the equations l_v = e_v |A_v h| of `NappeSystem` have one
@@ -29,7 +29,7 @@ def nappe_ends(chart: Chart, *, progress: Steps | None = None) -> Candidates:
 
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.problem.branch_system import BranchSystem
-    >>> nappe_ends(BranchSystem(single_vertex(4)).chart).points.shape
+    >>> newton(BranchSystem(single_vertex(4)).chart).points.shape
     (2, 1)
     """
     natural = chamber_chart(chart.branch_system.pattern)

@@ -6,11 +6,12 @@ import pytest
 import sympy
 from sheets import random_wheel
 
-from exactfold import Branch, count_branches, curvature_form, find_branch
+from exactfold import Branch, count_branches, find_branch
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import chorded_square
 from exactfold.pattern.families import hypar, single_vertex, two_vertex
 from exactfold.problem.problem import Problem
+from exactfold.rigidity import curvature_form
 
 DART = CreasePattern(
     [(0, 0), (4, -4), (1, 0), (4, 4), ("1/2", 0)],

@@ -24,11 +24,12 @@ from running import (
 )
 from sheets import HEXAGON, scrambled
 
-from exactfold import count_branches, example_path, random_square, write_fold
+from exactfold import count_branches, random_square, write_fold
 from exactfold.commands import batch
 from exactfold.commands.shell import Bar
 from exactfold.count.batch import count_many
 from exactfold.count.pools import dask_pool, process_pool
+from exactfold.data import example_path
 from exactfold.errors import NotJSONError, UnreadableFileError, UsageError, WorkerDiedError
 
 KEYS = {

@@ -13,14 +13,8 @@ from running import (
 )
 from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
 
-from exactfold import (
-    EXAMPLES,
-    count_branches,
-    example_path,
-    random_square,
-    read_fold,
-    write_fold,
-)
+from exactfold import count_branches, random_square, read_fold, write_fold
+from exactfold.data import EXAMPLES, example_path
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES
 

@@ -1,4 +1,4 @@
-"""What commands load, and public names."""
+"""What commands load."""
 
 import subprocess
 import sys
@@ -7,7 +7,7 @@ import pytest
 
 import exactfold
 from exactfold import cli
-from exactfold.count.solvers import ALIASES
+from exactfold.count.registry import ALIASES
 
 HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
 
@@ -38,13 +38,5 @@ def test_commands_load_what_they_need(two_vertex, arguments, idle):
     assert result.stdout != ""
 
 
-def test_public_names():
-    assert set(exactfold._HOME) < set(exactfold.__all__) <= set(dir(exactfold))
-    for name in exactfold.__all__:
-        assert getattr(exactfold, name) is not None
-    with pytest.raises(AttributeError, match="no attribute 'brunch'"):
-        exactfold.brunch  # noqa: B018
-
-
 def test_methods_of_the_command_line():
-    assert tuple(method.value for method in cli.Method) == (*exactfold.METHODS, *ALIASES)
+    assert tuple(method.value for method in cli.Method) == (*exactfold.count.METHODS, *ALIASES)

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from running import BAD_INPUT, PROVED, run
 
-from exactfold import EXAMPLES, example_path
+from exactfold.data import EXAMPLES, example_path
 
 COMMANDS = ("count", "check", "branch", "export", "random", "info", "examples")
 

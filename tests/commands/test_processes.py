@@ -10,10 +10,8 @@ import pytest
 from files import written
 from running import BAD_INPUT, PROVED, USAGE, error_class, process, run
 
-from exactfold import (
-    cli,
-    example_path,
-)
+from exactfold import cli
+from exactfold.data import example_path
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,8 @@ import pytest
 from running import BAD_INPUT, INTERRUPTED, OUTPUT_FAILED, PROVED, UNDECIDED, run
 from sheets import HEXAGON, scrambled
 
-from exactfold import example_path, write_fold
+from exactfold import write_fold
+from exactfold.data import example_path
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="limits and signals of POSIX")
 

@@ -12,12 +12,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from exactfold import example_path, families, random_square, write_fold
+from exactfold import families, random_square, write_fold
 from exactfold.cli import app
 from exactfold.commands import stream as stream_command
 from exactfold.count import by_theorem
 from exactfold.count import conveyor as conveyor_module
 from exactfold.count.stream import stream_branches
+from exactfold.data import example_path
 from exactfold.errors import UnwritableFileError, WorkerDiedError
 from exactfold.evidence.journal import Journal
 from exactfold.pattern.crease_pattern import CreasePattern

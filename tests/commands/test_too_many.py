@@ -11,9 +11,9 @@ from jsonschema import Draft202012Validator
 from running import UNDECIDED, USAGE, run
 from sheets import dart, nested_triangles, reflex_corners, scrambled
 
-from exactfold import METHODS, count_branches, families, random_square, schema, write_fold
+from exactfold import count_branches, families, random_square, schema, write_fold
 from exactfold.commands.shell import Bar
-from exactfold.count import by_theorem
+from exactfold.count import METHODS, by_theorem
 from exactfold.count.by_theorem import too_many
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.random_squares import sample_random_square

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 from running import PROVED, run
 
-from exactfold import EXAMPLES, CreasePattern, example_path, read_fold, write_fold
+from exactfold import CreasePattern, read_fold, write_fold
+from exactfold.data import EXAMPLES, example_path
 from exactfold.exact.numbers import as_rational
 
 

@@ -27,7 +27,7 @@ from sheets import (
 
 from exactfold import PROVED, UNDECIDED, count_branches, families, random_square
 from exactfold.certify.box import IsolatingBox
-from exactfold.certify.krawczyk import krawczyk
+from exactfold.certify.exact_krawczyk import krawczyk
 from exactfold.count.find import BranchFinder, find_branch, find_branches, neighbours
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern import degenerate

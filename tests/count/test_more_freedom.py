@@ -7,7 +7,7 @@ from counting import counts
 from sheets import HEXAGON, SQUARE, random_wheel, scrambled, wheel
 
 from exactfold import PROVED, UNDECIDED, CreasePattern, count_branches
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.pattern.families import two_vertex
 from exactfold.problem.branch_system import BranchSystem

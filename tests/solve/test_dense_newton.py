@@ -21,7 +21,7 @@ from exactfold.solve.dense_newton import (
     sign_vectors,
     solve_each,
 )
-from exactfold.solve.popping import popping
+from exactfold.solve.popping_ends import popping
 from exactfold.solve.refined_newton import refined_end
 
 PATTERNS = {
