@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import ast
-import pkgutil
 import sys
 from collections.abc import Callable
 from functools import cache
 from importlib import import_module
-from importlib.util import find_spec
+
+# The rest is loaded where a name is asked for: the command line starts without.
 
 
 def attached(package: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
@@ -27,6 +26,9 @@ def attached(package: str) -> tuple[Callable[[str], object], Callable[[], list[s
 
     @cache
     def homes() -> dict[str, str]:
+        import ast
+        import pkgutil
+
         stub = pkgutil.get_data(package, "__init__.pyi")
         if stub is None:
             raise ImportError(f"{package} has lost its file __init__.pyi", name=package)
@@ -59,6 +61,8 @@ def attached(package: str) -> tuple[Callable[[str], object], Callable[[], list[s
 
 def _missing(package: str, name: str, homes: dict[str, str]) -> str:
     """What to say of a name that is not there, and where it is instead."""
+    from importlib.util import find_spec
+
     message = f"module {package!r} has no attribute {name!r}"
     if name.startswith("_") or find_spec(f"{package}.{name}"):  # asked before a module is imported
         return message
