@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from exactfold.problem.branch_system import Chart, chamber_chart
-from exactfold.problem.chart_change import from_chart, to_chart
+from exactfold.problem.chart_change import between
 from exactfold.progress import Steps
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.dense_newton import Ends, NappeSystem, sign_vectors
@@ -42,9 +42,7 @@ def newton(chart: Chart, *, progress: Steps | None = None) -> Candidates:
         if progress is not None:
             progress(first + block, total)
     candidates = candidates_of(found, size)
-    if chart == natural:
-        return candidates
-    points = to_chart(chart, from_chart(natural, candidates.points.real))
+    points = between(natural, chart, candidates.points.real)
     return replace(candidates, points=points.astype(np.complex128))
 
 
