@@ -13,6 +13,7 @@ from exactfold.problem.chart_change import between
 from exactfold.progress import Steps
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.dense_newton import NappeSystem, sign_vectors
+from exactfold.solve.linear_start import start_size
 
 _ORDER = 8
 _BLOCK = 4096
@@ -88,9 +89,7 @@ class _Problem:
         forms = np.array([nappe.form for nappe in system.nappes])
         if system.gauge.corner is not None:
             return cls(forms, system.lines, -float(forms[-1, -1, -1]))
-        # A k of the order of the squared heights of the sheet with all l_v = 0.
-        level = float(max(np.abs(system.rest).max(), 1e-3)) ** 2 / 16
-        return cls(forms, system.lines, level)
+        return cls(forms, system.lines, start_size(system.rest) ** 2)
 
 
 def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, BoolArray, int]:
