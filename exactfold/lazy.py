@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from functools import cache
-from importlib import import_module
+
+TYPE_CHECKING = False  # as in typing, which takes longer to load than all that is imported here
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 # The rest is loaded where a name is asked for: the command line starts without.
 
@@ -40,6 +42,8 @@ def attached(package: str) -> tuple[Callable[[str], object], Callable[[], list[s
         }
 
     def get(name: str) -> object:
+        from importlib import import_module
+
         value: object
         if name == "__all__":
             value = sorted(homes())
@@ -61,6 +65,7 @@ def attached(package: str) -> tuple[Callable[[str], object], Callable[[], list[s
 
 def _missing(package: str, name: str, homes: dict[str, str]) -> str:
     """What to say of a name that is not there, and where it is instead."""
+    from importlib import import_module
     from importlib.util import find_spec
 
     message = f"module {package!r} has no attribute {name!r}"
