@@ -160,7 +160,6 @@ def count(
     from exactfold import report
     from exactfold.commands.patterns import read
     from exactfold.commands.stream import Streaming, advice
-    from exactfold.commands.warnings import warnings
     from exactfold.count.collect import count_branches
     from exactfold.evidence.entries import write_certificate
     from exactfold.evidence.listing import certificate as certificate_of
@@ -178,8 +177,6 @@ def count(
     else:
         with Bar("reading") as bar:
             file = read(pattern, snap)
-            for warning in warnings(file.pattern):
-                say(warning)
             if (better := advice(file.pattern)) is not None:
                 say(better)
             bar("solving")
@@ -371,13 +368,10 @@ def info(
     """Report what is exactly known of a pattern without solving for its branches."""
     from exactfold import report
     from exactfold.commands.patterns import read
-    from exactfold.commands.warnings import warnings
     from exactfold.rigidity.facts import pattern_facts
 
     with Bar("reading") as bar:
         sheet = read(pattern, snap).pattern
-        for warning in warnings(sheet):
-            say(warning)
         facts = pattern_facts(sheet, bar)
         expected, table = report.expectation(facts), report.info_report(facts, exact=exact)
     if as_json:
