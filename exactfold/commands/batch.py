@@ -29,7 +29,14 @@ from exactfold.commands.shell import (
 from exactfold.count.batch import Job, Source, count_job, read_source
 from exactfold.count.dask_engine import LOCAL
 from exactfold.count.pools import Pool, dask_pool, process_pool
-from exactfold.errors import UnknownPatternError, UnwritableFileError, UsageError, WorkerDiedError
+from exactfold.errors import (
+    NotEnoughMemoryError,
+    UnknownPatternError,
+    UnwritableFileError,
+    UsageError,
+    WorkerDiedError,
+)
+from exactfold.memory import is_shortage, shortage
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import available_cores
@@ -170,6 +177,10 @@ class Batch:
             stopped(again)
         except (WorkerDiedError, UnwritableFileError) as error:
             raise type(error)(f"{error}{'; ' if again else ''}{again}") from None
+        except Exception as error:
+            if not again or not is_shortage(error):
+                raise
+            raise NotEnoughMemoryError(f"{shortage(error)}; {again}") from None
 
     def _summary(self, tally: Tally) -> dict[str, Any]:
         return {
