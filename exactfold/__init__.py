@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from exactfold.pattern.fold import FoldFile, load_fold, read_fold
     from exactfold.pattern.fold_writing import write_fold
     from exactfold.pattern.load import load
+    from exactfold.pattern.near_degenerate import near_degenerate
     from exactfold.pattern.random_squares import random_square
     from exactfold.problem.branch_system import BranchSystem, Chart
     from exactfold.problem.perturbed import perturbed
@@ -99,6 +100,7 @@ _HOMES = {
     "exactfold.pattern.fold": ("FoldFile", "load_fold", "read_fold"),
     "exactfold.pattern.fold_writing": ("write_fold",),
     "exactfold.pattern.load": ("load",),
+    "exactfold.pattern.near_degenerate": ("near_degenerate",),
     "exactfold.pattern.random_squares": ("random_square",),
     "exactfold.rigidity.all_real": ("decide_all_branches_real",),
     "exactfold.rigidity.curvature": ("curvature_form", "stress_form", "wheel_stress"),
@@ -184,6 +186,7 @@ __all__ = [
     "load",
     "load_fold",
     "nappe_ends",
+    "near_degenerate",
     "neighbours",
     "parametrisation_from_roots",
     "pattern_facts",
