@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import sys
-from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -32,7 +31,6 @@ from exactfold.commands.shell import (
     not_a_dash,
     output_failed,
     reported,
-    say,
     standard_input,
     standard_streams,
 )
@@ -41,10 +39,6 @@ from exactfold.errors import UsageError
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import one_thread
-
-if TYPE_CHECKING:
-    from exactfold.branches.result import BranchCount
-    from exactfold.count.stream import StreamedCount
 
 # Each command imports what it needs: loading everything takes longer than most of the work.
 
@@ -157,51 +151,23 @@ def count(
     if jobs is not None:
         raise UsageError("--jobs goes with several patterns or --jsonl")
     [pattern] = patterns
-    from exactfold import report
-    from exactfold.commands.patterns import read
-    from exactfold.commands.stream import Streaming, advice
-    from exactfold.commands.warnings import warnings
-    from exactfold.count.collect import count_branches
-    from exactfold.evidence.entries import write_certificate
-    from exactfold.evidence.listing import certificate as certificate_of
+    from exactfold.commands.count import Asked
 
-    apart(certificate, pattern, stream)
-    result: BranchCount
-    streamed: StreamedCount | None = None
-    if stream is not None:
-        if method.value != "auto":
-            raise UsageError("--stream has a method of its own: leave --method away")
-        asked = Streaming(pattern, stream, resume, workers, dask, snap, seed, certificate)
-        result = streamed = asked.run()
-    elif resume or workers is not None or dask is not None:
-        raise UsageError("--resume, --workers and --dask go with --stream")
-    else:
-        with Bar("reading") as bar:
-            file = read(pattern, snap)
-            for warning in warnings(file.pattern):
-                say(warning)
-            if (better := advice(file.pattern)) is not None:
-                say(better)
-            bar("solving")
-            result = count_branches(file.pattern, method=method.value, seed=seed, progress=bar)
-        result = replace(result, snapped=file.snapped)
-    written = None
-    in_stream = streamed is not None and result.proof is None
-    if certificate is not None and result.status is PROVED and not in_stream:
-        write_certificate(certificate_of(result), certificate)
-        written = str(certificate)
-    elif certificate is not None and result.status is PROVED:
-        say(f"the proof is in {stream}; no other was written")
-    elif certificate is not None:
-        say("no certificate was written: nothing is proved")
-    if as_json:
-        print(json.dumps(result.to_dict(written, name_of(pattern))))
-    else:
-        shown = report.count_report(
-            result, written, everything=everything, streamed=streamed, verbose=verbose
-        )
-        report.show(shown)
-    raise typer.Exit(EXIT[result.status])
+    asked = Asked(
+        pattern,
+        method.value,
+        certificate,
+        stream,
+        resume,
+        workers,
+        dask,
+        as_json,
+        snap,
+        seed,
+        everything,
+        verbose,
+    )
+    raise typer.Exit(asked.run())
 
 
 @app.command(cls=Command)
@@ -225,18 +191,9 @@ def check(
     ] = None,
 ) -> None:
     """Verify every claim of a certificate with code that trusts nothing."""
-    from exactfold.commands import check as check_command
+    from exactfold.commands.check import valid
 
-    with Bar("checking"):
-        claims, text = check_command.verified(certificate, workers)
-    if as_json:
-        short = {k: v for k, v in (claims or {}).items() if k not in check_command.LONG}
-        head = {**headed("check"), "name": name_of(certificate)}
-        reason = text if claims is None else "every claim holds"
-        print(json.dumps({**head, "valid": claims is not None, "reason": reason, "claims": short}))
-    else:
-        print(f"INVALID: {text}" if claims is None else text)
-    raise typer.Exit(0 if claims is not None else 1)
+    raise typer.Exit(0 if valid(certificate, workers, as_json) else 1)
 
 
 @app.command(cls=Command)
@@ -371,13 +328,10 @@ def info(
     """Report what is exactly known of a pattern without solving for its branches."""
     from exactfold import report
     from exactfold.commands.patterns import read
-    from exactfold.commands.warnings import warnings
     from exactfold.rigidity.facts import pattern_facts
 
     with Bar("reading") as bar:
         sheet = read(pattern, snap).pattern
-        for warning in warnings(sheet):
-            say(warning)
         facts = pattern_facts(sheet, bar)
         expected, table = report.expectation(facts), report.info_report(facts, exact=exact)
     if as_json:

@@ -220,5 +220,9 @@ class WorkerDiedError(ExactfoldError):
     """A worker process was killed or ran out of memory; nothing that was written is lost."""
 
 
+class NotEnoughMemoryError(WorkerDiedError):
+    """Memory is limited, and there is not enough of it; nothing that was written is lost."""
+
+
 class DaskMissingError(ExactfoldError):
     """dask.distributed, an optional part, is not installed."""

@@ -164,14 +164,6 @@ def test_examples_are_found() -> None:
     assert sum(len(examples(page)) for page in PAGES) >= 4
 
 
-def test_statements_and_errata_are_up_to_date() -> None:
-    folder = ROOT / "docs"
-    pages = runpy.run_path(str(folder / "make_statements.py"))["pages"]()
-    assert sorted(pages) == ["errata.md", "statements.md"]
-    for name, text in pages.items():
-        assert (folder / name).read_text(encoding="utf-8") == text
-
-
 def test_reference_is_up_to_date() -> None:
     page = ROOT / "docs" / "make_reference.py"
     names = runpy.run_path(str(page))

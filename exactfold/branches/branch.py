@@ -15,6 +15,7 @@ from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import described
+from exactfold.pattern.near_degeneracy import warnings
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, Verdict
 
@@ -216,6 +217,7 @@ class Branch:
             "radius": None if radius is None else format_rational(radius),
             "squared_distance": None if squared is None else format_rational(squared),
             "steps": self.steps,
+            "warnings": warnings(self.pattern),
             "seconds": round(self.seconds, 3),
         }
 

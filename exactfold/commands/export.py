@@ -18,6 +18,7 @@ from exactfold.count.find import BranchFinder
 from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
+from exactfold.pattern.near_degeneracy import warnings
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
@@ -106,4 +107,5 @@ def _summary(
         "gauge": branch.gauge,
         "angles": {f"{i}-{j}": angle for (i, j), angle in sorted(export.angles.items())},
         "length_error": export.length_error,
+        "warnings": warnings(branch.pattern),
     }

@@ -16,10 +16,12 @@ from exactfold.count.stream import StreamedCount, stream_branches
 from exactfold.errors import (
     NoInteriorVertexError,
     NotApplicableError,
+    NotEnoughMemoryError,
     UnwritableFileError,
     UsageError,
     WorkerDiedError,
 )
+from exactfold.memory import is_shortage, shortage
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.workers import available_cores
 
@@ -93,6 +95,10 @@ class Streaming:
             if not self.file.is_file():
                 raise
             raise type(error)(f"{error}; go on with\n  {self.again}") from None
+        except Exception as error:
+            if not is_shortage(error) or not self.file.is_file():
+                raise
+            raise NotEnoughMemoryError(f"{shortage(error)}; go on with\n  {self.again}") from None
 
 
 def advice(pattern: CreasePattern) -> str | None:

@@ -7,6 +7,8 @@ from exactfold.pattern.fold import load_fold as load_fold
 from exactfold.pattern.fold import read_fold as read_fold
 from exactfold.pattern.fold_writing import write_fold as write_fold
 from exactfold.pattern.loading import load as load
+from exactfold.pattern.near_degeneracy import NearDegeneracy as NearDegeneracy
+from exactfold.pattern.near_degeneracy import near_degenerate as near_degenerate
 from exactfold.pattern.random_squares import RandomSquare as RandomSquare
 from exactfold.pattern.random_squares import random_square as random_square
 from exactfold.pattern.random_squares import sample_random_square as sample_random_square

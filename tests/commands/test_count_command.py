@@ -24,7 +24,7 @@ PATTERN_KEYS = {
 }
 COUNT_KEYS = {
     *("pattern", "status", "method", "distinct", "with_multiplicity", "real", "nonreal"),
-    *("true_branches", "certificate", "seconds", "branches", "format", "version", "by"),
+    *("true_branches", "certificate", "warnings", "seconds", "branches", "format", "version", "by"),
 }
 EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree"}
 BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}

@@ -56,6 +56,11 @@ VALUES = {
     "branch system": SYSTEM,
     "chart": SYSTEM.chart,
     "quadrics": SYSTEM.chart.system,
+    "warning": exactfold.pattern.near_degenerate(
+        exactfold.CreasePattern(
+            [*PATTERN.vertices[:5], ("2/3", "0.3333333333333")], PATTERN.triangles
+        )
+    ),
     "problem": Problem.of(PATTERN),
     "gauge": Problem.of(PATTERN).gauge,
     "sheet": Sheet(Problem.of(PATTERN)),

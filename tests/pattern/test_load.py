@@ -88,6 +88,7 @@ TAKES_PATTERN = {
     "rigidity.rigidity_matrix": (),
     "rigidity.self_stresses": (),
     "algebra.split_form": (4,),
+    "pattern.near_degenerate": (),
     "problem.BranchSystem": (),
     "count.count_branches": (),
     "count.find_branch": ("+-",),
