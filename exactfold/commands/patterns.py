@@ -28,4 +28,4 @@ def located(path: Path) -> Path:
 
 def read(path: Path, snap: int | None) -> FoldFile:
     """The pattern that is meant; raises the errors of `located` and `load_fold`."""
-    return load_fold(located(path), snap)
+    return load_fold(located(path), snap, name="standard input" if path == STDIN else str(path))

@@ -24,6 +24,7 @@ from exactfold.commands.guard import INTERRUPTED, NO_MEMORY, memory_is_limited
 from exactfold.errors import (
     ExactfoldError,
     InputError,
+    NotCountedError,
     UnreadableFileError,
     UsageError,
     WorkerDiedError,
@@ -94,6 +95,8 @@ def exit_code(error: Exception) -> int:
     """The exit code of a command that ended with an error."""
     if isinstance(error, WorkerDiedError) or not isinstance(error, ExactfoldError):
         return INTERNAL
+    if isinstance(error, NotCountedError):
+        return EXIT[UNDECIDED]
     return BAD_INPUT if isinstance(error, InputError) else USAGE
 
 
