@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from exactfold.commands.shell import STDIN
+from exactfold.commands.shell import STDIN, said
 from exactfold.data import EXAMPLES, example_path
 from exactfold.errors import UnknownPatternError
 from exactfold.pattern.fold import FoldFile, load_fold
@@ -28,4 +28,4 @@ def located(path: Path) -> Path:
 
 def read(path: Path, snap: int | None) -> FoldFile:
     """The pattern that is meant; raises the errors of `located` and `load_fold`."""
-    return load_fold(located(path), snap, name="standard input" if path == STDIN else str(path))
+    return load_fold(located(path), snap, name=said(path))

@@ -232,6 +232,11 @@ def name_of(path: Path) -> str:
     return "-" if path == STDIN else str(path)
 
 
+def said(path: Path) -> str:
+    """A file as messages call it."""
+    return "standard input" if path == STDIN else str(path)
+
+
 def standard_input(path: Path) -> Path:
     """`-` means standard input."""
     return STDIN if str(path) == "-" else path
