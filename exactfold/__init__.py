@@ -12,13 +12,13 @@ starts to fold, proves it, and tells the ways apart by vertex signs and mountain
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING
 
 from exactfold.errors import ExactfoldError, InputError
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 __version__ = "0.1.0"
 
+TYPE_CHECKING = False  # as in typing, which takes longer to load than all that is imported here
 if TYPE_CHECKING:
     from exactfold.algebra.degree_four import split_form
     from exactfold.algebra.from_roots import parametrisation_from_roots

@@ -4,9 +4,9 @@ import subprocess
 import sys
 
 import pytest
+from running import PROVED, run
 
 import exactfold
-from exactfold import cli
 from exactfold.count.solvers import ALIASES
 
 HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
@@ -46,5 +46,6 @@ def test_public_names():
         exactfold.brunch  # noqa: B018
 
 
-def test_methods_of_the_command_line():
-    assert tuple(method.value for method in cli.Method) == (*exactfold.METHODS, *ALIASES)
+@pytest.mark.parametrize("name", [*exactfold.METHODS, *ALIASES])
+def test_methods_of_the_command_line(two_vertex, name):
+    assert run("count", two_vertex, "--method", name).exit_code == PROVED
