@@ -5,22 +5,23 @@ from __future__ import annotations
 import io
 import json
 import sys
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from exactfold.commands.parameters import (
-    Command,
-    Group,
     Json,
     Pattern,
     Patterns,
     Signs,
     Snap,
     Up,
+    complete_method,
+    degrees,
     flag,
+    method_name,
+    whole,
 )
 from exactfold.commands.shell import (
     EXIT,
@@ -34,7 +35,8 @@ from exactfold.commands.shell import (
     standard_input,
     standard_streams,
 )
-from exactfold.count.registry import ALIASES, METHODS
+from exactfold.commands.usage import Command, Group
+from exactfold.count.registry import METHODS
 from exactfold.errors import UsageError
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
@@ -44,22 +46,13 @@ from exactfold.workers import one_thread
 
 app = typer.Typer(
     help="Proven branch counts of triangulated origami near the unfolded state.",
-    epilog="Exit codes: 0 proved or valid, 1 refuted or certificate invalid, 2 wrong usage, "
-    "3 bad input, 4 undecided, 130 interrupted.",
+    epilog="Exit codes: 0 proved or valid; 1 refuted, or certificate invalid; 2 wrong usage; "
+    "3 bad input; 4 undecided, or a sheet of a kind that is not counted; 70 a process died, or a "
+    "defect of exactfold; 71 not enough memory; 74 the output cannot be written; 130 interrupted.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     cls=Group,
 )
-
-
-if TYPE_CHECKING:
-
-    class Method(StrEnum):
-        """What --method may be."""
-
-        auto = "auto"
-else:
-    Method = StrEnum("Method", {name: name for name in (*METHODS, *ALIASES)})
 
 
 @app.command(cls=Command)
@@ -67,12 +60,14 @@ else:
 def count(
     patterns: Patterns,
     method: Annotated[
-        Method,
+        str,
         typer.Option(
+            parser=method_name,
+            autocompletion=complete_method,
             metavar="METHOD",
             help=f"{', '.join(METHODS)}: how solutions are found. The proof does not depend on it.",
         ),
-    ] = Method.auto,
+    ] = "auto",
     certificate: Annotated[
         Path | None,
         typer.Option(
@@ -97,21 +92,24 @@ def count(
     ] = False,
     workers: Annotated[
         int | None,
-        typer.Option(min=1, metavar="N", help="Processes of --stream. Default: all cores."),
+        typer.Option(
+            parser=whole(1), metavar="N", help="Processes of --stream. Default: all cores."
+        ),
     ] = None,
     jsonl: Annotated[
         Path | None,
         typer.Option(
             callback=not_a_dash,
             metavar="OUT.jsonl",
-            help="Write a line of JSON for each pattern as it is ready; files whose line is there "
-            "already are skipped, so the same command goes on after an interruption.",
+            help="Write a line of JSON for each pattern as it is ready; files that were "
+            "counted there already are skipped, so the same command goes on after an interruption; "
+            "files that failed are tried again.",
         ),
     ] = None,
     jobs: Annotated[
         int | None,
         typer.Option(
-            min=1, metavar="N", help="Processes for several patterns. Default: all cores."
+            parser=whole(1), metavar="N", help="Processes for several patterns. Default: all cores."
         ),
     ] = None,
     dask: Annotated[
@@ -125,7 +123,7 @@ def count(
     as_json: Json = False,
     snap: Snap = None,
     seed: Annotated[
-        int, typer.Option(min=0, metavar="S", help="Seed of the complex homotopy.")
+        int, typer.Option(parser=whole(0), metavar="S", help="Seed of the complex homotopy.")
     ] = 0,
     everything: Annotated[bool, flag("--all", text="List every way.")] = False,
     verbose: Annotated[
@@ -146,7 +144,7 @@ def count(
                 "--certificate, --stream, --resume and --workers go with one pattern and "
                 "without --jsonl"
             )
-        batch = Batch(patterns, jsonl, jobs, dask, method.value, seed, snap, as_json, everything)
+        batch = Batch(patterns, jsonl, jobs, dask, method, seed, snap, as_json, everything)
         raise typer.Exit(batch.run())
     if jobs is not None:
         raise UsageError("--jobs goes with several patterns or --jsonl")
@@ -155,7 +153,7 @@ def count(
 
     asked = Asked(
         pattern,
-        method.value,
+        method,
         certificate,
         stream,
         resume,
@@ -177,6 +175,7 @@ def check(
         Path,
         typer.Argument(
             callback=standard_input,
+            metavar="CERTIFICATE",
             help="A certificate written by `count` or `branch`, of any kind.",
         ),
     ],
@@ -184,7 +183,7 @@ def check(
     workers: Annotated[
         int | None,
         typer.Option(
-            min=1,
+            parser=whole(1),
             metavar="N",
             help="Processes for a compact certificate (`count --stream`). Default: all cores.",
         ),
@@ -249,7 +248,9 @@ def export(
     up: Up = None,
     place: Annotated[
         int | None,
-        typer.Option("--branch", min=1, metavar="N", help="Instead: the N-th that `count` lists."),
+        typer.Option(
+            "--branch", parser=whole(1), metavar="N", help="Instead: the N-th that `count` lists."
+        ),
     ] = None,
     output: Annotated[
         Path | None,
@@ -257,7 +258,9 @@ def export(
     ] = None,
     amount: Annotated[
         float | None,
-        typer.Option(metavar="DEG", help="The largest fold angle, in degrees. Default: 30."),
+        typer.Option(
+            parser=degrees, metavar="DEG", help="The largest fold angle, in degrees. Default: 30."
+        ),
     ] = None,
     force: Annotated[
         bool, flag("--force", text="Write a branch that is enclosed but not proved, too.")
@@ -283,10 +286,15 @@ def export(
 @app.command("random", cls=Command)
 @reported
 def random_(
-    interior: Annotated[int, typer.Option(min=1, metavar="N", help="Number of interior vertices.")],
-    seed: Annotated[int, typer.Option(metavar="S", help="Seed; the same seed, the same pattern.")],
+    interior: Annotated[
+        int, typer.Option(parser=whole(1), metavar="N", help="Number of interior vertices.")
+    ],
+    seed: Annotated[
+        int,
+        typer.Option(parser=whole(), metavar="S", help="Seed; the same seed, the same pattern."),
+    ],
     denominator: Annotated[
-        int, typer.Option(min=2, metavar="D", help="Coordinates are multiples of 1/D.")
+        int, typer.Option(parser=whole(2), metavar="D", help="Coordinates are multiples of 1/D.")
     ] = 1024,
     redraw: Annotated[
         bool,
@@ -320,7 +328,11 @@ def random_(
 def info(
     pattern: Pattern,
     exact: Annotated[
-        bool, flag("--exact", text="Also ranks, self stresses, curvature forms and the digest.")
+        bool,
+        flag(
+            "--exact",
+            text="Also ranks, self stresses, curvature forms, the digest, the area as a fraction.",
+        ),
     ] = False,
     as_json: Json = False,
     snap: Snap = None,

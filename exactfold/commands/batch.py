@@ -195,12 +195,15 @@ class Batch:
 
 
 class Known:
-    """The lines of an earlier run, by the content of the file and what was asked."""
+    """The lines of an earlier run, by the content of the file and what was asked.
+
+    A file that failed has none: it is tried again, and said to fail again with the reason.
+    """
 
     def __init__(self, found: Iterator[dict[str, Any]] | list[dict[str, Any]]) -> None:
         self._lines: dict[str, list[Line]] = {}
         for data in found:
-            if data["sha256"] is not None and data["exit_code"] not in (NO_MEMORY, INTERNAL):
+            if data["sha256"] is not None and data["status"] != FAILED:
                 warned = bool((data["result"] or {}).get("warnings"))
                 line = Line(data["name"], data["status"], data["exit_code"], warned=warned)
                 self._lines.setdefault(_key(data["sha256"], data["asked"]), []).append(line)

@@ -8,7 +8,7 @@ from typing import Any
 
 from exactfold import checker
 from exactfold.checker.reading import plain
-from exactfold.commands.shell import Bar, name_of, regular
+from exactfold.commands.shell import Bar, name_of, regular, said
 from exactfold.errors import CertificateFormatError, UnreadableFileError
 from exactfold.schemas import headed
 
@@ -41,7 +41,7 @@ def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, st
         except checker.CertificateError as error:
             return None, plain(error)
         except checker.FormatError as error:
-            raise CertificateFormatError(f"{path}: {plain(error)}") from None
+            raise CertificateFormatError(f"{said(path)}: {plain(error)}") from None
         except OSError as error:
             raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
     return claims, checker.summary(claims)

@@ -15,7 +15,7 @@ from exactfold.commands.patterns import read
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder
-from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.errors import NotCountedError, UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
@@ -86,7 +86,8 @@ class Wanted:
         if not 1 <= self.place <= len(result.branches):
             proved = "" if result.status is PROVED else f", undecided: {result.reason}"
             listed = len(result.branches)
-            raise UsageError(
+            cause = UsageError if listed else NotCountedError
+            raise cause(
                 f"--branch {self.place}: `exactfold count` lists "
                 f"{counted(listed or 'no', 'branch')} of this pattern{proved}"
             )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from exactfold.commands.shell import STDIN, say
+from exactfold.commands.shell import STDIN, said, say
 from exactfold.data import EXAMPLES, example_path
 from exactfold.errors import UnknownPatternError
 from exactfold.pattern.fold import FoldFile, load_fold
@@ -32,7 +32,7 @@ def read(path: Path, snap: int | None) -> FoldFile:
 
     What a designer should know of it before the answer is read is said on stderr.
     """
-    file = load_fold(located(path), snap)
+    file = load_fold(located(path), snap, name=said(path))
     if (found := near_degenerate(file.pattern)) is not None:
         say(f"warning: {found.text}")
     return file

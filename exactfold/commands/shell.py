@@ -24,6 +24,7 @@ from exactfold.commands.guard import INTERRUPTED, NO_MEMORY
 from exactfold.errors import (
     ExactfoldError,
     InputError,
+    NotCountedError,
     NotEnoughMemoryError,
     UnreadableFileError,
     UsageError,
@@ -101,6 +102,8 @@ def exit_code(error: Exception) -> int:
         return NO_MEMORY
     if isinstance(error, WorkerDiedError) or not isinstance(error, ExactfoldError):
         return INTERNAL
+    if isinstance(error, NotCountedError):
+        return EXIT[UNDECIDED]
     return BAD_INPUT if isinstance(error, InputError) else USAGE
 
 
@@ -238,6 +241,11 @@ def apart(output: Path | None, *others: Path | None) -> None:
 def name_of(path: Path) -> str:
     """A file as it was named on the command line."""
     return "-" if path == STDIN else str(path)
+
+
+def said(path: Path) -> str:
+    """A file as messages call it."""
+    return "standard input" if path == STDIN else str(path)
 
 
 def standard_input(path: Path) -> Path:

@@ -11,11 +11,12 @@ from pathlib import Path
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
 from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
+from exactfold.count.collect import check_countable
 from exactfold.count.on_dask import LOCAL, dask_engine
 from exactfold.count.stream import StreamedCount, stream_branches
 from exactfold.errors import (
-    NoInteriorVertexError,
     NotApplicableError,
+    NotCountedError,
     NotEnoughMemoryError,
     UnwritableFileError,
     UsageError,
@@ -110,14 +111,11 @@ def advice(pattern: CreasePattern) -> str | None:
 
 
 def _require_streamable(pattern: CreasePattern) -> None:
-    if not pattern.interior:
-        raise NoInteriorVertexError(
-            "the pattern has no interior vertex: there is no curvature equation to solve"
-        )
+    check_countable(pattern)
     if pattern.Ve != 4 or pattern.Vi == pattern.Vt:
         raise NotApplicableError(
             "--stream takes sheets with four boundary vertices and a foldable vertex; "
             "count this one without it"
         )
     if is_too_many(pattern):
-        raise NotApplicableError(too_many(pattern).reason)
+        raise NotCountedError(too_many(pattern).reason)

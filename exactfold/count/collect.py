@@ -90,7 +90,8 @@ def check_countable(pattern: CreasePattern) -> None:
     """Raise `NoInteriorVertexError` if there is nothing to count."""
     if not pattern.interior:
         raise NoInteriorVertexError(
-            "the pattern has no interior vertex: there is no curvature equation to solve"
+            "the pattern has no interior vertex, so there is nothing to count: every fold bends by "
+            "itself"
         )
 
 
@@ -127,13 +128,15 @@ def _higher(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bra
             true_branches=PROVED,
             proof=Proof("single vertex", triangles),
         )
-    chords = "".join(f"; the fold {i}-{j} splits the sheet" for i, j in sheet.chords[:1])
+    chords = "".join(f", and the fold {i}-{j} splits it" for i, j in sheet.chords[:1])
     return BranchCount(
         pattern,
         UNDECIDED,
         "none",
-        f"with D = {pattern.degrees_of_freedom} branches are no isolated lines, and are "
-        f"counted for the single-vertex pattern only{chords}",
+        f"the sheet has {pattern.Ve} boundary vertices, so it has {pattern.degrees_of_freedom} "
+        f"degrees of freedom{chords}; its ways to fold form continuous families, not a list. "
+        "exactfold counts sheets with four or three boundary vertices, or with a single vertex "
+        "inside; `exactfold info` says what is known of this one",
     )
 
 

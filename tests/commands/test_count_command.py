@@ -78,7 +78,9 @@ def test_verbose_also_says_how(two_vertex):
         ),
         (
             scrambled(1, HEXAGON, 2, loose=True),
-            r"the number of ways to start folding is UNDECIDED \(.*\): with D = 3 branches are no",
+            r"the number of ways to start folding is UNDECIDED \(.*\): the sheet has 6 "
+            "boundary vertices, so it has 3 degrees of freedom; its ways to fold form continuous "
+            "families, not a list",
         ),
     ],
     ids=["none", "one", "infinitely many", "flat", "undecided"],
@@ -169,7 +171,8 @@ def test_undecided_exits_4(tmp_path):
     assert data["status"] == "undecided"
     assert data["distinct"] is None
     assert data["certificate"] is None
-    assert "D = 3" in data["reason"]
+    assert "6 boundary vertices, so it has 3 degrees of freedom" in data["reason"]
+    assert "`exactfold info`" in data["reason"]
     assert "no certificate was written" in result.stderr
     assert not out.exists()
 

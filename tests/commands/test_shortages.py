@@ -171,7 +171,7 @@ def test_a_signal_reaches_the_guarded_program(
 SIGNALS = "import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(20)\n"
 
 
-@pytest.mark.parametrize("module", ["typer", "numpy", "rich"])
+@pytest.mark.parametrize("module", ["typing", "typer", "numpy", "rich"])
 def test_an_interruption_while_modules_load_has_no_traceback(
     files: Path, tmp_path: Path, module: str
 ) -> None:
