@@ -9,10 +9,12 @@ import argparse
 from collections import Counter
 from dataclasses import dataclass
 
-from exactfold import PROVED, BranchSystem, homotopy, isolate, random_square
+from exactfold import PROVED, random_square
 from exactfold.branches.roots import BoxRoot
-from exactfold.problem.perturbed import perturbed
+from exactfold.certify import isolate
+from exactfold.problem import BranchSystem, perturbed
 from exactfold.problem.sign_rows import Functionals
+from exactfold.solve import homotopy
 
 SIZES = ("0", "1/100", "1/10", "1/2")
 HEAD = (

@@ -1,24 +1,34 @@
 """`python -m exactfold` and the command `exactfold`: as little as can be before it is guarded."""
 
-import signal
+import os
 
-from exactfold.commands.guard import interrupted, supervised
+try:
+    import signal
+
+    from exactfold.commands.guard import interrupted, supervised
+except KeyboardInterrupt:
+    os.write(2, b"exactfold: interrupted\n")
+    os._exit(130)
 
 
 def main() -> None:
-    """Run the command line; an interruption or a shortage while it loads is no verdict either."""
-    supervised(_run)
+    """Run the command line; an interruption or a shortage while it loads is no verdict either.
 
-
-def _run() -> None:
+    Ctrl-C before these lines, while Python itself starts (its first 20 ms or so), is answered by
+    Python: it ends without output or with a traceback.
+    """
     loud = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if loud:
         signal.signal(signal.SIGINT, interrupted)
-    from exactfold.cli import main as command_line
 
-    if loud:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-    command_line()
+    def run() -> None:
+        from exactfold.cli import main as command_line
+
+        if loud:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+        command_line()
+
+    supervised(run)
 
 
 if __name__ == "__main__":

@@ -5,23 +5,23 @@ from __future__ import annotations
 import io
 import json
 import sys
-from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from exactfold.commands.parameters import (
-    Command,
-    Group,
     Json,
     Pattern,
     Patterns,
     Signs,
     Snap,
     Up,
+    complete_method,
+    degrees,
     flag,
+    method_name,
+    whole,
 )
 from exactfold.commands.shell import (
     EXIT,
@@ -32,40 +32,27 @@ from exactfold.commands.shell import (
     not_a_dash,
     output_failed,
     reported,
-    say,
     standard_input,
     standard_streams,
 )
-from exactfold.count.solvers import ALIASES, METHODS
+from exactfold.commands.usage import Command, Group
+from exactfold.count.registry import METHODS
 from exactfold.errors import UsageError
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import one_thread
 
-if TYPE_CHECKING:
-    from exactfold.branches.result import BranchCount
-    from exactfold.count.stream import StreamedCount
-
 # Each command imports what it needs: loading everything takes longer than most of the work.
 
 app = typer.Typer(
     help="Proven branch counts of triangulated origami near the unfolded state.",
-    epilog="Exit codes: 0 proved or valid, 1 refuted or certificate invalid, 2 wrong usage, "
-    "3 bad input, 4 undecided, 130 interrupted.",
+    epilog="Exit codes: 0 proved or valid; 1 refuted, or certificate invalid; 2 wrong usage; "
+    "3 bad input; 4 undecided, or a sheet of a kind that is not counted; 70 a process died, or a "
+    "defect of exactfold; 71 not enough memory; 74 the output cannot be written; 130 interrupted.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     cls=Group,
 )
-
-
-if TYPE_CHECKING:
-
-    class Method(StrEnum):
-        """What --method may be."""
-
-        auto = "auto"
-else:
-    Method = StrEnum("Method", {name: name for name in (*METHODS, *ALIASES)})
 
 
 @app.command(cls=Command)
@@ -73,12 +60,14 @@ else:
 def count(
     patterns: Patterns,
     method: Annotated[
-        Method,
+        str,
         typer.Option(
+            parser=method_name,
+            autocompletion=complete_method,
             metavar="METHOD",
             help=f"{', '.join(METHODS)}: how solutions are found. The proof does not depend on it.",
         ),
-    ] = Method.auto,
+    ] = "auto",
     certificate: Annotated[
         Path | None,
         typer.Option(
@@ -103,21 +92,24 @@ def count(
     ] = False,
     workers: Annotated[
         int | None,
-        typer.Option(min=1, metavar="N", help="Processes of --stream. Default: all cores."),
+        typer.Option(
+            parser=whole(1), metavar="N", help="Processes of --stream. Default: all cores."
+        ),
     ] = None,
     jsonl: Annotated[
         Path | None,
         typer.Option(
             callback=not_a_dash,
             metavar="OUT.jsonl",
-            help="Write a line of JSON for each pattern as it is ready; files whose line is there "
-            "already are skipped, so the same command goes on after an interruption.",
+            help="Write a line of JSON for each pattern as it is ready; files that were "
+            "counted there already are skipped, so the same command goes on after an interruption; "
+            "files that failed are tried again.",
         ),
     ] = None,
     jobs: Annotated[
         int | None,
         typer.Option(
-            min=1, metavar="N", help="Processes for several patterns. Default: all cores."
+            parser=whole(1), metavar="N", help="Processes for several patterns. Default: all cores."
         ),
     ] = None,
     dask: Annotated[
@@ -131,7 +123,7 @@ def count(
     as_json: Json = False,
     snap: Snap = None,
     seed: Annotated[
-        int, typer.Option(min=0, metavar="S", help="Seed of the complex homotopy.")
+        int, typer.Option(parser=whole(0), metavar="S", help="Seed of the complex homotopy.")
     ] = 0,
     everything: Annotated[bool, flag("--all", text="List every way.")] = False,
     verbose: Annotated[
@@ -152,56 +144,28 @@ def count(
                 "--certificate, --stream, --resume and --workers go with one pattern and "
                 "without --jsonl"
             )
-        batch = Batch(patterns, jsonl, jobs, dask, method.value, seed, snap, as_json, everything)
+        batch = Batch(patterns, jsonl, jobs, dask, method, seed, snap, as_json, everything)
         raise typer.Exit(batch.run())
     if jobs is not None:
         raise UsageError("--jobs goes with several patterns or --jsonl")
     [pattern] = patterns
-    from exactfold import report
-    from exactfold.commands.patterns import read
-    from exactfold.commands.stream import Streaming, advice
-    from exactfold.commands.warnings import warnings
-    from exactfold.count.collect import count_branches
-    from exactfold.evidence.entries import write_certificate
-    from exactfold.evidence.listing import certificate as certificate_of
+    from exactfold.commands.count import Asked
 
-    apart(certificate, pattern, stream)
-    result: BranchCount
-    streamed: StreamedCount | None = None
-    if stream is not None:
-        if method.value != "auto":
-            raise UsageError("--stream has a method of its own: leave --method away")
-        asked = Streaming(pattern, stream, resume, workers, dask, snap, seed, certificate)
-        result = streamed = asked.run()
-    elif resume or workers is not None or dask is not None:
-        raise UsageError("--resume, --workers and --dask go with --stream")
-    else:
-        with Bar("reading") as bar:
-            file = read(pattern, snap)
-            for warning in warnings(file.pattern):
-                say(warning)
-            if (better := advice(file.pattern)) is not None:
-                say(better)
-            bar("solving")
-            result = count_branches(file.pattern, method=method.value, seed=seed, progress=bar)
-        result = replace(result, snapped=file.snapped)
-    written = None
-    in_stream = streamed is not None and result.proof is None
-    if certificate is not None and result.status is PROVED and not in_stream:
-        write_certificate(certificate_of(result), certificate)
-        written = str(certificate)
-    elif certificate is not None and result.status is PROVED:
-        say(f"the proof is in {stream}; no other was written")
-    elif certificate is not None:
-        say("no certificate was written: nothing is proved")
-    if as_json:
-        print(json.dumps(result.to_dict(written, name_of(pattern))))
-    else:
-        shown = report.count_report(
-            result, written, everything=everything, streamed=streamed, verbose=verbose
-        )
-        report.show(shown)
-    raise typer.Exit(EXIT[result.status])
+    asked = Asked(
+        pattern,
+        method,
+        certificate,
+        stream,
+        resume,
+        workers,
+        dask,
+        as_json,
+        snap,
+        seed,
+        everything,
+        verbose,
+    )
+    raise typer.Exit(asked.run())
 
 
 @app.command(cls=Command)
@@ -211,6 +175,7 @@ def check(
         Path,
         typer.Argument(
             callback=standard_input,
+            metavar="CERTIFICATE",
             help="A certificate written by `count` or `branch`, of any kind.",
         ),
     ],
@@ -218,25 +183,16 @@ def check(
     workers: Annotated[
         int | None,
         typer.Option(
-            min=1,
+            parser=whole(1),
             metavar="N",
             help="Processes for a compact certificate (`count --stream`). Default: all cores.",
         ),
     ] = None,
 ) -> None:
     """Verify every claim of a certificate with code that trusts nothing."""
-    from exactfold.commands import check as check_command
+    from exactfold.commands.check import valid
 
-    with Bar("checking"):
-        claims, text = check_command.verified(certificate, workers)
-    if as_json:
-        short = {k: v for k, v in (claims or {}).items() if k not in check_command.LONG}
-        head = {**headed("check"), "name": name_of(certificate)}
-        reason = text if claims is None else "every claim holds"
-        print(json.dumps({**head, "valid": claims is not None, "reason": reason, "claims": short}))
-    else:
-        print(f"INVALID: {text}" if claims is None else text)
-    raise typer.Exit(0 if claims is not None else 1)
+    raise typer.Exit(0 if valid(certificate, workers, as_json) else 1)
 
 
 @app.command(cls=Command)
@@ -292,7 +248,9 @@ def export(
     up: Up = None,
     place: Annotated[
         int | None,
-        typer.Option("--branch", min=1, metavar="N", help="Instead: the N-th that `count` lists."),
+        typer.Option(
+            "--branch", parser=whole(1), metavar="N", help="Instead: the N-th that `count` lists."
+        ),
     ] = None,
     output: Annotated[
         Path | None,
@@ -300,7 +258,9 @@ def export(
     ] = None,
     amount: Annotated[
         float | None,
-        typer.Option(metavar="DEG", help="The largest fold angle, in degrees. Default: 30."),
+        typer.Option(
+            parser=degrees, metavar="DEG", help="The largest fold angle, in degrees. Default: 30."
+        ),
     ] = None,
     force: Annotated[
         bool, flag("--force", text="Write a branch that is enclosed but not proved, too.")
@@ -326,10 +286,15 @@ def export(
 @app.command("random", cls=Command)
 @reported
 def random_(
-    interior: Annotated[int, typer.Option(min=1, metavar="N", help="Number of interior vertices.")],
-    seed: Annotated[int, typer.Option(metavar="S", help="Seed; the same seed, the same pattern.")],
+    interior: Annotated[
+        int, typer.Option(parser=whole(1), metavar="N", help="Number of interior vertices.")
+    ],
+    seed: Annotated[
+        int,
+        typer.Option(parser=whole(), metavar="S", help="Seed; the same seed, the same pattern."),
+    ],
     denominator: Annotated[
-        int, typer.Option(min=2, metavar="D", help="Coordinates are multiples of 1/D.")
+        int, typer.Option(parser=whole(2), metavar="D", help="Coordinates are multiples of 1/D.")
     ] = 1024,
     redraw: Annotated[
         bool,
@@ -363,7 +328,11 @@ def random_(
 def info(
     pattern: Pattern,
     exact: Annotated[
-        bool, flag("--exact", text="Also ranks, self stresses, curvature forms and the digest.")
+        bool,
+        flag(
+            "--exact",
+            text="Also ranks, self stresses, curvature forms, the digest, the area as a fraction.",
+        ),
     ] = False,
     as_json: Json = False,
     snap: Snap = None,
@@ -371,13 +340,10 @@ def info(
     """Report what is exactly known of a pattern without solving for its branches."""
     from exactfold import report
     from exactfold.commands.patterns import read
-    from exactfold.commands.warnings import warnings
     from exactfold.rigidity.facts import pattern_facts
 
     with Bar("reading") as bar:
         sheet = read(pattern, snap).pattern
-        for warning in warnings(sheet):
-            say(warning)
         facts = pattern_facts(sheet, bar)
         expected, table = report.expectation(facts), report.info_report(facts, exact=exact)
     if as_json:

@@ -178,16 +178,20 @@ class PinchError(NotADiskError):
     """A vertex at which the sheet hangs together by a point only."""
 
 
-class NoInteriorVertexError(PatternError):
-    """A pattern without interior vertices has no curvature equation and no branches to count."""
-
-
 class CollinearPointsError(PatternError):
     """Points that span no triangle."""
 
 
 class NotApplicableError(ExactfoldError):
     """A construction or method does not apply to this pattern; the message says why."""
+
+
+class NotCountedError(NotApplicableError):
+    """The sheet is in order, but of a kind whose branches are not listed or named (exit code 4)."""
+
+
+class NoInteriorVertexError(NotCountedError):
+    """A pattern without interior vertices has no curvature equation and no branches to count."""
 
 
 class UndecidedBranchError(ExactfoldError):
@@ -222,6 +226,10 @@ class DualSpaceError(ExactfoldError):
 
 class WorkerDiedError(ExactfoldError):
     """A worker process was killed or ran out of memory; nothing that was written is lost."""
+
+
+class NotEnoughMemoryError(WorkerDiedError):
+    """Memory is limited, and there is not enough of it; nothing that was written is lost."""
 
 
 class DaskMissingError(ExactfoldError):

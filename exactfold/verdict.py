@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import NoReturn
+
+TYPE_CHECKING = False  # as in typing, which takes longer to load than all that is imported here
+if TYPE_CHECKING:
+    from typing import NoReturn
 
 
 class Verdict(Enum):

@@ -7,13 +7,15 @@ import importlib
 import json
 import sys
 import time
+from functools import cache
 
 from proofs import MODULES
 from proofs.framework import Proof, Ruling
 
 
+@cache
 def load(name: str) -> Proof:
-    """The proof of one module."""
+    """The proof of one module, run once."""
     proof = importlib.import_module(f"proofs.{name}").prove()
     if not isinstance(proof, Proof):
         raise TypeError(f"proofs.{name}.prove() returned no Proof")

@@ -18,21 +18,16 @@ import sympy
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import (
-    BranchCount,
-    BranchSystem,
-    CreasePattern,
-    curvature_form,
-    definite_stress,
-    homotopy,
-    isolate,
-    random_square,
-)
+from exactfold import BranchCount, CreasePattern, random_square
 from exactfold.branches.roots import BoxRoot
+from exactfold.certify import isolate
 from exactfold.pattern.families import flat_vertex_square
+from exactfold.problem import BranchSystem
 from exactfold.problem.branch_system import Chart, notch_chart
 from exactfold.problem.sign_rows import Functionals
-from exactfold.rigidity.definite_stress import disk_multipliers
+from exactfold.rigidity import curvature_form, definite_stress
+from exactfold.rigidity.definite_stresses import disk_multipliers
+from exactfold.solve import homotopy
 from exactfold.verdict import PROVED
 from proofs.chambers import corner_sign, counted, solve
 from proofs.framework import Proof, Ruling, Script, run

@@ -11,15 +11,10 @@ from pathlib import Path
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from exactfold import (
-    BranchSystem,
-    CreasePattern,
-    count_branches,
-    curvature_form,
-    definite_stress,
-    families,
-)
+from exactfold import CreasePattern, count_branches, families
 from exactfold.exact.linalg import inertia
+from exactfold.problem import BranchSystem
+from exactfold.rigidity import curvature_form, definite_stress
 from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Ruling, Script, run
 

@@ -30,7 +30,8 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, count_branches, curvature_form, definite_stress, families
+from exactfold import CreasePattern, count_branches, families
+from exactfold.rigidity import curvature_form, definite_stress
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.mountain_valley import sector
 

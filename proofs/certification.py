@@ -13,9 +13,10 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.rings import ring
 
-from exactfold import QuadraticSystem, krawczyk
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
+from exactfold.certify import krawczyk
 from exactfold.certify.box import IsolatingBox
+from exactfold.problem import QuadraticSystem
 from proofs.dual_space import dual_space
 from proofs.framework import Proof, Ruling, Script, run
 

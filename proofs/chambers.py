@@ -9,22 +9,18 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import product
 
-from exactfold import (
-    BranchCount,
-    CreasePattern,
-    QuadraticForm,
-    QuadraticSystem,
-    count_branches,
-    curvature_form,
-    isolate,
-)
+from exactfold import BranchCount, CreasePattern, count_branches
 from exactfold.branches.branch import Branch
 from exactfold.branches.roots import BoxRoot, EnclosedRoot
+from exactfold.certify import isolate
 from exactfold.errors import NotApplicableError
+from exactfold.exact import QuadraticForm
 from exactfold.exact.linalg import Inertia, from_fmpq, inertia, to_flint
 from exactfold.exact.numbers import integer_row
+from exactfold.problem import QuadraticSystem
+from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import vertex_sign_functional
-from exactfold.solve.homotopy import homotopy
+from exactfold.solve.homotopy_ends import homotopy
 from exactfold.verdict import PROVED, Verdict
 
 Heights = dict[int, Fraction]

@@ -13,7 +13,7 @@ from sympy import QQ
 from sympy.polys.fields import field
 from sympy.polys.rings import ring
 
-from exactfold import curvature_form, stress_form, wheel_stress
+from exactfold.rigidity import curvature_form, stress_form, wheel_stress
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.wheel_stress import Angle, free_wheel
 

@@ -15,15 +15,10 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import (
-    CreasePattern,
-    QuadraticForm,
-    count_branches,
-    curvature_form,
-    families,
-    random_square,
-)
+from exactfold import CreasePattern, count_branches, families, random_square
+from exactfold.exact import QuadraticForm
 from exactfold.exact.linalg import from_fmpq, inertia, nullspace, rank, to_flint
+from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.vertex_forms import star

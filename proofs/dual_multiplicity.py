@@ -129,7 +129,7 @@ def check_complete(system: QuadraticSystem, proofs: Sequence[tuple[RootClass, Du
     Raises `DualSpaceError` if the proof is incomplete, which says nothing about what is missing.
 
     >>> from proofs.dual_space import dual_space
-    >>> from exactfold.algebra.groebner import groebner
+    >>> from exactfold.algebra.groebner_bases import groebner
     >>> hyperbola = [[0, 0, 0], [0, 1, 0], [0, 0, -1]]
     >>> double_line = [[1, 0, 0], [0, 0, 0], [0, 0, 0]]
     >>> system = QuadraticSystem.from_rational([hyperbola, double_line])

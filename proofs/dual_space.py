@@ -63,7 +63,7 @@ def dual_space(system: QuadraticSystem, root_class: RootClass, limit: int) -> Du
 
     Raises `DualSpaceError` if the class is not a zero of the system.
 
-    >>> from exactfold.algebra.groebner import groebner
+    >>> from exactfold.algebra.groebner_bases import groebner
     >>> parabola_and_axis = QuadraticSystem.from_rational(
     ...     [[[2, 0, 0], [0, 0, -1], [0, -1, 0]], [[0, 0, 0], [0, 1, 0], [0, 0, 0]]])
     >>> [root] = groebner(parabola_and_axis).classes

@@ -14,9 +14,9 @@ from pathlib import Path
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from exactfold import curvature_form, wheel_stress
 from exactfold.exact.linalg import inertia
 from exactfold.pattern.families import single_vertex
+from exactfold.rigidity import curvature_form, wheel_stress
 from exactfold.rigidity.timelike import round_cone
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.vertex_forms import cot, csc, star, symbols, unit

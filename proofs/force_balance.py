@@ -13,7 +13,8 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import CreasePattern, families, wheel_stress
+from exactfold import CreasePattern, families
+from exactfold.rigidity import wheel_stress
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.wheel_stress import Angle, cross, dot, with_vertices
 

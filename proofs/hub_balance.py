@@ -15,7 +15,7 @@ from sympy import QQ
 from sympy.polys.fields import field
 from sympy.polys.rings import ring
 
-from exactfold import wheel_stress
+from exactfold.rigidity import wheel_stress
 from proofs.force_balance import spoke, star
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.wheel_stress import Angle, cross

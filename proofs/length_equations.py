@@ -11,8 +11,9 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, curvature_form, families, rigidity_matrix, self_stresses
+from exactfold import CreasePattern, families
 from exactfold.exact.linalg import rank
+from exactfold.rigidity import curvature_form, rigidity_matrix, self_stresses
 from proofs.framework import Proof, Ruling, Script, run
 
 NAME = "length_equations"

@@ -29,7 +29,8 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, curvature_form, families
+from exactfold import CreasePattern, families
+from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
 from proofs.framework import Proof, Ruling, Script, run
 

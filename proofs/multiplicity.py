@@ -27,12 +27,14 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import BranchSystem, CreasePattern, QuadraticSystem, families, groebner
+from exactfold import CreasePattern, families
+from exactfold.algebra import groebner
 from exactfold.algebra.exact_solution import ExactSolution, RootClass
 from exactfold.exact.linalg import inertia, nullspace
+from exactfold.problem import BranchSystem, QuadraticSystem
 from exactfold.problem.branch_system import Chart, notch_chart
 from exactfold.problem.sign_rows import Functionals
-from exactfold.rigidity.definite_stress import disk_multipliers
+from exactfold.rigidity.definite_stresses import disk_multipliers
 from proofs.branch_counts import OCTAHEDRON, SQUARE, TWISTED, gram, inner_points, restricted
 from proofs.chambers import jacobian
 from proofs.dual_space import dual_space, taylor_expansions, unit_rank

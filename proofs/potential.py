@@ -13,8 +13,9 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import curvature_form, random_square
+from exactfold import random_square
 from exactfold.exact.linalg import inertia
+from exactfold.rigidity import curvature_form
 from exactfold.rigidity.timelike import round_cone
 from proofs.framework import Proof, Ruling, Script, run
 

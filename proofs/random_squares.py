@@ -20,17 +20,12 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import (
-    BranchSystem,
-    CreasePattern,
-    QuadraticSystem,
-    count_branches,
-    groebner,
-    random_square,
-)
+from exactfold import CreasePattern, count_branches, random_square
+from exactfold.algebra import groebner
 from exactfold.branches.branch import Branch
 from exactfold.branches.result import BranchCount
-from exactfold.problem.perturbed import perturbed
+from exactfold.problem import BranchSystem, QuadraticSystem
+from exactfold.problem.perturbation import perturbed
 from exactfold.rigidity.functionals import vertex_sign_functional
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.h1_triangulations import is_h1

@@ -13,9 +13,10 @@ from typing import Any
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from exactfold import CreasePattern, curvature_form, rigidity_matrix, wheel_stress
+from exactfold import CreasePattern
 from exactfold.exact.linalg import inertia, rank
 from exactfold.pattern.families import single_vertex
+from exactfold.rigidity import curvature_form, rigidity_matrix, wheel_stress
 from exactfold.rigidity.kapovich_millson import kapovich_millson
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.vertex_forms import cross, dot, symbols, unit

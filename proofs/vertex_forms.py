@@ -21,9 +21,10 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import CreasePattern, curvature_form, stress_form, wheel_stress
+from exactfold import CreasePattern
 from exactfold.exact.linalg import from_fmpq, to_flint
 from exactfold.pattern.families import single_vertex
+from exactfold.rigidity import curvature_form, stress_form, wheel_stress
 from exactfold.rigidity.kapovich_millson import kapovich_millson
 from proofs.framework import Proof, Ruling, Script, run
 

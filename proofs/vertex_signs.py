@@ -11,9 +11,10 @@ from pathlib import Path
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from exactfold import CreasePattern, definite_stress, random_square
+from exactfold import CreasePattern, random_square
 from exactfold.exact.linalg import rank
 from exactfold.pattern.families import flat_octahedron_in_square
+from exactfold.rigidity import definite_stress
 from exactfold.rigidity.functionals import vertex_sign_functional
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.patterns import SPIKY

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from exactfold.certify import arb_krawczyk, interval_newton, krawczyk
+from exactfold.certify import ball_krawczyk, ball_newton, exact_krawczyk
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.verdict import Verdict
@@ -27,11 +27,11 @@ class Certifier:
 
 
 CERTIFIERS = [
-    Certifier("krawczyk", krawczyk.krawczyk, krawczyk.decide_contains_one_zero),
+    Certifier("krawczyk", exact_krawczyk.krawczyk, exact_krawczyk.decide_contains_one_zero),
     Certifier(
         "interval_newton",
-        interval_newton.interval_newton,
-        interval_newton.decide_contains_one_zero,
+        ball_newton.interval_newton,
+        ball_newton.decide_contains_one_zero,
     ),
-    Certifier("arb_krawczyk", arb_krawczyk.arb_krawczyk, arb_krawczyk.decide_contains_one_zero),
+    Certifier("arb_krawczyk", ball_krawczyk.arb_krawczyk, ball_krawczyk.decide_contains_one_zero),
 ]

@@ -13,6 +13,9 @@ from pathlib import Path
 import pytest
 
 import exactfold
+from exactfold.cli import app
+from exactfold.commands.guard import INTERRUPTED, NO_MEMORY
+from exactfold.commands.shell import BAD_INPUT, EXIT, INTERNAL, OUTPUT_FAILED, USAGE
 from exactfold.schemas import VERSIONS, schema
 
 ROOT = Path(__file__).parent.parent
@@ -164,15 +167,23 @@ def test_examples_are_found() -> None:
     assert sum(len(examples(page)) for page in PAGES) >= 4
 
 
-def test_statements_and_errata_are_up_to_date() -> None:
-    folder = ROOT / "docs"
-    pages = runpy.run_path(str(folder / "make_statements.py"))["pages"]()
-    assert sorted(pages) == ["errata.md", "statements.md"]
-    for name, text in pages.items():
-        assert (folder / name).read_text(encoding="utf-8") == text
-
-
 def test_reference_is_up_to_date() -> None:
     page = ROOT / "docs" / "make_reference.py"
     names = runpy.run_path(str(page))
     assert names["PAGE"].read_text(encoding="utf-8") == names["reference"]()
+
+
+def test_the_help_and_the_page_have_the_same_exit_codes() -> None:
+    text = (ROOT / "docs" / "files.md").read_text(encoding="utf-8")
+    rows = re.findall(r"(?m)^\| (\d+) \| (.+) \|$", text)
+    given = re.findall(r"(\d+) ([^;.]+)[;.]", str(app.info.epilog))
+    assert [code for code, _ in given] == [code for code, _ in rows]
+    assert [code for code, _ in given] == sorted((code for code, _ in given), key=int)
+    named = {*EXIT.values(), USAGE, BAD_INPUT, INTERNAL, NO_MEMORY, OUTPUT_FAILED, INTERRUPTED}
+    assert {int(code) for code, _ in given} == named
+
+
+def test_the_page_names_every_kind_of_output() -> None:
+    text = (ROOT / "docs" / "files.md").read_text(encoding="utf-8")
+    (listed,) = re.findall(r"the JSON Schema of each kind: (.+?)\. ", text.replace("\n", " "))
+    assert re.findall(r"`([a-z-]+)`", listed) == list(VERSIONS)

@@ -1,6 +1,14 @@
 """The package as a whole."""
 
+import importlib
 import importlib.metadata
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import rooms
 
 import exactfold
 
@@ -10,6 +18,74 @@ def test_the_version_is_that_of_the_installed_package():
 
 
 def test_every_public_name_is_there():
-    for name in exactfold.__all__:
-        assert getattr(exactfold, name) is not None
+    found = rooms.public()
+    assert all(value is not None for value in found.values())
     assert set(exactfold.__all__) <= set(dir(exactfold))
+    assert len(found) > 100
+
+
+def test_few_names_are_on_top_and_all_of_them_are_in_a_room():
+    found = rooms.public()
+    modules = {name for name, value in found.items() if inspect.ismodule(value)}
+    on_top = {name for name in found if "." not in name} - modules
+    assert 20 < len(on_top) <= 30
+    inside = {id(value) for name, value in found.items() if "." in name}
+    alone = {name for name in on_top if id(found[name]) not in inside}
+    assert alone == {"PROVED", "REFUTED", "UNDECIDED", "Verdict", "ExactfoldError", "InputError"}
+
+
+def test_a_module_hides_no_public_name_of_its_room():
+    """Importing `room/name.py` would put the module in place of the function of that name."""
+    for name, value in rooms.public().items():
+        room, _, last = name.rpartition(".")
+        file = Path(exactfold.__file__).parent.joinpath(*room.split("."), f"{last}.py")
+        assert inspect.ismodule(value) or not file.exists(), name
+
+
+def test_stubs_and_rooms_have_the_same_names():
+    folder = Path(exactfold.__file__).parent
+    for stub in folder.rglob("__init__.pyi"):
+        package = ".".join(("exactfold", *stub.parent.relative_to(folder).parts))
+        names: dict[str, object] = {}
+        exec(stub.read_text("utf-8").replace("__version__: str", ""), names)
+        names.pop("__builtins__")
+        module = importlib.import_module(package)
+        assert module.__all__ == sorted(names)
+        assert all(getattr(module, name) is value for name, value in names.items())
+
+
+@pytest.mark.parametrize(
+    ("name", "home"),
+    [
+        ("groebner", "exactfold.algebra.groebner"),
+        ("example_path", "exactfold.data.example_path"),
+        ("degenerate", "exactfold.pattern.degenerate"),
+        ("verify", "exactfold.checker.verify"),
+        ("UsageError", "exactfold.errors.UsageError"),
+    ],
+)
+def test_a_name_that_is_not_on_top_is_said_to_be_elsewhere(name, home):
+    with pytest.raises(AttributeError) as caught:
+        getattr(exactfold, name)
+    assert str(caught.value) == f"module 'exactfold' has no attribute {name!r}: it is {home}"
+
+
+@pytest.mark.parametrize("package", ["exactfold", "exactfold.certify"])
+@pytest.mark.parametrize("name", ["brunch", "_hidden"])
+def test_a_name_that_is_nowhere_is_missing(package, name):
+    with pytest.raises(AttributeError) as caught:
+        getattr(importlib.import_module(package), name)
+    assert str(caught.value) == f"module {package!r} has no attribute {name!r}"
+
+
+def test_rooms_need_not_be_imported():
+    script = (
+        "import exactfold, sys\n"
+        "assert not [name for name in sys.modules if name.startswith('exactfold.certify')]\n"
+        "assert 'numpy' not in sys.modules\n"
+        "print(exactfold.certify.krawczyk.__name__, exactfold.pattern.families.two_vertex().Vi)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=False
+    )
+    assert (done.stdout, done.stderr) == ("krawczyk 2\n", "")

@@ -12,7 +12,7 @@ from flint import fmpz
 from exactfold.errors import NotApplicableError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.rigidity.curvature import curvature_form
 
 _PRIMES = 100  # squares of the first primes are taken out of D

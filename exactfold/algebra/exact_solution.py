@@ -14,7 +14,7 @@ from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 from exactfold.arrays import ComplexArray
 from exactfold.errors import ParametrisationError
 from exactfold.exact.divisibility import are_multiples, is_squarefree
-from exactfold.exact.factor_degrees import irreducibility_primes
+from exactfold.exact.factors import irreducibility_primes
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.exact.real_roots import isolate_real_roots
 from exactfold.exact.univariate import (

@@ -8,7 +8,7 @@ from fractions import Fraction
 from flint import fmpq_mat
 
 from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.groebner import classes_of_ideal
+from exactfold.algebra.groebner_bases import classes_of_ideal
 from exactfold.algebra.quotient import Exponent, separating_forms
 from exactfold.errors import ParametrisationError
 from exactfold.exact.linalg import from_fmpq

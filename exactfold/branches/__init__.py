@@ -1,1 +1,5 @@
 """What the solutions mean."""
+
+from exactfold.lazy import attached
+
+__getattr__, __dir__ = attached(__name__)

@@ -10,7 +10,7 @@ from math import isfinite, radians
 
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import Edge
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.rigidity.functionals import fold_functional
 from exactfold.rigidity.timelike import sqrt_approximation
 

@@ -15,6 +15,7 @@ from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import described
+from exactfold.pattern.near_degeneracy import warnings
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, Verdict
 
@@ -131,10 +132,18 @@ class Branch:
 
     @property
     def exact_heights(self) -> dict[int, Any] | None:
-        """The height of every vertex as an exact number, None where the root is known by bounds.
+        """The height of every vertex as an exact number, None where that is not quickly known.
 
         A `Fraction`, or a sympy number: in radicals where the height is of degree 2 over Q, else
-        the root of its minimal polynomial in an isolating interval (`CRootOf`).
+        the root of its minimal polynomial in an isolating interval (`CRootOf`). Known are roots
+        that an exact engine found, as in a count with `method="groebner"` or with flat vertices,
+        and otherwise, of the branches of a count, those of at most four foldable vertices and
+        rational ones of any number, which are computed here. Of `find_branch`: heights that it
+        proved to be rational.
+
+        >>> from exactfold.count.collect import count_branches
+        >>> count_branches("single-vertex-4")["+"].exact_heights[4]
+        Fraction(1, 2)
         """
         if self.root is None:
             return None
@@ -208,6 +217,7 @@ class Branch:
             "radius": None if radius is None else format_rational(radius),
             "squared_distance": None if squared is None else format_rational(squared),
             "steps": self.steps,
+            "warnings": warnings(self.pattern),
             "seconds": round(self.seconds, 3),
         }
 

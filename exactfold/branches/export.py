@@ -74,7 +74,7 @@ def export_branch(
     >>> branch = exactfold.find_branch(pattern, "-+")
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     written = export_branch(branch, os.path.join(folder, "branch.fold"))
-    ...     exactfold.load_fold(os.path.join(folder, "branch.fold")).pattern == pattern
+    ...     exactfold.read_fold(os.path.join(folder, "branch.fold")) == pattern
     True
     >>> round(written.angles[1, 4], 1), round(written.angles[1, 5], 1), branch.assignment_text
     (30.0, -1.2, 'VVMMVVM')

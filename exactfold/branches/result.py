@@ -14,6 +14,7 @@ from exactfold.certify.algebraic import AlgebraicProof
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import described
+from exactfold.pattern.near_degeneracy import near_degenerate, warnings
 from exactfold.problem.branch_system import Chart
 from exactfold.rigidity.rigid_triangles import RigidTriangle
 from exactfold.schemas import headed
@@ -116,6 +117,12 @@ class BranchCount:
         return groups
 
     @property
+    def warning(self) -> str | None:
+        """What to know of the pattern before the count is read: see `near_degenerate`."""
+        found = near_degenerate(self.pattern)
+        return None if found is None else found.text
+
+    @property
     def by(self) -> str | None:
         """How what is stated was proved: by "enumeration", by the "theorem" alone, or None."""
         if self.method == "theorem":
@@ -140,6 +147,7 @@ class BranchCount:
             "dimension": self.dimension,
             "degree": _number(self.degree),
             "certificate": certificate,
+            "warnings": warnings(self.pattern),
             "seconds": round(self.seconds, 3),
             "open_questions": list(self.open_questions),
             "settings": dict(self.settings),
@@ -184,6 +192,8 @@ class BranchCount:
         )
         more = len(self.branches) - 64
         tail = f"<p>... and {more} more</p>" if more > 0 else ""
+        if self.warning is not None:
+            tail += f"<p>warning: {self.warning}</p>"
         head = "<tr><th>vertex signs</th><th>mountain-valley</th><th>multiplicity</th></tr>"
         count = "" if self.distinct is None else f"{counted(self.distinct, 'branch')}, "
         return (

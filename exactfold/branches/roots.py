@@ -39,7 +39,7 @@ class ChartRoot(Protocol):
 
 def sharper(system: QuadraticSystem, box: IsolatingBox, bits: int) -> IsolatingBox | None:
     """A box of the same zero with `bits` bits after the point, by the exact test."""
-    from exactfold.certify.krawczyk import krawczyk_at  # FLINT, for this alone
+    from exactfold.certify.exact_krawczyk import krawczyk_at  # FLINT, for this alone
 
     if box.bits >= bits:
         return None
@@ -105,10 +105,18 @@ class BoxRoot:
         return replace(self, side=-self.side)
 
     def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> Any:
-        """The value, if an exact engine knows the zero; a box alone holds bounds."""
-        if self.known is None:
-            return None
-        return replace(self.known, side=self.side).exact(row, unit)
+        """The value, if an exact engine knows the zero or `zero_in` finds it."""
+        known = self._algebraic
+        return None if known is None else replace(known, side=self.side).exact(row, unit)
+
+    @cached_property
+    def _algebraic(self) -> AlgebraicRoot | None:
+        if self.known is not None or self.system is None:
+            return self.known
+        from exactfold.branches.known_roots import zero_in  # FLINT, for this alone
+
+        found = zero_in(self.system, self.box)
+        return None if found is None else AlgebraicRoot(*found)
 
 
 @dataclass(frozen=True)

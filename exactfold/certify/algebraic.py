@@ -11,7 +11,7 @@ from exactfold.algebra.flat_zeros import flat_equations
 from exactfold.certify.box import IsolatingBox
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.flat_sheets import FlatSheets
-from exactfold.rigidity.definite_stress import definite_stress
+from exactfold.rigidity.definite_stresses import definite_stress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 FlatBox = tuple[FlatSheets, IsolatingBox]

@@ -9,7 +9,7 @@ import numpy as np
 
 from exactfold.arrays import ComplexArray
 from exactfold.certify.box import IsolatingBox, Uncertified
-from exactfold.certify.krawczyk import krawczyk
+from exactfold.certify.exact_krawczyk import krawczyk
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.progress import Steps
 from exactfold.solve.candidates import Candidates
@@ -115,7 +115,7 @@ def _prove_meeting(
     for point in group:
         (result,) = krawczyk(system, [point], precisions=_RISING, reach=None)
         if isinstance(result, Uncertified):
-            from exactfold.certify.interval_newton import interval_newton  # loads mpmath
+            from exactfold.certify.ball_newton import interval_newton  # loads mpmath
 
             (result,) = interval_newton(system, [point.tolist()], precisions=_INTERVAL)
         if isinstance(result, Uncertified):

@@ -18,7 +18,7 @@ def recognise(system: QuadraticSystem, boxes: Sequence[IsolatingBox]) -> list[Ro
     `RootClass.verify` and has exactly one zero in each of the boxes. None if no rational
     coefficients were found, which decides nothing.
 
-    >>> from exactfold.certify.krawczyk import krawczyk
+    >>> from exactfold.certify.exact_krawczyk import krawczyk
     >>> system = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
     >>> [c.polynomial for c in recognise(system, krawczyk(system, [[1.4142], [-1.4142]]))]
     [(-2, 0, 1)]

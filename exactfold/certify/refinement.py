@@ -1,4 +1,8 @@
-"""Heights in high precision with every curvature slightly above its target; proposes only."""
+"""Heights in high precision with every curvature slightly above its target; proposes only.
+
+The equations are those of `solve.sparse_newton`. Its float steps take exact bends and residuals
+here, so that each gains the digits of a float.
+"""
 
 from __future__ import annotations
 

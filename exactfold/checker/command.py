@@ -6,6 +6,7 @@ import json
 import re
 import sys
 import traceback
+from collections import defaultdict
 from concurrent.futures import BrokenExecutor
 from contextlib import suppress
 from io import BytesIO
@@ -20,6 +21,19 @@ from .reading import CertificateError, FormatError, plain, read_json
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
 
 _COMPACT = re.compile(rb'"format"\s*:\s*"' + COMPACT.encode() + b'"')
+
+_PRINTED = re.compile("exactfold ([a-z-]+) result")
+
+_ADVICE = defaultdict(
+    lambda: "give a certificate: count and branch write one with --certificate",
+    {
+        "count": "write a certificate with --certificate or --stream",
+        "count-stream": "check the file that --stream wrote",
+        "batch-line": "count one pattern with --certificate or --stream",
+        "branch": "write a certificate with --certificate",
+    },
+)
+"""What to give instead, by the kind of result."""
 
 
 def load(text: str) -> dict[str, Any]:
@@ -79,21 +93,28 @@ def _is_compact(first: bytes) -> bool:
 def _stranger(text: str) -> str | None:
     """What a file that is no certificate is, if it is one of those that are taken for one."""
     try:
-        data = json.loads(text)
+        data, end = json.JSONDecoder().raw_decode(text.lstrip())
     except (ValueError, RecursionError):
         return None
     if not isinstance(data, dict):
         return None
     if data.keys() & {"vertices_coords", "faces_vertices", "edges_vertices", "file_spec"}:
         return "this is a FOLD file, a crease pattern and no certificate"
-    if data.keys() >= {"pattern", "status"}:
-        command, advice = (
-            ("branch", "write a certificate with --certificate")
-            if "vertex_signs" in data
-            else ("count", "write a certificate with --certificate or --stream")
-        )
-        return f"this is the result printed by {command} --json, which is no evidence; {advice}"
-    return None
+    several = bool(text.lstrip()[end:].strip())
+    kind = _PRINTED.fullmatch(str(data.get("format")))
+    if kind is None:
+        return None
+    return f"this is {_printed(kind[1], several)}, which is no evidence; {_ADVICE[kind[1]]}"
+
+
+def _printed(kind: str, several: bool) -> str:
+    """What printed a result."""
+    if kind == "batch-line" or (several and kind.startswith("count")):
+        return "a file of results, as count --jsonl writes it"
+    if kind == "error":
+        return "an error that a command printed with --json"
+    command = "count" if kind in ("count-stream", "batch") else kind
+    return f"the result printed by {command} --json"
 
 
 def summary(claims: dict[str, Any]) -> str:

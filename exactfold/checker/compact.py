@@ -6,9 +6,9 @@ Memory does not grow with the file. Blocks may be shared among processes.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from multiprocessing import get_context
 from typing import Any, NamedTuple
 
@@ -38,15 +38,43 @@ def check_line(text: str, number: int) -> str | None:
     return None
 
 
+Said = Generator[str | None, None, None]
+"""What is wrong with each block, or None."""
+
+
+def on_processes(
+    engine: Engine, workers: int, header: str, blocks: Iterator[tuple[str, int]]
+) -> Said:
+    """Blocks checked in several processes, at most two waiting for each."""
+    with ExitStack() as stack:
+        pool = ProcessPoolExecutor(workers, get_context("spawn"), engine.start, (header,))
+        stack.callback(pool.shutdown, cancel_futures=True)
+        waiting: deque[Future[str | None]] = deque()
+        for text, number in blocks:
+            waiting.append(pool.submit(engine.work, text, number))
+            while len(waiting) > 2 * workers:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+
+
 class Engine(NamedTuple):
     """What verifies the blocks: `start(header)` in each process, then `work(text, number)`.
 
-    Processes are started only if there are `least` blocks for each.
+    Processes are started only if there are `least` blocks for each. `share(engine, workers, header,
+    blocks)` starts them and yields what they say of the blocks, in order.
     """
 
     start: Callable[[str], None]
     work: Callable[[str, int], str | None]
     least: int
+    share: Callable[[Engine, int, str, Iterator[tuple[str, int]]], Said] = on_processes
+
+
+def _here(engine: Engine, header: str, blocks: Iterator[tuple[str, int]]) -> Said:
+    engine.start(header)
+    for text, number in blocks:
+        yield engine.work(text, number)
 
 
 INTEGERS = Engine(start_worker, check_line, 1)
@@ -68,8 +96,7 @@ def check_lines(
 ) -> dict[str, Any]:
     """Verify every claim, given the lines of a file; returns the claims.
 
-    With several workers, blocks are checked in that many processes, at most two blocks waiting for
-    each.
+    With several workers, blocks are checked in that many processes.
     """
     first = next(found, None)
     if first is None:
@@ -96,36 +123,27 @@ def check_lines(
 def _check_blocks(
     found: Iterator[str], header: str, blocks: int, workers: int, engine: Engine
 ) -> None:
-    with ExitStack() as stack:
-        pool = None
-        if workers > 1 and blocks >= engine.least * workers:
-            pool = ProcessPoolExecutor(workers, get_context("spawn"), engine.start, (header,))
-            stack.callback(pool.shutdown, cancel_futures=True)
-        else:
-            engine.start(header)
-        waiting: deque[Future[str | None]] = deque()
+    missing: list[CertificateError | FormatError] = []
 
-        def settle(most: int) -> None:
-            while len(waiting) > most:
-                _raise(waiting.popleft().result())
-
+    def there() -> Iterator[tuple[str, int]]:
         for number in range(blocks):
             try:
                 text = next(found, None)
-            except FormatError:
-                settle(0)  # a block before it that does not hold comes first
-                raise
+            except FormatError as error:
+                missing.append(error)
+                return
             if text is None:
-                settle(0)
-                raise CertificateError(f"only {number} of {blocks} blocks are there")
-            if pool is None:
-                _raise(engine.work(text, number))
-                continue
-            waiting.append(pool.submit(engine.work, text, number))
-            settle(2 * workers)
-        settle(0)
+                missing.append(CertificateError(f"only {number} of {blocks} blocks are there"))
+                return
+            yield text, number
 
-
-def _raise(reason: str | None) -> None:
-    if reason is not None:
-        raise CertificateError(reason)
+    if workers > 1 and blocks >= engine.least * workers:
+        said = engine.share(engine, workers, header, there())
+    else:
+        said = _here(engine, header, there())
+    with closing(said):
+        for reason in said:
+            if reason is not None:
+                raise CertificateError(reason)
+    if missing:  # a block before it that does not hold comes first
+        raise missing[0]

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from exactfold.branches.result import BranchCount
+from exactfold.commands.guard import NO_MEMORY
 from exactfold.commands.jsonl import Lines
 from exactfold.commands.patterns import located
 from exactfold.commands.shell import (
@@ -26,9 +27,16 @@ from exactfold.commands.shell import (
     stopped,
 )
 from exactfold.count.batch import Job, Source, count_job, read_source
-from exactfold.count.dask_engine import LOCAL
+from exactfold.count.on_dask import LOCAL
 from exactfold.count.pools import Pool, dask_pool, process_pool
-from exactfold.errors import UnknownPatternError, UnwritableFileError, UsageError, WorkerDiedError
+from exactfold.errors import (
+    NotEnoughMemoryError,
+    UnknownPatternError,
+    UnwritableFileError,
+    UsageError,
+    WorkerDiedError,
+)
+from exactfold.memory import is_shortage, shortage
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import available_cores
@@ -38,7 +46,7 @@ FAILED = "failed"
 
 STATUSES = (str(PROVED), str(UNDECIDED), FAILED)
 
-_WORST = (0, 4, 1, 2, 3, INTERNAL)
+_WORST = (0, 4, 1, 2, 3, NO_MEMORY, INTERNAL)
 """Exit codes from the best to the worst."""
 
 
@@ -52,6 +60,7 @@ class Line:
     text: str = ""
     distinct: int | None = None
     message: str = ""
+    warned: bool = False
 
 
 @dataclass
@@ -61,11 +70,13 @@ class Tally:
     statuses: Counter[str] = field(default_factory=Counter)
     code: int = 0
     skipped: int = 0
+    warned: int = 0
 
     def add(self, line: Line) -> None:
         """One more file."""
         self.statuses[line.status] += 1
         self.code = max(self.code, line.code, key=_WORST.index)
+        self.warned += line.warned
 
     @property
     def note(self) -> str:
@@ -111,7 +122,7 @@ class Batch:
                     lines.append(line.text)
                 elif self.as_json:
                     print(line.text, flush=True)
-                if lines is None or line.status != str(PROVED):
+                if lines is None or line.status != str(PROVED) or line.warned:
                     shown.append((line.name, line.status, line.distinct, line.message))
         place = {str(path): k for k, path in enumerate(self.patterns)}
         shown.sort(key=lambda row: place[row[0]])
@@ -166,6 +177,10 @@ class Batch:
             stopped(again)
         except (WorkerDiedError, UnwritableFileError) as error:
             raise type(error)(f"{error}{'; ' if again else ''}{again}") from None
+        except Exception as error:
+            if not again or not is_shortage(error):
+                raise
+            raise NotEnoughMemoryError(f"{shortage(error)}; {again}") from None
 
     def _summary(self, tally: Tally) -> dict[str, Any]:
         return {
@@ -173,19 +188,24 @@ class Batch:
             "files": len(self.patterns),
             **{status: tally.statuses[status] for status in STATUSES},
             "skipped": tally.skipped,
+            "warned": tally.warned,
             "exit_code": tally.code,
             "jsonl": None if self.out is None else str(self.out),
         }
 
 
 class Known:
-    """The lines of an earlier run, by the content of the file and what was asked."""
+    """The lines of an earlier run, by the content of the file and what was asked.
+
+    A file that failed has none: it is tried again, and said to fail again with the reason.
+    """
 
     def __init__(self, found: Iterator[dict[str, Any]] | list[dict[str, Any]]) -> None:
         self._lines: dict[str, list[Line]] = {}
         for data in found:
-            if data["sha256"] is not None and data["exit_code"] != INTERNAL:
-                line = Line(data["name"], data["status"], data["exit_code"])
+            if data["sha256"] is not None and data["status"] != FAILED:
+                warned = bool((data["result"] or {}).get("warnings"))
+                line = Line(data["name"], data["status"], data["exit_code"], warned=warned)
                 self._lines.setdefault(_key(data["sha256"], data["asked"]), []).append(line)
 
     def take(self, job: Job, names: set[str]) -> Line | None:
@@ -223,7 +243,11 @@ def line_for(job: Job, result: BranchCount | Exception) -> Line:
         status, code = str(result.status), EXIT[result.status]
         data |= {"status": status, "exit_code": code, "error": None}
         data["result"] = result.to_dict(name=job.name)
-        return Line(job.name, status, code, json.dumps(data), result.distinct, result.reason)
+        message = "" if result.status is PROVED else result.reason
+        if (warning := result.warning) is not None:
+            message = f"{message}{'; ' if message else ''}warning: {warning}"
+        warned = warning is not None
+        return Line(job.name, status, code, json.dumps(data), result.distinct, message, warned)
     code = exit_code(result)
     error = error_document(result)["error"]
     data |= {"status": FAILED, "exit_code": code, "error": error, "result": None}

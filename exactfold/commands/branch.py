@@ -112,7 +112,11 @@ def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str,
             raise UsageError(f"{path}, line {line}: {error}") from None
     for k, (line, text) in enumerate(lines):
         bar("branches", k, len(lines))
-        yield f"line {line}", finder.find(finder.signs(text, None))
+        try:
+            found = finder.find(finder.signs(text, None))
+        except UsageError as error:  # a 0 where no branch is flat
+            raise UsageError(f"{path}, line {line}: {error}") from None
+        yield f"line {line}", found
 
 
 def _indices(option: str, text: str) -> list[int]:

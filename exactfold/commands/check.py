@@ -2,16 +2,32 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
 from exactfold import checker
 from exactfold.checker.reading import plain
-from exactfold.commands.shell import regular
+from exactfold.commands.shell import Bar, name_of, regular, said
 from exactfold.errors import CertificateFormatError, UnreadableFileError
+from exactfold.schemas import headed
 
 LONG = ("branches", "vertex_signs", "assignment")
 """Claims that grow with the pattern, left out of `check --json`."""
+
+
+def valid(path: Path, workers: int | None, as_json: bool) -> bool:
+    """Whether every claim of a file holds, which is printed; raises the errors of `verified`."""
+    with Bar("checking"):
+        claims, text = verified(path, workers)
+    if as_json:
+        short = {k: v for k, v in (claims or {}).items() if k not in LONG}
+        head = {**headed("check"), "name": name_of(path)}
+        reason = text if claims is None else "every claim holds"
+        print(json.dumps({**head, "valid": claims is not None, "reason": reason, "claims": short}))
+    else:
+        print(f"INVALID: {text}" if claims is None else text)
+    return claims is not None
 
 
 def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, str]:
@@ -25,7 +41,7 @@ def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, st
         except checker.CertificateError as error:
             return None, plain(error)
         except checker.FormatError as error:
-            raise CertificateFormatError(f"{path}: {plain(error)}") from None
+            raise CertificateFormatError(f"{said(path)}: {plain(error)}") from None
         except OSError as error:
             raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
     return claims, checker.summary(claims)

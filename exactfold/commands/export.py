@@ -15,9 +15,10 @@ from exactfold.commands.patterns import read
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder
-from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.errors import NotCountedError, UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
+from exactfold.pattern.near_degeneracy import warnings
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
@@ -85,7 +86,8 @@ class Wanted:
         if not 1 <= self.place <= len(result.branches):
             proved = "" if result.status is PROVED else f", undecided: {result.reason}"
             listed = len(result.branches)
-            raise UsageError(
+            cause = UsageError if listed else NotCountedError
+            raise cause(
                 f"--branch {self.place}: `exactfold count` lists "
                 f"{counted(listed or 'no', 'branch')} of this pattern{proved}"
             )
@@ -106,4 +108,5 @@ def _summary(
         "gauge": branch.gauge,
         "angles": {f"{i}-{j}": angle for (i, j), angle in sorted(export.angles.items())},
         "length_error": export.length_error,
+        "warnings": warnings(branch.pattern),
     }

@@ -15,22 +15,13 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any
 
+from exactfold.memory import is_shortage, memory_is_limited, require_room, shortage
+
 INTERRUPTED = 130
 NO_MEMORY = 71
 
-
-def memory_is_limited() -> bool:
-    """Whether allocations can fail: a limit of the process, or a system that promises no more."""
-    try:
-        import resource
-    except ImportError:  # Windows
-        return False
-    for limit in (resource.RLIMIT_AS, resource.RLIMIT_DATA):
-        if resource.getrlimit(limit)[0] != resource.RLIM_INFINITY:
-            return True
-    with suppress(OSError), open("/proc/sys/vm/overcommit_memory") as file:
-        return file.read().strip() == "2"
-    return False
+_errors = 2
+"""The file descriptor for what is said before, or instead of, a proper end."""
 
 
 def supervised(run: Callable[[], None]) -> None:
@@ -74,15 +65,34 @@ def _in_child(run: Callable[[], None]) -> tuple[int, bool]:
 def _tell_the_end(run: Callable[[], None], tell: int) -> None:
     """The child: run, say that the end was reached, and leave with its exit code."""
     code: object = 0
+    _quiet_libraries()
     try:
+        require_room()
         run()
     except SystemExit as end:
         code = end.code
-    except MemoryError:
-        os._exit(NO_MEMORY)
+    except Exception as error:
+        if not is_shortage(error):
+            raise
+        print(f"exactfold: {shortage(error)}", file=sys.stderr)
+        code = NO_MEMORY
     if code is None or isinstance(code, int):
         os.write(tell, b".")
     raise SystemExit(code)
+
+
+def _quiet_libraries() -> None:
+    """Drop what libraries and worker processes write to stderr: a shortage is told in one line."""
+    global _errors
+    if sys.stderr is None:
+        return
+    with suppress(OSError):
+        _errors = os.dup(2)
+        coding, errors = sys.stderr.encoding, sys.stderr.errors
+        sys.stderr = open(_errors, "w", 1, coding, errors, closefd=False)  # noqa: SIM115
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, 2)
+        os.close(null)
 
 
 def _passed_on(child: int) -> dict[int, Any]:
@@ -101,5 +111,5 @@ def _passed_on(child: int) -> dict[int, Any]:
 def interrupted(number: int, frame: FrameType | None) -> None:
     """Handle Ctrl-C while modules are loaded: end without a traceback."""
     with suppress(OSError):
-        os.write(2, b"exactfold: interrupted\n")
+        os.write(_errors, b"exactfold: interrupted\n")
     os._exit(INTERRUPTED)

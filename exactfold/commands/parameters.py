@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperCommand, TyperGroup
 
 from exactfold.commands.shell import standard_input
+from exactfold.count.registry import ALIASES, METHODS
 
 
 def complete_pattern(incomplete: str) -> list[str]:
@@ -38,34 +39,40 @@ def flag(*names: str, text: str, **more: Any) -> Any:
     return typer.Option(*names, metavar="", help=text, **more)
 
 
-class Command(TyperCommand):
-    """A command whose `--help` is shown without a value."""
+def whole(least: int | None = None) -> Callable[[object], int]:
+    """A reader of whole numbers, from `least` on; its messages name the text that is none."""
 
-    def get_help_option(self, ctx: Any) -> Any:
-        """The option, or None where there is none."""
-        return _bare(super().get_help_option(ctx))
+    def read(text: object) -> int:
+        try:
+            number = int(str(text))
+        except ValueError:
+            raise typer.BadParameter(f"{str(text)!r} is not a whole number") from None
+        if least is not None and number < least:
+            raise typer.BadParameter(f"{number} is less than {least}")
+        return number
 
-
-class Group(TyperGroup):
-    """As `Command`, for the program itself."""
-
-    def get_help_option(self, ctx: Any) -> Any:
-        """The option, or None where there is none."""
-        return _bare(super().get_help_option(ctx))
-
-    def get_params(self, ctx: Any) -> Any:
-        """All options; those of completion are flags too."""
-        found = super().get_params(ctx)
-        for parameter in found:
-            if parameter.name in ("install_completion", "show_completion"):
-                _bare(parameter)
-        return found
+    return read
 
 
-def _bare(option: Any) -> Any:
-    if option is not None:
-        option.metavar = ""
-    return option
+def degrees(text: object) -> float:
+    """A number with a decimal point."""
+    try:
+        return float(str(text))
+    except ValueError:
+        raise typer.BadParameter(f"{str(text)!r} is not a number") from None
+
+
+def method_name(text: object) -> str:
+    """The name of a method; names of earlier versions are taken, too."""
+    name = str(text)
+    if name not in METHODS and name not in ALIASES:
+        raise typer.BadParameter(f"{name!r} is not one of {', '.join(METHODS)}")
+    return name
+
+
+def complete_method(incomplete: str) -> list[str]:
+    """The methods that begin with what is typed, without names of earlier versions."""
+    return [name for name in METHODS if name.startswith(incomplete)]
 
 
 _ONE = "A FOLD file with triangular faces, - for standard input, or a name: see `examples`."
@@ -90,7 +97,9 @@ Patterns = Annotated[
 ]
 Snap = Annotated[
     int | None,
-    typer.Option(min=1, metavar="DEN", help="Round coordinates to multiples of 1/DEN first."),
+    typer.Option(
+        parser=whole(1), metavar="DEN", help="Round coordinates to multiples of 1/DEN first."
+    ),
 ]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]
 Signs = Annotated[

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from exactfold.commands.shell import STDIN
+from exactfold.commands.shell import STDIN, said, say
 from exactfold.data import EXAMPLES, example_path
 from exactfold.errors import UnknownPatternError
 from exactfold.pattern.fold import FoldFile, load_fold
+from exactfold.pattern.near_degeneracy import near_degenerate
 
 
 def located(path: Path) -> Path:
@@ -27,5 +28,11 @@ def located(path: Path) -> Path:
 
 
 def read(path: Path, snap: int | None) -> FoldFile:
-    """The pattern that is meant; raises the errors of `located` and `load_fold`."""
-    return load_fold(located(path), snap)
+    """The pattern that is meant; raises the errors of `located` and `load_fold`.
+
+    What a designer should know of it before the answer is read is said on stderr.
+    """
+    file = load_fold(located(path), snap, name=said(path))
+    if (found := near_degenerate(file.pattern)) is not None:
+        say(f"warning: {found.text}")
+    return file

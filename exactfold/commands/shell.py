@@ -20,14 +20,17 @@ from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 
 import typer
 
-from exactfold.commands.guard import INTERRUPTED, NO_MEMORY, memory_is_limited
+from exactfold.commands.guard import INTERRUPTED, NO_MEMORY
 from exactfold.errors import (
     ExactfoldError,
     InputError,
+    NotCountedError,
+    NotEnoughMemoryError,
     UnreadableFileError,
     UsageError,
     WorkerDiedError,
 )
+from exactfold.memory import is_shortage, memory_is_limited, shortage
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
@@ -58,15 +61,10 @@ def reported(command: Callable[P, R]) -> Callable[P, R]:
             finally:
                 sys.stdout.flush()
         except OSError as error:
+            if is_shortage(error):
+                raise _short(error) from None
             output_failed(error)
             raise typer.Exit(OUTPUT_FAILED) from None
-        except (MemoryError, ImportError) as error:
-            if isinstance(error, ImportError) and not memory_is_limited():
-                with suppress(OSError):
-                    traceback.print_exc()
-                raise typer.Exit(INTERNAL) from None
-            say(f"not enough memory: {error}".rstrip(": "))
-            raise typer.Exit(NO_MEMORY) from None
         except ExactfoldError as error:
             say(str(error))
             if kwargs.get("as_json"):
@@ -76,12 +74,20 @@ def reported(command: Callable[P, R]) -> Callable[P, R]:
             stopped()
         except (typer.Exit, typer.Abort):
             raise
-        except Exception:  # a defect: never to be read as one of the documented codes
+        except Exception as error:
+            if is_shortage(error):
+                raise _short(error) from None
+            # A defect: never to be read as one of the documented codes.
             with suppress(OSError):
                 traceback.print_exc()
             raise typer.Exit(INTERNAL) from None
 
     return wrapped
+
+
+def _short(error: Exception) -> typer.Exit:
+    say(shortage(error))
+    return typer.Exit(NO_MEMORY)
 
 
 def say(text: str) -> None:
@@ -92,8 +98,12 @@ def say(text: str) -> None:
 
 def exit_code(error: Exception) -> int:
     """The exit code of a command that ended with an error."""
+    if isinstance(error, NotEnoughMemoryError):
+        return NO_MEMORY
     if isinstance(error, WorkerDiedError) or not isinstance(error, ExactfoldError):
         return INTERNAL
+    if isinstance(error, NotCountedError):
+        return EXIT[UNDECIDED]
     return BAD_INPUT if isinstance(error, InputError) else USAGE
 
 
@@ -179,7 +189,11 @@ class Bar:
         self.display: Display | None = None
         self.timer = threading.Timer(delay, self.show)
         self.timer.daemon = True
-        with _masked():  # a thread that takes Ctrl-C would undo `held_interrupts` in the main one
+        if memory_is_limited() and not sys.stderr.isatty():
+            return  # a thread takes much memory, and there is nothing to show
+        # A thread that takes Ctrl-C would undo `held_interrupts` in the main one. Without a thread
+        # there is no line of progress, and all else goes on.
+        with suppress(RuntimeError), _masked():
             self.timer.start()
 
     def __enter__(self) -> Bar:
@@ -227,6 +241,11 @@ def apart(output: Path | None, *others: Path | None) -> None:
 def name_of(path: Path) -> str:
     """A file as it was named on the command line."""
     return "-" if path == STDIN else str(path)
+
+
+def said(path: Path) -> str:
+    """A file as messages call it."""
+    return "standard input" if path == STDIN else str(path)
 
 
 def standard_input(path: Path) -> Path:

@@ -11,15 +11,18 @@ from pathlib import Path
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, apart, interruptible, stopped
 from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
-from exactfold.count.dask_engine import LOCAL, dask_engine
+from exactfold.count.collect import check_countable
+from exactfold.count.on_dask import LOCAL, dask_engine
 from exactfold.count.stream import StreamedCount, stream_branches
 from exactfold.errors import (
-    NoInteriorVertexError,
     NotApplicableError,
+    NotCountedError,
+    NotEnoughMemoryError,
     UnwritableFileError,
     UsageError,
     WorkerDiedError,
 )
+from exactfold.memory import is_shortage, shortage
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.workers import available_cores
 
@@ -93,6 +96,10 @@ class Streaming:
             if not self.file.is_file():
                 raise
             raise type(error)(f"{error}; go on with\n  {self.again}") from None
+        except Exception as error:
+            if not is_shortage(error) or not self.file.is_file():
+                raise
+            raise NotEnoughMemoryError(f"{shortage(error)}; go on with\n  {self.again}") from None
 
 
 def advice(pattern: CreasePattern) -> str | None:
@@ -104,14 +111,11 @@ def advice(pattern: CreasePattern) -> str | None:
 
 
 def _require_streamable(pattern: CreasePattern) -> None:
-    if not pattern.interior:
-        raise NoInteriorVertexError(
-            "the pattern has no interior vertex: there is no curvature equation to solve"
-        )
+    check_countable(pattern)
     if pattern.Ve != 4 or pattern.Vi == pattern.Vt:
         raise NotApplicableError(
             "--stream takes sheets with four boundary vertices and a foldable vertex; "
             "count this one without it"
         )
     if is_too_many(pattern):
-        raise NotApplicableError(too_many(pattern).reason)
+        raise NotCountedError(too_many(pattern).reason)

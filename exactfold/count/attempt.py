@@ -8,7 +8,7 @@ from typing import Any
 
 from exactfold.branches.result import BranchCount, Proof
 from exactfold.certify.algebraic import AlgebraicProof
-from exactfold.count.solvers import Choice
+from exactfold.count.registry import Choice
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.chart_change import from_chart, to_chart
 from exactfold.problem.problem import Problem

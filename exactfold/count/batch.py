@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 from exactfold.branches.result import BranchCount
 from exactfold.count.collect import count_branches
 from exactfold.count.pools import Pool, process_pool
-from exactfold.count.solvers import choose
+from exactfold.count.registry import choose
 from exactfold.data import EXAMPLES, example_path
-from exactfold.errors import InputError, UnreadableFileError, UsageError
+from exactfold.errors import InputError, NotEnoughMemoryError, UnreadableFileError, UsageError
+from exactfold.memory import is_shortage, shortage
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold import FoldFile, parse_bytes, read_bytes
-from exactfold.pattern.load import PatternLike
+from exactfold.pattern.loading import PatternLike
 from exactfold.progress import Progress
 
 Source = bytes | CreasePattern | InputError
@@ -59,7 +60,7 @@ def count_job(job: Job) -> BranchCount | Exception:
         result = count_branches(file.pattern, method=job.method, seed=job.seed)
         return replace(result, snapped=file.snapped)
     except Exception as error:  # also a defect: the other patterns are counted all the same
-        return error
+        return NotEnoughMemoryError(shortage(error)) if is_shortage(error) else error
 
 
 def count_many(
@@ -78,7 +79,8 @@ def count_many(
     `count_branches` raises for one pattern is its result, and the others go on; a pattern whose
     process died has a `WorkerDiedError`. With `jobs` > 1 that many processes share the work, and a
     script needs the usual `if __name__ == "__main__"`; an `engine`, such as `dask_pool`, takes
-    their place. Files are read here, a few at a time, and sent to the workers.
+    their place. Files are read here, a few at a time, and sent to the workers. What to know of a
+    pattern before its count is read is the `warning` of its count.
     `progress("counting", done, total)` has a total of 0 where `patterns` has no length.
 
     Raises `UsageError` for an unknown method, a negative seed or fewer jobs than 1, before

@@ -12,14 +12,14 @@ from exactfold.count.attempt import Attempt
 from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
 from exactfold.count.conveyor import LISTED_BITS, Conveyor
 from exactfold.count.hand_over import isolated, solved_exactly, with_flat_vertices
-from exactfold.count.solvers import METHODS, NEWTON, Choice, choose, find_candidates
+from exactfold.count.registry import METHODS, NEWTON, Choice, choose, find_candidates
 from exactfold.errors import NoInteriorVertexError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.problem.branch_system import BranchSystem, notch_chart
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
-from exactfold.rigidity.definite_stress import definite_stress
+from exactfold.rigidity.definite_stresses import definite_stress
 from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.newton_ends import candidates_of
@@ -90,7 +90,8 @@ def check_countable(pattern: CreasePattern) -> None:
     """Raise `NoInteriorVertexError` if there is nothing to count."""
     if not pattern.interior:
         raise NoInteriorVertexError(
-            "the pattern has no interior vertex: there is no curvature equation to solve"
+            "the pattern has no interior vertex, so there is nothing to count: every fold bends by "
+            "itself"
         )
 
 
@@ -127,13 +128,15 @@ def _higher(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bra
             true_branches=PROVED,
             proof=Proof("single vertex", triangles),
         )
-    chords = "".join(f"; the fold {i}-{j} splits the sheet" for i, j in sheet.chords[:1])
+    chords = "".join(f", and the fold {i}-{j} splits it" for i, j in sheet.chords[:1])
     return BranchCount(
         pattern,
         UNDECIDED,
         "none",
-        f"with D = {pattern.degrees_of_freedom} branches are no isolated lines, and are "
-        f"counted for the single-vertex pattern only{chords}",
+        f"the sheet has {pattern.Ve} boundary vertices, so it has {pattern.degrees_of_freedom} "
+        f"degrees of freedom{chords}; its ways to fold form continuous families, not a list. "
+        "exactfold counts sheets with four or three boundary vertices, or with a single vertex "
+        "inside; `exactfold info` says what is known of this one",
     )
 
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Generator
-from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
-from contextlib import ExitStack
-from multiprocessing import get_context
+from dataclasses import dataclass
+from functools import cached_property
 
 from exactfold.branches.blocks import ProvedBlock
 from exactfold.count.conveyor import Conveyor
+from exactfold.crew import in_order
 from exactfold.errors import WorkerDiedError
 from exactfold.evidence.streamed import block_line
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
-from exactfold.workers import become_worker, held_interrupts, worker_environment
 
 Engine = Callable[[Conveyor, range], Generator[tuple[ProvedBlock, str], None, None]]
 """Yields the blocks with the numbers given and their lines, in order; closed at an interruption."""
@@ -46,42 +44,26 @@ def _pool(
 ) -> Generator[tuple[ProvedBlock, str], None, None]:
     """The blocks with the numbers given and their lines, in order."""
     pattern = conveyor.problem.pattern
-    with worker_environment(), ExitStack() as stack:
-        pool = ProcessPoolExecutor(
-            workers,
-            get_context("spawn"),
-            _start_worker,
-            (pattern.vertices, pattern.triangles, conveyor.block_size),
-        )
-        stack.callback(pool.shutdown, cancel_futures=True)
-        waiting: deque[Future[tuple[ProvedBlock, str]]] = deque()
-        try:
-            for index in left:
-                with held_interrupts():  # this may start a process
-                    waiting.append(pool.submit(_prove, index))
-                if len(waiting) > _AHEAD * workers:
-                    yield waiting.popleft().result()
-            while waiting:
-                yield waiting.popleft().result()
-        except BrokenExecutor:
-            raise WorkerDiedError(
-                "a worker process died; the blocks written so far can be resumed"
-            ) from None
+    prover = _Prover(pattern.vertices, pattern.triangles, conveyor.block_size)
+    try:
+        yield from in_order(workers, prover, left, _AHEAD)
+    except WorkerDiedError as error:
+        raise type(error)(f"{error}; the blocks written so far can be resumed") from None
 
 
-_conveyor: Conveyor | None = None  # of a worker process
+@dataclass(frozen=True)
+class _Prover:
+    """What a worker process needs to prove blocks by their numbers."""
 
+    vertices: tuple[Point, ...]
+    triangles: tuple[Triangle, ...]
+    block_size: int
 
-def _start_worker(
-    vertices: tuple[Point, ...], triangles: tuple[Triangle, ...], block_size: int
-) -> None:
-    global _conveyor
-    become_worker()
-    _conveyor = Conveyor.of(CreasePattern(vertices, triangles), block_size)
+    @cached_property
+    def conveyor(self) -> Conveyor:
+        """Set up anew in each process."""
+        return Conveyor.of(CreasePattern(self.vertices, self.triangles), self.block_size)
 
-
-def _prove(index: int) -> tuple[ProvedBlock, str]:
-    if _conveyor is None:
-        raise RuntimeError("the worker was not started")
-    block = _conveyor.prove(index)
-    return block, block_line(block)
+    def __call__(self, index: int) -> tuple[ProvedBlock, str]:
+        block = self.conveyor.prove(index)
+        return block, block_line(block)

@@ -13,7 +13,7 @@ from exactfold.branches.classify import decide_signs
 from exactfold.branches.letters import LETTERS
 from exactfold.branches.roots import BoxRoot
 from exactfold.certify.box import IsolatingBox
-from exactfold.certify.krawczyk import krawczyk, krawczyk_at
+from exactfold.certify.exact_krawczyk import krawczyk, krawczyk_at
 from exactfold.problem.problem import Problem
 from exactfold.solve.dense_newton import NappeSystem
 from exactfold.solve.refined_newton import refined_end

@@ -20,12 +20,13 @@ from exactfold.certify.enclosure import Enclosure
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
 from exactfold.progress import Progress
 from exactfold.solve.sparse_newton import End, solve
 from exactfold.solve.sparse_sheet import FloatSheet
+from exactfold.verdict import PROVED
 from exactfold.wording import counted
 
 Signs = str | Mapping[int, int] | Sequence[int]
@@ -49,10 +50,11 @@ def find_branch(
     enclosed by a theorem that needs no factorisation (docs/branch.md, `enclose`), so that the cost
     of the proof grows like the number of folds. Gauge: see `Branch`. With `rim`, heights of all
     boundary vertices of a convex boundary of any length, the branch of that rim. A vertex that
-    is proved flat on the branch gets the sign 0: either sign leads to that branch.
+    is proved flat on the branch gets the sign 0: either sign leads to that branch, and so does 0.
 
-    Raises `UsageError` for signs that do not fit the pattern, `NotApplicableError` if Ve is not 4
-    and no rim is given, or if no vertex can pop. An `UNDECIDED` result does not say that the
+    Raises `UsageError` for signs that do not fit the pattern, among them a 0 where no branch with
+    the other signs is proved flat; `NotCountedError` if Ve is not 4 and no rim is given, or if no
+    vertex can pop. An `UNDECIDED` result does not say that the
     branch does not exist.
 
     >>> from exactfold.pattern.random_squares import random_square
@@ -166,8 +168,8 @@ class BranchFinder:
             given = dict(zip(keys, values, strict=True))
         for v, sign in given.items():
             if v in self._names:
-                if sign not in (1, -1):
-                    raise UsageError(f"the sign of vertex {v} is {sign!r}, not +1 or -1")
+                if sign not in (1, -1, 0):
+                    raise UsageError(f"the sign of vertex {v} is {sign!r}, not +1, -1 or 0")
             elif sign != 0 or v not in self.pattern.rigid_vertices:
                 raise UsageError(self.cannot_pop(v))
         missing = [v for v in names if v not in given]
@@ -193,7 +195,26 @@ class BranchFinder:
         start: FloatArray | None = None,
         progress: Progress | None = None,
     ) -> Branch:
-        """The branch with the signs that `signs` returned."""
+        """The branch with the signs that `signs` returned.
+
+        A vertex with the sign 0 has to be proved flat on it. The branches with (s, 0) and with (s,
+        +1) both lie in the closed nappes of (s, +1), which hold one branch only (docs/theorem.md,
+        4): if the one proved there has not the signs asked for, none has, which is a `UsageError`.
+        """
+        flat = [v for v, sign in signs.items() if sign == 0]
+        found = self._found({**signs, **dict.fromkeys(flat, 1)}, start, progress)
+        missed = [v for v in flat if found.vertex_signs[v] != 0]
+        if missed and found.status is PROVED:
+            raise UsageError(
+                f"no branch has these signs: vertex {missed[0]} is not flat with the others as "
+                "given; give it + or -"
+            )
+        return found
+
+    def _found(
+        self, signs: Mapping[int, int], start: FloatArray | None, progress: Progress | None
+    ) -> Branch:
+        """The branch in the closed nappes of signs that are +1 or -1."""
         begin = time.perf_counter()
         steps = 0
         reason = ""
@@ -241,6 +262,12 @@ class BranchFinder:
         progress: Progress | None = None,
     ) -> Iterator[tuple[int, Branch]]:
         """`neighbours` one by one, for patterns where all of them would fill the memory."""
+        flat = [v for v, sign in signs.items() if sign == 0]
+        if flat:
+            raise UsageError(
+                f"the sign of vertex {flat[0]} is 0: neighbours differ from a branch whose vertex "
+                "signs are all + or -"
+            )
         chosen = self.poppable if vertices is None else tuple(dict.fromkeys(vertices))
         for v in chosen:
             if v not in self._names:
@@ -268,5 +295,5 @@ def _value(sign: object) -> int:
     """A sign, as a character or a number, as an integer."""
     value = sign_value(sign)
     if value is None:
-        raise UsageError(f"{sign!r} is not a vertex sign: + or 1, - or -1, 0 where none can pop")
+        raise UsageError(f"{sign!r} is not a vertex sign: + or 1, - or -1, 0 where it is flat")
     return value

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from exactfold.algebra.exact_solution import RootClass
 from exactfold.algebra.flat_zeros import common_parameter
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.branches.branch import Branch
 from exactfold.branches.classify import Undecided, classify
 from exactfold.branches.letters import UPSIDE_DOWN

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from importlib.metadata import version
 from itertools import islice
-from multiprocessing import active_children, get_context
 from typing import Any, Protocol, TypeVar
 
-from exactfold.count.dask_engine import cluster_client
+from exactfold.count.on_dask import cluster_client
+from exactfold.crew import as_they_end
 from exactfold.errors import ClusterError, WorkerDiedError
-from exactfold.workers import become_worker, held_interrupts, worker_environment
 
 J = TypeVar("J")
 R = TypeVar("R")
@@ -44,7 +42,7 @@ def process_pool(processes: int) -> Pool:
     ) -> Generator[tuple[J, R | WorkerDiedError], None, None]:
         if processes < 2:
             return ((job, work(job)) for job in jobs)
-        return _on_processes(processes, work, jobs)
+        return as_they_end(processes, work, jobs)
 
     return run
 
@@ -64,71 +62,6 @@ def dask_pool(address: str, workers: int | None = None, *, timeout: float = 30.0
             return _on_cluster(client, work, jobs)
 
         yield run
-
-
-class _Crew:
-    """An executor whose processes can be stopped in the middle of their work."""
-
-    def __init__(self, processes: int) -> None:
-        self.executor = ProcessPoolExecutor(processes, get_context("spawn"), become_worker)
-        self.others = set(active_children())
-
-    def submit(self, work: Callable[[J], R], job: J) -> Future[R]:
-        with worker_environment(), held_interrupts():  # this may start processes
-            return self.executor.submit(work, job)
-
-    def end(self, *, now: bool) -> None:
-        if now:
-            for child in set(active_children()) - self.others:
-                child.terminate()
-        self.executor.shutdown(cancel_futures=True)
-
-
-def _on_processes(
-    processes: int, work: Callable[[J], R], jobs: Iterable[J]
-) -> Generator[tuple[J, R | WorkerDiedError], None, None]:
-    left = iter(jobs)
-    crew = _Crew(processes)
-    under_way: dict[Future[R], J] = {}
-    try:
-        while True:
-            suspects: list[J] = []
-            for job in islice(left, _AHEAD * processes - len(under_way)):
-                try:
-                    under_way[crew.submit(work, job)] = job
-                except BrokenExecutor:
-                    suspects.append(job)
-            if not under_way and not suspects:
-                break
-            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
-                try:
-                    result = future.result()
-                except BrokenExecutor:
-                    suspects.append(under_way.pop(future))
-                else:
-                    yield under_way.pop(future), result
-            if suspects:  # one of those under way ended the process: each is tried alone
-                suspects += under_way.values()
-                under_way.clear()
-                crew.end(now=True)
-                for job in suspects:
-                    yield job, _alone(work, job)
-                crew = _Crew(processes)
-    finally:
-        crew.end(now=bool(under_way))
-
-
-def _alone(work: Callable[[J], R], job: J) -> R | WorkerDiedError:
-    """The result of a job with a process of its own."""
-    crew, done = _Crew(1), False
-    try:
-        result = crew.submit(work, job).result()
-        done = True
-        return result
-    except BrokenExecutor:
-        return WorkerDiedError(_DIED)
-    finally:
-        crew.end(now=not done)
 
 
 def _on_cluster(

@@ -21,7 +21,7 @@ from exactfold.evidence.check import FastChecker
 from exactfold.evidence.journal import Journal
 from exactfold.evidence.streamed import claims_line, header_line
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.progress import Progress
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted

@@ -8,6 +8,8 @@ from typing import Final
 
 from exactfold.errors import UsageError
 
+__all__ = ["EXAMPLES", "example_path", "examples"]
+
 EXAMPLES: Final = (
     "two-vertex",
     "single-vertex-4",

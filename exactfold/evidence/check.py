@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from concurrent.futures import BrokenExecutor
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -15,10 +14,10 @@ from exactfold.checker.compact_blocks import Block, CompactSheet
 from exactfold.checker.compact_lines import read_header
 from exactfold.checker.formats import MOST_UNITS
 from exactfold.checker.reading import MALFORMED, CertificateError, FormatError, plain
+from exactfold.crew import in_order
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.dense_newton import sign_vectors
-from exactfold.workers import become_worker, worker_environment
 
 LEAST = 32
 """Blocks for each worker that make starting processes worth while."""
@@ -43,15 +42,14 @@ def check_compact(
     Raises `checker.CertificateError` if a claim is not supported, `CertificateFormatError` if the
     file is not a compact certificate or was altered, `UnreadableFileError`, `WorkerDiedError`.
     """
-    engine = compact.Engine(start_fast_worker, check_line_fast, LEAST) if fast else compact.INTEGERS
+    engine = _FLOATS if fast else compact.INTEGERS._replace(share=_shared)
     name = path if name is None else name
     try:
-        with worker_environment():
-            return compact.check(os.fspath(path), workers, engine)
+        return compact.check(os.fspath(path), workers, engine)
     except FormatError as error:
         raise CertificateFormatError(f"{name}: {plain(error)}") from None
-    except BrokenExecutor:
-        raise WorkerDiedError("a worker process died; nothing is known of the file") from None
+    except WorkerDiedError as error:
+        raise type(error)(f"{error}; nothing is known of the file") from None
     except OSError as error:
         raise UnreadableFileError(f"cannot read {name}: {error.strerror}") from None
 
@@ -116,7 +114,6 @@ _fast: FastChecker | None = None  # of a worker process
 def start_fast_worker(header: str) -> None:
     """Rebuild the sheet in a worker process."""
     global _fast
-    become_worker()
     _fast = FastChecker(CompactSheet(read_header(header)))
 
 
@@ -125,3 +122,25 @@ def check_line_fast(text: str, number: int) -> str | None:
     if _fast is None:
         raise RuntimeError("the worker was not started")
     return _fast.refusal(text, number)
+
+
+class _Started:
+    """What each process does with blocks: the start once, then the work."""
+
+    def __init__(self, engine: compact.Engine, header: str) -> None:
+        self.engine, self.header, self.started = engine, header, False
+
+    def __call__(self, block: tuple[str, int]) -> str | None:
+        if not self.started:
+            self.engine.start(self.header)
+            self.started = True
+        return self.engine.work(*block)
+
+
+def _shared(
+    engine: compact.Engine, workers: int, header: str, blocks: Iterator[tuple[str, int]]
+) -> compact.Said:
+    return in_order(workers, _Started(engine, header), blocks, 3)
+
+
+_FLOATS = compact.Engine(start_fast_worker, check_line_fast, LEAST, _shared)

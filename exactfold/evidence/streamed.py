@@ -30,7 +30,7 @@ def header_line(problem: Problem, block_size: int) -> str:
                 "chart": chart_evidence(problem.chart, problem.labels),
                 "block": block_size,
             },
-            "provenance": {"method": "nappes", "python": platform.python_version()},
+            "provenance": {"method": "newton", "python": platform.python_version()},
         }
     )
 

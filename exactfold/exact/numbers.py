@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from decimal import ROUND_CEILING, Context, Decimal
+from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from math import lcm
 from numbers import Rational
@@ -158,9 +158,24 @@ def decimal_above(value: Fraction, digits: int) -> str:
     >>> decimal_above(Fraction(1, 3), 1), decimal_above(Fraction(1, 3 * 10**400), 2)
     ('0.4', '3.4e-401')
     """
-    rounding = Context(digits, ROUND_CEILING)
-    above = rounding.divide(Decimal(value.numerator), Decimal(value.denominator))
-    return f"{above.normalize():g}"
+    return _decimal(value, Context(digits, ROUND_CEILING))
+
+
+def decimal_near(value: Fraction, digits: int) -> str:
+    """The nearest decimal number with so many significant digits.
+
+    >>> decimal_near(Fraction(1, 3), 4), decimal_near(Fraction(1919999, 3), 4)
+    ('0.3333', '640000')
+    >>> decimal_near(Fraction(10**40, 3), 4)
+    '3.333e+39'
+    """
+    text = _decimal(value, Context(digits, ROUND_HALF_EVEN))
+    return f"{Decimal(text):f}" if 10**-6 < abs(value) < 10**12 else text
+
+
+def _decimal(value: Fraction, rounding: Context) -> str:
+    found = rounding.divide(Decimal(value.numerator), Decimal(value.denominator))
+    return f"{found.normalize(rounding):g}"
 
 
 def over_common_denominator(values: Iterable[Fraction]) -> tuple[list[int], int]:

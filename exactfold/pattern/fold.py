@@ -15,6 +15,7 @@ from typing import Any, Final
 from exactfold.errors import (
     CutEdgeError,
     DanglingEdgeError,
+    InputError,
     MissingCoordinatesError,
     NonTriangularFaceError,
     NotANumberError,
@@ -32,6 +33,15 @@ from exactfold.wording import agreeing, counted
 
 EXACT_KEY: Final = "vertices_exactfold:coords"
 """The key of exact coordinates in a FOLD file, beside the floats of `vertices_coords`."""
+
+OTHER_FORMATS: Final = {
+    ".cp": "a CP file (a list of creases, as ORIPA and Oriedita write it)",
+    ".opx": "an OPX file (of ORIPA)",
+    ".ori": "an ORI file (of Oriedita)",
+    ".orh": "an ORH file (of Orihime)",
+    ".svg": "an SVG drawing",
+}
+"""Formats of crease patterns that are not read, by the ends of their names."""
 
 ASSIGNMENTS: Final = "MVFUBCJ"
 _PREFIXES: Final = ("file_", "frame_", "vertices_", "edges_", "faces_")
@@ -71,14 +81,23 @@ def read_fold(path: str | PathLike[str], snap: int | None = None) -> CreasePatte
     return load_fold(path, snap).pattern
 
 
-def load_fold(path: str | PathLike[str], snap: int | None = None) -> FoldFile:
+def load_fold(
+    path: str | PathLike[str], snap: int | None = None, *, name: str | None = None
+) -> FoldFile:
     """Read a FOLD file as `parse_fold` reads its text; also raises `UnreadableFileError`.
+
+    Messages begin with the `name` of the file, by default its path.
 
     >>> from exactfold.data import example_path
     >>> load_fold(example_path("two-vertex")).pattern
     <CreasePattern: 2 interior and 4 boundary vertices>
     """
-    return parse_bytes(read_bytes(path), str(path), snap)
+    raw = read_bytes(path)
+    try:
+        return parse_bytes(raw, str(path), snap)
+    except InputError as error:
+        error.args = (f"{str(path) if name is None else name}: {error}",)
+        raise
 
 
 def read_bytes(path: str | PathLike[str]) -> bytes:
@@ -91,12 +110,24 @@ def read_bytes(path: str | PathLike[str]) -> bytes:
 
 
 def parse_bytes(raw: bytes, name: str, snap: int | None = None) -> FoldFile:
-    """As `parse_fold`, from the bytes of a file; raises `NotJSONError` if they are not UTF-8."""
+    """As `parse_fold`, from the bytes of a file; raises `NotJSONError` if they are not UTF-8.
+
+    A file of another format of crease patterns, to go by its `name`, is called by that.
+    """
     try:
-        text = raw.decode("utf-8-sig")
+        return parse_fold(_decoded(raw), snap)
+    except (NotJSONError, NotFoldError) as error:
+        format_ = OTHER_FORMATS.get(Path(name).suffix.lower())
+        if format_ is None:
+            raise
+        raise type(error)(f"this is {format_}; only FOLD files are read") from None
+
+
+def _decoded(raw: bytes) -> str:
+    try:
+        return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise NotJSONError(f"{name} is not UTF-8 text: byte {error.start} is not valid") from None
-    return parse_fold(text, snap)
+        raise NotJSONError(f"not UTF-8 text: byte {error.start} is not valid") from None
 
 
 def parse_fold(text: str, snap: int | None = None) -> FoldFile:

@@ -18,7 +18,7 @@ from exactfold.pattern.crease_pattern import Edge
 from exactfold.pattern.fold import EXACT_KEY
 
 if TYPE_CHECKING:
-    from exactfold.pattern.load import PatternLike
+    from exactfold.pattern.loading import PatternLike
 
 _ANGLES: Final = {"M": -180, "V": 180, "F": 0, "U": 0, "B": 0}
 _RANGES: Final = {"M": (-180, 0), "V": (0, 180), "F": (0, 0), "U": (0, 0), "B": (0, 0)}
@@ -49,7 +49,7 @@ def fold_document(
     >>> document["edges_vertices"], document["edges_assignment"]
     ([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]], ['B', 'B', 'M', 'B', 'U', 'U'])
     """
-    from exactfold.pattern.load import as_pattern  # here, as it reads what is written here
+    from exactfold.pattern.loading import as_pattern  # here, as it reads what is written here
 
     pattern = as_pattern(pattern)
     letters = dict.fromkeys(pattern.edges, "B")

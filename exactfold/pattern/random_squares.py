@@ -9,7 +9,7 @@ from typing import Final
 
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Point
-from exactfold.pattern.delaunay import delaunay
+from exactfold.pattern.delaunay_sheets import delaunay
 
 CORNERS: Final = ((0, 0), (1, 0), (1, 1), (0, 1))
 

@@ -10,7 +10,7 @@ from functools import cached_property
 from exactfold.errors import CollinearPointsError, NotApplicableError, UsageError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functional

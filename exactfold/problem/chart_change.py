@@ -33,6 +33,11 @@ def to_chart(chart: Chart, heights: FloatArray) -> FloatArray:
     return np.asarray((level[reached] / values[reached, None])[:, list(chart.variables)])
 
 
+def between(start: Chart, end: Chart, points: FloatArray) -> FloatArray:
+    """Points of one chart as points of another of the same sheet; some may be at infinity there."""
+    return points if start == end else to_chart(end, from_chart(start, points))
+
+
 def from_chart(chart: Chart, points: FloatArray) -> FloatArray:
     """Heights of all vertices, shape (m, V), at points of the chart, shape (m, n)."""
     count, n = len(chart.branch_system.pattern.vertices), points.shape[1]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from exactfold.errors import NotApplicableError, UsageError
+from exactfold.errors import NotApplicableError, NotCountedError, UsageError
 from exactfold.exact.numbers import RationalLike, as_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.functionals import saddle_functional
@@ -41,9 +41,9 @@ class Gauge:
     def of(cls, sheet: CreasePattern, rim: Mapping[int, RationalLike] | None = None) -> Gauge:
         """The gauge of a sheet with four boundary vertices, or with given rim heights.
 
-        Raises `NotApplicableError` for another number of boundary vertices without `rim`, for
-        `rim` on a boundary with a reflex corner and for a flat `rim`; `UsageError` unless `rim`
-        names exactly the boundary vertices.
+        Raises `NotCountedError` for another number of boundary vertices without `rim`,
+        `NotApplicableError` for `rim` on a boundary with a reflex corner and for a flat `rim`,
+        `UsageError` unless `rim` names exactly the boundary vertices.
 
         >>> from exactfold.pattern.families import single_vertex
         >>> gauge = Gauge.of(single_vertex(4))
@@ -53,9 +53,12 @@ class Gauge:
         if rim is not None:
             return cls(RIM, sheet, given_rim(sheet, rim))
         if sheet.Ve != 4:
-            raise NotApplicableError(
-                f"a branch is named by vertex signs if there are four boundary vertices, not "
-                f"{sheet.Ve}; for more, give the heights of the rim"
+            raise NotCountedError(
+                "the sheet has three boundary vertices: it is rigid and has no branches"
+                if sheet.Ve == 3
+                else f"vertex signs name a branch of a sheet with four boundary vertices; this one "
+                f"has {sheet.Ve}, so its ways to fold form continuous families (from Python, "
+                "find_branch with rim=... finds the one way with given heights of the boundary)"
             )
         corner = sheet.reflex_corner
         if corner is not None:

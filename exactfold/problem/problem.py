@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from exactfold.errors import NotApplicableError
+from exactfold.errors import NoInteriorVertexError, NotCountedError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import BranchSystem, Chart, chamber_chart
@@ -58,12 +58,13 @@ class Problem:
         return self.sheet.Vi
 
     def require_foldable(self) -> None:
-        """Raise `NotApplicableError` if all interior vertices stay flat, or there are none."""
+        """Raise `NotCountedError` if all interior vertices stay flat, or there are none."""
+        if not self.pattern.interior:
+            raise NoInteriorVertexError("no vertex can pop: the pattern has no interior vertex")
         if not self.sheet.interior:
-            raise NotApplicableError(
-                "no vertex can pop: all interior vertices lie in triangulated triangles"
-                if self.pattern.interior
-                else "no vertex can pop: the pattern has no interior vertex"
+            raise NotCountedError(
+                "no vertex can pop: all interior vertices lie in triangulated triangles and stay "
+                "flat, so signs name no branch; `exactfold count` lists what there is"
             )
 
     @cached_property

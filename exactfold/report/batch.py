@@ -10,11 +10,10 @@ from rich.table import Table
 from rich.text import Text
 
 from exactfold.report.terminal import SHOWN, more_text, status_text
-from exactfold.verdict import PROVED
 from exactfold.wording import counted
 
 BatchRow = tuple[str, str, int | None, str]
-"""Name, status, number of branches, and what is missing or wrong."""
+"""Name, status, number of branches, and what is missing or wrong or to be known."""
 
 
 def batch_report(rows: list[BatchRow], summary: Mapping[str, Any], everything: bool) -> Group:
@@ -26,11 +25,13 @@ def batch_report(rows: list[BatchRow], summary: Mapping[str, Any], everything: b
     table.add_column("", overflow="fold")
     limit = len(rows) if everything else SHOWN
     for name, status, distinct, message in rows[:limit]:
-        why = "" if status == str(PROVED) else message
-        table.add_row(name, "?" if distinct is None else str(distinct), status_text(status), why)
+        ways = "?" if distinct is None else str(distinct)
+        table.add_row(name, ways, status_text(status), message)
     parts: list[Any] = [table, *more_text(len(rows) - limit), ""] if rows else []
     counts = ", ".join(f"{summary[key]} {key}" for key in ("proved", "undecided", "failed"))
     text = f"{counted(summary['files'], 'pattern')}: {counts}"
+    if summary["warned"]:
+        text += f"; {summary['warned']} with a warning"
     if summary["skipped"]:
         text += f"; {summary['skipped']} counted before"
     if summary["jsonl"]:

@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from exactfold.exact.numbers import format_rational
+from exactfold.exact.numbers import decimal_near, format_rational, parse_rational
 from exactfold.report.terminal import facts_table
 from exactfold.verdict import UNDECIDED
 
 if TYPE_CHECKING:
     from exactfold.rigidity.facts import PatternFacts
 
+DIGITS = 6
+"""Significant digits of a number that need not be exact."""
+
 LISTED = 8
 """Entries of a list in the table of `exactfold info`."""
 
 
 def info_report(facts: PatternFacts, *, exact: bool = False) -> Table:
-    """The table; with `exact` also ranks, stresses, forms and the digest."""
+    """The table; with `exact` also ranks, stresses, forms, the digest and the exact area."""
     pattern = facts.pattern
     rows = [
         ("vertices", f"{pattern.Vi} interior, {pattern.Ve} boundary"),
@@ -31,7 +35,7 @@ def info_report(facts: PatternFacts, *, exact: bool = False) -> Table:
         ),
         ("degrees of freedom", f"D = Ve - 3 = {pattern.degrees_of_freedom}"),
         ("boundary", "convex" if pattern.is_convex else f"reflex at {pattern.reflex_corner}"),
-        ("area", format_rational(pattern.area)),
+        ("area", _number(pattern.area, exact)),
         (
             "interior degrees",
             ", ".join(f"{n} of degree {d}" for d, n in facts.degree_counts.items()) or "none",
@@ -62,6 +66,15 @@ def info_report(facts: PatternFacts, *, exact: bool = False) -> Table:
     return facts_table(list(rows))
 
 
+def _number(value: Fraction, exact: bool) -> str:
+    """The number itself, or, where it is long and need not be exact, a decimal near it."""
+    text = format_rational(value)
+    if exact or len(text) <= DIGITS + 1:
+        return text
+    near = decimal_near(value, DIGITS)
+    return near if parse_rational(near) == value else f"about {near}"
+
+
 def _listed(entries: list[str], separator: str = "; ") -> str:
     rest = len(entries) - LISTED
     more = [f"... and {rest} more (--json lists all)"] if rest > 0 else []
@@ -82,7 +95,10 @@ def expectation(facts: PatternFacts) -> str:
     if free == 1 and not pattern.without_rigid_parts()[0].chords:
         dimension = pattern.degrees_of_freedom
         return f"one family of ways to start folding, of dimension {dimension} (single vertex)"
-    return f"{UNDECIDED}: families of dimension {pattern.degrees_of_freedom} are not counted"
+    return (
+        f"{UNDECIDED}: with {pattern.degrees_of_freedom} degrees of freedom the ways to fold form "
+        "continuous families, which are not counted"
+    )
 
 
 def examples_report(examples: Mapping[str, str]) -> Group:

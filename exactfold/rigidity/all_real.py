@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from exactfold.pattern.load import PatternLike, as_pattern
-from exactfold.rigidity.definite_stress import definite_stress
+from exactfold.pattern.loading import PatternLike, as_pattern
+from exactfold.rigidity.definite_stresses import definite_stress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import counted
 

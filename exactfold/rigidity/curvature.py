@@ -8,7 +8,7 @@ from fractions import Fraction
 from exactfold.errors import UsageError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.pattern.remembered import remembered
 
 

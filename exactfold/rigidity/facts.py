@@ -10,7 +10,8 @@ from exactfold.exact.linalg import Inertia
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
+from exactfold.pattern.near_degeneracy import warnings
 from exactfold.progress import Progress
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.self_stress import rigidity_rank
@@ -61,6 +62,7 @@ class PatternFacts:
             "rigidity_rank_by": self.rank_by,
             "self_stresses": self.self_stresses,
             "inertia": {str(v): list(i) for v, i in self.inertias.items()},
+            "warnings": warnings(pattern),
         }
 
     @property

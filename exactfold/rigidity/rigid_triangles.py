@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
-from exactfold.rigidity.definite_stress import definite_stress, inside
+from exactfold.rigidity.definite_stresses import definite_stress, inside
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from exactfold.exact.linalg import nullspace, rank, rank_modulo
 from exactfold.pattern.crease_pattern import Edge
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 
 _PRIMES = ((1 << 61) - 1, (1 << 31) - 1)
 _ELIMINATED = 300

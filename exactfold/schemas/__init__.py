@@ -8,6 +8,8 @@ from typing import Any, Final
 
 from exactfold.errors import UsageError
 
+__all__ = ["VERSIONS", "schema"]
+
 VERSIONS: Final = {
     "count": 1,
     "count-stream": 1,
@@ -22,7 +24,7 @@ VERSIONS: Final = {
 }
 """The kinds of output and their versions; a version changes when a key goes or changes."""
 
-_PARTS: Final = ("pattern", "stream")
+_PARTS: Final = ("pattern", "stream", "warning")
 _URN: Final = "urn:exactfold:schema:"
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from exactfold.problem.branch_system import Chart, chamber_chart
-from exactfold.problem.chart_change import from_chart, to_chart
+from exactfold.problem.chart_change import between
 from exactfold.progress import Steps
 from exactfold.solve.candidates import Candidates
 from exactfold.solve.dense_newton import Ends, NappeSystem, sign_vectors
@@ -16,7 +16,7 @@ from exactfold.solve.dense_newton import Ends, NappeSystem, sign_vectors
 _BLOCK = 1024
 
 
-def nappe_ends(chart: Chart, *, progress: Steps | None = None) -> Candidates:
+def newton(chart: Chart, *, progress: Steps | None = None) -> Candidates:
     """Candidates for all 2^Vi branches (Ve = 4), each by Newton's method on the nappes.
 
     For each vector e of vertex signs the equations l_v = e_v |A_v h| of `NappeSystem` have one
@@ -29,7 +29,7 @@ def nappe_ends(chart: Chart, *, progress: Steps | None = None) -> Candidates:
 
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.problem.branch_system import BranchSystem
-    >>> nappe_ends(BranchSystem(single_vertex(4)).chart).points.shape
+    >>> newton(BranchSystem(single_vertex(4)).chart).points.shape
     (2, 1)
     """
     natural = chamber_chart(chart.branch_system.pattern)
@@ -42,9 +42,7 @@ def nappe_ends(chart: Chart, *, progress: Steps | None = None) -> Candidates:
         if progress is not None:
             progress(first + block, total)
     candidates = candidates_of(found, size)
-    if chart == natural:
-        return candidates
-    points = to_chart(chart, from_chart(natural, candidates.points.real))
+    points = between(natural, chart, candidates.points.real)
     return replace(candidates, points=points.astype(np.complex128))
 
 

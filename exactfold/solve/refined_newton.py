@@ -1,4 +1,8 @@
-"""Single ends of the nappe equations in higher precision, where doubles do not separate them."""
+"""Single ends of the nappe equations in higher precision, where doubles do not separate them.
+
+Rows and method are those of `dense_newton`, for one sign vector at a time. The Jacobian is in high
+precision, too: it depends on the direction of A_v h, which doubles lose next to a flat star.
+"""
 
 from __future__ import annotations
 

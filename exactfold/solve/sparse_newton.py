@@ -1,4 +1,9 @@
-"""Newton on the nappes of one sign vector, on a sparse sheet; floating point, proposes only."""
+"""Newton on the nappes of one sign vector, on a sparse sheet; floating point, proposes only.
+
+The equations of `dense_newton`, written with K_v in place of N_v: K_v is a sum over folds, so that
+the Jacobian is as sparse as the sheet, while the squares of N_v would fill it star by star.
+`certify.refinement` takes `equations` from here and puts exact residuals into them.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exactfold.arrays import FloatArray
+from exactfold.solve.linear_start import start_size
 from exactfold.solve.sparse_sheet import FloatSheet, SingularError
 
 _ITERATIONS = 200
@@ -110,8 +116,7 @@ def _start(sheet: FloatSheet, signs: FloatArray) -> FloatArray:
     rest = sheet.lines(sheet.bends(sheet.heights(zeros)))
     right = np.stack([rest, signs], axis=1)
     level, popped = sheet.solve(np.zeros(len(sheet.lengths)), ones, zeros, right).T
-    size = 1.0 if sheet.corner is not None else max(float(np.abs(level).max()), 1e-3) / 4
-    return np.asarray(size * popped - level)
+    return np.asarray(start_size(level) * popped - level)
 
 
 def _worst(sheet: FloatSheet, point: Point, signs: FloatArray) -> int:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from sheets import random_wheel, wheel
 
 from exactfold.algebra.degree_four import area_product, split_form
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.errors import NotApplicableError
 from exactfold.exact.linalg import inertia, to_flint
 from exactfold.pattern import families

@@ -7,7 +7,7 @@ from exactfold.algebra.flat_zeros import (
     flat_equations,
     zeros_flat_at,
 )
-from exactfold.algebra.groebner import classes_of_ideal, groebner
+from exactfold.algebra.groebner_bases import classes_of_ideal, groebner
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, hypar, two_vertex
 from exactfold.problem.branch_system import BranchSystem

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.algebra.quotient import separating_forms
 from exactfold.errors import ParametrisationError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sheets import with_point
 
-from exactfold.algebra.groebner import groebner, quotient_algebra
+from exactfold.algebra.groebner_bases import groebner, quotient_algebra
 from exactfold.algebra.hermite import (
     hermite_counts,
     hermite_form,
@@ -25,8 +25,8 @@ from exactfold.pattern.random_squares import random_square
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.rigidity.functionals import vertex_sign_functional
-from exactfold.solve.homotopy import homotopy
-from exactfold.solve.popping import popping
+from exactfold.solve.homotopy_ends import homotopy
+from exactfold.solve.popping_ends import popping
 
 PATTERNS = {
     "single vertex": families.single_vertex(4),

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.algebra.hilbert import dimension_and_degree
 from exactfold.algebra.quotient import divides
 from exactfold.problem.quadratic import QuadraticSystem

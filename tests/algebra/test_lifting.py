@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from sheets import with_point
 
 from exactfold.algebra import lifting
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.errors import NotApplicableError
 from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern

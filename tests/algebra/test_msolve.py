@@ -5,7 +5,7 @@ import sysconfig
 import pytest
 from sheets import with_point
 
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.algebra.msolve import (
     find_msolve,
     msolve_classes,

@@ -33,7 +33,7 @@ from exactfold.pattern.fold_writing import write_fold
 from exactfold.pattern.random_squares import sample_random_square
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.popping import popping
+from exactfold.solve.popping_ends import popping
 
 Found = dict[str, Any]
 FloatArray = npt.NDArray[np.float64]

@@ -5,10 +5,12 @@ from typing import Any
 
 import pytest
 
-from exactfold import BranchSystem, certificate, checker, count_branches, isolate, random_square
+from exactfold import certificate, checker, count_branches, random_square
 from exactfold.algebra.from_roots import parametrisation_from_roots
-from exactfold.solve.homotopy import homotopy
-from exactfold.solve.popping import popping
+from exactfold.certify import isolate
+from exactfold.problem import BranchSystem
+from exactfold.solve.homotopy_ends import homotopy
+from exactfold.solve.popping_ends import popping
 
 SIZES = [4, 6, 8]
 

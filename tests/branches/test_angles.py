@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from sheets import random_wheel
 
-from exactfold import count_branches, families, find_branch, fold_angles, random_square
+from exactfold import count_branches, families, find_branch, random_square
+from exactfold.branches import fold_angles
 from exactfold.branches.second_order import second_order_sheet
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern

@@ -12,7 +12,7 @@ from exactfold.branches import classify as module
 from exactfold.branches.classify import classify
 from exactfold.branches.roots import AlgebraicRoot, BoxRoot
 from exactfold.certify.box import IsolatingBox
-from exactfold.certify.krawczyk import krawczyk_at
+from exactfold.certify.exact_krawczyk import krawczyk_at
 from exactfold.exact.numbers import integer_row
 from exactfold.pattern.families import (
     collinear_folds,

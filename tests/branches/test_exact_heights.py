@@ -6,11 +6,16 @@ import pytest
 import sympy
 from sheets import random_wheel
 
-from exactfold import Branch, count_branches, curvature_form, find_branch
+from exactfold import Branch, count_branches, find_branch, random_square
+from exactfold.branches.known_roots import FEW
+from exactfold.branches.roots import BoxRoot
+from exactfold.certify import krawczyk
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import chorded_square
 from exactfold.pattern.families import hypar, single_vertex, two_vertex
 from exactfold.problem.problem import Problem
+from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity import curvature_form
 
 DART = CreasePattern(
     [(0, 0), (4, -4), (1, 0), (4, 4), ("1/2", 0)],
@@ -79,9 +84,52 @@ def test_multiple_roots_of_a_hypar():
             check(branch)
 
 
+@pytest.mark.parametrize(
+    "pattern", [single_vertex(4), DART, two_vertex(), random_square(3, seed=1)]
+)
+def test_heights_of_few_vertices_are_found_when_they_are_asked_for(pattern):
+    exact = {branch.names: branch for branch in count_branches(pattern, method="groebner")}
+    result = count_branches(pattern)
+    assert len(result) == len(exact) == 1 << pattern.Vi
+    for branch in result:
+        assert branch.root.known is None
+        check(branch)
+        assert branch.exact_heights == exact[branch.names].exact_heights
+
+
 def test_bounds_alone_are_not_exact():
-    assert count_branches(two_vertex())[0].exact_heights is None
+    assert count_branches(random_square(FEW + 1, seed=1))[0].exact_heights is None
     assert find_branch(two_vertex(), "+-").exact_heights is None
+
+
+def squares(*values):
+    """x_k^2 = values[k], a system that falls into single unknowns."""
+    size = len(values)
+    matrices = [[[0] * (size + 1) for _ in range(size + 1)] for _ in values]
+    for k, value in enumerate(values):
+        matrices[k][k][k], matrices[k][size][size] = 1, -value
+    return QuadraticSystem.from_rational(matrices)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_rational_roots_of_any_number_of_unknowns_are_recognised(side):
+    roots = [Fraction(k, 10**6 + k) * (-1) ** k for k in range(1, 8)]
+    system = squares(*(root**2 for root in roots))
+    root = BoxRoot(krawczyk(system, [[float(x) for x in roots]])[0], side, system)
+    for k, value in enumerate(roots):
+        assert root.exact([Fraction(int(j == k)) for j in range(8)]) == side * value
+
+
+def test_roots_that_are_nearly_rational_are_not_called_so():
+    """By a distance that no double sees: 1 + 2^-80 is no square of a rational number."""
+    values = [*[Fraction(1)] * FEW, 1 + Fraction(1, 2**80)]
+    system = squares(*values)
+    (box,) = krawczyk(system, [[1] * len(values)])
+    root = BoxRoot(box, 1, system)
+    assert root.exact([*[0] * FEW, 1, 0]) is None
+    few = squares(values[-1])
+    (box,) = krawczyk(few, [[1]])
+    assert BoxRoot(box, 1, few).exact([1, 0]) == sympy.sqrt(1 + sympy.Rational(1, 2**80))
 
 
 def test_all_methods_share_one_gauge():

@@ -15,12 +15,12 @@ from exactfold import (
     export_branch,
     families,
     find_branch,
-    load_fold,
     random_square,
     write_fold,
 )
 from exactfold.bridges.fold_frames import BRANCH_KEY, HEIGHTS_KEY, branch_document
 from exactfold.errors import UsageError
+from exactfold.pattern import load_fold
 
 READERS = Path(__file__).with_name("fold_readers.mjs")
 

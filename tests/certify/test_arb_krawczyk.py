@@ -11,8 +11,8 @@ from flint import acb, acb_mat, arb, arb_mat, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.certify import arb_krawczyk as module
-from exactfold.certify.arb_krawczyk import arb_krawczyk, decide_contains_one_zero
+from exactfold.certify import ball_krawczyk as module
+from exactfold.certify.ball_krawczyk import arb_krawczyk, decide_contains_one_zero
 from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.verdict import PROVED

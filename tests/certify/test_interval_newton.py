@@ -15,9 +15,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import exactfold
-from exactfold.certify import interval_newton as module
+from exactfold.certify import ball_newton as module
+from exactfold.certify.ball_newton import interval_newton
 from exactfold.certify.box import IsolatingBox, Uncertified
-from exactfold.certify.interval_newton import interval_newton
 from exactfold.errors import UsageError
 from exactfold.problem.quadratic import QuadraticSystem
 

@@ -2,15 +2,15 @@
 
 import pytest
 
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
+from exactfold.certify.exact_krawczyk import krawczyk
 from exactfold.certify.isolation import isolate
-from exactfold.certify.krawczyk import krawczyk
 from exactfold.certify.recognition import recognise
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.random_squares import random_square
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.popping import popping
+from exactfold.solve.popping_ends import popping
 
 
 @pytest.mark.parametrize("pattern", [two_vertex(), random_square(3, 1)], ids=["two", "random"])

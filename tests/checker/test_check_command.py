@@ -13,6 +13,7 @@ from exactfold.cli import app
 from exactfold.data import example_path
 
 FIXTURES = Path(__file__).parent.parent / "fixtures" / "certificates"
+BRANCH = FIXTURES / "branch-dart.json"
 TWO = str(example_path("two-vertex"))
 
 
@@ -43,6 +44,14 @@ def test_a_fold_file_is_no_certificate() -> None:
         (
             ["branch", TWO, "--signs", "+-"],
             "branch --json, which is no evidence; write a certificate with --certificate\n",
+        ),
+        *(
+            (
+                command,
+                f"{command[0]} --json, which is no evidence; give a certificate: count and branch "
+                "write one with --certificate\n",
+            )
+            for command in (["info", TWO], ["examples"], ["check", str(BRANCH)])
         ),
     ],
 )
@@ -83,3 +92,15 @@ def test_claims_that_grow_with_the_pattern_are_left_out() -> None:
         printed = json.loads(said(str(FIXTURES / name), "--json")[1])
         assert printed["valid"]
         assert not {"branches", "vertex_signs", "assignment"} & printed["claims"].keys()
+
+
+def test_lines_of_results_are_no_evidence(tmp_path: Path) -> None:
+    path = tmp_path / "r.jsonl"
+    for names in ([TWO], [TWO, "flat-vertex"]):
+        path.unlink(missing_ok=True)
+        CliRunner().invoke(app, ["count", *names, "--jsonl", str(path)])
+        assert said(str(path)) == (
+            3,
+            f"exactfold: {path}: this is a file of results, as count --jsonl writes it, which is "
+            "no evidence; count one pattern with --certificate or --stream\n",
+        )

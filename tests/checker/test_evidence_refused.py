@@ -10,7 +10,7 @@ from sheets import (
 )
 
 from exactfold import certificate, checker, count_branches
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.branches.classify import classify
 from exactfold.branches.roots import AlgebraicRoot
 from exactfold.certify.algebraic import prove_algebraic

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from typing import Any
 
 import pytest
 from forge import (
@@ -16,29 +15,10 @@ from forge import (
     refused_lines,
     verified_lines,
 )
+from forge_compact import EXACT, FOUR, SIZE, moved
 
 from exactfold.checker.compact_blocks import CompactSheet
 from exactfold.checker.reading import CertificateError
-
-FOUR, EXACT, SIZE = "compact-blocks-of-4", "compact-exact", 4  # n = 4 in 4 blocks; n = 1
-
-
-def moved(parts: Lines, block: int = 0, index: int = 0, **changes: Any) -> None:
-    """One root of a block moved to `exact`, as it is but for the changes."""
-    sheet = CompactSheet(parts[0])
-    line = parts[1 + block]
-    known = sheet.decode(json.dumps(line), block)
-    entry = {
-        "root": index,
-        "bits": known.bits,
-        "radius": str(1 << known.radii[index]),
-        "center": [str(m) for m in known.center(index, sheet.size)],
-        "assignment": sheet.letters(known, index),
-    }
-    radii = raw(line, "radii")
-    radii[index] = 255
-    put(line, "radii", radii)
-    line["exact"] = [*line["exact"], entry | changes]
 
 
 def changed_bytes(line: int, key: str, change: Callable[[bytearray], None]) -> Lines:

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 from files import CORNERS, FACES, written
-from running import BAD_INPUT, PROVED, error_class, run
+from running import BAD_INPUT, PROVED, UNDECIDED, error_class, process, run
 from sheets import SQUARE, with_point
 
 from exactfold import (
@@ -109,11 +109,6 @@ BAD = {
         "NonTriangularFaceError",
         "face 0",
     ),
-    "nothing to count": (
-        {"vertices_coords": CORNERS[:4], "faces_vertices": [[0, 1, 2], [0, 2, 3]]},
-        "NoInteriorVertexError",
-        "no interior vertex",
-    ),
     "no such vertex": (
         {**SQUARE_FOLD, "faces_vertices": [*FACES[:3], [3, 0, 9]]},
         "Error",
@@ -128,14 +123,14 @@ def test_bad_input(tmp_path, document, error, culprit):
     result = run("count", path, "--json", "--certificate", out)
     assert result.exit_code == BAD_INPUT
     assert error_class(result).endswith(error)
-    assert result.stderr.startswith("exactfold: ")
+    assert result.stderr.startswith(f"exactfold: {path}: ")
     assert culprit in result.stderr
     assert result.stderr.count("\n") == 1
     assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.fold"]
-    informed = run("info", path)
-    if error != "NoInteriorVertexError":
-        assert informed.exit_code == BAD_INPUT
-        assert informed.stderr == result.stderr
+    for command in (["info"], ["branch", "--signs", "+"], ["export", "--signs", "+"]):
+        other = run(*command, path)
+        assert other.exit_code == BAD_INPUT
+        assert other.stderr == result.stderr
 
 
 def test_missing_file(tmp_path):
@@ -169,3 +164,65 @@ def test_huge_denominators(tmp_path):
     assert result.exit_code == PROVED
     assert json.loads(result.stdout)["distinct"] == 4
     assert run("check", out).exit_code == PROVED
+
+
+def test_standard_input_is_named():
+    result = process("info", "-", input="{")
+    assert result.returncode == BAD_INPUT
+    assert result.stderr == (
+        "exactfold: standard input: not JSON at line 1, column 2: it ends too early\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "format_"),
+    [
+        ("a.cp", b"1 -200.0 -200.0 -200.0 0.0\n", "a CP file"),
+        ("a.svg", b"<svg></svg>", "an SVG drawing"),
+        ("a.OPX", b'<?xml version="1.0"?>', "an OPX file"),
+        ("a.ori", b'{"@version": "v1", "lineSegments": []}', "an ORI file"),
+        ("a.orh", b"\xff\xfe", "an ORH file"),
+    ],
+)
+def test_other_formats_of_crease_patterns_are_called_by_their_names(
+    tmp_path, name, content, format_
+):
+    path = tmp_path / name
+    path.write_bytes(content)
+    for command in (["count"], ["info"], ["branch", "--up", "4"]):
+        result = run(*command, path)
+        assert result.exit_code == BAD_INPUT
+        assert result.stderr.startswith(f"exactfold: {path}: this is {format_}")
+        assert result.stderr.endswith("; only FOLD files are read\n")
+    path.write_text(json.dumps(SQUARE_FOLD))  # what is read decides, not the name
+    assert run("count", path).exit_code == PROVED
+
+
+SHEETS_WITHOUT_BRANCHES = {
+    "no interior vertex": (CORNERS[:4], [[0, 1, 2], [0, 2, 3]], UNDECIDED),
+    "three boundary vertices": ([*CORNERS[:3], [0.75, 0.5]], [[0, 1, 3], [1, 2, 3], [2, 0, 3]], 0),
+    "with four boundary vertices; this one has 5": (
+        [[0, 0], [4, 0], [5, 3], [2, 5], [-1, 3], [1, 2], [3, 2]],
+        [[0, 1, 5], [1, 6, 5], [1, 2, 6], [2, 3, 6], [3, 5, 6], [3, 4, 5], [4, 0, 5]],
+        UNDECIDED,
+    ),
+    "all interior vertices lie in triangulated triangles": (
+        [[0, 0], [3, 0], [0, 3], [3, 3], [1, 1]],
+        [[0, 1, 4], [1, 2, 4], [2, 0, 4], [1, 3, 2]],
+        0,
+    ),
+}
+
+
+@pytest.mark.parametrize("words", SHEETS_WITHOUT_BRANCHES)
+def test_sheets_in_order_whose_branches_have_no_names_exit_4(tmp_path, words):
+    points, faces, counted = SHEETS_WITHOUT_BRANCHES[words]
+    path = written(tmp_path, {"vertices_coords": points, "faces_vertices": faces})
+    assert run("info", path).exit_code == 0
+    assert run("count", path).exit_code == counted
+    for command in ("branch", "export"):
+        result = run(command, path, "--signs", "+")
+        assert result.exit_code == UNDECIDED
+        assert words in result.stderr
+        assert result.stderr.count("\n") == 1
+        assert "--rim" not in result.stderr

@@ -24,11 +24,12 @@ from running import (
 )
 from sheets import HEXAGON, scrambled
 
-from exactfold import count_branches, example_path, random_square, write_fold
+from exactfold import count_branches, random_square, write_fold
 from exactfold.commands import batch
 from exactfold.commands.shell import Bar
 from exactfold.count.batch import count_many
 from exactfold.count.pools import dask_pool, process_pool
+from exactfold.data import example_path
 from exactfold.errors import NotJSONError, UnreadableFileError, UsageError, WorkerDiedError
 
 KEYS = {
@@ -85,19 +86,25 @@ def test_the_same_from_one_process_and_from_two(tmp_path: Path) -> None:
     assert set(found[0]) == set(map(str, paths))
 
 
-def test_files_whose_line_is_there_are_skipped(tmp_path: Path) -> None:
+def test_files_that_were_counted_are_skipped_and_failed_ones_tried_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     paths, out = squares(tmp_path, 4), tmp_path / "o.jsonl"
     bad = tmp_path / "bad.fold"
     bad.write_text("[]")
     assert run("count", *paths[:2], bad, "--jsonl", out).exit_code == BAD_INPUT
     before = out.read_bytes()
     result = run("count", *paths, bad, "--jsonl", out, "--json")
-    assert result.exit_code == BAD_INPUT  # that of the line that is there
+    assert result.exit_code == BAD_INPUT
     summary = json.loads(result.stdout)
-    assert (summary["files"], summary["skipped"]) == (5, 3)
+    assert (summary["files"], summary["skipped"]) == (5, 2)
     assert (summary["proved"], summary["failed"], summary["undecided"]) == (4, 1, 0)
     assert out.read_bytes().startswith(before)
-    assert sorted(d["name"] for d in lines(out)) == sorted(map(str, [*paths, bad]))
+    assert sorted(d["name"] for d in lines(out)) == sorted(map(str, [*paths, bad, bad]))
+    monkeypatch.setenv("COLUMNS", "300")
+    again = run("count", *paths, bad, "--jsonl", out).stdout
+    assert f"{bad} ? FAILED a FOLD file holds one JSON object" in " ".join(again.split())
+    assert "1 failed; 4 counted before" in " ".join(again.split())
     write_fold(random_square(3, seed=9), paths[0])  # another pattern under the same name
     assert json.loads(run("count", *paths, "--jsonl", out, "--json").stdout)["skipped"] == 3
     moved = paths[1].rename(tmp_path / "moved.fold")  # the same under another name

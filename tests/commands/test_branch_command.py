@@ -27,7 +27,7 @@ KEYS = {
         "undecided_vertices",
         "assignment",
     ),
-    *("gauge", "saddle", "centres", "radius", "squared_distance", "steps", "seconds"),
+    *("gauge", "saddle", "centres", "radius", "squared_distance", "steps", "warnings", "seconds"),
 }
 
 

@@ -5,10 +5,7 @@ import json
 import pytest
 from running import BAD_INPUT, INVALID, PROVED, error_class, run
 
-from exactfold import (
-    EXAMPLES,
-    example_path,
-)
+from exactfold.data import EXAMPLES, example_path
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

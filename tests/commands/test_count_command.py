@@ -13,14 +13,8 @@ from running import (
 )
 from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
 
-from exactfold import (
-    EXAMPLES,
-    count_branches,
-    example_path,
-    random_square,
-    read_fold,
-    write_fold,
-)
+from exactfold import count_branches, random_square, read_fold, write_fold
+from exactfold.data import EXAMPLES, example_path
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES
 
@@ -30,7 +24,7 @@ PATTERN_KEYS = {
 }
 COUNT_KEYS = {
     *("pattern", "status", "method", "distinct", "with_multiplicity", "real", "nonreal"),
-    *("true_branches", "certificate", "seconds", "branches", "format", "version", "by"),
+    *("true_branches", "certificate", "warnings", "seconds", "branches", "format", "version", "by"),
 }
 EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree"}
 BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
@@ -84,7 +78,9 @@ def test_verbose_also_says_how(two_vertex):
         ),
         (
             scrambled(1, HEXAGON, 2, loose=True),
-            r"the number of ways to start folding is UNDECIDED \(.*\): with D = 3 branches are no",
+            r"the number of ways to start folding is UNDECIDED \(.*\): the sheet has 6 "
+            "boundary vertices, so it has 3 degrees of freedom; its ways to fold form continuous "
+            "families, not a list",
         ),
     ],
     ids=["none", "one", "infinitely many", "flat", "undecided"],
@@ -175,7 +171,8 @@ def test_undecided_exits_4(tmp_path):
     assert data["status"] == "undecided"
     assert data["distinct"] is None
     assert data["certificate"] is None
-    assert "D = 3" in data["reason"]
+    assert "6 boundary vertices, so it has 3 degrees of freedom" in data["reason"]
+    assert "`exactfold info`" in data["reason"]
     assert "no certificate was written" in result.stderr
     assert not out.exists()
 

@@ -8,10 +8,12 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
-from exactfold import count_branches, example_path, export_branch, find_branch, load_fold
+from exactfold import count_branches, export_branch, find_branch
 from exactfold.bridges.fold_frames import BRANCH_KEY
 from exactfold.cli import app
+from exactfold.data import example_path
 from exactfold.errors import UndecidedBranchError
+from exactfold.pattern import load_fold
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.fold_writing import fold_text

@@ -1,13 +1,13 @@
-"""What commands load, and public names."""
+"""What commands load."""
 
 import subprocess
 import sys
 
 import pytest
+from running import PROVED, run
 
 import exactfold
-from exactfold import cli
-from exactfold.count.solvers import ALIASES
+from exactfold.count.registry import ALIASES
 
 HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
 
@@ -38,13 +38,6 @@ def test_commands_load_what_they_need(two_vertex, arguments, idle):
     assert result.stdout != ""
 
 
-def test_public_names():
-    assert set(exactfold._HOME) < set(exactfold.__all__) <= set(dir(exactfold))
-    for name in exactfold.__all__:
-        assert getattr(exactfold, name) is not None
-    with pytest.raises(AttributeError, match="no attribute 'brunch'"):
-        exactfold.brunch  # noqa: B018
-
-
-def test_methods_of_the_command_line():
-    assert tuple(method.value for method in cli.Method) == (*exactfold.METHODS, *ALIASES)
+@pytest.mark.parametrize("name", [*exactfold.count.METHODS, *ALIASES])
+def test_methods_of_the_command_line(two_vertex, name):
+    assert run("count", two_vertex, "--method", name).exit_code == PROVED

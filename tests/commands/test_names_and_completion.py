@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -12,7 +13,8 @@ from pathlib import Path
 import pytest
 from running import BAD_INPUT, PROVED, run
 
-from exactfold import EXAMPLES, example_path
+from exactfold.count import METHODS
+from exactfold.data import EXAMPLES, example_path
 
 COMMANDS = ("count", "check", "branch", "export", "random", "info", "examples")
 
@@ -23,6 +25,14 @@ def test_flags_are_shown_without_a_value(command: list[str]) -> None:
     assert "--help" in text
     assert "bool" not in text
     assert "--no-" not in text
+    assert not re.search(r"[{<\[](PATTERN|CERTIFICATE|list|path|certificate)\b", text)
+
+
+@pytest.mark.parametrize(
+    ("command", "usage"), [("count", "PATTERN..."), ("info", "PATTERN"), ("check", "CERTIFICATE")]
+)
+def test_arguments_in_the_usage_line(command: str, usage: str) -> None:
+    assert f" {command} [OPTIONS] {usage} \n" in re.sub(" +", " ", run(command, "--help").stdout)
 
 
 def test_examples_are_listed_with_a_line_each() -> None:
@@ -107,6 +117,8 @@ def test_the_shell_completes_names_files_and_methods(tmp_path: Path) -> None:
     assert completed("exactfold count none/", tmp_path) == []
     assert set(completed("exactfold info ", tmp_path)) >= {*EXAMPLES, "two.fold"}
     assert completed("exactfold count --method ho", tmp_path) == ["homotopy"]
+    assert completed("exactfold count --method ", tmp_path) == list(METHODS)
+    assert completed("exactfold count --method n", tmp_path) == ["newton"]  # not a former name
     assert set(completed("exactfold ex", tmp_path)) == {"examples", "export"}
 
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -10,10 +11,8 @@ import pytest
 from files import written
 from running import BAD_INPUT, PROVED, USAGE, error_class, process, run
 
-from exactfold import (
-    cli,
-    example_path,
-)
+from exactfold import cli
+from exactfold.data import example_path
 
 
 @pytest.mark.parametrize(
@@ -36,6 +35,34 @@ def test_wrong_usage_exits_2(arguments):
     assert result.exit_code == USAGE
     assert result.stdout == ""
     assert result.stderr != ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (
+            ["count", "x", "--method", "nope"],
+            "--method: 'nope' is not one of auto, newton, popping, homotopy, groebner",
+        ),
+        (["random", "--interior", "3", "--seed", "abc"], "--seed: 'abc' is not a whole number"),
+        (["count", "x", "--seed", "-1"], "--seed: -1 is less than 0"),
+        (["count", "x", "--jobs", "0"], "--jobs: 0 is less than 1"),
+        (["export", "x", "--amount", "wide"], "--amount: 'wide' is not a number"),
+        (["count"], "missing argument 'PATTERN'"),
+        (["fold"], "no such command 'fold'"),
+    ],
+)
+def test_wrong_usage_is_one_plain_line(arguments, said):
+    result = run(*arguments)
+    assert result.exit_code == USAGE
+    assert re.fullmatch(rf"exactfold: {re.escape(said)}; see [a-z -]+ --help\n", result.stderr)
+
+
+def test_without_arguments_the_help_is_shown():
+    result = run()
+    assert result.exit_code == USAGE
+    assert "Usage" in result.stdout + result.stderr
+    assert "exactfold: " not in result.stderr
 
 
 def test_version():

@@ -1,6 +1,7 @@
 """`exactfold random` and `exactfold info`."""
 
 import json
+from fractions import Fraction
 
 import pytest
 from running import (
@@ -9,13 +10,8 @@ from running import (
 )
 from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled
 
-from exactfold import (
-    EXAMPLES,
-    example_path,
-    random_square,
-    read_fold,
-    write_fold,
-)
+from exactfold import random_square, read_fold, write_fold
+from exactfold.data import EXAMPLES, example_path
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES
 
@@ -74,7 +70,10 @@ def test_info_agrees_with_count(name):
             FAMILIES["waterbomb"](),
             "one family of ways to start folding, of dimension 3 (single",
         ),
-        (scrambled(1, HEXAGON, 2, loose=True), "undecided: families of dimension 3"),
+        (
+            scrambled(1, HEXAGON, 2, loose=True),
+            "undecided: with 3 degrees of freedom the ways to fold form continuous families",
+        ),
     ],
 )
 def test_info_says_what_to_expect(tmp_path, pattern, expected):
@@ -89,3 +88,18 @@ def test_info_shows_forms_and_digests_when_asked(two_vertex):
     for words in ("inertia", "self stresses", "rank of rigidity matrix", "sha256"):
         assert words in exact
         assert words not in plain
+
+
+def test_long_areas_are_decimals_unless_asked_for(tmp_path):
+    path = tmp_path / "p.fold"
+    corners = [["1/3", 0], [1, "1/1009"], ["10/11", 1], [0, 1]]
+    rows = [tuple(map(Fraction, p)) for p in [*corners, ["1/2", "1/2"]]]
+    pattern = CreasePattern(rows, [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
+    write_fold(pattern, path)
+    exact = f"{pattern.area.numerator}/{pattern.area.denominator}"
+    assert len(exact) > 7
+    row = next(line for line in run("info", path).stdout.splitlines() if line.startswith("area"))
+    assert row.split()[1:] == ["about", f"{float(pattern.area):.6f}"]
+    assert f" {exact}\n" in run("info", path, "--exact").stdout
+    assert json.loads(run("info", path, "--json").stdout)["area"] == exact
+    assert "about" not in run("info", "two-vertex").stdout

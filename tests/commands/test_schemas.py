@@ -13,17 +13,11 @@ from jsonschema import Draft202012Validator, ValidationError
 from running import PROVED, UNDECIDED, run
 from sheets import HEXAGON, TRIANGLE, nested_triangles, scrambled
 
-from exactfold import (
-    EXAMPLES,
-    METHODS,
-    CreasePattern,
-    curvature_form,
-    example_path,
-    read_fold,
-    schema,
-    write_fold,
-)
+from exactfold import CreasePattern, read_fold, schema, write_fold
+from exactfold.count import METHODS
+from exactfold.data import EXAMPLES, example_path
 from exactfold.errors import UsageError
+from exactfold.rigidity import curvature_form
 from exactfold.schemas import VERSIONS
 
 LARGE = ("hypar-2", "random-8")

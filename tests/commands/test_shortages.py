@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -13,7 +14,8 @@ import pytest
 from running import BAD_INPUT, INTERRUPTED, OUTPUT_FAILED, PROVED, UNDECIDED, run
 from sheets import HEXAGON, scrambled
 
-from exactfold import example_path, write_fold
+from exactfold import random_square, write_fold
+from exactfold.data import example_path
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="limits and signals of POSIX")
 
@@ -41,6 +43,14 @@ def shell(command: str, folder: Path, **more: str) -> subprocess.CompletedProces
     )
 
 
+def written(folder: Path) -> list[Path]:
+    """Four patterns of which each takes more memory than Python itself."""
+    paths = [folder / f"{seed}.fold" for seed in range(4)]
+    for seed, path in enumerate(paths):
+        write_fold(random_square(5, seed=seed), path)
+    return paths
+
+
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("files")
@@ -59,7 +69,43 @@ def test_no_shortage_of_memory_looks_like_a_verdict(files: Path, command: str, l
         assert done.stdout.startswith(("4 ways to start folding - PROVED", "VALID: 4 branches"))
     else:
         assert done.stdout == ""
-        assert done.stderr != ""
+        assert done.stderr.startswith("exactfold: ")
+        assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("limit", [60000, 150000, 180000, 200000, 250000, 300000, 400000])
+def test_a_batch_that_is_short_of_memory_ends_and_goes_on(tmp_path: Path, limit: int) -> None:
+    names, out = " ".join(map(str, written(tmp_path))), tmp_path / "o.jsonl"
+    command = f"$exactfold count {names} --jsonl {out} --jobs 2"
+    done = shell(f"ulimit -v {limit}; timeout 60 {command}", tmp_path)
+    assert done.returncode in (PROVED, NO_MEMORY), done.stderr
+    assert len(done.stderr.splitlines()) == (0 if done.stdout else 1)
+    kept = out.read_bytes() if out.exists() else b""
+    for line in map(json.loads, kept.splitlines()):
+        assert (line["status"], line["exit_code"]) in (("proved", PROVED), ("failed", NO_MEMORY))
+    again = shell(f"{command} --json", tmp_path)
+    assert (again.returncode, again.stderr) == (PROVED, "")
+    assert json.loads(again.stdout)["proved"] == 4
+    assert out.read_bytes().startswith(kept)
+
+
+@pytest.mark.parametrize("limit", [60000, 150000, 180000, 200000, 250000, 300000, 400000])
+def test_streams_and_branches_that_are_short_of_memory_end(tmp_path: Path, limit: int) -> None:
+    write_fold(random_square(14, seed=1), tmp_path / "p.fold")
+    for command, said in (
+        ("count p.fold --stream s.txt --workers 2", "16384 ways to start folding - PROVED"),
+        ("branch p.fold --up 4,5", "PROVED"),
+    ):
+        done = shell(f"ulimit -v {limit}; timeout 60 $exactfold {command}", tmp_path)
+        assert done.returncode in (PROVED, NO_MEMORY), done.stderr
+        if done.returncode == PROVED:
+            assert said in done.stdout
+            assert done.stderr == ""
+        else:
+            assert done.stdout == ""
+            assert done.stderr.startswith("exactfold: ")
+            assert "Traceback" not in done.stderr
+            assert "not enough memory" in done.stderr.splitlines()[0]
 
 
 ENDS = "import ctypes; ctypes.CDLL(None).exit({code})"
@@ -125,7 +171,7 @@ def test_a_signal_reaches_the_guarded_program(
 SIGNALS = "import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(20)\n"
 
 
-@pytest.mark.parametrize("module", ["typer", "numpy", "rich"])
+@pytest.mark.parametrize("module", ["typing", "typer", "numpy", "rich"])
 def test_an_interruption_while_modules_load_has_no_traceback(
     files: Path, tmp_path: Path, module: str
 ) -> None:

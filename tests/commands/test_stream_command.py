@@ -12,12 +12,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from exactfold import example_path, families, random_square, write_fold
+from exactfold import families, random_square, write_fold
 from exactfold.cli import app
 from exactfold.commands import stream as stream_command
 from exactfold.count import by_theorem
 from exactfold.count import conveyor as conveyor_module
 from exactfold.count.stream import stream_branches
+from exactfold.data import example_path
 from exactfold.errors import UnwritableFileError, WorkerDiedError
 from exactfold.evidence.journal import Journal
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -159,8 +160,8 @@ def test_patterns_that_are_not_streamed(tmp_path: Path, monkeypatch: pytest.Monk
     for k, (pattern, code, word) in enumerate(
         (
             (families.single_vertex(5), USAGE, "four boundary vertices"),
-            (triangle, BAD_INPUT, "no interior vertex"),
-            (random_square(4, seed=1), USAGE, "exactfold branch"),
+            (triangle, UNDECIDED, "no interior vertex"),
+            (random_square(4, seed=1), UNDECIDED, "exactfold branch"),
         )
     ):
         file = tmp_path / f"{k}.txt"
@@ -293,7 +294,7 @@ def test_every_command_ends_with_130_on_ctrl_c(monkeypatch: pytest.MonkeyPatch) 
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("exactfold.count.collect.count_branches", stop)
+    monkeypatch.setattr("exactfold.commands.count.count_branches", stop)
     result = run("count", TWO)
     assert result.exit_code == INTERRUPTED
     assert result.stderr == "exactfold: interrupted\n"

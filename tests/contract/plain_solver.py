@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from exactfold import Candidates, Chart
+from exactfold.problem import Chart
+from exactfold.solve import Candidates
 
 _AT_ONCE = 256
 _ROUNDS = 40

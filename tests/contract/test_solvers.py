@@ -25,10 +25,10 @@ from plain_solver import random_newton
 from sheets import dart
 
 from exactfold import certificate, checker, count_branches
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.certify.box import IsolatingBox
-from exactfold.certify.krawczyk import krawczyk
-from exactfold.count.solvers import find_candidates, register_solver, solvers, unregister_solver
+from exactfold.certify.exact_krawczyk import krawczyk
+from exactfold.count.registry import find_candidates, register_solver, solvers, unregister_solver
 from exactfold.pattern.families import (
     flat_vertex_square,
     h1_sequence,
@@ -40,7 +40,7 @@ from exactfold.pattern.random_squares import random_square
 from exactfold.problem.branch_system import BranchSystem, Chart, chamber_chart
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.candidates import Candidates
-from exactfold.solve.homotopy import homotopy
+from exactfold.solve.homotopy_ends import homotopy
 from exactfold.verdict import PROVED
 
 SystemSolver = Callable[[QuadraticSystem], Candidates]

@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 import pytest
+import rooms
 from flint import fmpq, fmpq_mat
 
 import exactfold
@@ -24,15 +25,15 @@ from exactfold.problem.sheet import Sheet
 from exactfold.rigidity.kapovich_millson import kapovich_millson
 from exactfold.solve.candidates import Candidates
 
-PATTERN = exactfold.read_fold(exactfold.example_path("two-vertex"))
-FLAT = exactfold.read_fold(exactfold.example_path("flat-octahedron"))
-SYSTEM = exactfold.BranchSystem(PATTERN)
-ENDS = exactfold.nappe_ends(SYSTEM.chart)
+PATTERN = exactfold.read_fold(exactfold.data.example_path("two-vertex"))
+FLAT = exactfold.read_fold(exactfold.data.example_path("flat-octahedron"))
+SYSTEM = exactfold.problem.BranchSystem(PATTERN)
+ENDS = exactfold.solve.newton(SYSTEM.chart)
 COUNT = exactfold.count_branches(PATTERN)
 EXACT = exactfold.count_branches(
-    exactfold.read_fold(exactfold.example_path("flat-vertex")), method="groebner"
+    exactfold.read_fold(exactfold.data.example_path("flat-vertex")), method="groebner"
 )
-SOLUTION = exactfold.groebner(SYSTEM.chart.system)
+SOLUTION = exactfold.algebra.groebner(SYSTEM.chart.system)
 
 
 def _streamed(folder):
@@ -44,37 +45,45 @@ VALUES = {
     "pattern with long coordinates": exactfold.CreasePattern(
         [(0, 0), (10**5000, 0), (0, "1/7"), (1, "1/50")], [(0, 1, 3), (1, 2, 3), (2, 0, 3)]
     ),
-    "file": exactfold.load_fold(exactfold.example_path("waterbomb")),
-    "snapped file": exactfold.load_fold(exactfold.example_path("random-8"), snap=1000),
+    "file": exactfold.pattern.load_fold(exactfold.data.example_path("waterbomb")),
+    "snapped file": exactfold.pattern.load_fold(exactfold.data.example_path("random-8"), snap=1000),
     "family": sample_h1_sequence(40, seed=0),
     "sample": sample_random_square(4, seed=3),
-    "form": exactfold.curvature_form(PATTERN, 4),
+    "form": exactfold.rigidity.curvature_form(PATTERN, 4),
     "facts": exactfold.pattern_facts(FLAT),
-    "reality": exactfold.decide_all_branches_real(PATTERN),
+    "reality": exactfold.rigidity.decide_all_branches_real(PATTERN),
     "tracks": kapovich_millson([(1, 0), (0, 1), (-1, 0), (0, -1)]),
     "branch system": SYSTEM,
     "chart": SYSTEM.chart,
     "quadrics": SYSTEM.chart.system,
+    "warning": exactfold.pattern.near_degenerate(
+        exactfold.CreasePattern(
+            [*PATTERN.vertices[:5], ("2/3", "0.3333333333333")], PATTERN.triangles
+        )
+    ),
     "problem": Problem.of(PATTERN),
     "gauge": Problem.of(PATTERN).gauge,
     "sheet": Sheet(Problem.of(PATTERN)),
     "candidates": ENDS,
-    "box": exactfold.krawczyk(SYSTEM.chart.system, ENDS.points)[0],
-    "complex box": exactfold.krawczyk(
-        exactfold.QuadraticSystem.from_rational([[[1, 0], [0, 2]]]), [[1.41421356j]]
+    "box": exactfold.certify.krawczyk(SYSTEM.chart.system, ENDS.points)[0],
+    "complex box": exactfold.certify.krawczyk(
+        exactfold.problem.QuadraticSystem.from_rational([[[1, 0], [0, 2]]]), [[1.41421356j]]
     )[0],
-    "no box": exactfold.krawczyk(SYSTEM.chart.system, [[1e9, 1e9]])[0],
-    "isolation": exactfold.isolate(SYSTEM.chart.system, ENDS),
-    "splitting": exactfold.split_form(PATTERN, 4),
+    "no box": exactfold.certify.krawczyk(SYSTEM.chart.system, [[1e9, 1e9]])[0],
+    "isolation": exactfold.certify.isolate(SYSTEM.chart.system, ENDS),
+    "splitting": exactfold.algebra.split_form(PATTERN, 4),
     "solution": SOLUTION,
     "class": SOLUTION.classes[0],
-    "algebra": exactfold.quotient_algebra(SYSTEM.chart.system),
+    "algebra": exactfold.algebra.quotient_algebra(SYSTEM.chart.system),
     "count": COUNT,
     "exact count": EXACT,
     "count with flat vertices": exactfold.count_branches(FLAT),
     "branch": COUNT.branches[0],
     "exact branch": EXACT.branches[0],
-    "finder": exactfold.BranchFinder(PATTERN),
+    "angles": COUNT.branches[0].fold_angles,
+    "export": exactfold.branches.exported(COUNT.branches[0]),
+    "solver": exactfold.solvers()["newton"],
+    "finder": exactfold.count.BranchFinder(PATTERN),
     "signed branch": exactfold.find_branch(PATTERN, "+-"),
     "verdict": exactfold.UNDECIDED,
     "streamed": None,  # made for each test, in a folder of its own
@@ -97,7 +106,7 @@ def warmed(value):
 def test_no_public_class_is_missing(tmp_path):
     public = {
         thing
-        for thing in (getattr(exactfold, name) for name in exactfold.__all__)
+        for thing in rooms.public().values()
         if inspect.isclass(thing) and not issubclass(thing, BaseException)
     }
     shown = {type(value) for value in VALUES.values()} | {type(_streamed(tmp_path))}
@@ -170,7 +179,7 @@ def test_an_unpickled_pattern_is_not_validated_again(monkeypatch):
 
 def test_the_letters_of_a_file_cannot_be_changed():
     letters = {(0, 1): "M"}
-    file = exactfold.FoldFile(PATTERN, assignment=letters)
+    file = exactfold.pattern.FoldFile(PATTERN, assignment=letters)
     letters[0, 1] = "V"
     assert file.assignment == {(0, 1): "M"}
     for one in (file, pickle.loads(pickle.dumps(file)), copy.deepcopy(file)):
@@ -221,6 +230,8 @@ def test_algebras_compare_by_basis_and_matrices():
 
 
 def test_forms_compare_by_all_they_hold():
-    form = exactfold.QuadraticForm((4, 5), ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(2))))
-    assert exactfold.QuadraticForm((4, 6), form.matrix) != form
-    assert exactfold.QuadraticForm((4, 5), form.matrix[::-1]) != form
+    form = exactfold.exact.QuadraticForm(
+        (4, 5), ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(2)))
+    )
+    assert exactfold.exact.QuadraticForm((4, 6), form.matrix) != form
+    assert exactfold.exact.QuadraticForm((4, 5), form.matrix[::-1]) != form

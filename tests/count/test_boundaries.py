@@ -18,7 +18,7 @@ from sheets import (
 
 from exactfold import PROVED, UNDECIDED, CreasePattern, count_branches
 from exactfold.certify.isolation import isolate
-from exactfold.count.solvers import find_candidates
+from exactfold.count.registry import find_candidates
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.rigidity.curvature import curvature_form
 

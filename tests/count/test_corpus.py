@@ -22,21 +22,20 @@ from sheets import SQUARE, reflex_corners, scrambled, straight_side
 from exactfold import (
     PROVED,
     UNDECIDED,
-    Chart,
     CreasePattern,
     certificate,
     checker,
     count_branches,
-    find_candidates,
-    isolate,
     random_square,
 )
-from exactfold.algebra import groebner as engine
+from exactfold.algebra import groebner_bases as engine
 from exactfold.algebra.exact_solution import ExactSolution
 from exactfold.algebra.hermite import hermite_counts
 from exactfold.algebra.msolve import find_msolve, msolve_classes
 from exactfold.algebra.quotient import QuotientAlgebra, from_groebner_basis
+from exactfold.certify import isolate
 from exactfold.certify.box import IsolatingBox
+from exactfold.count import find_candidates
 from exactfold.exact.linalg import from_fmpq, inertia
 from exactfold.pattern.degenerate import (
     DEGENERATE,
@@ -54,6 +53,7 @@ from exactfold.pattern.families import (
     flat_octahedron_in_square,
     h1_sequence,
 )
+from exactfold.problem import Chart
 from exactfold.problem.branch_system import BranchSystem, notch_chart
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.candidates import Candidates

@@ -12,12 +12,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from exactfold import example_path, random_square, write_fold
+from exactfold import random_square, write_fold
 from exactfold.cli import app
-from exactfold.count import dask_engine as engine_module
+from exactfold.count import on_dask as engine_module
 from exactfold.count.conveyor import Conveyor
-from exactfold.count.dask_engine import dask_engine, prove_block
+from exactfold.count.on_dask import dask_engine, prove_block
 from exactfold.count.stream import stream_branches
+from exactfold.data import example_path
 from exactfold.errors import ClusterError, DaskMissingError
 from exactfold.evidence.streamed import block_line
 
@@ -28,7 +29,7 @@ import logging, os, signal, sys
 from distributed import Client, LocalCluster
 from exactfold import random_square
 from exactfold.count import conveyor, engines, stream
-from exactfold.count.dask_engine import dask_engine
+from exactfold.count.on_dask import dask_engine
 from exactfold.workers import worker_environment
 
 def kill(stage, done, total):
@@ -59,7 +60,7 @@ from distributed import Client, LocalCluster, WorkerPlugin
 from exactfold import random_square
 from exactfold.errors import WorkerDiedError
 from exactfold.count import conveyor, engines, stream
-from exactfold.count.dask_engine import dask_engine
+from exactfold.count.on_dask import dask_engine
 
 class Deadly(WorkerPlugin):
     def setup(self, worker):

@@ -27,7 +27,7 @@ from sheets import (
 
 from exactfold import PROVED, UNDECIDED, count_branches, families, random_square
 from exactfold.certify.box import IsolatingBox
-from exactfold.certify.krawczyk import krawczyk
+from exactfold.certify.exact_krawczyk import krawczyk
 from exactfold.count.find import BranchFinder, find_branch, find_branches, neighbours
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern import degenerate
@@ -334,7 +334,8 @@ def test_all_ways_to_give_signs_agree() -> None:
         ([1, 2, 1], None, "2 is not a vertex sign"),
         ([1, [], 1], None, "not a vertex sign"),
         ({4: 1, 5: 1}, None, "vertex 6 has no sign"),
-        ({4: 1, 5: 1, 6: 0}, None, "the sign of vertex 6 is 0"),
+        ({4: 1, 5: 1, 6: 2}, None, "the sign of vertex 6 is 2"),
+        ({4: 1, 5: 1, 6: 0}, None, "no branch has these signs: vertex 6 is not flat"),
         ({4: 1, 5: 1, 6: 1, 0: 1}, None, "vertex 0 is not an interior vertex"),
         (None, [0], "vertex 0 is not an interior vertex"),
     ],
@@ -413,3 +414,28 @@ def test_where_it_fails_the_vertex_is_named() -> None:
     found = find_branch(pattern, "+")
     assert found.status is UNDECIDED
     assert "vertex 4" in found.reason
+
+
+def test_the_signs_of_every_listed_branch_find_it() -> None:
+    """Also with a 0, where a vertex is proved flat; no others with a 0 name a branch."""
+    pattern = families.FAMILIES["flat-vertex"]()
+    listed = {b.sign_text: b.assignment_text for b in count_branches(pattern).branches}
+    assert set(listed) == {"+0", "--", "-+"}
+    for signs in map("".join, product("+-0", repeat=2)):
+        if "0" not in signs or signs in listed:
+            found = find_branch(pattern, signs)
+            assert found.status is PROVED
+            assert found.assignment_text == listed[found.sign_text]
+            assert signs in ("++", "+-", found.sign_text)
+        else:
+            with pytest.raises(UsageError, match="no branch has these signs: vertex"):
+                find_branch(pattern, signs)
+    with pytest.raises(UsageError, match="the sign of vertex 5 is 0: neighbours differ"):
+        neighbours(pattern, "+0")
+
+
+def test_a_zero_on_a_branch_that_stays_open_is_undecided() -> None:
+    pattern = degenerate.ringed_square(4)
+    signs = "+" * pattern.Vi
+    assert find_branch(pattern, signs).status is UNDECIDED
+    assert find_branch(pattern, "0" + signs[1:]).status is UNDECIDED

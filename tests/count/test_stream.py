@@ -1,5 +1,6 @@
 """All branches streamed to a compact certificate: right, resumable, and never lost silently."""
 
+import json
 import subprocess
 import sys
 from fractions import Fraction
@@ -139,6 +140,25 @@ def test_interrupted_runs_continue_to_the_same_file(tmp_path: Path) -> None:
     again = stream_branches(pattern, path, resume=True)
     assert (again.status, again.resumed) == (PROVED, 4)
     assert path.read_bytes() == whole.read_bytes()
+
+
+def test_a_file_of_an_earlier_version_is_continued(tmp_path: Path) -> None:
+    """Its header calls the method by its earlier name; new files do not."""
+    folder, path = Path(__file__).parents[1] / "fixtures" / "certificates", tmp_path / "c.txt"
+    old = folder / "compact-reflex.txt"
+    data = old.read_bytes()
+    header = json.loads(data.split(b"\t")[0])
+    assert header["provenance"]["method"] == "nappes"
+    sheet = header["pattern"]
+    pattern = CreasePattern(sheet["vertices"], sheet["triangles"])
+    path.write_bytes(data[: data.rindex(b"\n", 0, -1) + 1])  # without the claims
+    result = stream_branches(pattern, path, resume=True)
+    assert (result.status, result.resumed, result.blocks) == (PROVED, 1, 1)
+    assert check_compact(path) == check_compact(old)
+    stream_branches(pattern, path)
+    new = json.loads(path.read_bytes().split(b"\t")[0])
+    assert new["provenance"]["method"] == "newton"
+    assert {**new, "provenance": 0} == {**header, "provenance": 0}
 
 
 def test_a_file_cut_anywhere_is_continued_to_the_same_file(tmp_path: Path) -> None:

@@ -14,10 +14,11 @@ import pytest
 from compact_files import bodies, chained, chained_texts
 from typer.testing import CliRunner
 
-from exactfold import example_path, random_square
+from exactfold import random_square
 from exactfold.cli import app
 from exactfold.count import conveyor as conveyor_module
 from exactfold.count.stream import stream_branches
+from exactfold.data import example_path
 from exactfold.errors import (
     ForeignJournalError,
     JournalInUseError,

@@ -7,7 +7,7 @@ from flint import fmpz_poly
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exactfold.exact.factor_degrees import (
+from exactfold.exact.factors import (
     factor_degrees,
     irreducibility_primes,
     modular_degrees,

@@ -82,7 +82,7 @@ def test_forms_of_a_system_are_those_it_exports():
     import exactfold
 
     system = BranchSystem(two_vertex())
-    exported, symbols = exactfold.to_sympy(system)
+    exported, symbols = exactfold.bridges.to_sympy(system)
     for expression, form in zip(exported, system.quadrics.values(), strict=True):
         mine = form.to_sympy()
         assert mine.free_symbols <= set(symbols)

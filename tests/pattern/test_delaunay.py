@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from pattern_strategies import point_sets, quick, same_up_to_labels, similarities
 
 from exactfold.errors import CollinearPointsError, DuplicateVertexError, FloatRefusedError
-from exactfold.pattern.delaunay import delaunay
+from exactfold.pattern.delaunay_sheets import delaunay
 
 
 def circle(p, q, r):

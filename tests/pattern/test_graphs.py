@@ -11,7 +11,7 @@ from pattern_strategies import patterns, quick
 from exactfold.data import EXAMPLES
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.graphs import embedding, face_graph, vertex_graph
-from exactfold.pattern.load import load
+from exactfold.pattern.loading import load
 
 PATTERNS = {name: load(name) for name in EXAMPLES} | {n: make() for n, make in DEGENERATE.items()}
 shipped = pytest.mark.parametrize("pattern", PATTERNS.values(), ids=PATTERNS.keys())

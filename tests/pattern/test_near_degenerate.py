@@ -10,8 +10,8 @@ from exactfold.data import EXAMPLES
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import collinear_folds
-from exactfold.pattern.load import load
-from exactfold.pattern.near_degenerate import near_degenerate
+from exactfold.pattern.loading import load
+from exactfold.pattern.near_degeneracy import near_degenerate
 from exactfold.pattern.random_squares import random_square, sample_random_square
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]

@@ -3,7 +3,7 @@ from fractions import Fraction
 import pytest
 
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.pattern.delaunay import delaunay
+from exactfold.pattern.delaunay_sheets import delaunay
 from exactfold.pattern.random_squares import random_square, sample_random_square
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.errors import CollinearPointsError, NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import single_vertex

@@ -10,20 +10,16 @@ from pathlib import Path
 import pytest
 from sheets import SQUARE, scrambled
 
-from exactfold import (
-    PROVED,
-    BranchSystem,
-    CreasePattern,
-    groebner,
-    homotopy,
-    isolate,
-    random_square,
-)
-from exactfold.certify.arb_krawczyk import arb_krawczyk
+from exactfold import PROVED, CreasePattern, random_square
+from exactfold.algebra import groebner
+from exactfold.certify import isolate
+from exactfold.certify.ball_krawczyk import arb_krawczyk
 from exactfold.certify.box import IsolatingBox
 from exactfold.errors import FloatRefusedError, UsageError
-from exactfold.problem.perturbed import perturbed
+from exactfold.problem import BranchSystem
+from exactfold.problem.perturbation import perturbed
 from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.solve import homotopy
 
 DOCS = Path(__file__).parents[2] / "docs"
 

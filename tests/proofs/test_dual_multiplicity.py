@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.groebner import groebner
+from exactfold.algebra.groebner_bases import groebner
 from exactfold.errors import DualSpaceError, ParametrisationError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import BranchSystem

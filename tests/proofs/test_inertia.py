@@ -7,9 +7,10 @@ from fractions import Fraction
 import networkx as nx
 import pytest
 
-from exactfold import curvature_form, random_square
+from exactfold import random_square
 from exactfold.exact.linalg import inertia_by_elimination
 from exactfold.pattern.families import flat_vertex_square
+from exactfold.rigidity import curvature_form
 from proofs.chambers import counted, inertia_at, jacobian, vertex_signs
 from proofs.level_pairs import alternating, partners
 from proofs.patterns import hostile_patterns

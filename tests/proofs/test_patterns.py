@@ -4,9 +4,10 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold import PROVED, count_branches, curvature_form
+from exactfold import PROVED, count_branches
 from exactfold.errors import NotApplicableError
-from exactfold.pattern.delaunay import delaunay
+from exactfold.pattern.delaunay_sheets import delaunay
+from exactfold.rigidity import curvature_form
 from proofs.chambers import Solutions, corner_sign, jacobian, solve, vertex_signs
 from proofs.patterns import (
     DART,

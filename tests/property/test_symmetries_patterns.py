@@ -29,7 +29,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.problem.branch_system import BranchSystem, Chart
 from exactfold.problem.sign_rows import Functionals
-from exactfold.solve.homotopy import homotopy
+from exactfold.solve.homotopy_ends import homotopy
 from exactfold.verdict import PROVED
 
 few = settings(max_examples=12, deadline=None)

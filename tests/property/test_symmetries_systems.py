@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from exactfold.certify.ball_newton import interval_newton
 from exactfold.certify.box import IsolatingBox
-from exactfold.certify.interval_newton import interval_newton
-from exactfold.certify.krawczyk import krawczyk
+from exactfold.certify.exact_krawczyk import krawczyk
 from exactfold.exact.linalg import rank
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.homotopy import homotopy
+from exactfold.solve.homotopy_ends import homotopy
 
 Matrix = list[list[Fraction]]
 

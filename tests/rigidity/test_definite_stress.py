@@ -8,7 +8,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_octahedron_in_square, hypar, waterbomb
 from exactfold.pattern.random_squares import random_square
 from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stress
-from exactfold.rigidity.definite_stress import (
+from exactfold.rigidity.definite_stresses import (
     combined_form,
     definite_stress,
     inside,

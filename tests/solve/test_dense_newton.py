@@ -21,7 +21,7 @@ from exactfold.solve.dense_newton import (
     sign_vectors,
     solve_each,
 )
-from exactfold.solve.popping import popping
+from exactfold.solve.popping_ends import popping
 from exactfold.solve.refined_newton import refined_end
 
 PATTERNS = {
@@ -76,6 +76,8 @@ def test_nappes_are_curvature_forms_written_as_a_difference_of_squares() -> None
         hat = {u: Fraction(int(u == v)) for u in form.labels}
         value = at(nappe.line) ** 2 - sum(d * at(row) ** 2 for d, row in nappe.squares)
         assert value * form.polar(cone, hat) ** 2 == form(cone) * form(heights)
+        floats = np.array([float(c) for c in z])
+        assert floats @ nappe.form @ floats == pytest.approx(float(value), rel=1e-12)
         assert len(nappe.squares) == pattern.degree(v) - 3
         assert all(d > 0 for d, _ in nappe.squares)
 

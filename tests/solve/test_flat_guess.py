@@ -5,7 +5,7 @@ from exactfold.pattern.families import hypar, two_vertex
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.problem.flat_sheets import flat_sheets
 from exactfold.solve.flat_guess import flat_vertices
-from exactfold.solve.popping import popping
+from exactfold.solve.popping_ends import popping
 
 
 def test_the_guess_from_paths_is_right_for_a_large_pattern():

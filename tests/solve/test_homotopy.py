@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from exactfold.certify.box import IsolatingBox
-from exactfold.certify.krawczyk import krawczyk
+from exactfold.certify.exact_krawczyk import krawczyk
 from exactfold.errors import UsageError
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.pattern.random_squares import random_square
 from exactfold.problem.branch_system import BranchSystem
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve import homotopy as module
-from exactfold.solve.homotopy import homotopy
+from exactfold.solve import homotopy_ends as module
+from exactfold.solve.homotopy_ends import homotopy
 
 
 def random_system(n: int, seed: int, size: int = 99) -> QuadraticSystem:

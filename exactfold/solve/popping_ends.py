@@ -8,16 +8,12 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from exactfold.arrays import BoolArray, FloatArray
-from exactfold.errors import NotApplicableError
-from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.branch_system import Chart
-from exactfold.problem.chart_change import to_chart
-from exactfold.problem.gauge import pattern_size
+from exactfold.problem.branch_system import Chart, chamber_chart
+from exactfold.problem.chart_change import between
 from exactfold.progress import Steps
-from exactfold.rigidity.curvature import curvature_form, spokes
-from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.candidates import Candidates
-from exactfold.solve.dense_newton import sign_vectors
+from exactfold.solve.dense_newton import NappeSystem, sign_vectors
+from exactfold.solve.linear_start import start_size
 
 _ORDER = 8
 _BLOCK = 4096
@@ -48,34 +44,27 @@ def popping(chart: Chart, *, progress: Steps | None = None) -> Candidates:
     >>> popping(BranchSystem(single_vertex(4)).chart).points.shape
     (2, 1)
     """
-    pattern = chart.branch_system.pattern
-    if pattern.Ve != 4:
-        raise NotApplicableError(f"popping needs four boundary vertices, not {pattern.Ve}")
-    problem = _Problem.build(pattern)
-    signs = _sign_vectors(problem.size, problem.reflex)
+    natural = chamber_chart(chart.branch_system.pattern)
+    system = NappeSystem(natural)
+    problem = _Problem.of(system)
+    signs = sign_vectors(0, 1 << natural.system.size, natural.system.size)
     arrived, lost, steps = [], [], 0
     for start in range(0, len(signs), _BLOCK):
         block = signs[start : start + _BLOCK]
-        x, done, used = _track(problem, block)
+        x, done, used = _track(problem, system.full_signs(block))
         steps += used
         arrived.append(x)
         lost += ["path " + _text(e) + " stalled before its end" for e in block[~done]]
         if progress is not None:
             progress(min(start + _BLOCK, len(signs)), len(signs))
-    heights = problem.full_heights(np.concatenate(arrived))
+    with np.errstate(all="ignore"):
+        points = between(natural, chart, system.in_chart(np.concatenate(arrived)))
     return Candidates(
         method="popping",
-        points=to_chart(chart, heights).astype(np.complex128),
+        points=points.astype(np.complex128),
         lost=tuple(lost),
         settings={"paths": len(signs), "steps": steps, "order": _ORDER},
     )
-
-
-def _sign_vectors(size: int, reflex: bool) -> FloatArray:
-    """All sign vectors as rows; with a reflex corner its sign, the last, is +1 throughout."""
-    free = size - 1 if reflex else size
-    signs = sign_vectors(0, 1 << free, free)
-    return np.asarray(np.hstack([signs, np.ones((len(signs), 1))]) if reflex else signs)
 
 
 def _text(signs: FloatArray) -> str:
@@ -84,68 +73,23 @@ def _text(signs: FloatArray) -> str:
 
 @dataclass(frozen=True)
 class _Problem:
-    """Float data: K of shape (n, n+1, n+1) and l of shape (n, n+1) on (x, 1)."""
+    """K - k_v of shape (n, n+1, n+1) and l of shape (n, n+1), on (x, 1); k where T is 0."""
 
     forms: FloatArray
     lines: FloatArray
-    target: FloatArray
     level: float
-    movable: tuple[int, ...]
-    unit: int | None
-    vertex_count: int
 
     @property
     def size(self) -> int:
         return len(self.lines)
 
-    @property
-    def reflex(self) -> bool:
-        return self.unit is None
-
     @classmethod
-    def build(cls, pattern: CreasePattern) -> _Problem:
-        """Unknowns: interior heights; boundary heights (1, 0, 0, 0), or 0 with a reflex corner."""
-        sheet, movable = pattern, pattern.interior
-        unit: int | None = next(v for v, c in saddle_functional(pattern).items() if c)
-        corner = pattern.reflex_corner
-        if corner is not None:
-            sheet, movable, unit = pattern.with_notch_closed(), (*movable, corner), None
-        n = len(movable)
-        position = {v: k for k, v in enumerate(movable)}
-        if unit is not None:
-            position[unit] = n
-        forms, lines = np.zeros((n, n + 1, n + 1)), np.zeros((n, n + 1))
-        size = pattern_size(pattern)
-        for p, v in enumerate(movable):
-            form = curvature_form(sheet, v)
-            matrix = np.array([[float(w * size**2) for w in row] for row in form.matrix])
-            _, vectors = spokes(sheet, v)
-            lengths = [np.hypot(float(x / size), float(y / size)) for x, y in vectors]
-            cone = np.array([0.0, *(-length for length in lengths)])
-            line = matrix @ cone
-            hub = line[0]
-            keep = [k for k, label in enumerate(form.labels) if label in position]
-            at = [position[form.labels[k]] for k in keep]
-            lines[p, at] = line[keep] / hub
-            scale = (cone @ matrix @ cone) / hub**2
-            forms[p][np.ix_(at, at)] = matrix[np.ix_(keep, keep)] * scale
-        target = np.zeros(n)
-        level = 1.0
-        if unit is None:
-            target[-1] = level
-        else:
-            # A k of the order of the squared heights of the sheet with all l_v = 0.
-            rest = np.linalg.solve(lines[:, :n], -lines[:, n])
-            level = float(max(np.abs(rest).max(), 1e-3)) ** 2 / 16
-        return cls(forms, lines, target, level, tuple(movable), unit, len(pattern.vertices))
-
-    def full_heights(self, x: FloatArray) -> FloatArray:
-        """Heights of all vertices, shape (m, V)."""
-        heights = np.zeros((len(x), self.vertex_count))
-        heights[:, self.movable] = x
-        if self.unit is not None:
-            heights[:, self.unit] = 1.0
-        return heights
+    def of(cls, system: NappeSystem) -> _Problem:
+        """A reflex corner keeps its curvature from T = 0 to 1; without one, k suits the heights."""
+        forms = np.array([nappe.form for nappe in system.nappes])
+        if system.gauge.corner is not None:
+            return cls(forms, system.lines, -float(forms[-1, -1, -1]))
+        return cls(forms, system.lines, start_size(system.rest) ** 2)
 
 
 def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, BoolArray, int]:
@@ -203,7 +147,7 @@ def _taylor(problem: _Problem, x: FloatArray, t: FloatArray) -> list[FloatArray]
     inverse = np.linalg.inv(jacobian)
     series, halves, values = [x], [half], [line]
     for m in range(1, _ORDER + 1):
-        # Coefficient m of (1-T)(l^2 - k) + T (K - target), without the unknown term.
+        # Coefficient m of (1-T)(l^2 - k) + T K, without the unknown term.
         cross_l, cross_k = np.zeros_like(line), np.zeros_like(line)
         for i in range(1, m):
             cross_l += values[i] * values[m - i]
@@ -216,7 +160,7 @@ def _taylor(problem: _Problem, x: FloatArray, t: FloatArray) -> list[FloatArray]
             square_k += np.einsum("bvj,bj->bv", halves[i][:, :, :width], last)
         right = (1.0 - t)[:, None] * cross_l + t[:, None] * cross_k + square_k - square_l
         if m == 1:
-            right += problem.level - problem.target
+            right += problem.level
         term = -np.einsum("bij,bj->bi", inverse, right)
         series.append(term)
         if m < _ORDER:
@@ -236,7 +180,7 @@ def _correct(
     for iteration in range(4):
         z = np.hstack([x, np.ones((len(x), 1))])
         half, line, jacobian = _rows(problem, z, t)
-        k = np.einsum("bvj,bj->bv", half, z) - problem.target
+        k = np.einsum("bvj,bj->bv", half, z)
         residual = (1.0 - t)[:, None] * (line * line - problem.level) + t[:, None] * k
         try:
             change = np.linalg.solve(jacobian, residual[:, :, None])[:, :, 0]

@@ -22,7 +22,7 @@ from fractions import Fraction
 
 from exactfold.exact.linalg import inertia
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.rigidity.curvature import curvature_form
 
 

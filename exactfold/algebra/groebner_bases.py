@@ -23,7 +23,7 @@ from exactfold.algebra.quotient import (
 from exactfold.errors import NotApplicableError, ParametrisationError, UsageError
 from exactfold.exact.univariate import from_rational_poly
 from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.homotopy import homotopy
+from exactfold.solve.homotopy_ends import homotopy
 
 ENGINES = ("roots", "lifting", "flint", "sympy", "msolve")
 _SMALL = 4  # up to here a basis over Q is as fast as lifting

@@ -11,11 +11,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
 from math import lcm
+from typing import Any
 
 from exactfold.errors import InputError
 from exactfold.exact.numbers import decimal_above, format_rational, snap
 from exactfold.pattern.crease_pattern import CreasePattern, Point
-from exactfold.pattern.load import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern
+from exactfold.pattern.remembered import remembered
 
 Triple = tuple[int, int, int]
 
@@ -60,6 +62,22 @@ class NearDegeneracy:
             found.append(f"the path {i}-{v}-{j} is nearly straight, but not quite{more}")
         return tuple(found)
 
+    @property
+    def text(self) -> str:
+        """The sentences, what they mean for a count, and what to do."""
+        advice = "what follows is true of these numbers, and may be of no use for what was meant"
+        if self.denominator is not None:
+            advice += f"; --snap {self.denominator} rounds to the simpler pattern"
+        return f"{'; '.join(self.sentences)}: {advice}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """A warning as JSON: the vertices concerned, the denominator that rounds, the text."""
+        return {
+            "vertices": sorted({*self.simple, *(v for _, v, _ in self.straight)}),
+            "snap": self.denominator,
+            "text": self.text,
+        }
+
     def __repr__(self) -> str:
         return (
             f"<NearDegeneracy: {len(self.simple)} nearly simple vertices, {len(self.straight)} "
@@ -84,7 +102,22 @@ def near_degenerate(pattern: PatternLike) -> NearDegeneracy | None:
     >>> near_degenerate("two-vertex") is None
     True
     """
-    pattern = as_pattern(pattern)
+    return _found(as_pattern(pattern))
+
+
+def warnings(pattern: CreasePattern) -> list[dict[str, Any]]:
+    """What a designer should know of a pattern before its count is read, as JSON; often nothing.
+
+    >>> from exactfold.pattern.families import two_vertex
+    >>> warnings(two_vertex())
+    []
+    """
+    found = near_degenerate(pattern)
+    return [] if found is None else [found.to_dict()]
+
+
+@remembered
+def _found(pattern: CreasePattern) -> NearDegeneracy | None:
     xs, ys = ([point[k] for point in pattern.vertices] for k in (0, 1))
     tolerance = _NEAR * max(max(xs) - min(xs), max(ys) - min(ys))
     simple = {}

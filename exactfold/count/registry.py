@@ -242,25 +242,25 @@ def _checked(name: str, found: Any, size: int) -> Candidates:
 
 
 def _newton(chart: Chart, seed: int, progress: Steps | None) -> Candidates:
-    from exactfold.solve.newton_ends import nappe_ends
+    from exactfold.solve.newton_ends import newton
 
-    return nappe_ends(chart, progress=progress).finite()
+    return newton(chart, progress=progress).finite()
 
 
 def _popping(chart: Chart, seed: int, progress: Steps | None) -> Candidates:
-    from exactfold.solve.popping import popping
+    from exactfold.solve.popping_ends import popping
 
     return popping(chart, progress=progress).finite()
 
 
 def _homotopy(chart: Chart, seed: int, progress: Steps | None) -> Candidates:
-    from exactfold.solve.homotopy import homotopy
+    from exactfold.solve.homotopy_ends import homotopy
 
     return homotopy(chart.system, seed=seed, progress=progress).finite()
 
 
 def _groebner(chart: Chart, seed: int, progress: Steps | None) -> Candidates:
-    from exactfold.algebra.groebner import groebner
+    from exactfold.algebra.groebner_bases import groebner
 
     return groebner(chart.system).candidates
 

@@ -1,0 +1,10 @@
+from exactfold.algebra.degree_four import Splitting as Splitting
+from exactfold.algebra.degree_four import split_form as split_form
+from exactfold.algebra.exact_solution import ExactSolution as ExactSolution
+from exactfold.algebra.exact_solution import RootClass as RootClass
+from exactfold.algebra.from_roots import parametrisation_from_roots as parametrisation_from_roots
+from exactfold.algebra.groebner_bases import groebner as groebner
+from exactfold.algebra.groebner_bases import quotient_algebra as quotient_algebra
+from exactfold.algebra.hermite import hermite_counts as hermite_counts
+from exactfold.algebra.hilbert import dimension_and_degree as dimension_and_degree
+from exactfold.algebra.quotient import QuotientAlgebra as QuotientAlgebra

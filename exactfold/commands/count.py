@@ -1,0 +1,97 @@
+"""`exactfold count` of one pattern: in memory or streamed, with a certificate where it is asked."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from exactfold import report
+from exactfold.branches.result import BranchCount
+from exactfold.commands.patterns import read
+from exactfold.commands.shell import EXIT, Bar, apart, name_of, say
+from exactfold.commands.stream import Streaming, advice
+from exactfold.count.collect import count_branches
+from exactfold.count.stream import StreamedCount
+from exactfold.errors import UsageError
+from exactfold.evidence.entries import write_certificate
+from exactfold.evidence.listing import certificate as certificate_of
+from exactfold.verdict import PROVED
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What was asked for."""
+
+    pattern: Path
+    method: str
+    certificate: Path | None
+    stream: Path | None
+    resume: bool
+    workers: int | None
+    dask: str | None
+    as_json: bool
+    snap: int | None
+    seed: int
+    everything: bool
+    verbose: bool
+
+    def run(self) -> int:
+        """Count, write what was asked for and print the answer; the exit code.
+
+        Raises the errors of `load_fold`, `count_branches` and `Streaming`, and `UsageError`.
+        """
+        apart(self.certificate, self.pattern, self.stream)
+        streamed = None if self.stream is None else self._streamed(self.stream)
+        result = self._counted() if streamed is None else streamed
+        written = self._certified(result, streamed)
+        if self.as_json:
+            print(json.dumps(result.to_dict(written, name_of(self.pattern))))
+        else:
+            shown = report.count_report(
+                result,
+                written,
+                everything=self.everything,
+                streamed=streamed,
+                verbose=self.verbose,
+            )
+            report.show(shown)
+        return EXIT[result.status]
+
+    def _streamed(self, file: Path) -> StreamedCount:
+        if self.method != "auto":
+            raise UsageError("--stream has a method of its own: leave --method away")
+        return Streaming(
+            self.pattern,
+            file,
+            self.resume,
+            self.workers,
+            self.dask,
+            self.snap,
+            self.seed,
+            self.certificate,
+        ).run()
+
+    def _counted(self) -> BranchCount:
+        if self.resume or self.workers is not None or self.dask is not None:
+            raise UsageError("--resume, --workers and --dask go with --stream")
+        with Bar("reading") as bar:
+            file = read(self.pattern, self.snap)
+            if (better := advice(file.pattern)) is not None:
+                say(better)
+            bar("solving")
+            result = count_branches(file.pattern, method=self.method, seed=self.seed, progress=bar)
+        return replace(result, snapped=file.snapped)
+
+    def _certified(self, result: BranchCount, streamed: StreamedCount | None) -> str | None:
+        """Where the certificate was written; where it was not, say why."""
+        if self.certificate is None:
+            return None
+        if result.status is not PROVED:
+            say("no certificate was written: nothing is proved")
+        elif streamed is not None and result.proof is None:
+            say(f"the proof is in {self.stream}; no other was written")
+        else:
+            write_certificate(certificate_of(result), self.certificate)
+            return str(self.certificate)
+        return None

@@ -1,0 +1,16 @@
+from exactfold.count.batch import count_many as count_many
+from exactfold.count.collect import count_branches as count_branches
+from exactfold.count.find import BranchFinder as BranchFinder
+from exactfold.count.find import find_branch as find_branch
+from exactfold.count.find import find_branches as find_branches
+from exactfold.count.find import neighbours as neighbours
+from exactfold.count.on_dask import dask_engine as dask_engine
+from exactfold.count.pools import dask_pool as dask_pool
+from exactfold.count.registry import METHODS as METHODS
+from exactfold.count.registry import RegisteredSolver as RegisteredSolver
+from exactfold.count.registry import find_candidates as find_candidates
+from exactfold.count.registry import register_solver as register_solver
+from exactfold.count.registry import solvers as solvers
+from exactfold.count.registry import unregister_solver as unregister_solver
+from exactfold.count.stream import StreamedCount as StreamedCount
+from exactfold.count.stream import stream_branches as stream_branches

@@ -1,0 +1,77 @@
+"""Public names of a package, imported where they are first used: few programs need all of them."""
+
+from __future__ import annotations
+
+import sys
+from functools import cache
+
+TYPE_CHECKING = False  # as in typing, which takes longer to load than all that is imported here
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+# The rest is loaded where a name is asked for: the command line starts without.
+
+
+def attached(package: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
+    """`__getattr__` and `__dir__` of a package whose public names stand in its `__init__.pyi`.
+
+    The stub, which type checkers read, is the only list: each `from home import name as name` in it
+    is a public name, and `__all__` has them all. `from package import name as name` is a module of
+    the package itself; where a name is missing, the error says which of these has it.
+
+    >>> import exactfold
+    >>> exactfold.as_rational
+    Traceback (most recent call last):
+    AttributeError: module 'exactfold' has no attribute 'as_rational': it is
+    exactfold.exact.as_rational
+    """
+
+    @cache
+    def homes() -> dict[str, str]:
+        import ast
+        import pkgutil
+
+        stub = pkgutil.get_data(package, "__init__.pyi")
+        if stub is None:
+            raise ImportError(f"{package} has lost its file __init__.pyi", name=package)
+        return {
+            alias.name: node.module
+            for node in ast.parse(stub).body
+            if isinstance(node, ast.ImportFrom) and node.module
+            for alias in node.names
+        }
+
+    def get(name: str) -> object:
+        from importlib import import_module
+
+        value: object
+        if name == "__all__":
+            value = sorted(homes())
+        elif name not in homes():
+            raise AttributeError(_missing(package, name, homes()), name=name, obj=module)
+        elif homes()[name] == package:
+            value = import_module(f"{package}.{name}")
+        else:
+            value = getattr(import_module(homes()[name]), name)
+        setattr(module, name, value)
+        return value
+
+    def names() -> list[str]:
+        return sorted({*vars(module), *homes()})
+
+    module = sys.modules[package]
+    return get, names
+
+
+def _missing(package: str, name: str, homes: dict[str, str]) -> str:
+    """What to say of a name that is not there, and where it is instead."""
+    from importlib import import_module
+    from importlib.util import find_spec
+
+    message = f"module {package!r} has no attribute {name!r}"
+    if name.startswith("_") or find_spec(f"{package}.{name}"):  # asked before a module is imported
+        return message
+    inside = [import_module(f"{package}.{part}") for part, home in homes.items() if home == package]
+    names = [(part.__name__, getattr(part, "__all__", vars(part))) for part in inside]
+    found = [f"{home}.{name}" for home, public in names if name in public]
+    return f"{message}: it is {' or '.join(found)}" if found else message

@@ -1,0 +1,14 @@
+from exactfold.pattern import degenerate as degenerate
+from exactfold.pattern import families as families
+from exactfold.pattern.crease_pattern import CreasePattern as CreasePattern
+from exactfold.pattern.delaunay_sheets import delaunay as delaunay
+from exactfold.pattern.fold import FoldFile as FoldFile
+from exactfold.pattern.fold import load_fold as load_fold
+from exactfold.pattern.fold import read_fold as read_fold
+from exactfold.pattern.fold_writing import write_fold as write_fold
+from exactfold.pattern.loading import load as load
+from exactfold.pattern.near_degeneracy import NearDegeneracy as NearDegeneracy
+from exactfold.pattern.near_degeneracy import near_degenerate as near_degenerate
+from exactfold.pattern.random_squares import RandomSquare as RandomSquare
+from exactfold.pattern.random_squares import random_square as random_square
+from exactfold.pattern.random_squares import sample_random_square as sample_random_square

@@ -1,0 +1,10 @@
+from exactfold.rigidity.all_real import Reality as Reality
+from exactfold.rigidity.all_real import decide_all_branches_real as decide_all_branches_real
+from exactfold.rigidity.curvature import curvature_form as curvature_form
+from exactfold.rigidity.curvature import stress_form as stress_form
+from exactfold.rigidity.curvature import wheel_stress as wheel_stress
+from exactfold.rigidity.definite_stresses import definite_stress as definite_stress
+from exactfold.rigidity.facts import PatternFacts as PatternFacts
+from exactfold.rigidity.facts import pattern_facts as pattern_facts
+from exactfold.rigidity.self_stress import rigidity_matrix as rigidity_matrix
+from exactfold.rigidity.self_stress import self_stresses as self_stresses
