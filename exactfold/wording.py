@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-_OWN = {"vertex": "vertices", "has": "have", "is": "are", "stays": "stay", "looks": "look"}
+_OWN = {
+    "vertex": "vertices",
+    "family": "families",
+    "has": "have",
+    "is": "are",
+    "stays": "stay",
+    "looks": "look",
+}
 
 
 def plural(word: str) -> str:

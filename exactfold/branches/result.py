@@ -152,6 +152,11 @@ class BranchCount:
             "open_questions": list(self.open_questions),
             "settings": dict(self.settings),
             "branches": [branch.to_dict() for branch in self.branches],
+            "theory": "branches",
+            "rigid": self.distinct == 0 if self.status is PROVED else None,
+            **dict.fromkeys(("components", "modes_count")),
+            **{key: [] for key in ("modes", "flat_folds", "free_folds", "near_misses")},
+            "read": None,
         }
 
     @property

@@ -1,1 +1,5 @@
-"""First-order motions of sheets of rigid panels: which exist, and which of them truly fold."""
+"""Motions of sheets of rigid panels: which exist to second order, and which truly fold."""
+
+from exactfold.lazy import attached
+
+__getattr__, __dir__ = attached(__name__)

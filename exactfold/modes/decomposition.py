@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import networkx as nx
 
@@ -18,8 +19,10 @@ from exactfold.modes.kernel import Rows, first_order
 from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, stars
 from exactfold.modes.subspaces import Leaf, independent_parts, leaves
+from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.progress import Progress
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.wording import counted
 
@@ -44,16 +47,25 @@ class Mode:
     assignment: Mapping[Edge, str]
     extends: Extension
 
+    def to_dict(self) -> dict[str, Any]:
+        """The mode as it stands in JSON."""
+        return {
+            "active": list(self.active),
+            "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
+            "extends": str(self.extends.verdict),
+            "by": self.extends.by,
+        }
+
 
 @dataclass(frozen=True)
 class Decomposition:
     """The ways in which a sheet of rigid panels starts to fold, and which of them truly fold.
 
-    `status` is that of `second_order`, {dimension: number} of the components of all motions to
-    second order, None if it is not known; `true` is the same for the true configurations near the
-    flat state. `rigid` says whether the sheet cannot move at all. `flat` are folds that stay flat
-    in every real motion, `free` those with both ends on the border. `theory` is "modes" if all
-    vertices have at most four folds, else "subspaces".
+    `true` is {dimension: number} of the components of the true configurations near the flat state,
+    None if it is not known; `status` is PROVED if it is. `second_order` is the same for all motions
+    to second order, of which some may not fold. `rigid` says whether the sheet cannot move at all.
+    `flat` are folds that stay flat in every real motion, `free` those with both ends on the border.
+    `theory` is "modes" if all vertices have at most four folds, else "subspaces".
     """
 
     pattern: PanelPattern
@@ -68,7 +80,49 @@ class Decomposition:
     modes_count: int | None = None
     reason: str = ""
     parts: tuple[Part, ...] = ()
-    seconds: float = 0.0
+    near_misses: Mapping[Edge, float] = field(default_factory=dict)
+    read: Mapping[str, Any] | None = None
+    seconds: float = field(default=0.0, compare=False)
+
+    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold count --json`: `schema("count")`.
+
+        What belongs to branches of triangulated sheets is null.
+        """
+        counts = (self.second_order, self.true)
+        rigid = {PROVED: True, REFUTED: False}.get(self.rigid)
+        return {
+            **headed("count"),
+            "pattern": described_panels(self.pattern, name),
+            "status": str(self.status),
+            "reason": self.reason,
+            "by": "enumeration" if self.status is PROVED else None,
+            "method": self.theory,
+            "why": "",
+            **dict.fromkeys(("distinct", "with_multiplicity", "real", "nonreal")),
+            "true_branches": str(UNDECIDED if self.true is None else PROVED),
+            **dict.fromkeys(("dimension", "degree")),
+            "certificate": certificate,
+            "warnings": [],
+            "seconds": round(self.seconds, 3),
+            "open_questions": [part.reason for part in self.parts if part.reason],
+            "settings": {},
+            "branches": [],
+            "theory": self.theory,
+            "rigid": rigid,
+            "components": {
+                key: None if value is None else {str(k): n for k, n in value.items()}
+                for key, value in zip(("second_order", "true"), counts, strict=True)
+            },
+            "modes_count": self.modes_count,
+            "modes": [mode.to_dict() for mode in self.modes],
+            "flat_folds": [f"{i}-{j}" for i, j in self.flat],
+            "free_folds": [f"{i}-{j}" for i, j in self.free],
+            "near_misses": [
+                {"fold": f"{i}-{j}", "quotient": x} for (i, j), x in self.near_misses.items()
+            ],
+            "read": None if self.read is None else dict(self.read),
+        }
 
     def __repr__(self) -> str:
         counts = "" if self.second_order is None else f", {dict(self.second_order)}"
@@ -91,6 +145,7 @@ class Part:
     spaces: tuple[Leaf, ...] = ()
     modes: tuple[Mode, ...] = ()
     dimension: int | None = None
+    near_misses: Mapping[Edge, float] = field(default_factory=dict)
     reason: str = ""
 
 
@@ -147,10 +202,11 @@ def decompose(
         modes=tuple(mode for part in found for mode in part.modes),
         modes_count=_modes_count(found),
         parts=tuple(found),
+        near_misses={edge: x for part in found for edge, x in part.near_misses.items()},
         seconds=time.perf_counter() - start,
     )
-    if result.second_order is None:
-        reasons = [part.reason for part in found if part.second_order is None]
+    if result.true is None:
+        reasons = [part.reason for part in found if part.true is None]
         result = replace(result, status=UNDECIDED, reason="; ".join(dict.fromkeys(reasons)))
     return replace(result, rigid=_rigidity(result))
 
@@ -232,6 +288,7 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
         components(extending, 0) if decided else None,
         supports=tuple(supports),
         modes=tuple(modes),
+        near_misses=search.near_misses,
         reason="" if decided else "for some modes it is not known whether they truly fold",
     )
 

@@ -15,6 +15,7 @@ from exactfold.modes.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
 Choice: TypeAlias = "tuple[LocalMode, Choice] | None"
+_NEAR: Final = 1e-6
 _MOST_STATES: Final = 4096
 """Most sets of relative densities that are carried along before a search is given up."""
 
@@ -65,13 +66,15 @@ class ModeSearch:
     Supports are enumerated by depth first search from their smallest vertex, which takes the vertex
     that closes most faces next; the choices of local modes on one support are carried along as a
     table of relative densities on the frontier, so that they are counted without being listed.
-    Every comparison of densities is exact.
+    Every comparison of densities is exact. `near_misses` holds folds where a loop closed to within
+    1e-6 and not exactly, with the quotient of the two densities: the drawing may be rounded.
     """
 
     def __init__(self, stars: Mapping[int, Star], ground: SurdField) -> None:
         self.roots = Roots(ground)
         self.stars = stars
         self.modes = {v: local_modes(star) for v, star in stars.items()}
+        self.near_misses: dict[Edge, float] = {}
         self._gains: dict[tuple[int, int, Edge, Edge], Density] = {}
 
     def supports(self, limit: int) -> list[Support]:
@@ -200,7 +203,10 @@ class ModeSearch:
         scale = state.frontier[root] if known else self.roots.density(Fraction(1))
         densities = {edge: scale.times(self._gain(mode, root, edge)) for edge in mode.folds}
         for edge in known[1:]:
-            if not densities[edge].over(state.frontier[edge]).is_one():
+            ratio = densities[edge].over(state.frontier[edge])
+            if not ratio.is_one():
+                if abs(ratio.approx - 1) < _NEAR:
+                    self.near_misses.setdefault(edge, ratio.approx)
                 return None
         frontier = {edge: d for edge, d in state.frontier.items() if edge not in known}
         for edge in mode.folds:

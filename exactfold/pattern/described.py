@@ -6,7 +6,9 @@ from fractions import Fraction
 from typing import Any
 
 from exactfold.exact.numbers import format_rational
+from exactfold.exact.surds import Number, Surd
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.panel_pattern import PanelPattern
 
 
 def described(
@@ -30,3 +32,40 @@ def described(
         "vertices": [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
         "faces": [list(triangle) for triangle in pattern.triangles],
     }
+
+
+def described_panels(pattern: PanelPattern, name: str | None = None) -> dict[str, Any]:
+    """Name, counts, digest, exact vertices and panels of a sheet of rigid panels, as JSON.
+
+    `field` holds the numbers under the square roots r1, r2, ... that coordinates use.
+
+    >>> square = PanelPattern([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (0, 3)])
+    >>> data = described_panels(square)
+    >>> data["folds"], data["field"], data["faces"]
+    (0, [], [[0, 1, 2, 3]])
+    """
+    field = pattern.field
+    radicands = [
+        Surd(field, r + (Fraction(0),) * (field.dimension - len(r))) for r in field.radicands
+    ]
+    return {
+        "name": name,
+        "interior": len(pattern.interior),
+        "boundary": len(pattern.border),
+        "folds": len(pattern.folds),
+        "degrees_of_freedom": pattern.D,
+        "sha256": pattern.sha256,
+        "field": [number_text(radicand) for radicand in radicands],
+        "vertices": [[number_text(x), number_text(y)] for x, y in pattern.vertices],
+        "faces": [list(face) for face in pattern.faces],
+    }
+
+
+def number_text(value: Number) -> str:
+    """An exact number as text: "p/q", or a sum such as "1/2 + 1/2*r1".
+
+    >>> from exactfold.exact.surds import RATIONALS
+    >>> number_text(Fraction(1, 2)), number_text(RATIONALS.adjoined(2).root - 1)
+    ('1/2', '-1 + r1')
+    """
+    return repr(value) if isinstance(value, Surd) else format_rational(Fraction(value))

@@ -4,6 +4,7 @@ from exactfold.report.batch import batch_report
 from exactfold.report.branch import branch_report, branch_row, branches_report, export_report
 from exactfold.report.count import count_report
 from exactfold.report.info import examples_report, expectation, info_report
+from exactfold.report.panels import panels_report
 from exactfold.report.terminal import console, show
 
 __all__ = [
@@ -17,5 +18,6 @@ __all__ = [
     "expectation",
     "export_report",
     "info_report",
+    "panels_report",
     "show",
 ]

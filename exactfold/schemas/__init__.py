@@ -24,7 +24,7 @@ VERSIONS: Final = {
 }
 """The kinds of output and their versions; a version changes when a key goes or changes."""
 
-_PARTS: Final = ("pattern", "stream", "warning")
+_PARTS: Final = ("pattern", "panels", "stream", "warning")
 _URN: Final = "urn:exactfold:schema:"
 
 

@@ -1,0 +1,150 @@
+"""What `exactfold count` prints of a sheet of rigid panels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from exactfold.report.terminal import SHOWN, letters_text, more_text, status_text
+from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import agreeing, counted
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from exactfold.modes.decomposition import Decomposition
+
+NAMED = 12
+"""Most folds that are named in a line."""
+
+
+def panels_report(
+    result: Decomposition, certificate: str | None, *, everything: bool, verbose: bool = False
+) -> Group:
+    """The answer, the modes, what stays flat, and what is open."""
+    parts: list[Any] = [panels_answer(result)]
+    notes = _notes(result, everything)
+    if certificate is not None:
+        notes.append(f"certificate: {certificate}")
+    if notes:
+        parts += ["", *(Text(note) for note in notes)]
+    if result.modes:
+        parts += ["", _table(result, everything)]
+        parts += more_text(len(result.modes) - (len(result.modes) if everything else SHOWN))
+        parts += ["", Text(_legend(result))]
+    if verbose:
+        parts += ["", *(Text(line) for line in _details(result))]
+    return Group(*parts)
+
+
+def panels_answer(result: Decomposition) -> Text:
+    """How the sheet folds while its panels stay rigid, in one sentence.
+
+    >>> from dataclasses import replace
+    >>> from exactfold.modes.decomposition import decompose
+    >>> from exactfold.pattern.panel_pattern import PanelPattern
+    >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)],
+    ...     [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)])
+    >>> print(panels_answer(replace(decompose(square), seconds=0.01)))
+    2 ways to fold - PROVED (0.01 s); each a one-parameter folding of rigid panels
+    """
+    took = f" ({result.seconds:.2f} s)"
+    if result.rigid is PROVED:
+        return Text.assemble(
+            "rigid - ", status_text(PROVED), took, "; no fold can fold while the panels stay rigid"
+        )
+    if result.true is not None:
+        return Text.assemble(_ways(result.true), " - ", status_text(PROVED), took, _each(result))
+    known = ""
+    if result.second_order is not None:
+        known = f"; to second order, which does not prove folding: {_ways(result.second_order)}"
+    return Text.assemble(
+        "the number of ways to fold is ",
+        status_text(UNDECIDED),
+        f"{took}: {result.reason}{known}",
+    )
+
+
+def _ways(counts: Mapping[int, int]) -> str:
+    if set(counts) <= {1}:
+        return f"{counted(counts.get(1, 0), 'way')} to fold"
+    total = sum(counts.values())
+    kinds = " and ".join(f"{n} of dimension {d}" for d, n in counts.items())
+    return f"{counted(total, 'family')} of ways to fold, {kinds}"
+
+
+def _each(result: Decomposition) -> str:
+    counts = result.true or {}
+    if set(counts) == {1}:
+        each = "it is" if counts[1] == 1 else "each"
+        return f"; {each} a one-parameter folding of rigid panels"
+    return "; the dimension is the number of folds that can be folded independently"
+
+
+def _notes(result: Decomposition, everything: bool) -> list[str]:
+    notes = []
+    if result.true is not None and result.second_order != result.true:
+        notes.append(
+            f"to second order there are more, which do not all truly fold: "
+            f"{_ways(result.second_order or {})}"
+        )
+    if result.flat and result.rigid is not PROVED:
+        limit = len(result.flat) if everything else NAMED
+        named = ", ".join(f"{i}-{j}" for i, j in result.flat[:limit])
+        more = f" and {len(result.flat) - limit} more" if len(result.flat) > limit else ""
+        notes.append(
+            f"{counted(len(result.flat), 'crease')} {agreeing(len(result.flat), 'stays')} flat "
+            f"whatever the sheet does: {named}{more}"
+        )
+    if result.free:
+        notes.append(f"{counted(len(result.free), 'fold')} from border to border, each free")
+    for (i, j), quotient in list(result.near_misses.items())[:NAMED]:
+        notes.append(
+            f"warning: a loop of folds nearly closes at {i}-{j}, off by {abs(quotient - 1):.1e}: "
+            "the drawing may be rounded (--snap)"
+        )
+    return notes
+
+
+def _table(result: Decomposition, everything: bool) -> Table:
+    modes = result.modes if everything else result.modes[:SHOWN]
+    table = Table(box=None, pad_edge=False)
+    table.add_column("mode", justify="right")
+    table.add_column("vertices", justify="right")
+    table.add_column("folds", overflow="fold")
+    table.add_column("truly folds")
+    for number, mode in enumerate(modes, 1):
+        letters = "".join(mode.assignment.get(fold, ".") for fold in result.pattern.folds)
+        verdict = mode.extends.verdict
+        said = {str(PROVED): "yes", str(UNDECIDED): "undecided"}.get(str(verdict), "no")
+        table.add_row(
+            str(number),
+            str(len(mode.active)),
+            letters_text(letters),
+            f"{said}: {mode.extends.by}",
+        )
+    return table
+
+
+def _legend(result: Decomposition) -> str:
+    folds = result.pattern.folds
+    order = ", ".join(f"{i}-{j}" for i, j in folds) if len(folds) <= NAMED else "of --json"
+    return (
+        f"Folds in the order {order}; M mountain, V valley, . flat, seen from above. Each mode is "
+        "shown on one side; on the other all is reversed. Modes that share no vertex fold "
+        "independently."
+    )
+
+
+def _details(result: Decomposition) -> list[str]:
+    lines = []
+    for part in result.parts:
+        counts = "unknown" if part.second_order is None else dict(part.second_order)
+        lines.append(
+            f"part with vertex {part.vertices[0]}: {counted(len(part.vertices), 'vertex')} that "
+            f"can fold, by {part.theory}, to second order {counts}"
+        )
+    return lines
