@@ -83,15 +83,10 @@ def json_object(text: str) -> dict[str, Any]:
     return document
 
 
-def is_fold(document: Mapping[str, Any]) -> bool:
-    """Whether any key begins as the keys of FOLD do."""
-    return any(key.startswith(_PREFIXES) for key in document)
-
-
 def fold_document(text: str) -> dict[str, Any]:
     """The JSON object of a FOLD file; raises `NotJSONError`, `NotFoldError` without FOLD keys."""
     document = json_object(text)
-    if not is_fold(document):
+    if not any(key.startswith(_PREFIXES) for key in document):
         raise NotFoldError(
             "the JSON object has no FOLD keys such as `vertices_coords` and `faces_vertices`"
         )
