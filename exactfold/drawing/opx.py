@@ -8,8 +8,8 @@ from xml.etree.ElementTree import Element
 
 from exactfold.drawing.cp import ORIPA_TYPES
 from exactfold.drawing.drawing import Drawing
+from exactfold.drawing.markup import xml_root
 from exactfold.drawing.segments import Segment, drawing_of, left_out
-from exactfold.drawing.xml import xml_root
 from exactfold.errors import MalformedDrawingError, NotANumberError
 from exactfold.exact.numbers import parse_rational, shown
 

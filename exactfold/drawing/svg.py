@@ -12,9 +12,9 @@ from typing import Any, Final
 from xml.etree import ElementTree
 
 from exactfold.drawing.drawing import Drawing
+from exactfold.drawing.markup import xml_root
 from exactfold.drawing.segments import Place, Segment, drawing_of
-from exactfold.drawing.svg_path import NUMBER, path_lines
-from exactfold.drawing.xml import xml_root
+from exactfold.drawing.svg_path import NUMBER, STRAIGHT, path_lines
 from exactfold.errors import CurvedCreaseError, MalformedDrawingError
 from exactfold.exact.numbers import parse_rational, shown
 from exactfold.wording import counted
@@ -29,7 +29,7 @@ _COLOURS: Final = {
     (255, 0, 255): "U",
 }
 _HUES: Final = {0: "M", 60: "F", 120: "C", 240: "V", 300: "U", 360: "M"}
-_NEAR: Final = 25  # degrees of hue
+_NEAR: Final = 20  # degrees of hue
 _LENGTH: Final = re.compile(rf"\s*({NUMBER})\s*([a-z]*)\s*\Z")
 _UNITS: Final = {
     "": Fraction(1),
@@ -41,6 +41,7 @@ _UNITS: Final = {
     "pc": Fraction(16),
 }
 _POINTS: Final = re.compile(rf"[\s,]*({NUMBER})")
+_NAMESPACE: Final = "http://www.w3.org/2000/svg"
 _VIEW: Final = ("width", "height", "viewBox", "x", "y")
 _FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
@@ -112,8 +113,8 @@ def _shapes(text: str) -> Iterator[Any]:
     from svgelements import SVG, Shape  # here, as loading it takes longer than reading a pattern
 
     root = xml_root(text)
-    if root.tag.rpartition("}")[2] != "svg":
-        raise MalformedDrawingError(f"the XML is a {shown(root.tag)}, not an svg")
+    if root.tag not in ("svg", f"{{{_NAMESPACE}}}svg"):
+        raise MalformedDrawingError(f"the XML is {shown(root.tag)}, not an svg of {_NAMESPACE}")
     for key in _VIEW:
         root.attrib.pop(key, None)
     try:
@@ -176,7 +177,7 @@ def _corners(own: Mapping[str, str]) -> list[Place]:
         _length(own, key) for key in ("x", "y", "width", "height", "rx", "ry")
     )
     if rx or ry:
-        raise CurvedCreaseError("the corners are rounded: curved creases are not read")
+        raise CurvedCreaseError(f"the corners are rounded; {STRAIGHT}")
     return [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
 
 

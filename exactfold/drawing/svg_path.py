@@ -14,6 +14,8 @@ from exactfold.exact.numbers import parse_rational, shown
 NUMBER: Final = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _TOKEN: Final = re.compile(rf"[\s,]*(?:([A-Za-z])|({NUMBER}))")
 _NUMBERS_EACH: Final = {"M": 2, "L": 2, "H": 1, "V": 1, "Z": 0, "C": 6, "S": 4, "Q": 4, "T": 2}
+_CONTINUED: Final = {"S": "CS", "T": "QT"}  # whose last control point they reflect
+STRAIGHT: Final = "creases must be straight"
 _BEND: Final = Fraction(1, 1000)
 """A curve that leaves its chord by at most this share of its length is meant to be straight."""
 
@@ -30,15 +32,16 @@ def path_lines(data: str) -> tuple[list[tuple[Place, Place]], int]:
     (((Fraction(11, 10), Fraction(1, 5)), (Fraction(11, 10), Fraction(6, 5))), 0)
     >>> path_lines("M0 0 Q 1 1 2 0")
     Traceback (most recent call last):
-    exactfold.errors.CurvedCreaseError: a curve (Q) from (0, 0) to (2, 0): curved creases are not read
+    exactfold.errors.CurvedCreaseError: a curve (Q) from (0, 0) to (2, 0); creases must
+    be straight
     """
     lines: list[tuple[Place, Place]] = []
     start = here = control = (Fraction(0), Fraction(0))
-    unbent = 0
+    unbent, before = 0, ""
     for command, numbers in _commands(data):
         kind = command.upper()
         if kind == "A":
-            raise CurvedCreaseError(f"an arc from {_shown(here)}: curved creases are not read")
+            raise CurvedCreaseError(f"an arc from {_shown(here)}; {STRAIGHT}")
         origin = here if command.islower() else (Fraction(0), Fraction(0))
         if kind == "H":
             places = [(origin[0] + numbers[0], here[1])]
@@ -53,17 +56,18 @@ def path_lines(data: str) -> tuple[list[tuple[Place, Place]], int]:
         if kind == "M":
             start = end
         elif kind in "ST":
+            control = control if before in _CONTINUED[kind] else here
             places.insert(0, (2 * here[0] - control[0], 2 * here[1] - control[1]))
         if kind in "CSQT":
             if not all(_on_chord(here, end, place) for place in places[:-1]):
                 raise CurvedCreaseError(
-                    f"a curve ({command}) from {_shown(here)} to {_shown(end)}: curved creases are not read"
+                    f"a curve ({command}) from {_shown(here)} to {_shown(end)}; {STRAIGHT}"
                 )
             unbent += 1
+            control = places[-2]
         if kind != "M" and (kind != "Z" or here != end):
             lines.append((here, end))
-        control = places[-2] if kind in "CSQT" else end
-        here = end
+        here, before = end, kind
     return lines, unbent
 
 
@@ -104,6 +108,8 @@ def _tokens(data: str) -> Iterator[str]:
 
 
 def _on_chord(start: Place, end: Place, place: Place) -> bool:
+    if start == end:
+        return place == start
     dx, dy = end[0] - start[0], end[1] - start[1]
     x, y = place[0] - start[0], place[1] - start[1]
     square, along, across = dx * dx + dy * dy, x * dx + y * dy, x * dy - y * dx
