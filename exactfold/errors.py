@@ -95,6 +95,26 @@ class CutEdgeError(FoldError):
     """An edge between two faces that the file declares a cut or a boundary."""
 
 
+class UnknownFormatError(InputError):
+    """A file in no format that is read; the message lists those that are."""
+
+
+class MalformedDrawingError(InputError):
+    """A file of a known format whose lines cannot be understood."""
+
+
+class EmptyDrawingError(InputError):
+    """A drawing without any line of a crease pattern."""
+
+
+class CurvedCreaseError(InputError):
+    """A crease that is not straight: panels between curved creases cannot be rigid."""
+
+
+class FoldedStateError(FoldError):
+    """The coordinates of a folded state where a crease pattern is needed."""
+
+
 class CertificateFormatError(InputError):
     """The file is not a certificate of a known format and version."""
 

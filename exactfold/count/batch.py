@@ -12,10 +12,11 @@ from exactfold.count.collect import count_branches
 from exactfold.count.pools import Pool, process_pool
 from exactfold.count.registry import choose
 from exactfold.data import EXAMPLES, example_path
+from exactfold.drawing.fold_json import read_bytes
 from exactfold.errors import InputError, NotEnoughMemoryError, UnreadableFileError, UsageError
 from exactfold.memory import is_shortage, shortage
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold import FoldFile, parse_bytes, read_bytes
+from exactfold.pattern.fold import FoldFile, parse_bytes
 from exactfold.pattern.loading import PatternLike
 from exactfold.progress import Progress
 

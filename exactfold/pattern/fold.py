@@ -2,37 +2,37 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from fractions import Fraction
 from os import PathLike
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
+from exactfold.drawing.fold_json import (
+    components,
+    exact_points,
+    fold_document,
+    index_lists,
+    list_at,
+    read_bytes,
+)
 from exactfold.errors import (
     CutEdgeError,
     DanglingEdgeError,
     InputError,
     MissingCoordinatesError,
     NonTriangularFaceError,
-    NotANumberError,
     NotFoldError,
     NotJSONError,
     OffPlaneError,
-    StaleExactCoordinatesError,
-    UnreadableFileError,
 )
-from exactfold.exact.numbers import over_common_denominator, parse_rational, shown, snap
+from exactfold.exact.numbers import over_common_denominator, shown, snap
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
 from exactfold.pattern.planar import trace_faces
 from exactfold.pattern.validate import rounded_to
-from exactfold.wording import agreeing, counted
-
-EXACT_KEY: Final = "vertices_exactfold:coords"
-"""The key of exact coordinates in a FOLD file, beside the floats of `vertices_coords`."""
+from exactfold.wording import counted
 
 OTHER_FORMATS: Final = {
     ".cp": "a CP file (a list of creases, as ORIPA and Oriedita write it)",
@@ -44,8 +44,6 @@ OTHER_FORMATS: Final = {
 """Formats of crease patterns that are not read, by the ends of their names."""
 
 ASSIGNMENTS: Final = "MVFUBCJ"
-_PREFIXES: Final = ("file_", "frame_", "vertices_", "edges_", "faces_")
-_AGREEMENT: Final = Fraction(1, 10**9)
 _ONLY_TOP: Final = "; only the top-level frame is read, and `file_frames` is ignored"
 
 
@@ -100,15 +98,6 @@ def load_fold(
         raise
 
 
-def read_bytes(path: str | PathLike[str]) -> bytes:
-    """All of a file; raises `UnreadableFileError`."""
-    try:
-        return Path(path).read_bytes()
-    except (OSError, ValueError) as error:  # ValueError: a null character in the path
-        reason = getattr(error, "strerror", None) or str(error)
-        raise UnreadableFileError(f"cannot read {path}: {reason}") from None
-
-
 def parse_bytes(raw: bytes, name: str, snap: int | None = None) -> FoldFile:
     """As `parse_fold`, from the bytes of a file; raises `NotJSONError` if they are not UTF-8.
 
@@ -151,11 +140,11 @@ def parse_fold(text: str, snap: int | None = None) -> FoldFile:
     >>> file.pattern.vertices[2]
     (Fraction(0, 1), Fraction(1, 10))
     """
-    document = _document(text)
+    document = fold_document(text)
     frames = _ONLY_TOP if document.get("file_frames") else ""
     points, largest, exact = _points(document, snap, frames)
-    edges = _index_lists(document, "edges_vertices", "edge", len(points))
-    faces = _index_lists(document, "faces_vertices", "face", len(points))
+    edges = index_lists(document, "edges_vertices", "edge", len(points))
+    faces = index_lists(document, "faces_vertices", "face", len(points))
     if not edges and not faces:
         raise NotFoldError(f"neither `faces_vertices` nor `edges_vertices` is given{frames}")
     for k, edge in enumerate(edges):
@@ -181,96 +170,17 @@ def _pattern(
     return CreasePattern(points, faces)
 
 
-# --- JSON ----------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Literal:
-    """The text of a JSON number with a point or exponent, or of NaN and Infinity."""
-
-    text: str
-
-    def __repr__(self) -> str:
-        return self.text
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    result = dict(pairs)
-    if len(result) < len(pairs):
-        keys = [key for key, _ in pairs]
-        twice = next(key for key in keys if keys.count(key) > 1)
-        raise NotJSONError(f"the key {shown(twice)} is given twice")
-    return result
-
-
-def _integer(digits: str) -> int:
-    """A JSON integer; `int` alone stops at 4300 digits."""
-    return int(digits) if len(digits) < 1000 else parse_rational(digits).numerator
-
-
-def _document(text: str) -> dict[str, Any]:
-    try:
-        document = json.loads(
-            text.removeprefix("\ufeff"),
-            parse_float=_Literal,
-            parse_int=_integer,
-            parse_constant=_Literal,
-            object_pairs_hook=_unique,
-        )
-    except json.JSONDecodeError as error:
-        place = f"line {error.lineno}, column {error.colno}"
-        cut = ": it ends too early" if error.pos >= len(error.doc.rstrip()) else f": {error.msg}"
-        raise NotJSONError(f"not JSON at {place}{cut}") from None
-    except RecursionError:
-        raise NotJSONError("the JSON is nested too deeply") from None
-    if not isinstance(document, dict):
-        raise NotFoldError(f"a FOLD file holds one JSON object, not {shown(document)}")
-    if not any(key.startswith(_PREFIXES) for key in document):
-        raise NotFoldError(
-            "the JSON object has no FOLD keys such as `vertices_coords` and `faces_vertices`"
-        )
-    return document
-
-
-def _list(document: Mapping[str, Any], key: str) -> list[Any]:
-    value = document.get(key)
-    if value is None:
-        return []
-    if not isinstance(value, list):
-        raise NotFoldError(f"`{key}` is {shown(value)}, not a list")
-    return value
-
-
-def _index_lists(
-    document: Mapping[str, Any], key: str, kind: str, count: int
-) -> Sequence[tuple[int, ...]]:
-    result = []
-    for k, entry in enumerate(_list(document, key)):
-        if not isinstance(entry, list):
-            raise NotFoldError(f"{kind} {k} in `{key}` is {shown(entry)}, not a list of vertices")
-        for v in entry:
-            if isinstance(v, bool) or not isinstance(v, int):
-                raise NotFoldError(f"{kind} {k} in `{key}`: {shown(v)} is not a vertex index")
-            if not 0 <= v < count:
-                raise NotFoldError(
-                    f"{kind} {k} in `{key}` uses vertex {shown(v)}, but there "
-                    f"{agreeing(count, 'is')} {counted(count, 'vertex')}"
-                )
-        result.append(tuple(entry))
-    return result
-
-
 # --- coordinates ---------------------------------------------------------------------------------
 
 
 def _points(
     document: Mapping[str, Any], denominator: int | None, frames: str
 ) -> tuple[list[Point], Fraction, bool]:
-    rows = _list(document, "vertices_coords")
+    rows = list_at(document, "vertices_coords")
     if not rows:
         raise MissingCoordinatesError(f"`vertices_coords` is missing or empty{frames}")
-    stated = [_components(v, row) for v, row in enumerate(rows)]
-    exact = _exact_points(document, stated)
+    stated = [components(v, row) for v, row in enumerate(rows)]
+    exact = exact_points(document, stated)
     points = stated
     if exact:
         points = [(x, y, z) for (x, y), (_, _, z) in zip(exact, stated, strict=True)]
@@ -293,62 +203,6 @@ def _literal(row: list[Any]) -> str:
     return shown(row[2]) if len(row) > 2 else "0"
 
 
-def _components(vertex: int, row: object) -> tuple[Fraction, Fraction, Fraction]:
-    if not isinstance(row, list):
-        raise MissingCoordinatesError(f"vertex {vertex} has {shown(row)} for coordinates")
-    values = []
-    for name, value in zip("xyz", row, strict=False):
-        try:
-            values.append(_number(value))
-        except NotANumberError as error:
-            raise NotANumberError(f"vertex {vertex}: {name}: {error}") from None
-    if len(row) < 2:
-        raise MissingCoordinatesError(f"vertex {vertex} has only {len(row)} coordinates")
-    if len(row) > 3:
-        raise OffPlaneError(f"vertex {vertex} has {len(row)} coordinates, more than three")
-    x, y, z = values if len(values) == 3 else (*values, Fraction(0))
-    return x, y, z
-
-
-def _number(value: object) -> Fraction:
-    if isinstance(value, _Literal):
-        return parse_rational(value.text)
-    if isinstance(value, int) and not isinstance(value, bool):
-        return Fraction(value)
-    raise NotANumberError(f"{shown(value)} is not a JSON number")
-
-
-def _exact_points(
-    document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ...]]
-) -> list[tuple[Fraction, Fraction]]:
-    rows = _list(document, EXACT_KEY)
-    if not rows:
-        return []
-    if len(rows) != len(stated):
-        raise StaleExactCoordinatesError(
-            f"`{EXACT_KEY}` has {len(rows)} vertices and `vertices_coords` has {len(stated)}: "
-            f"delete `{EXACT_KEY}` if another program changed the pattern"
-        )
-    tolerance = _AGREEMENT * max(abs(c) for point in stated for c in point[:2])
-    result = []
-    for v, row in enumerate(rows):
-        if not isinstance(row, list) or len(row) != 2 or not all(isinstance(c, str) for c in row):
-            raise NotANumberError(
-                f'vertex {v}: {shown(row)} in `{EXACT_KEY}` is not ["p/q", "p/q"]'
-            )
-        try:
-            x, y = parse_rational(row[0]), parse_rational(row[1])
-        except NotANumberError as error:
-            raise NotANumberError(f"vertex {v} in `{EXACT_KEY}`: {error}") from None
-        if max(abs(x - stated[v][0]), abs(y - stated[v][1])) > tolerance:
-            raise StaleExactCoordinatesError(
-                f"vertex {v}: `{EXACT_KEY}` and `vertices_coords` disagree; delete `{EXACT_KEY}` "
-                "if another program moved the vertex"
-            )
-        result.append((x, y))
-    return result
-
-
 # --- edges and faces -----------------------------------------------------------------------------
 
 
@@ -366,7 +220,7 @@ def _check_triangle(index: int, face: tuple[int, ...], rebuilt: bool) -> None:
 
 
 def _letters(document: Mapping[str, Any], count: int) -> list[str]:
-    letters = _list(document, "edges_assignment")
+    letters = list_at(document, "edges_assignment")
     if letters and len(letters) != count:
         first = min(len(letters), count)
         raise NotFoldError(

@@ -12,10 +12,10 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from exactfold.drawing.fold_json import EXACT_KEY
 from exactfold.errors import NotApplicableError, UnwritableFileError, UsageError
 from exactfold.exact.numbers import format_rational, shown
 from exactfold.pattern.crease_pattern import Edge
-from exactfold.pattern.fold import EXACT_KEY
 
 if TYPE_CHECKING:
     from exactfold.pattern.loading import PatternLike

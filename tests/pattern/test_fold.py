@@ -9,6 +9,7 @@ from fold_files import SQUARE, parse
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from exactfold.drawing.fold_json import EXACT_KEY
 from exactfold.errors import (
     CrossingEdgesError,
     CutEdgeError,
@@ -29,7 +30,6 @@ from exactfold.errors import (
     UnwritableFileError,
 )
 from exactfold.pattern.fold import (
-    EXACT_KEY,
     load_fold,
     parse_fold,
     read_fold,

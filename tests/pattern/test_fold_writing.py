@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from pattern_strategies import patterns, quick, similarities, transformed
 
 from exactfold.data import example_path
+from exactfold.drawing.fold_json import EXACT_KEY
 from exactfold.errors import (
     NotApplicableError,
     StaleExactCoordinatesError,
@@ -19,7 +20,7 @@ from exactfold.errors import (
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import single_vertex, two_vertex
 from exactfold.pattern.fold import load_fold, parse_fold, read_fold
-from exactfold.pattern.fold_writing import EXACT_KEY, fold_document, write_fold, write_text
+from exactfold.pattern.fold_writing import fold_document, write_fold, write_text
 
 
 def test_document_has_what_other_programs_need():

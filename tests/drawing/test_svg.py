@@ -1,0 +1,250 @@
+"""SVG: colours, styles, transforms, shapes, paths; what is left out; curves, which are refused."""
+
+from fractions import Fraction
+
+import pytest
+from drawings import drawn, places, svg
+
+from exactfold.drawing.svg import read_svg
+from exactfold.drawing.svg_path import path_lines
+from exactfold.errors import CurvedCreaseError, EmptyDrawingError, MalformedDrawingError
+
+ONE = '<line x1="1" y1="2" x2="3.1" y2="4" {}/>'
+PLACED = (("1", "-2"), ("3.1", "-4"))
+
+
+def letters(content):
+    return [line.letter for line in read_svg(svg(content)).lines]
+
+
+@pytest.mark.parametrize(
+    ("colour", "letter"),
+    [
+        ("black", "B"),
+        ("#000", "B"),
+        ("RGB(0, 0, 0)", "B"),
+        ("red", "M"),
+        ("#FF0000", "M"),
+        ("blue", "V"),
+        ("#00f", "V"),
+        ("green", "C"),
+        ("#0f0", "C"),
+        ("yellow", "F"),
+        ("rgb(255,255,0)", "F"),
+        ("magenta", "U"),
+        ("#F0F", "U"),
+    ],
+)
+def test_the_colours_of_origami_simulator(colour, letter):
+    drawing = read_svg(svg(ONE.format(f'stroke="{colour}"')))
+    assert drawn(drawing) == places([(*PLACED, letter)])
+    assert drawing.remarks == ()
+
+
+@pytest.mark.parametrize(
+    ("colour", "letter"), [("#ed1c24", "M"), ("#2e3192", "V"), ("#231f20", "B"), ("#fff200", "F")]
+)
+def test_colours_near_these_are_taken_for_them_with_a_remark(colour, letter):
+    drawing = read_svg(svg(ONE.format(f'stroke="{colour}"')))
+    assert drawing.lines[0].letter == letter
+    assert drawing.remarks == (f"took 1 element of colour '{colour}' for {letter}",)
+
+
+@pytest.mark.parametrize("colour", ["#808080", "cyan", "white", "orange", "url(#g)", "bluish"])
+def test_other_colours_are_left_out_with_a_remark(colour):
+    drawing = read_svg(svg(ONE.format('stroke="red"') + ONE.format(f'stroke="{colour}"')))
+    assert len(drawing.lines) == 1
+    assert drawing.remarks == (f"left out 1 element of colour '{colour}'",)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        ONE.format('stroke="blue" style="stroke: #f00; fill:none"'),
+        "<style>.st0{fill:none;stroke:#FF0000;}</style>" + ONE.format('class="st0"'),
+        "<style><![CDATA[ /* m */ line { stroke:red } ]]></style>" + ONE.format(""),
+        f'<g stroke="red"><g>{ONE.format("")}</g></g>',
+        f'<g stroke="blue"><g style="stroke:red">{ONE.format("")}</g></g>',
+        ONE.format('style="stroke:red !important"'),
+        '<g color="red">' + ONE.format('stroke="currentColor"') + "</g>",
+    ],
+)
+def test_styles(content):
+    assert drawn(read_svg(svg(content))) == places([(*PLACED, "M")])
+
+
+def test_what_is_not_drawn_is_left_out():
+    drawing = read_svg(
+        svg(
+            f"<defs>{ONE.format('stroke=' + chr(34) + 'red' + chr(34))}</defs>"
+            f'<g display="none"><line x2="5" stroke="red"/></g>'
+            f'<g visibility="hidden"><line x2="6" stroke="red"/></g>'
+            f'<line x2="7"/><rect width="9" height="9" fill="white"/>'
+            f'<circle r="1" stroke="red"/><text stroke="red">A</text>'
+            f'<line x2="8" stroke="red"/>'
+        )
+    )
+    assert drawn(drawing) == places([(("0", "0"), ("8", "0"), "M")])
+    assert drawing.remarks == (
+        "left out 1 element of the kind circle",
+        "left out 1 element with hidden visibility",
+        "left out 2 elements without stroke",
+    )
+
+
+def test_only_the_opacity_of_creases_is_a_fold_angle():
+    content = ONE.format('stroke="red" opacity="0.5"') + ONE.format('stroke="#000" opacity="0.5"')
+    drawing = read_svg(svg(content + '<line x2="1" stroke="blue" style="stroke-opacity:.2"/>'))
+    assert drawing.remarks == ("did not read the opacity of 2 elements as fold angles",)
+
+
+@pytest.mark.parametrize(
+    ("transform", "end"),
+    [
+        ("translate(0.1, 0.2)", ("3.2", "-4.2")),
+        ("scale(2)", ("6.2", "-8")),
+        ("matrix(0 1 1 0 0.5 0)", ("4.5", "-3.1")),
+        ("translate(1 1) scale(10)", ("32", "-41")),
+    ],
+)
+def test_transforms(transform, end):
+    direct = read_svg(svg(ONE.format(f'stroke="red" transform="{transform}"')))
+    grouped = read_svg(svg(f'<g transform="{transform}">{ONE.format("")}</g>', 'stroke="red"'))
+    assert direct.points[1] == tuple(map(Fraction, end))
+    assert grouped.points == direct.points
+
+
+def test_a_rotation_is_right_to_the_precision_of_floats():
+    drawing = read_svg(svg('<line x2="1" stroke="red" transform="rotate(30)"/>'))
+    x, y = drawing.points[1]
+    assert float(x) == pytest.approx(3**0.5 / 2, abs=1e-15)
+    assert float(y) == pytest.approx(-1 / 2, abs=1e-15)
+
+
+def test_the_size_of_the_picture_does_not_change_the_numbers():
+    size = 'width="10cm" height="20cm" viewBox="0 0 300 600"'
+    assert drawn(read_svg(svg(ONE.format('stroke="red"'), size))) == places([(*PLACED, "M")])
+
+
+@pytest.mark.parametrize("stroke", ['stroke="red"', 'style="stroke:red"'])
+def test_shapes(stroke):
+    corners = [("0", "0"), ("2", "0"), ("2", "-0.3"), ("0", "-0.3")]
+    sides = [(a, b, "M") for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+    rect = read_svg(svg(f'<rect width="2" height=".3" {stroke}/>'))
+    polygon = read_svg(svg(f'<polygon points="0,0 2,0 2,.3 0,.3" {stroke}/>'))
+    polyline = read_svg(svg(f'<polyline points="0 0,2 0 2 3e-1 0-0.3" {stroke}/>'))
+    path = read_svg(svg(f'<path d="M0 0H2V.3h-2z" {stroke}/>'))
+    assert drawn(rect) == drawn(polygon) == drawn(path) == places(sides)
+    last = (("2", "-0.3"), ("0", "0.3"), "M")
+    assert drawn(polyline) == places([*sides[:2], last])
+
+
+def test_units_of_length():
+    drawing = read_svg(svg('<line x2="25.4mm" y2="1in" stroke="red"/>'))
+    assert drawing.points[1] == (96, -96)
+
+
+@pytest.mark.parametrize(
+    ("data", "ends"),
+    [
+        ("M1 2 3 4 5 6", [(3, 4), (5, 6)]),
+        ("m1 2 3 4 5 6", [(4, 6), (9, 12)]),
+        ("M1,2L3,4H5V6", [(3, 4), (5, 4), (5, 6)]),
+        ("M1,2l3,4h5v6", [(4, 6), (9, 6), (9, 12)]),
+        ("M1 2 3 4 5 5zl1 0", [(3, 4), (5, 5), (1, 2), (2, 2)]),
+        ("M1 2L3 4L1 2z", [(3, 4), (1, 2)]),
+        ("M1 2h1M5 5v1", [(2, 2), (5, 6)]),
+        ("M1 2h1m5 5v1", [(2, 2), (7, 8)]),
+        ("M0-1.5.5.5", [(Fraction(1, 2), Fraction(1, 2))]),
+        ("M0 0l1e1-1E-1", [(10, Fraction(-1, 10))]),
+    ],
+)
+def test_paths(data, ends):
+    lines, curves = path_lines(data)
+    assert [end for _, end in lines] == ends
+    assert curves == 0
+
+
+def test_relative_places_are_added_exactly():
+    lines, _ = path_lines("m0.1 0" + "l0.1 0" * 9)
+    assert lines[-1][1] == (1, 0)
+
+
+@pytest.mark.parametrize(
+    "data", ["M0 0C1 1 2 2 3 3", "M0 0c0 0 3 3 3 3", "M0 0S1 1 3 3", "M0 0Q1 1 3 3", "M0 0T3 3"]
+)
+def test_curves_that_do_not_bend_are_lines(data):
+    assert path_lines(data) == ([((0, 0), (3, 3))], 1)
+
+
+def test_a_curve_that_hardly_bends_is_read_with_a_remark():
+    drawing = read_svg(svg('<path stroke="red" d="M0 0C1 .0009 2 0 3 0"/>'))
+    assert drawn(drawing) == places([(("0", "0"), ("3", "0"), "M")])
+    assert drawing.remarks == ("read 1 curve as straight, within 1/1000 of the length",)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        "M0 0C0 1 2 2 3 3",
+        "M0 0Q1 0 2 2",
+        "M0 0Q-1-1 2 2",  # straight, but it turns back
+        "M0 0Q.5 0 1 0T1 1",
+        "M0 0C0 0 .5 0 1 0S2 1 2 0",
+        "M0 0A1 1 0 0 1 2 2",
+        "M0 0C1 1 1 0 0 0",
+    ],
+)
+def test_curves_are_refused(data):
+    with pytest.raises(CurvedCreaseError, match="straight"):
+        path_lines(data)
+
+
+def test_the_refusal_of_a_curve_names_the_element():
+    content = '<path stroke="red" d="M0 0h1"/><path id="arc" stroke="red" d="M0 0Q1 0 2 2"/>'
+    with pytest.raises(CurvedCreaseError, match=r"path 2 \(id 'arc'\): a curve \(Q\)"):
+        read_svg(svg(content))
+    with pytest.raises(CurvedCreaseError, match="rect 1: the corners"):
+        read_svg(svg('<rect width="3" height="3" rx="1" stroke="red"/>'))
+
+
+def test_curves_in_other_colours_do_not_matter():
+    assert letters('<path stroke="gray" d="M0 0Q1 0 2 2"/><line x2="1" stroke="blue"/>') == ["V"]
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ('<path stroke="red" d="M0 0L1"/>', "path 1: .*too few numbers after 'L'"),
+        ('<path stroke="red" d="M0 0X1 1"/>', "path 1: .*unknown command 'X'"),
+        ('<path stroke="red" d="M0 0;1 1"/>', "path 1: .*not understood at ';1 1'"),
+        ('<path stroke="red" d="1 1"/>', "path 1: .*without a command"),
+        ('<path stroke="red" d="M0 0z1 1"/>', "path 1: .*without a command"),
+        ('<polygon stroke="red" points="0,0 1,1 2"/>', "polygon 1: `points`"),
+        ('<polyline stroke="red" points="0,0 a,1"/>', "polyline 1: `points`"),
+        ('<line stroke="red" x2="50%"/>', "line 1: x2 is '50%'"),
+        ('<line stroke="red" x2="NaN"/>', "line 1: x2 is 'NaN'"),
+        ('<g transform="rotate(a)"><line stroke="red" x2="1"/></g>', "not understood"),
+    ],
+)
+def test_what_is_not_understood_is_named(content, message):
+    with pytest.raises(MalformedDrawingError, match=message):
+        read_svg(svg(content))
+
+
+@pytest.mark.parametrize("text", ["<svg>", "<svg/", "", "<a/><b/>", "<html/>", "<svg xmlns='a'/>"])
+def test_what_is_no_svg(text):
+    with pytest.raises(MalformedDrawingError):
+        read_svg(text)
+
+
+def test_an_empty_picture():
+    with pytest.raises(EmptyDrawingError, match=r"SVG .*\(left out 1 element without stroke\)"):
+        read_svg(svg('<line x2="1"/>'))
+
+
+def test_entities_that_grow_without_bound_are_refused():
+    rows = "".join(f'<!ENTITY e{k} "{f"&e{k - 1};" * 10}">' for k in range(1, 12))
+    bomb = f'<!DOCTYPE svg [<!ENTITY e0 "lol">{rows}]><svg>&e11;</svg>'
+    with pytest.raises(MalformedDrawingError):
+        read_svg(bomb)
