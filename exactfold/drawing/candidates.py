@@ -1,0 +1,103 @@
+"""Small numbers near a decimal: which (a + b sqrt d)/q was meant, and how likely that is chance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from math import isqrt, log2, sqrt
+from typing import Final
+
+import numpy as np
+
+from exactfold.arrays import FloatArray, IntArray
+from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField
+
+RADICANDS: Final = (1, 2, 3, 5)
+"""The fields that are tried: Q, Q(sqrt 2), Q(sqrt 3), Q(sqrt 5)."""
+_LARGEST: Final = {1: 360_000, 2: 100_000, 3: 100_000, 5: 100_000}
+"""The bound on q^2 (2|b| + 1)."""
+_CHANCE: Final = 2.0**-6
+"""A match is believed only if a random number would have one as small with this probability."""
+
+
+def field_of(radicand: int) -> SurdField:
+    """Q for 1, else Q(sqrt radicand)."""
+    return RATIONALS if radicand == 1 else RATIONALS.adjoined(radicand)
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """The numbers (a + b sqrt d)/q modulo 1, sorted by value; `rank` counts those no larger.
+
+    The size of a candidate is q^2 (2|b| + 1): so many numbers, up to a constant, are as small.
+    """
+
+    values: FloatArray
+    numerators: IntArray
+    roots: IntArray
+    denominators: IntArray
+    rank: IntArray
+
+
+@dataclass(frozen=True)
+class Match:
+    """An exact number that was matched, and the bits by which it beats chance."""
+
+    value: Number
+    bits: float
+
+
+@lru_cache(maxsize=8)
+def candidates(radicand: int) -> Candidates:
+    """All candidates of one field up to the bound on their size."""
+    bound, root = _LARGEST[radicand], sqrt(radicand)
+    found: list[tuple[IntArray, IntArray, int]] = []
+    for q in range(1, isqrt(bound) + 1):
+        most = min((bound // (q * q) - 1) // 2, 256) if radicand > 1 else 0
+        a, b = np.meshgrid(np.arange(q), np.arange(-most, most + 1), indexing="ij")
+        lowest = np.gcd(np.gcd(a, b), q) == 1
+        found.append((a[lowest], b[lowest], q))
+    a = np.concatenate([row[0] for row in found])
+    b = np.concatenate([row[1] for row in found])
+    q = np.concatenate([np.full(len(row[0]), row[2]) for row in found])
+    size = q * q * (2 * np.abs(b) + 1)
+    rank = np.searchsorted(np.sort(size), size, side="right")
+    values = (a + b * root) / q
+    whole = np.floor(values).astype(np.int64)
+    order = np.argsort(values - whole, kind="stable")
+    a = a - whole * q
+    return Candidates(*(row[order] for row in (values - whole, a, b, q, rank)))
+
+
+def matches(values: FloatArray, within: float, radicand: int) -> list[Match | None]:
+    """The smallest candidate within a distance of each value, None where chance would do as well.
+
+    The probability that a random number lies within `within` of one of the `rank` smallest
+    candidates modulo 1 is at most 2 * within * rank; `bits` is minus its logarithm.
+    """
+    table = candidates(radicand)
+    small = table.rank <= _CHANCE / (2 * within)
+    if not small.any():
+        return [None] * len(values)
+    index = np.flatnonzero(small)
+    near = table.values[index]
+    # Modulo 1, values just below 1 are near 0.
+    index = np.concatenate([index, index, index])
+    near = np.concatenate([near - 1, near, near + 1])
+    parts = values - np.floor(values)
+    low = np.searchsorted(near, parts - within, side="left")
+    high = np.searchsorted(near, parts + within, side="right")
+    field = field_of(radicand)
+    found: list[Match | None] = []
+    for value, start, end in zip(values, low, high, strict=True):
+        if start == end:
+            found.append(None)
+            continue
+        k = min(index[start:end], key=lambda k: int(table.rank[k]))
+        q, whole = int(table.denominators[k]), round(float(value - table.values[k]))
+        number: Number = Fraction(int(table.numerators[k]) + whole * q, q)
+        if table.roots[k]:
+            number = Surd(field, (number, Fraction(int(table.roots[k]), q)))
+        found.append(Match(number, -log2(2 * within * float(table.rank[k]))))
+    return found
