@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from math import isqrt, log2, sqrt
+from math import isqrt, log, log2, sqrt
 from typing import Final
 
 import numpy as np
+from flint import fmpz_mat
 
 from exactfold.arrays import FloatArray, IntArray
 from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField
@@ -19,6 +20,8 @@ _LARGEST: Final = {1: 360_000, 2: 100_000, 3: 100_000, 5: 100_000}
 """The bound on q^2 (2|b| + 1)."""
 _CHANCE: Final = 2.0**-6
 """A match is believed only if a random number would have one as small with this probability."""
+_BITS: Final = 10.0
+"""The same for numbers beyond the table, of which there are more."""
 
 
 def field_of(radicand: int) -> SurdField:
@@ -101,3 +104,30 @@ def matches(values: FloatArray, within: float, radicand: int) -> list[Match | No
             number = Surd(field, (number, Fraction(int(table.roots[k]), q)))
         found.append(Match(number, -log2(2 * within * float(table.rank[k]))))
     return found
+
+
+def reduced_match(value: Fraction, within: Fraction, radicand: int) -> Match | None:
+    """A number (a + b sqrt d)/q of any size within a small distance, None if chance would do.
+
+    LLL finds a short vector of the lattice of (q, a, b, (q value + a + b sqrt d) / within). The
+    numbers of size at most S = q^2 (2|b| + 1) are fewer than S (1 + log S) in a unit interval.
+
+    >>> reduced_match(Fraction("0.0165910681099303"), Fraction(1, 10**13), 2).value
+    1621/104 + -1145/104*r1
+    """
+    scale = 1 / within
+    rows = [[1, 0, 0, round(value * scale)], [0, 1, 0, round(scale)]]
+    if radicand > 1:
+        rows.append([0, 0, 1, isqrt(int(radicand * scale * scale))])
+    shortest = fmpz_mat(rows).lll()
+    q, a, b = (int(shortest[0, k]) for k in range(3))
+    if not q:
+        return None
+    number: Number = Fraction(-a, q)
+    if b:
+        number = Surd(field_of(radicand), (number, Fraction(-b, q)))
+    size = q * q * (2 * abs(b) + 1)
+    bits = -log2(2 * float(within) * size * (1 + log(size)))
+    if bits < _BITS or abs(float(number - value)) > within:
+        return None
+    return Match(number, bits)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import lcm
 from typing import Final, Literal, TypeAlias
@@ -11,7 +11,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 
 from exactfold.arrays import FloatArray
-from exactfold.drawing.candidates import RADICANDS, Match, matches
+from exactfold.drawing.candidates import RADICANDS, Match, matches, reduced_match
 from exactfold.drawing.construction import constructed
 from exactfold.drawing.drawing import Drawing, Point
 from exactfold.errors import MalformedPatternError, UsageError
@@ -28,7 +28,11 @@ _COARSER: Final = (Fraction(1, 10**8), Fraction(1, 10**7), Fraction(1, 10**6))
 _WRITTEN: Final = 100
 """A common denominator up to which the decimals are what was meant."""
 _LEAST_BITS: Final = 20.0
-_LEAST_SHARE: Final = 0.5
+"""What beats chance for a whole drawing."""
+_MOST_KEPT: Final = 0.5
+"""The share of vertices without a number beyond which a field is not believed."""
+_NOISE: Final = Fraction(1, 2**46)
+"""The least noise that is expected in coordinates computed in floats."""
 
 
 @dataclass(frozen=True)
@@ -138,11 +142,12 @@ def exact_coordinates(
     best: Exact | None = None
     for within in [tolerance] if tolerance is not None else _tolerances(written, size):
         found = _fitted(drawing, written, size, within)
-        if found is not None and (best is None or len(found.kept) < len(best.kept)):
+        # A coarser tolerance fits more by chance: it must explain far more.
+        if found is not None and (best is None or 2 * len(found.kept) < len(best.kept)):
             best = found
         if best is not None and not best.kept:
             break
-    if best is None or len(best.kept) > _LEAST_SHARE * len(written):
+    if best is None or len(best.kept) > _MOST_KEPT * len(written):
         return Exact(drawing, reason="they fit no small numbers of Q or Q(sqrt 2, 3 or 5)")
     return best
 
@@ -206,6 +211,7 @@ def _finished(
     within: Fraction,
     model: _Model,
 ) -> Exact:
+    model = _refined(model)
     made = constructed(model.places, model.known, drawing.lines, model.radicand, model.within)
     points: list[Point] = []
     kept = []
@@ -235,6 +241,24 @@ def _finished(
         constructed=len(made),
         kept=tuple(kept),
     )
+
+
+def _refined(model: _Model) -> _Model:
+    """Larger numbers for what fits none, within four times the noise of those that fit."""
+    pairs = list(zip(model.known, model.representatives, strict=True))
+    noise = [
+        abs(float(c - r)) for k, p in pairs for c, r in zip(k, p, strict=True) if c is not None
+    ]
+    within = min(Fraction(model.within), max(_NOISE, 4 * Fraction(max(noise, default=1.0))))
+    open_values = {r for k, p in pairs for c, r in zip(k, p, strict=True) if c is None}
+    found = {r: reduced_match(r, within, model.radicand) for r in open_values}
+    numbers = {r: match.value for r, match in found.items() if match is not None}
+    known = [
+        (numbers.get(p[0]) if k[0] is None else k[0], numbers.get(p[1]) if k[1] is None else k[1])
+        for k, p in pairs
+    ]
+    bits = model.bits + sum(match.bits for match in found.values() if match is not None)
+    return replace(model, known=known, bits=bits)
 
 
 def _model(
