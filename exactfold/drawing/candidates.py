@@ -29,6 +29,11 @@ def field_of(radicand: int) -> SurdField:
     return RATIONALS if radicand == 1 else RATIONALS.adjoined(radicand)
 
 
+def field_name(radicand: int) -> str:
+    """The field in words: `Q` or `Q(sqrt 2)`."""
+    return "Q" if radicand == 1 else f"Q(sqrt {radicand})"
+
+
 @dataclass(frozen=True)
 class Candidates:
     """The numbers (a + b sqrt d)/q modulo 1, sorted by value; `rank` counts those no larger.
@@ -56,21 +61,22 @@ def candidates(radicand: int) -> Candidates:
     """All candidates of one field up to the bound on their size."""
     bound, root = _LARGEST[radicand], sqrt(radicand)
     found: list[tuple[IntArray, IntArray, int]] = []
-    for q in range(1, isqrt(bound) + 1):
-        most = min((bound // (q * q) - 1) // 2, 256) if radicand > 1 else 0
-        a, b = np.meshgrid(np.arange(q), np.arange(-most, most + 1), indexing="ij")
-        lowest = np.gcd(np.gcd(a, b), q) == 1
-        found.append((a[lowest], b[lowest], q))
-    a = np.concatenate([row[0] for row in found])
-    b = np.concatenate([row[1] for row in found])
-    q = np.concatenate([np.full(len(row[0]), row[2]) for row in found])
+    for den in range(1, isqrt(bound) + 1):
+        most = min((bound // (den * den) - 1) // 2, 256) if radicand > 1 else 0
+        a, b = np.meshgrid(np.arange(den), np.arange(-most, most + 1), indexing="ij")
+        lowest = np.gcd(np.gcd(a, b), den) == 1
+        found.append((a[lowest], b[lowest], den))
+    a, b = (np.concatenate([row[k] for row in found]) for k in (0, 1))
+    q = np.repeat([row[2] for row in found], [len(row[0]) for row in found])
     size = q * q * (2 * np.abs(b) + 1)
     rank = np.searchsorted(np.sort(size), size, side="right")
     values = (a + b * root) / q
     whole = np.floor(values).astype(np.int64)
     order = np.argsort(values - whole, kind="stable")
     a = a - whole * q
-    return Candidates(*(row[order] for row in (values - whole, a, b, q, rank)))
+    return Candidates(
+        (values - whole)[order], a[order], b[order], q[order], rank[order].astype(np.int64)
+    )
 
 
 def matches(values: FloatArray, within: float, radicand: int) -> list[Match | None]:
@@ -99,9 +105,9 @@ def matches(values: FloatArray, within: float, radicand: int) -> list[Match | No
             continue
         k = min(index[start:end], key=lambda k: int(table.rank[k]))
         q, whole = int(table.denominators[k]), round(float(value - table.values[k]))
-        number: Number = Fraction(int(table.numerators[k]) + whole * q, q)
-        if table.roots[k]:
-            number = Surd(field, (number, Fraction(int(table.roots[k]), q)))
+        rational = Fraction(int(table.numerators[k]) + whole * q, q)
+        root = Fraction(int(table.roots[k]), q)
+        number = Surd(field, (rational, root)) if root else rational
         found.append(Match(number, -log2(2 * within * float(table.rank[k]))))
     return found
 
@@ -112,8 +118,8 @@ def reduced_match(value: Fraction, within: Fraction, radicand: int) -> Match | N
     LLL finds a short vector of the lattice of (q, a, b, (q value + a + b sqrt d) / within). The
     numbers of size at most S = q^2 (2|b| + 1) are fewer than S (1 + log S) in a unit interval.
 
-    >>> reduced_match(Fraction("0.0165910681099303"), Fraction(1, 10**13), 2).value
-    1621/104 + -1145/104*r1
+    >>> reduced_match(Fraction("0.10236012565087"), Fraction(1, 10**13), 2).value
+    17/97 + -5/97*r1
     """
     scale = 1 / within
     rows = [[1, 0, 0, round(value * scale)], [0, 1, 0, round(scale)]]
@@ -123,9 +129,8 @@ def reduced_match(value: Fraction, within: Fraction, radicand: int) -> Match | N
     q, a, b = (int(shortest[0, k]) for k in range(3))
     if not q:
         return None
-    number: Number = Fraction(-a, q)
-    if b:
-        number = Surd(field_of(radicand), (number, Fraction(-b, q)))
+    rational, root = Fraction(-a, q), Fraction(-b, q)
+    number = Surd(field_of(radicand), (rational, root)) if root else rational
     size = q * q * (2 * abs(b) + 1)
     bits = -log2(2 * float(within) * size * (1 + log(size)))
     if bits < _BITS or abs(float(number - value)) > within:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import combinations
 from math import atan2, pi
 from typing import Final, TypeAlias
@@ -13,22 +14,43 @@ import numpy as np
 from exactfold.arrays import FloatArray
 from exactfold.drawing.candidates import field_of
 from exactfold.drawing.drawing import Line, Point
-from exactfold.exact.surds import Number
+from exactfold.exact.surds import Number, Surd
 
-_STEPS: Final = {1: 4, 2: 8, 3: 12, 5: 4}
-"""Into how many directions of exact slope half a turn is divided: 45, 22.5, 15 and 45 degrees."""
 _FLATTEST: Final = 0.05
 """The least sine of the angle at which two lines fix a point."""
 
 ExactLine: TypeAlias = tuple[Point, Point]
 """A point of a line and its direction."""
+Exact: TypeAlias = Surd | Fraction
+
+
+def plain(number: Number) -> Number:
+    """A number without roots as a fraction.
+
+    >>> plain(field_of(2).number(3))
+    Fraction(3, 1)
+    """
+    if not isinstance(number, Surd):
+        return Fraction(number)
+    return number if any(number.coefficients[1:]) else number.coefficients[0]
 
 
 def crossing(first: ExactLine, second: ExactLine) -> Point:
     """The point on two lines that are not parallel, exactly."""
-    ((px, py), (dx, dy)), ((qx, qy), (ex, ey)) = first, second
+    (px, py), (dx, dy) = _numbers(first)
+    (qx, qy), (ex, ey) = _numbers(second)
     t = ((qx - px) * ey - (qy - py) * ex) / (dx * ey - dy * ex)
-    return px + t * dx, py + t * dy
+    return plain(px + t * dx), plain(py + t * dy)
+
+
+def _numbers(line: ExactLine) -> tuple[tuple[Exact, Exact], tuple[Exact, Exact]]:
+    (px, py), (dx, dy) = line
+    return (_divisible(px), _divisible(py)), (_divisible(dx), _divisible(dy))
+
+
+def _divisible(number: Number) -> Exact:
+    """A whole number as a fraction, as whole numbers would be divided in floats."""
+    return number if isinstance(number, Surd) else Fraction(number)
 
 
 def directions(radicand: int) -> list[Point]:
@@ -38,11 +60,11 @@ def directions(radicand: int) -> list[Point]:
     [(1.0, 0.0), (1.0, 0.414), (1.0, 1.0), (1.0, 2.414)]
     """
     field = field_of(radicand)
-    root: Number = field.root if radicand > 1 else 1
-    slopes: list[Number] = {
-        2: [0, root - 1, 1, root + 1],
-        3: [0, 2 - root, root / 3, 1, root, root + 2],
-    }.get(radicand, [0, 1])
+    slopes: list[Number] = [0, 1]
+    if radicand == 2:
+        slopes = [0, field.root - 1, 1, field.root + 1]
+    elif radicand == 3:
+        slopes = [0, 2 - field.root, field.root / 3, 1, field.root, field.root + 2]
     rising: list[Point] = [(1, slope) for slope in slopes]
     return [*rising, (0, 1), *((-1, slope) for slope in reversed(slopes[1:]))]
 

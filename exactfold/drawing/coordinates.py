@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
 from typing import Final, Literal, TypeAlias
 
-import numpy as np
-
-from exactfold.arrays import FloatArray
-from exactfold.drawing.candidates import RADICANDS, Match, matches, reduced_match
+from exactfold.drawing.candidates import RADICANDS, field_name
 from exactfold.drawing.construction import constructed
 from exactfold.drawing.drawing import Drawing, Point
+from exactfold.drawing.fitting import Model, Written, fitted_model, frames, refined
 from exactfold.errors import MalformedPatternError, UsageError
 from exactfold.exact.numbers import snap as snapped
-from exactfold.exact.surds import Number, Surd
+from exactfold.exact.surds import Surd
 from exactfold.wording import agreeing, counted
 
 Snap: TypeAlias = "Literal['auto', 'exact'] | int"
@@ -31,8 +29,6 @@ _LEAST_BITS: Final = 20.0
 """What beats chance for a whole drawing."""
 _MOST_KEPT: Final = 0.5
 """The share of vertices without a number beyond which a field is not believed."""
-_NOISE: Final = Fraction(1, 2**46)
-"""The least noise that is expected in coordinates computed in floats."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +62,7 @@ class Exact:
     @property
     def field_name(self) -> str:
         """The field in words: `Q` or `Q(sqrt 2)`."""
-        return "Q" if self.radicand == 1 else f"Q(sqrt {self.radicand})"
+        return field_name(self.radicand)
 
     @property
     def text(self) -> str:
@@ -110,21 +106,23 @@ def exact_coordinates(
     found does not mean that there is none.
 
     >>> from exactfold.drawing.drawing import Line
-    >>> points = [(0, 0), (1, 0), (1, 1), (0, 1), (Fraction("0.70710678118"), 0)]
+    >>> points = [(0, 0), (1, 0), (1, 1), (0, 1), (Fraction("0.707106781"), 0)]
     >>> found = exact_coordinates(Drawing(tuple(points), (Line(0, 4, "B"),), "five points"))
     >>> found.points[4], found.field_name
     ((1/2*r1, Fraction(0, 1)), 'Q(sqrt 2)')
-    >>> found.text
-    'coordinates in Q(sqrt 2), denominators up to 2; largest move 7e-12 of the size, tolerance 1e-09'
+    >>> print(found.text)
+    coordinates in Q(sqrt 2), denominators up to 2; largest move 2e-10 of the size, tolerance 1e-09
     """
     written = _fractions(drawing)
     size = _size(written)
     if snap == "exact":
         return Exact(drawing, reason="as asked for")
     if isinstance(snap, int) and not isinstance(snap, bool):
-        near: list[Point] = [(snapped(x, snap), snapped(y, snap)) for x, y in written]
+        near = [(snapped(x, snap), snapped(y, snap)) for x, y in written]
         move = max(
-            abs(Fraction(a) - b) for p, q in zip(near, written, strict=True) for a, b in zip(p, q, strict=True)  # type: ignore[arg-type]
+            abs(a - b)
+            for p, q in zip(near, written, strict=True)
+            for a, b in zip(p, q, strict=True)
         )
         return Exact(
             _with(drawing, near),
@@ -148,8 +146,15 @@ def exact_coordinates(
         if best is not None and not best.kept:
             break
     if best is None or len(best.kept) > _MOST_KEPT * len(written):
-        return Exact(drawing, reason="they fit no small numbers of Q or Q(sqrt 2, 3 or 5)")
+        return Exact(drawing, reason=_unfit(best))
     return best
+
+
+def _unfit(best: Exact | None) -> str:
+    if best is None:
+        return "they fit no small numbers of Q or Q(sqrt 2, 3 or 5)"
+    fit = len(best.points) - len(best.kept)
+    return f"only {fit} of {counted(len(best.points), 'vertex')} fit numbers of {best.field_name}"
 
 
 def resolution(drawing: Drawing) -> Fraction:
@@ -169,32 +174,11 @@ def resolution(drawing: Drawing) -> Fraction:
 # --- fitting -------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class _Model:
-    """A frame, a field and what each coordinate is there."""
-
-    origin: tuple[Fraction, Fraction]
-    unit: Fraction
-    radicand: int
-    places: FloatArray
-    known: list[tuple[Number | None, Number | None]]
-    representatives: list[tuple[Fraction, Fraction]]
-    within: float
-    bits: float
-
-    @property
-    def open(self) -> int:
-        return sum(x is None or y is None for x, y in self.known)
-
-
-def _fitted(
-    drawing: Drawing, written: Sequence[tuple[Fraction, Fraction]], size: Fraction, within: Fraction
-) -> Exact | None:
-    best: _Model | None = None
-    frames = _frames(written)
+def _fitted(drawing: Drawing, written: Written, size: Fraction, within: Fraction) -> Exact | None:
+    best: Model | None = None
     for radicand in RADICANDS:
-        for origin, unit in frames:
-            model = _model(written, origin, unit, radicand, within * size / unit)
+        for origin, unit in frames(written):
+            model = fitted_model(written, origin, unit, radicand, within * size / unit)
             if model.bits < _LEAST_BITS:
                 continue
             if not model.open:
@@ -206,18 +190,18 @@ def _fitted(
 
 def _finished(
     drawing: Drawing,
-    written: Sequence[tuple[Fraction, Fraction]],
+    written: Written,
     size: Fraction,
     within: Fraction,
-    model: _Model,
+    model: Model,
 ) -> Exact:
-    model = _refined(model)
+    model = refined(model)
     made = constructed(model.places, model.known, drawing.lines, model.radicand, model.within)
     points: list[Point] = []
     kept = []
     for v, ((x, y), stand_in) in enumerate(zip(model.known, model.representatives, strict=True)):
         if v in made:
-            points.append(_plain(made[v]))
+            points.append(made[v])
             continue
         if x is None or y is None:
             kept.append(v)
@@ -243,100 +227,12 @@ def _finished(
     )
 
 
-def _refined(model: _Model) -> _Model:
-    """Larger numbers for what fits none, within four times the noise of those that fit."""
-    pairs = list(zip(model.known, model.representatives, strict=True))
-    noise = [
-        abs(float(c - r)) for k, p in pairs for c, r in zip(k, p, strict=True) if c is not None
-    ]
-    within = min(Fraction(model.within), max(_NOISE, 4 * Fraction(max(noise, default=1.0))))
-    open_values = {r for k, p in pairs for c, r in zip(k, p, strict=True) if c is None}
-    found = {r: reduced_match(r, within, model.radicand) for r in open_values}
-    numbers = {r: match.value for r, match in found.items() if match is not None}
-    known = [
-        (numbers.get(p[0]) if k[0] is None else k[0], numbers.get(p[1]) if k[1] is None else k[1])
-        for k, p in pairs
-    ]
-    bits = model.bits + sum(match.bits for match in found.values() if match is not None)
-    return replace(model, known=known, bits=bits)
-
-
-def _model(
-    written: Sequence[tuple[Fraction, Fraction]],
-    origin: tuple[Fraction, Fraction],
-    unit: Fraction,
-    radicand: int,
-    within: Fraction,
-) -> _Model:
-    columns: list[list[Number | None]] = []
-    stand_ins: list[list[Fraction]] = []
-    total = 0.0
-    for axis in (0, 1):
-        exact = [(point[axis] - origin[axis]) / unit for point in written]
-        groups = _groups(exact, float(within))
-        middle = np.array([float(exact[group[len(group) // 2]]) for group in groups])
-        found: list[Match | None] = matches(middle, float(within), radicand)
-        column: list[Number | None] = [None] * len(exact)
-        stand_in = list(exact)
-        for group, match in zip(groups, found, strict=True):
-            shortest = min((exact[v] for v in group), key=lambda c: (c.denominator, c))
-            for v in group:
-                column[v] = None if match is None else match.value
-                stand_in[v] = shortest
-            total += 0.0 if match is None else match.bits
-        columns.append(column)
-        stand_ins.append(stand_in)
-    places = np.array([[float((p[k] - origin[k]) / unit) for k in (0, 1)] for p in written])
-    return _Model(
-        origin,
-        unit,
-        radicand,
-        places,
-        list(zip(*columns, strict=True)),
-        list(zip(*stand_ins, strict=True)),
-        float(within),
-        total,
-    )
-
-
-def _groups(values: Sequence[Fraction], within: float) -> list[list[int]]:
-    """Indices of values that agree to within the tolerance, none further apart than twice that."""
-    floats = [float(value) for value in values]
-    order = sorted(range(len(values)), key=floats.__getitem__)
-    groups: list[list[int]] = []
-    for v in order:
-        last = groups[-1] if groups else None
-        if (
-            last is not None
-            and floats[v] - floats[last[-1]] <= within
-            and floats[v] - floats[last[0]] <= 2 * within
-        ):
-            last.append(v)
-        else:
-            groups.append([v])
-    return groups
-
-
-def _frames(
-    written: Sequence[tuple[Fraction, Fraction]],
-) -> list[tuple[tuple[Fraction, Fraction], Fraction]]:
-    """As written; from the lower left corner in units of the width; and of the height."""
-    xs, ys = zip(*written, strict=True)
-    corner = (min(xs), min(ys))
-    zero = (Fraction(0), Fraction(0))
-    frames = [(zero, Fraction(1))]
-    for unit in (max(xs) - min(xs), max(ys) - min(ys)):
-        if unit and (corner, unit) not in frames:
-            frames.append((corner, unit))
-    return frames
-
-
-def _tolerances(written: Sequence[tuple[Fraction, Fraction]], size: Fraction) -> list[Fraction]:
+def _tolerances(written: Written, size: Fraction) -> list[Fraction]:
     finest = max(_FINEST, _last_digit(written, size))
     return [finest, *(coarser for coarser in _COARSER if coarser > finest)]
 
 
-def _last_digit(written: Sequence[tuple[Fraction, Fraction]], size: Fraction) -> Fraction:
+def _last_digit(written: Written, size: Fraction) -> Fraction:
     """10^-k over the size, with k the most decimals of a coordinate that is not noise about zero.
 
     Zero if the decimals are few enough to be what was meant.
@@ -354,7 +250,8 @@ def _last_digit(written: Sequence[tuple[Fraction, Fraction]], size: Fraction) ->
         if rest > 1:
             return Fraction(0)
         digits = max(digits, twos, fives)
-    return Fraction(1, 10**digits) / size
+    last = Fraction(1, 10**digits)
+    return last / size
 
 
 # --- small parts ---------------------------------------------------------------------------------
@@ -369,7 +266,7 @@ def _fractions(drawing: Drawing) -> list[tuple[Fraction, Fraction]]:
     return found
 
 
-def _size(written: Sequence[tuple[Fraction, Fraction]]) -> Fraction:
+def _size(written: Written) -> Fraction:
     if not written:
         raise MalformedPatternError("the drawing has no points")
     size = max(max(column) - min(column) for column in zip(*written, strict=True))
@@ -380,12 +277,6 @@ def _size(written: Sequence[tuple[Fraction, Fraction]]) -> Fraction:
 
 def _with(drawing: Drawing, points: Sequence[Point]) -> Drawing:
     return Drawing(tuple(points), drawing.lines, drawing.source, drawing.remarks)
-
-
-def _plain(point: Point) -> Point:
-    """Rational numbers as fractions."""
-    x, y = (c.coefficients[0] if isinstance(c, Surd) and not any(c.coefficients[1:]) else c for c in point)
-    return x, y
 
 
 def _parts(points: Sequence[Point]) -> list[int]:

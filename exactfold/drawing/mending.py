@@ -106,9 +106,7 @@ def merged(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
         f"{counted(count, 'point')} {agreeing(count, 'is')} merged with another {distance} "
         f"(tolerance {within:.2g})"
     )
-    return with_lines(drawing, lines), repair(
-        "merge", count, stands_for, drawing.points, sentence
-    )
+    return with_lines(drawing, lines), repair("merge", count, stands_for, drawing.points, sentence)
 
 
 def without_duplicates(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
@@ -193,9 +191,7 @@ def without_dangling(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
         f"panel on both sides ({counted(len(ends), 'loose end')})"
     )
     rest = [line for line in drawing.lines if frozenset(line[:2]) not in dropped]
-    return with_lines(drawing, rest), repair(
-        "dangling", len(dropped), at, drawing.points, sentence
-    )
+    return with_lines(drawing, rest), repair("dangling", len(dropped), at, drawing.points, sentence)
 
 
 def dissolved(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:

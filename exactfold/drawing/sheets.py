@@ -26,9 +26,7 @@ class _Part:
 
 def bordered(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
     """The lines round each part of the drawing are border (B), whatever letters they have."""
-    round_it = {
-        frozenset(pair) for part in _parts(drawing) for pair in _sides(part.outline)
-    }
+    round_it = {frozenset(pair) for part in _parts(drawing) for pair in _sides(part.outline)}
     lines = []
     changed = []
     for line in drawing.lines:
@@ -133,9 +131,7 @@ def _check_nested(part: _Part, parts: Sequence[_Part], places: FloatArray) -> No
 
 def _check_inside(part: _Part, places: FloatArray) -> None:
     rim = {frozenset(pair) for pair in _sides(part.outline)}
-    inside = [
-        line for line in part.lines if line.letter in "BC" and frozenset(line[:2]) not in rim
-    ]
+    inside = [line for line in part.lines if line.letter in "BC" and frozenset(line[:2]) not in rim]
     if not inside:
         return
     cut = {frozenset(line[:2]) for line in inside} | rim

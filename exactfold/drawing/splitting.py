@@ -53,9 +53,7 @@ def split(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
         for v, hosts in (*junctions.items(), *added.items())
         if any(_offset(points, lines[k], v) != 0 for k in hosts)
     ]
-    met = (
-        f"{counted(len(junctions), 'vertex')} inside of lines: {counted(cuts, 'line')} cut there"
-    )
+    met = f"{counted(len(junctions), 'vertex')} inside of lines: {counted(cuts, 'line')} cut there"
     crossed = f"{counted(len(added), 'crossing')} of lines {agreeing(len(added), 'is')} a vertex"
     bend = (
         f"at {counted(len(bent), 'vertex')} a line bends by less than {within:.2g}, "
@@ -107,7 +105,9 @@ def _moved_onto_lines(
     farthest = 0.0
     while todo:
         ready = [
-            v for v, hosts in todo.items() if not any(u in todo for k in hosts for u in lines[k][:2])
+            v
+            for v, hosts in todo.items()
+            if not any(u in todo for k in hosts for u in lines[k][:2])
         ]
         for v in ready or [min(todo)]:
             hosts = todo.pop(v)
