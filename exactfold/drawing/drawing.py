@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeAlias
 
+from exactfold.exact.surds import Number
+
+Point: TypeAlias = tuple[Number, Number]
 LETTERS: Final = "BMVFUCJ"
 """FOLD's letters: border, mountain, valley, flat, unassigned, cut, join."""
 
@@ -22,12 +24,13 @@ class Line(NamedTuple):
 class Drawing:
     """Points in the plane, y upwards, exactly as the file states them, and lines between them.
 
+    A reader gives fractions; `exact_coordinates` may turn them into numbers with square roots.
     `source` says in a few words what was read ("SVG of 1200 x 800, colours of Origami Simulator");
     `remarks` is what the reader left out or took for something, one sentence each. Points may
     coincide nearly, lines may cross or repeat: `repaired` mends that.
     """
 
-    points: tuple[tuple[Fraction, Fraction], ...]
+    points: tuple[Point, ...]
     lines: tuple[Line, ...]
     source: str
     remarks: tuple[str, ...] = ()

@@ -1,0 +1,150 @@
+"""Repair of drawings: each step can be left out, and says what it did and where."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final
+
+from exactfold.drawing.coordinates import Exact, Snap, exact_coordinates, resolution
+from exactfold.drawing.drawing import Drawing
+from exactfold.drawing.mending import (
+    Repair,
+    dissolved,
+    floats,
+    merged,
+    used,
+    without_dangling,
+    without_duplicates,
+    without_flat_lines,
+)
+from exactfold.drawing.sheets import bordered, sheets
+from exactfold.drawing.splitting import split
+from exactfold.errors import MalformedPatternError, UsageError
+
+STEPS: Final = ("merge", "duplicates", "split", "join", "dangling", "dissolve", "border")
+"""The steps in their order."""
+_NEAR: Final = Fraction(1, 10**6)
+
+
+def repaired(
+    drawing: Drawing, *, merge: Fraction | None = None, steps: Collection[str] = STEPS
+) -> tuple[Drawing, tuple[Repair, ...]]:
+    """The drawing after the given steps, and what they did.
+
+    `merge` merges near-duplicate points, `duplicates` drops lines without length and lines drawn
+    twice, `split` cuts lines at T-junctions and crossings, `join` drops lines F and J, `dangling`
+    drops lines that end inside a panel, `dissolve` removes vertices on straight lines without
+    other lines, `border` gives the letter B to the lines round the sheet. `merge` is the distance,
+    in units of the larger side, at which points coincide and a point lies on a line; without it,
+    1e-6 or two units of the last decimal of the file, whichever is larger. Coordinates stay exact:
+    crossings are solved in the field of the points, so `exact_sheets` snaps them before `split`.
+
+    Points keep their indices; those on no line are not removed. Raises `UsageError` for a step
+    that does not exist or a distance that is not positive, and `MalformedPatternError` for a
+    drawing without lines.
+
+    >>> from exactfold.drawing.drawing import Line
+    >>> cross = Drawing(((0, 0), (2, 0), (2, 2), (0, 2)),
+    ...     (Line(0, 1, "B"), Line(1, 2, "B"), Line(2, 3, "B"), Line(3, 0, "B"),
+    ...      Line(0, 2, "M"), Line(1, 3, "V")), "two diagonals")
+    >>> mended, repairs = repaired(cross)
+    >>> mended.points[4], len(mended.lines), str(repairs[0])
+    ((Fraction(1, 1), Fraction(1, 1)), 8, '1 crossing of lines is a vertex: at 4 (1, 1)')
+    """
+    unknown = sorted(set(steps) - set(STEPS))
+    if unknown:
+        raise UsageError(f"there is no step {unknown[0]!r}: the steps are {', '.join(STEPS)}")
+    near = _distance(drawing, merge)
+    repairs: list[Repair] = []
+    for step in STEPS:
+        if step not in steps:
+            continue
+        drawing, found = _step(drawing, step, near)
+        repairs += found
+        if step == "split" and found and "duplicates" in steps:
+            drawing, found = without_duplicates(drawing)
+            repairs += found
+    return drawing, tuple(repairs)
+
+
+@dataclass(frozen=True)
+class Sheets:
+    """The sheets of a drawing with exact coordinates, and how they came about."""
+
+    sheets: tuple[Drawing, ...]
+    coordinates: Exact
+    repairs: tuple[Repair, ...]
+
+
+def exact_sheets(
+    drawing: Drawing,
+    *,
+    snap: Snap = "auto",
+    tolerance: Fraction | None = None,
+    merge: Fraction | None = None,
+    steps: Collection[str] = STEPS,
+) -> Sheets:
+    """From a drawing to its sheets: merge, exact coordinates, the other steps, sheet by sheet.
+
+    The order matters. Points that nearly coincide are one number; coordinates are recognised as
+    they were drawn; crossings and T-junctions are then computed in the field that was found, so
+    that three creases through a point of the design meet there exactly.
+
+    Raises what `repaired`, `exact_coordinates` and `sheets` raise.
+
+    >>> from exactfold.drawing.drawing import Line
+    >>> third = Fraction("0.333333333333")
+    >>> made = exact_sheets(Drawing(((0, 0), (1, 0), (1, 1), (0, 1), (third, 0), (third, 1)),
+    ...     (Line(0, 1, "B"), Line(1, 2, "B"), Line(2, 3, "B"), Line(3, 0, "B"),
+    ...      Line(4, 5, "M")), "one crease"))
+    >>> made.sheets[0].points[4], len(made.sheets[0].lines), made.coordinates.denominator
+    ((Fraction(1, 3), Fraction(0, 1)), 7, 3)
+    """
+    near = _distance(drawing, merge)
+    first = [step for step in STEPS[:2] if step in steps]
+    before, begun = repaired(drawing, merge=near, steps=first)
+    found = exact_coordinates(_used_only(before), snap, tolerance=tolerance)
+    coarse = max(near, 2 * found.tolerance) if merge is None else near
+    # Snapping can bring points together that were further apart than the merging distance.
+    after, ended = repaired(found.drawing, merge=coarse, steps=steps)
+    return Sheets(sheets(after), found, (*begun, *ended))
+
+
+def _step(drawing: Drawing, step: str, near: Fraction) -> tuple[Drawing, list[Repair]]:
+    if step == "duplicates":
+        return without_duplicates(drawing)
+    if step == "join":
+        return without_flat_lines(drawing)
+    if step == "dangling":
+        return without_dangling(drawing)
+    if step == "border":
+        return bordered(drawing)
+    within = float(near) * _extent(drawing)
+    return {"merge": merged, "split": split, "dissolve": dissolved}[step](drawing, within)
+
+
+def _distance(drawing: Drawing, merge: Fraction | None) -> Fraction:
+    if merge is None:
+        return max(_NEAR, 2 * resolution(drawing))
+    if merge <= 0:
+        raise UsageError(f"points are merged at a positive distance, not {merge}")
+    return Fraction(merge)
+
+
+def _extent(drawing: Drawing) -> float:
+    if not drawing.lines:
+        return 0.0
+    places = floats(drawing.points)[used(drawing.lines)]
+    return float((places.max(axis=0) - places.min(axis=0)).max())
+
+
+def _used_only(drawing: Drawing) -> Drawing:
+    """Points on no line do not decide which numbers fit: they move to the first point."""
+    members = set(used(drawing.lines))
+    if not members:
+        raise MalformedPatternError("the drawing has no lines")
+    stand_in = drawing.points[min(members)]
+    points = tuple(p if v in members else stand_in for v, p in enumerate(drawing.points))
+    return Drawing(points, drawing.lines, drawing.source, drawing.remarks)

@@ -1,0 +1,216 @@
+"""T-junctions and crossings: every point where lines meet becomes a vertex, exactly on them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from typing import Final, TypeAlias
+
+import numpy as np
+
+from exactfold.arrays import FloatArray
+from exactfold.drawing.construction import ExactLine, crossing
+from exactfold.drawing.drawing import Drawing, Line, Point
+from exactfold.drawing.mending import Repair, floats, groups_within, repair, used
+from exactfold.exact.surds import Number
+from exactfold.wording import agreeing, counted
+
+Junctions: TypeAlias = dict[int, list[int]]
+"""For each vertex inside lines, those lines."""
+
+_FLATTEST: Final = 0.05
+"""The least sine of an angle at which a crossing fixes a point."""
+
+
+def split(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
+    """Lines are cut where they cross and where a vertex lies within `within` of their inside.
+
+    Crossings are computed exactly, in the field of the coordinates. A vertex near the inside of a
+    line moves onto it: to the crossing of two such lines, or to the crossing with the only line
+    that ends there, or to the foot of the perpendicular. Where three lines nearly meet, only two
+    can do so exactly; the third then bends at the vertex, by less than `within`, and this is said.
+    """
+    points, lines = list(drawing.points), drawing.lines
+    junctions = _junctions(floats(points), lines, within)
+    repairs = _moved_onto_lines(points, lines, junctions)
+    places = floats(points)
+    added = _crossings(points, places, lines, junctions, within)
+    inside: dict[int, set[int]] = {}
+    for v, hosts in (*junctions.items(), *added.items()):
+        for k in hosts:
+            inside.setdefault(k, set()).add(v)
+    if not inside:
+        return drawing, []
+    places = floats(points)
+    pieces: list[Line] = []
+    for k, (a, b, letter) in enumerate(lines):
+        along = places[b] - places[a]
+        order = sorted(inside.get(k, ()), key=lambda v: float((places[v] - places[a]) @ along))
+        pieces += [Line(c, d, letter) for c, d in zip([a, *order], [*order, b], strict=True)]
+    cuts = sum(len(hosts) for hosts in junctions.values())
+    bent = [
+        v
+        for v, hosts in (*junctions.items(), *added.items())
+        if any(_offset(points, lines[k], v) != 0 for k in hosts)
+    ]
+    met = f"{counted(len(junctions), 'vertex')} inside of lines: {counted(cuts, 'line')} cut there"
+    crossed = f"{counted(len(added), 'crossing')} of lines {agreeing(len(added), 'is')} a vertex"
+    bend = (
+        f"at {counted(len(bent), 'vertex')} a line bends by less than {within:.2g}, "
+        "as more than two lines do not quite meet there"
+    )
+    found = (
+        repair("split", len(junctions), sorted(junctions), points, met)
+        + repair("split", len(added), sorted(added), points, crossed)
+        + repairs
+        + repair("split", len(bent), sorted(bent), points, bend)
+    )
+    return Drawing(tuple(points), tuple(pieces), drawing.source, drawing.remarks), found
+
+
+def _junctions(places: FloatArray, lines: Sequence[Line], within: float) -> Junctions:
+    members = np.array(used(lines), dtype=np.intp)
+    members = members[np.argsort(places[members, 0], kind="stable")]
+    spots = places[members]
+    found: Junctions = {}
+    for k, (a, b, _) in enumerate(lines):
+        chord = places[b] - places[a]
+        length = float(np.hypot(*chord))
+        if length <= within:
+            continue
+        low, high = min(places[a][0], places[b][0]), max(places[a][0], places[b][0])
+        first = np.searchsorted(spots[:, 0], low - within, side="left")
+        last = np.searchsorted(spots[:, 0], high + within, side="right")
+        offset = spots[first:last] - places[a]
+        across = np.abs(offset[:, 0] * chord[1] - offset[:, 1] * chord[0]) / length
+        along = offset @ chord / length
+        near = (across <= within) & (along > 0) & (along < length)
+        for v in members[first:last][near]:
+            if v not in (a, b):
+                found.setdefault(int(v), []).append(k)
+    return found
+
+
+def _moved_onto_lines(
+    points: list[Point], lines: Sequence[Line], junctions: Mapping[int, Sequence[int]]
+) -> list[Repair]:
+    """Move each vertex onto its lines, those first whose lines no longer move."""
+    ending: dict[int, list[int]] = {v: [] for v in junctions}
+    for k, line in enumerate(lines):
+        for v in line[:2]:
+            if v in ending:
+                ending[v].append(k)
+    todo = dict(sorted(junctions.items()))
+    moved = []
+    farthest = 0.0
+    while todo:
+        ready = [
+            v
+            for v, hosts in todo.items()
+            if not any(u in todo for k in hosts for u in lines[k][:2])
+        ]
+        for v in ready or [min(todo)]:
+            hosts = todo.pop(v)
+            if all(_offset(points, lines[k], v) == 0 for k in hosts):
+                continue
+            place = _on_lines(points, lines, v, hosts, ending[v])
+            dx, dy = (float(c - d) for c, d in zip(place, points[v], strict=True))
+            farthest = max(farthest, float(np.hypot(dx, dy)))
+            points[v] = place
+            moved.append(v)
+    sentence = (
+        f"{counted(len(moved), 'vertex')} moved exactly onto a line, by at most {farthest:.2g}"
+    )
+    return repair("split", len(moved), sorted(moved), points, sentence)
+
+
+def _on_lines(
+    points: Sequence[Point],
+    lines: Sequence[Line],
+    v: int,
+    hosts: Sequence[int],
+    ending: Sequence[int],
+) -> Point:
+    through = [_supporting(points, lines[k]) for k in hosts]
+    best, chosen = _FLATTEST, None
+    for pair in combinations(through, 2):
+        if (sine := _sine(*pair)) > best:
+            best, chosen = sine, pair
+    if chosen is not None:
+        return crossing(*chosen)
+    host = through[0]
+    others = [_supporting(points, lines[k]) for k in ending]
+    slanted = [line for line in others if _sine(host, line) > _FLATTEST]
+    if slanted and all(_sine(slanted[0], line) < 1e-9 for line in slanted[1:]):
+        return crossing(host, slanted[0])
+    _, (dx, dy) = host
+    return crossing(host, (points[v], (-dy, dx)))
+
+
+def _crossings(
+    points: list[Point],
+    places: FloatArray,
+    lines: Sequence[Line],
+    junctions: Mapping[int, Sequence[int]],
+    within: float,
+) -> Junctions:
+    """Append the crossings to `points`; returns the lines through each."""
+    meets: list[set[int]] = [set(line[:2]) for line in lines]
+    for v, hosts in junctions.items():
+        for k in hosts:
+            meets[k].add(v)
+    found: dict[tuple[Number, Number], int] = {}
+    through: dict[int, set[int]] = {}
+    before = len(points)
+    for k, m in _crossing_pairs(places, lines):
+        if meets[k] & meets[m]:
+            continue
+        point = crossing(_supporting(points, lines[k]), _supporting(points, lines[m]))
+        v = found.setdefault(point, len(points))
+        if v == len(points):
+            points.append(point)
+        through.setdefault(v, set()).update((k, m))
+    for first, *rest in groups_within(floats(points), range(before, len(points)), within):
+        for v in rest:
+            through[first] |= through.pop(v)
+    return {v: sorted(hosts) for v, hosts in through.items()}
+
+
+def _crossing_pairs(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int, int]]:
+    """Pairs of lines whose insides cross, by floats: each end well off the other line."""
+    if not lines:
+        return []
+    a = places[[line.start for line in lines]]
+    d = places[[line.end for line in lines]] - a
+    low, high = np.minimum(a, a + d), np.maximum(a, a + d)
+    order = np.argsort(low[:, 0], kind="stable")
+    starts = low[order, 0]
+    pairs = []
+    for position, k in enumerate(order):
+        last = np.searchsorted(starts, high[k, 0], side="right")
+        near = order[position + 1 : last]
+        near = near[(low[near, 1] <= high[k, 1]) & (high[near, 1] >= low[k, 1])]
+        gap = a[near] - a[k]
+        turn = d[k, 0] * d[near, 1] - d[k, 1] * d[near, 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            s = (gap[:, 0] * d[near, 1] - gap[:, 1] * d[near, 0]) / turn
+            t = (gap[:, 0] * d[k, 1] - gap[:, 1] * d[k, 0]) / turn
+            hit = (s > 0) & (s < 1) & (t > 0) & (t < 1)
+        pairs += [(int(k), int(m)) for m in near[hit]]
+    return pairs
+
+
+def _supporting(points: Sequence[Point], line: Line) -> ExactLine:
+    (ax, ay), (bx, by) = points[line.start], points[line.end]
+    return (ax, ay), (bx - ax, by - ay)
+
+
+def _sine(first: ExactLine, second: ExactLine) -> float:
+    (dx, dy), (ex, ey) = ((float(x), float(y)) for _, (x, y) in (first, second))
+    return abs(dx * ey - dy * ex) / float(np.hypot(dx, dy) * np.hypot(ex, ey))
+
+
+def _offset(points: Sequence[Point], line: Line, v: int) -> Number:
+    (ax, ay), (dx, dy) = _supporting(points, line)
+    x, y = points[v]
+    return dx * (y - ay) - dy * (x - ax)
