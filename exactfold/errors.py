@@ -221,6 +221,10 @@ class UndecidedBranchError(ExactfoldError):
 # --- the exact engine ----------------------------------------------------------------------------
 
 
+class SeveralSheetsError(InputError):
+    """A drawing holds several sheets and none was chosen, or one that is not there was."""
+
+
 class TooManyModesError(ExactfoldError):
     """A search for the motions of a sheet of panels was given up; the message says where."""
 

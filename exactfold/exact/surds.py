@@ -316,6 +316,14 @@ def simple(value: Number) -> Number:
     return value
 
 
+def rational(value: Number) -> Fraction:
+    """The number as a fraction; raises `UsageError` if it is irrational."""
+    plain = simple(value)
+    if isinstance(plain, Surd):
+        raise UsageError(f"{plain} is not rational")
+    return Fraction(plain)
+
+
 def common_field(values: Iterable[Number]) -> SurdField:
     """The largest field among those of the numbers; raises `UsageError` if they are no chain."""
     field = RATIONALS

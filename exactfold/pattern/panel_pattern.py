@@ -15,6 +15,7 @@ from exactfold.errors import MalformedPatternError, PinchError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, Surd, SurdField, common_field
 from exactfold.pattern.planar import counter_clockwise, trace_faces
+from exactfold.wording import counted
 
 Edge: TypeAlias = tuple[int, int]
 Point: TypeAlias = tuple[Number, Number]
@@ -178,8 +179,8 @@ class PanelPattern:
 
     def __repr__(self) -> str:
         return (
-            f"<PanelPattern: {len(self.interior)} interior vertices, {len(self.folds)} folds, "
-            f"{len(self.faces)} panels>"
+            f"<PanelPattern: {counted(len(self.interior), 'interior vertex')}, "
+            f"{counted(len(self.folds), 'fold')}, {counted(len(self.faces), 'panel')}>"
         )
 
 
