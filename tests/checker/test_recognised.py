@@ -19,6 +19,10 @@ COUNT = (
     "this is the result printed by count --json, which is no evidence; write a certificate with "
     "--certificate or --stream"
 )
+STREAM = (
+    "this is the result printed by count --json, which is no evidence; check the file that "
+    "--stream wrote"
+)
 BRANCH = (
     "this is the result printed by branch --json, which is no evidence; write a certificate with "
     "--certificate"
@@ -32,9 +36,9 @@ BRANCH = (
         ({"faces_vertices": []}, FOLD),
         ({"edges_vertices": [], "x": 0.5}, FOLD),
         ({"file_spec": 1.1}, FOLD),
-        ({"pattern": {}, "status": "proved", "seconds": 0.5}, COUNT),
-        ({"pattern": {}, "status": "proved"}, COUNT),
-        ({"pattern": {}, "status": "proved", "vertex_signs": {}}, BRANCH),
+        ({"format": "exactfold count result", "seconds": 0.5}, COUNT),
+        ({"format": "exactfold count-stream result"}, STREAM),
+        ({"format": "exactfold branch result", "vertex_signs": {}}, BRANCH),
         ({"pattern": {}, "a": 0.5}, "a certificate holds no floats, but here is 0.5"),
         ({"status": "proved"}, 'the object has no "format": "exactfold certificate"'),
         (["vertices_coords"], 'the object has no "format": "exactfold certificate"'),
