@@ -250,8 +250,7 @@ def _last_digit(written: Written, size: Fraction) -> Fraction:
         if rest > 1:
             return Fraction(0)
         digits = max(digits, twos, fives)
-    last = Fraction(1, 10**digits)
-    return last / size
+    return Fraction(1, 10**digits) / size
 
 
 # --- small parts ---------------------------------------------------------------------------------
@@ -269,7 +268,8 @@ def _fractions(drawing: Drawing) -> list[tuple[Fraction, Fraction]]:
 def _size(written: Written) -> Fraction:
     if not written:
         raise MalformedPatternError("the drawing has no points")
-    size = max(max(column) - min(column) for column in zip(*written, strict=True))
+    xs, ys = [x for x, _ in written], [y for _, y in written]
+    size = max(max(xs) - min(xs), max(ys) - min(ys))
     if not size:
         raise MalformedPatternError("all points of the drawing are the same")
     return size
