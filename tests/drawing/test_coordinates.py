@@ -105,6 +105,15 @@ def test_short_decimals_are_what_was_meant():
     assert found.text == "coordinates in Q, denominators up to 20; nothing moved"
 
 
+def test_pixels_with_two_decimals_are_rounded_numbers_and_whole_pixels_are_not():
+    points = [*SQUARE, (TWO - 1, 0), (0, TWO / 2), (1 - TWO / 2, 1), (Fraction(1, 3), 1)]
+    rounded = exact_coordinates(drawn(points, 2, scale=1000))
+    assert list(rounded.points) == points
+    assert rounded.tolerance == Fraction(1, 10**5)
+    whole = drawn(points, 0, scale=1000)
+    assert exact_coordinates(whole).points == whole.points
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_random_decimals_fit_no_field(seed):
     random_ = random.Random(seed)
