@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from exactfold.commands.parameters import (
+    AnySnap,
     Json,
     Pattern,
     Patterns,
@@ -121,7 +122,7 @@ def count(
         ),
     ] = None,
     as_json: Json = False,
-    snap: Snap = None,
+    snap: AnySnap = None,
     seed: Annotated[
         int, typer.Option(parser=whole(0), metavar="S", help="Seed of the complex homotopy.")
     ] = 0,

@@ -73,6 +73,7 @@ class BranchCount:
     proof: Proof | None = None
     settings: Mapping[str, int | str] = field(default_factory=dict)
     snapped: Fraction = Fraction(0)
+    read: Mapping[str, Any] | None = None
     seconds: float = field(default=0.0, compare=False)
 
     def __len__(self) -> int:
@@ -156,7 +157,7 @@ class BranchCount:
             "rigid": self.distinct == 0 if self.status is PROVED else None,
             **dict.fromkeys(("components", "modes_count")),
             **{key: [] for key in ("modes", "flat_folds", "free_folds", "near_misses")},
-            "read": None,
+            "read": None if self.read is None else dict(self.read),
         }
 
     @property

@@ -37,6 +37,7 @@ from exactfold.errors import (
     WorkerDiedError,
 )
 from exactfold.memory import is_shortage, shortage
+from exactfold.modes.decomposition import Decomposition
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import available_cores
@@ -231,7 +232,7 @@ def line_of(job: Job) -> Line:
     return line_for(job, count_job(job))
 
 
-def line_for(job: Job, result: BranchCount | Exception) -> Line:
+def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
     """The line of a result."""
     data = {
         **headed("batch-line"),
@@ -239,7 +240,7 @@ def line_for(job: Job, result: BranchCount | Exception) -> Line:
         "sha256": _digest(job),
         "asked": _asked(job),
     }
-    if isinstance(result, BranchCount):
+    if isinstance(result, BranchCount | Decomposition):
         status, code = str(result.status), EXIT[result.status]
         data |= {"status": status, "exit_code": code, "error": None}
         data["result"] = result.to_dict(name=job.name)
@@ -247,7 +248,8 @@ def line_for(job: Job, result: BranchCount | Exception) -> Line:
         if (warning := result.warning) is not None:
             message = f"{message}{'; ' if message else ''}warning: {warning}"
         warned = warning is not None
-        return Line(job.name, status, code, json.dumps(data), result.distinct, message, warned)
+        ways = result.ways if isinstance(result, Decomposition) else result.distinct
+        return Line(job.name, status, code, json.dumps(data), ways, message, warned)
     code = exit_code(result)
     error = error_document(result)["error"]
     data |= {"status": FAILED, "exit_code": code, "error": error, "result": None}

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold import report
 from exactfold.branches.result import BranchCount
-from exactfold.commands.patterns import read
+from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, apart, name_of, say
 from exactfold.commands.stream import Streaming, advice
-from exactfold.count.collect import count_branches
 from exactfold.count.stream import StreamedCount
+from exactfold.count.ways import count_opened
+from exactfold.drawing.coordinates import Snap
 from exactfold.errors import UsageError
 from exactfold.evidence.entries import write_certificate
 from exactfold.evidence.listing import certificate as certificate_of
+from exactfold.modes.decomposition import Decomposition
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.verdict import PROVED
 
 
@@ -31,7 +34,7 @@ class Asked:
     workers: int | None
     dask: str | None
     as_json: bool
-    snap: int | None
+    snap: Snap | None
     seed: int
     everything: bool
     verbose: bool
@@ -47,6 +50,11 @@ class Asked:
         written = self._certified(result, streamed)
         if self.as_json:
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
+        elif isinstance(result, Decomposition):
+            panels = report.panels_report(
+                result, written, everything=self.everything, verbose=self.verbose
+            )
+            report.show(panels)
         else:
             shown = report.count_report(
                 result,
@@ -59,6 +67,8 @@ class Asked:
         return EXIT[result.status]
 
     def _streamed(self, file: Path) -> StreamedCount:
+        if isinstance(self.snap, str):
+            raise UsageError("--stream takes a denominator for --snap")
         if self.method != "auto":
             raise UsageError("--stream has a method of its own: leave --method away")
         return Streaming(
@@ -72,22 +82,26 @@ class Asked:
             self.certificate,
         ).run()
 
-    def _counted(self) -> BranchCount:
+    def _counted(self) -> BranchCount | Decomposition:
         if self.resume or self.workers is not None or self.dask is not None:
             raise UsageError("--resume, --workers and --dask go with --stream")
         with Bar("reading") as bar:
-            file = read(self.pattern, self.snap)
-            if (better := advice(file.pattern)) is not None:
+            opened = read_any(self.pattern, self.snap)
+            sheet = opened.sheet
+            if isinstance(sheet, CreasePattern) and (better := advice(sheet)) is not None:
                 say(better)
             bar("solving")
-            result = count_branches(file.pattern, method=self.method, seed=self.seed, progress=bar)
-        return replace(result, snapped=file.snapped)
+            return count_opened(opened, method=self.method, seed=self.seed, progress=bar)
 
-    def _certified(self, result: BranchCount, streamed: StreamedCount | None) -> str | None:
+    def _certified(
+        self, result: BranchCount | Decomposition, streamed: StreamedCount | None
+    ) -> str | None:
         """Where the certificate was written; where it was not, say why."""
         if self.certificate is None:
             return None
-        if result.status is not PROVED:
+        if isinstance(result, Decomposition):
+            say("no certificate was written: those of rigid panels are still to come")
+        elif result.status is not PROVED:
             say("no certificate was written: nothing is proved")
         elif streamed is not None and result.proof is None:
             say(f"the proof is in {self.stream}; no other was written")

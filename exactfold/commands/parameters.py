@@ -10,6 +10,7 @@ import typer
 
 from exactfold.commands.shell import standard_input
 from exactfold.count.registry import ALIASES, METHODS
+from exactfold.drawing.coordinates import Snap as Snapping
 
 
 def complete_pattern(incomplete: str) -> list[str]:
@@ -75,6 +76,13 @@ def complete_method(incomplete: str) -> list[str]:
     return [name for name in METHODS if name.startswith(incomplete)]
 
 
+def snapping(text: object) -> Snapping:
+    """A denominator, or "auto" or "exact"."""
+    if text == "auto":
+        return "auto"
+    return "exact" if text == "exact" else whole(1)(text)
+
+
 _ONE = "A FOLD file with triangular faces, - for standard input, or a name: see `examples`."
 
 Pattern = Annotated[
@@ -92,13 +100,22 @@ Patterns = Annotated[
         metavar="PATTERN",
         callback=lambda paths: [standard_input(path) for path in paths],
         autocompletion=complete_pattern,
-        help="FOLD files with triangular faces, - for standard input, or names: see `examples`.",
+        help="FOLD, SVG, CP, OPX or ORI files, - for standard input, or names: see `examples`.",
     ),
 ]
 Snap = Annotated[
     int | None,
     typer.Option(
         parser=whole(1), metavar="DEN", help="Round coordinates to multiples of 1/DEN first."
+    ),
+]
+AnySnap = Annotated[
+    Any,
+    typer.Option(
+        parser=snapping,
+        metavar="DEN|auto|exact",
+        help="Round coordinates to multiples of 1/DEN; or find the exact numbers that were meant "
+        "(auto: the rule for drawings); or take them as written (exact).",
     ),
 ]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]

@@ -5,19 +5,22 @@ from __future__ import annotations
 import os
 from collections.abc import Generator, Iterable, Sized
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from exactfold.branches.result import BranchCount
-from exactfold.count.collect import count_branches
 from exactfold.count.pools import Pool, process_pool
 from exactfold.count.registry import choose
+from exactfold.count.ways import count_opened, open_sheet
 from exactfold.data import EXAMPLES, example_path
+from exactfold.drawing.coordinates import Snap
 from exactfold.drawing.fold_json import read_bytes
 from exactfold.errors import InputError, NotEnoughMemoryError, UnreadableFileError, UsageError
 from exactfold.memory import is_shortage, shortage
+from exactfold.modes.decomposition import Decomposition
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold import FoldFile, parse_bytes
+from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.loading import PatternLike
+from exactfold.pattern.opening import Opened, opened
 from exactfold.progress import Progress
 
 Source = bytes | CreasePattern | InputError
@@ -32,18 +35,16 @@ class Job:
     source: Source
     method: str = "auto"
     seed: int = 0
-    snap: int | None = None
+    snap: Snap | None = None
 
     @property
-    def file(self) -> FoldFile:
-        """The pattern, read; raises the errors of `load_fold`."""
+    def opened(self) -> Opened:
+        """The sheet, read; raises the errors of `open_pattern`."""
         if isinstance(self.source, InputError):
             raise self.source
         if isinstance(self.source, bytes):
-            return parse_bytes(self.source, self.name, self.snap)
-        if self.snap is None:
-            return FoldFile(self.source)
-        return FoldFile(*self.source.snapped(self.snap))
+            return opened(self.source, self.name, self.snap)
+        return open_sheet(self.source, self.snap)
 
 
 def read_source(path: str | os.PathLike[str]) -> bytes | UnreadableFileError:
@@ -54,12 +55,10 @@ def read_source(path: str | os.PathLike[str]) -> bytes | UnreadableFileError:
         return error
 
 
-def count_job(job: Job) -> BranchCount | Exception:
+def count_job(job: Job) -> BranchCount | Decomposition | Exception:
     """The count of one pattern, or the error that it ended with, which stops no other."""
     try:
-        file = job.file
-        result = count_branches(file.pattern, method=job.method, seed=job.seed)
-        return replace(result, snapped=file.snapped)
+        return count_opened(job.opened, method=job.method, seed=job.seed)
     except Exception as error:  # also a defect: the other patterns are counted all the same
         return NotEnoughMemoryError(shortage(error)) if is_shortage(error) else error
 
@@ -71,9 +70,9 @@ def count_many(
     engine: Pool | None = None,
     method: str = "auto",
     seed: int = 0,
-    snap: int | None = None,
+    snap: Snap | None = None,
     progress: Progress | None = None,
-) -> Generator[tuple[str, BranchCount | Exception], None, None]:
+) -> Generator[tuple[str, BranchCount | Decomposition | Exception], None, None]:
     """The counts of many patterns (anything `load` takes), each with its name, as they are ready.
 
     The name of a file or an example is its text, that of a pattern its place ("0", "1", ...). What
@@ -113,7 +112,7 @@ def count_many(
     total = len(patterns) if isinstance(patterns, Sized) else 0
     given = (job(place, pattern) for place, pattern in enumerate(patterns))
 
-    def counted() -> Generator[tuple[str, BranchCount | Exception], None, None]:
+    def counted() -> Generator[tuple[str, BranchCount | Decomposition | Exception], None, None]:
         with closing((engine or process_pool(jobs))(count_job, given)) as results:
             for done, (finished, result) in enumerate(results, 1):
                 if progress is not None:

@@ -23,8 +23,8 @@ _FINEST: Final = Fraction(1, 10**9)
 """No closer than this to a number, in units of the size."""
 _COARSER: Final = (Fraction(1, 10**8), Fraction(1, 10**7), Fraction(1, 10**6))
 """What is tried where the digits of the file are more than its precision."""
-_WRITTEN: Final = 100
-"""A common denominator up to which the decimals are what was meant."""
+_WRITTEN: Final = 1024
+"""Steps of a grid across the drawing up to which decimals on it are what was meant."""
 _LEAST_BITS: Final = 20.0
 """What beats chance for a whole drawing."""
 _MOST_KEPT: Final = 0.5
@@ -95,7 +95,8 @@ def exact_coordinates(
     """The drawing on the smallest of Q, Q(sqrt 2), Q(sqrt 3), Q(sqrt 5) that its decimals fit.
 
     With `snap="auto"` each coordinate becomes the smallest number (a + b sqrt d)/q within the
-    tolerance, if a random number would hardly have one so small; first as written, then with the
+    tolerance, if a random number would hardly have one so small (decimals on a grid of at most
+    1,024 steps across the drawing are what was meant); first as written, then with the
     width or the height of the drawing as unit. Other vertices become crossings of straight lines
     of the drawing where two are known. `tolerance` is in units of the larger side; without it, it
     is the last digit the file has, at least 1e-9, and up to 1e-6 where the digits hold noise. With
@@ -135,7 +136,7 @@ def exact_coordinates(
     if tolerance is not None and tolerance <= 0:
         raise UsageError(f"the tolerance {tolerance} is not positive")
     common = _common(written)
-    if tolerance is None and common <= _WRITTEN:
+    if tolerance is None and common * size <= _WRITTEN:
         return Exact(drawing, denominator=common)
     best: Exact | None = None
     for within in [tolerance] if tolerance is not None else _tolerances(written, size):
@@ -235,10 +236,10 @@ def _tolerances(written: Written, size: Fraction) -> list[Fraction]:
 def _last_digit(written: Written, size: Fraction) -> Fraction:
     """10^-k over the size, with k the most decimals of a coordinate that is not noise about zero.
 
-    Zero if the decimals are few enough to be what was meant.
+    Zero if the decimals lie on a grid coarse enough to be what was meant.
     """
     values = {c for point in written for c in point if abs(c) > _FINEST * size}
-    if lcm(*(value.denominator for value in values)) <= _WRITTEN:
+    if lcm(*(value.denominator for value in values)) * size <= _WRITTEN:
         return Fraction(0)
     digits = 0
     for value in values:
@@ -250,8 +251,7 @@ def _last_digit(written: Written, size: Fraction) -> Fraction:
         if rest > 1:
             return Fraction(0)
         digits = max(digits, twos, fives)
-    last = Fraction(1, 10**digits)
-    return last / size
+    return Fraction(1, 10**digits) / size
 
 
 # --- small parts ---------------------------------------------------------------------------------
@@ -269,7 +269,8 @@ def _fractions(drawing: Drawing) -> list[tuple[Fraction, Fraction]]:
 def _size(written: Written) -> Fraction:
     if not written:
         raise MalformedPatternError("the drawing has no points")
-    size = max(max(column) - min(column) for column in zip(*written, strict=True))
+    xs, ys = [x for x, _ in written], [y for _, y in written]
+    size = max(max(xs) - min(xs), max(ys) - min(ys))
     if not size:
         raise MalformedPatternError("all points of the drawing are the same")
     return size

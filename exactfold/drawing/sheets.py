@@ -134,10 +134,9 @@ def _check_inside(part: _Part, places: FloatArray) -> None:
     inside = [line for line in part.lines if line.letter in "BC" and frozenset(line[:2]) not in rim]
     if not inside:
         return
-    cut = {frozenset(line[:2]) for line in inside} | rim
+    cut = {frozenset(line[:2]) for line in inside}
     for face in part.faces:
-        sides = {frozenset(pair) for pair in _sides(face)}
-        if sides <= cut and sides - rim:
+        if {frozenset(pair) for pair in _sides(face)} <= cut:
             x, y = places[list(face)].mean(axis=0)
             raise HoleError(
                 f"the sheet has a hole near ({x:.6g}, {y:.6g}): border lines surround it",

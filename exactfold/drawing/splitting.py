@@ -159,21 +159,18 @@ def _crossings(
     for v, hosts in junctions.items():
         for k in hosts:
             meets[k].add(v)
-    found: dict[tuple[Number, Number], int] = {}
-    through: dict[int, set[int]] = {}
-    before = len(points)
+    through: dict[Point, set[int]] = {}
     for k, m in _crossing_pairs(places, lines):
-        if meets[k] & meets[m]:
-            continue
-        point = crossing(_supporting(points, lines[k]), _supporting(points, lines[m]))
-        v = found.setdefault(point, len(points))
-        if v == len(points):
-            points.append(point)
-        through.setdefault(v, set()).update((k, m))
-    for first, *rest in groups_within(floats(points), range(before, len(points)), within):
+        if not meets[k] & meets[m]:
+            point = crossing(_supporting(points, lines[k]), _supporting(points, lines[m]))
+            through.setdefault(point, set()).update((k, m))
+    found = list(through)
+    for first, *rest in groups_within(floats(found), range(len(found)), within):
         for v in rest:
-            through[first] |= through.pop(v)
-    return {v: sorted(hosts) for v, hosts in through.items()}
+            through[found[first]] |= through.pop(found[v])
+    start = len(points)
+    points += through
+    return {v: sorted(hosts) for v, hosts in enumerate(through.values(), start)}
 
 
 def _crossing_pairs(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int, int]]:

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import isqrt
+from math import inf, isqrt, nextafter
+from sys import float_info
 from typing import Final, TypeAlias
 
 from flint import arb, ctx
@@ -322,6 +323,25 @@ def rational(value: Number) -> Fraction:
     if isinstance(plain, Surd):
         raise UsageError(f"{plain} is not rational")
     return Fraction(plain)
+
+
+def float_bounds(value: Number) -> tuple[float, float]:
+    """Two floats, possibly infinite, with the value strictly between them.
+
+    >>> low, high = float_bounds(RATIONALS.adjoined(2).root)
+    >>> low < 2**0.5 < high, high - low < 1e-15, float_bounds(10**400)[1]
+    (True, True, inf)
+    """
+    if isinstance(value, Surd):
+        ball = value.ball(_GUARDED)
+        low, high = float(ball.lower()), float(ball.upper())
+    else:
+        try:
+            low = high = float(value)
+        except OverflowError:
+            limit = float_info.max
+            return (limit, inf) if value > 0 else (-inf, -limit)
+    return nextafter(low, -inf), nextafter(high, inf)
 
 
 def common_field(values: Iterable[Number]) -> SurdField:

@@ -62,10 +62,10 @@ class Decomposition:
     """The ways in which a sheet of rigid panels starts to fold, and which of them truly fold.
 
     `true` is {dimension: number} of the components of the true configurations near the flat state,
-    None if it is not known; `status` is PROVED if it is. `second_order` is the same for all motions
-    to second order, of which some may not fold. `rigid` says whether the sheet cannot move at all.
-    `flat` are folds that stay flat in every real motion, `free` those with both ends on the border.
-    `theory` is "modes" if all vertices have at most four folds, else "subspaces".
+    None if it is not known. `second_order` is the same for all motions to second order, of which
+    some may not fold; `status` is PROVED if it is known. `rigid` says whether the sheet cannot move
+    at all. `flat` are folds that stay flat in every real motion, `free` those with both ends on the
+    border. `theory` is "modes" if all vertices have at most four folds, else "subspaces".
     """
 
     pattern: PanelPattern
@@ -123,6 +123,24 @@ class Decomposition:
             ],
             "read": None if self.read is None else dict(self.read),
         }
+
+    @property
+    def ways(self) -> int | None:
+        """The number of components that truly fold, 0 for a rigid sheet; None if not known."""
+        if self.true is None:
+            return None
+        return sum(number for dimension, number in self.true.items() if dimension)
+
+    @property
+    def warning(self) -> str | None:
+        """What to know of the drawing before the result is read: a loop that nearly closes."""
+        if not self.near_misses:
+            return None
+        (i, j), quotient = next(iter(self.near_misses.items()))
+        return (
+            f"a loop of folds nearly closes at {i}-{j}, off by {abs(quotient - 1):.1e}: the "
+            "drawing may be rounded (try --snap auto)"
+        )
 
     def __repr__(self) -> str:
         counts = "" if self.second_order is None else f", {dict(self.second_order)}"
@@ -205,8 +223,8 @@ def decompose(
         near_misses={edge: x for part in found for edge, x in part.near_misses.items()},
         seconds=time.perf_counter() - start,
     )
-    if result.true is None:
-        reasons = [part.reason for part in found if part.true is None]
+    if result.second_order is None:
+        reasons = [part.reason for part in found if part.second_order is None]
         result = replace(result, status=UNDECIDED, reason="; ".join(dict.fromkeys(reasons)))
     return replace(result, rigid=_rigidity(result))
 

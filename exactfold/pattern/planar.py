@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cmp_to_key
 
 from exactfold.errors import (
@@ -12,9 +12,12 @@ from exactfold.errors import (
     DuplicateVertexError,
     IsolatedVertexError,
 )
+from exactfold.exact.surds import float_bounds
 from exactfold.pattern.validate import AnyPoint, orientation, segments_meet
 
 Edge = tuple[int, int]
+Bounds = tuple[float, float]
+"""Floats below and above a number."""
 
 
 def trace_faces(points: Sequence[AnyPoint], edges: Iterable[Edge]) -> list[tuple[int, ...]]:
@@ -55,20 +58,54 @@ def trace_faces(points: Sequence[AnyPoint], edges: Iterable[Edge]) -> list[tuple
 def check_no_crossing(points: Sequence[AnyPoint], edges: Sequence[Edge]) -> None:
     """Raise `CrossingEdgesError` if two edges meet anywhere but in a common end.
 
-    A sweep over the x-ranges; every decision is the sign of an integer determinant.
+    A sweep over the x-ranges, which are rounded outwards to floats, so that no pair that meets is
+    left out; every decision about a pair is the sign of an exact determinant.
     """
+    spots = [(float_bounds(x), float_bounds(y)) for x, y in points]
     boxes = []
     for i, j in edges:
-        (ax, ay), (bx, by) = points[i], points[j]
-        boxes.append((min(ax, bx), max(ax, bx), min(ay, by), max(ay, by), (i, j)))
+        (ax, ay), (bx, by) = spots[i], spots[j]
+        x, y = (min(ax[0], bx[0]), max(ax[1], bx[1])), (min(ay[0], by[0]), max(ay[1], by[1]))
+        boxes.append((*x, *y, (i, j)))
     boxes.sort()
-    active: list[tuple[int, int, int, int, Edge]] = []
+    clear = _clear_turns(spots)
+    active: list[tuple[float, float, float, float, Edge]] = []
     for box in boxes:
         active = [other for other in active if other[1] >= box[0]]
         for other in active:
-            if other[2] <= box[3] and box[2] <= other[3]:
+            if other[2] <= box[3] and box[2] <= other[3] and not _apart(clear, other[4], box[4]):
                 _check_pair(points, *sorted((other[4], box[4])))
         active.append(box)
+
+
+def _clear_turns(spots: Sequence[tuple[Bounds, Bounds]]) -> Callable[[int, int, int], int]:
+    """The sign of an orientation where floats are sure of it, 0 where they are not.
+
+    With coordinates of size at most M, off by at most d, the float determinant is off by less than
+    16 M (d + 2^-48 M): two products of differences of at most 2 M, each off by 2 d + 2^-51 M.
+    """
+    size = max((abs(c) for spot in spots for bounds in spot for c in bounds), default=0.0)
+    off = max((high - low for spot in spots for low, high in spot), default=0.0)
+    slack = 16 * size * (off + 2.0**-48 * size) + 2.0**-1000  # the last against underflow
+    places = [(x[0], y[0]) for x, y in spots]
+
+    def clear(a: int, b: int, c: int) -> int:
+        (ax, ay), (bx, by), (cx, cy) = places[a], places[b], places[c]
+        turn = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+        return (turn > slack) - (turn < -slack)
+
+    return clear
+
+
+def _apart(clear: Callable[[int, int, int], int], first: Edge, second: Edge) -> bool:
+    """Whether floats are sure that two edges meet in no point but a common end."""
+    for one, other in ((first, second), (second, first)):
+        turns = [clear(*one, v) for v in other if v not in one]
+        if len(turns) == 2 and turns[0] * turns[1] > 0:
+            return True
+        if len(turns) == 1 and turns[0] != 0:
+            return True
+    return False
 
 
 def _check_pair(points: Sequence[AnyPoint], first: Edge, second: Edge) -> None:

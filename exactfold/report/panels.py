@@ -58,13 +58,16 @@ def panels_answer(result: Decomposition) -> Text:
         )
     if result.true is not None:
         return Text.assemble(_ways(result.true), " - ", status_text(PROVED), took, _each(result))
-    known = ""
     if result.second_order is not None:
-        known = f"; to second order, which does not prove folding: {_ways(result.second_order)}"
+        ways = _ways(result.second_order).replace(" to fold", " to start to fold")
+        return Text.assemble(
+            f"{ways}, to second order - ",
+            status_text(PROVED),
+            f"{took}; whether each truly folds is ",
+            status_text(UNDECIDED),
+        )
     return Text.assemble(
-        "the number of ways to fold is ",
-        status_text(UNDECIDED),
-        f"{took}: {result.reason}{known}",
+        "the number of ways to fold is ", status_text(UNDECIDED), f"{took}: {result.reason}"
     )
 
 
@@ -101,11 +104,8 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
         )
     if result.free:
         notes.append(f"{counted(len(result.free), 'fold')} from border to border, each free")
-    for (i, j), quotient in list(result.near_misses.items())[:NAMED]:
-        notes.append(
-            f"warning: a loop of folds nearly closes at {i}-{j}, off by {abs(quotient - 1):.1e}: "
-            "the drawing may be rounded (--snap)"
-        )
+    if result.warning is not None:
+        notes.append(f"warning: {result.warning}")
     return notes
 
 

@@ -1,3 +1,6 @@
+import random
+from fractions import Fraction
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -10,7 +13,9 @@ from exactfold.errors import (
     DuplicateVertexError,
     IsolatedVertexError,
 )
-from exactfold.pattern.planar import trace_faces
+from exactfold.exact.surds import RATIONALS
+from exactfold.pattern.planar import check_no_crossing, trace_faces
+from exactfold.pattern.validate import segments_meet
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
 SIDES = [(0, 1), (1, 2), (2, 3), (3, 0)]
@@ -122,3 +127,27 @@ def test_removing_a_fold_merges_its_two_triangles(pattern, data):
     assert len(faces) == len(pattern.triangles) - 1
     (merged,) = (face for face in faces if len(face) == 4)
     assert set(merged) == {*fold, *pattern.opposite(fold)}
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_floats_sort_out_no_pair_that_meets(seed):
+    """Points within a few units of a long line, in whole numbers and in Q(sqrt 2)."""
+    random_ = random.Random(seed)
+    root = RATIONALS.adjoined(2).root
+    for _ in range(300):
+        scale = 10 ** random_.choice([1, 8, 17, 160])
+        unit = random_.choice([scale, scale * (root - 1)])
+        points = [(0, 0), (unit * 3, unit * 2)]
+        for _ in range(2):
+            t = random_.choice([-1, 0, 1, 2, 3])
+            points.append(
+                (unit * 3 * t / Fraction(2), unit * t + Fraction(random_.randint(-1, 1), 2))
+            )
+        if len(set(points)) < 4:
+            continue
+        meets = segments_meet(*points)
+        if meets:
+            with pytest.raises(CrossingEdgesError):
+                check_no_crossing(points, [(0, 1), (2, 3)])
+        else:
+            check_no_crossing(points, [(0, 1), (2, 3)])

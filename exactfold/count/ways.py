@@ -1,0 +1,111 @@
+"""In how many ways any sheet folds: branches of triangulated sheets, motions of rigid panels."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from os import PathLike
+from typing import TYPE_CHECKING, TypeAlias
+
+from exactfold.count.collect import count_branches
+from exactfold.count.registry import METHODS, choose
+from exactfold.data import EXAMPLES, example_path
+from exactfold.drawing.drawing import Drawing
+from exactfold.errors import UnknownPatternError, UsageError
+from exactfold.exact.numbers import shown
+from exactfold.modes.decomposition import Decomposition, decompose
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.fold import FoldFile
+from exactfold.pattern.opening import Opened, from_drawing, open_pattern, panels
+from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.progress import Progress
+
+if TYPE_CHECKING:
+    from exactfold.branches.result import BranchCount
+    from exactfold.drawing.coordinates import Snap
+
+Sheet: TypeAlias = (
+    "CreasePattern | PanelPattern | FoldFile | Opened | Drawing | str | PathLike[str]"
+)
+"""What `count_ways` takes: sheets of both kinds, drawings, and files of any format."""
+
+__all__ = ["METHODS", "count_opened", "count_ways", "open_sheet"]
+
+
+def count_ways(
+    sheet: Sheet,
+    *,
+    method: str = "auto",
+    seed: int = 0,
+    snap: Snap | None = None,
+    progress: Progress | None = None,
+) -> BranchCount | Decomposition:
+    """In how many ways a sheet folds, whatever its faces; the result says which theory applied.
+
+    A triangulated sheet with four boundary vertices (D = 1), with three, or with one interior
+    vertex has branches: `count_branches`. Every other sheet has motions of rigid panels:
+    `decompose`. Files of all formats are read (`open_pattern`), drawings repaired and made exact.
+
+    Raises the errors of `open_pattern` and `count_branches`.
+
+    >>> count_ways("two-vertex")
+    <BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary vertices>>
+    >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)])
+    >>> count_ways(square)
+    <Decomposition: proved, {0: 1}, <PanelPattern: 0 interior vertices, 0 folds, 1 panel>>
+    """
+    choose(method)
+    opened = open_sheet(sheet, snap)
+    return count_opened(opened, method=method, seed=seed, progress=progress)
+
+
+def count_opened(
+    opened: Opened, *, method: str = "auto", seed: int = 0, progress: Progress | None = None
+) -> BranchCount | Decomposition:
+    """As `count_ways`, of a sheet that has been opened."""
+    sheet = opened.sheet
+    if isinstance(sheet, CreasePattern) and has_branches(sheet):
+        result = count_branches(sheet, method=method, seed=seed, progress=progress)
+        return replace(result, snapped=opened.snapped, read=opened.read)
+    pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
+    return replace(decompose(pattern, progress=progress), read=opened.read)
+
+
+def has_branches(pattern: CreasePattern) -> bool:
+    """Whether `count_branches` counts the sheet: D <= 1, or one vertex inside and no chord."""
+    if not pattern.interior:
+        return False
+    return pattern.Ve <= 4 or (pattern.Vi - pattern.Vt == 1 and not pattern.chords)
+
+
+def open_sheet(sheet: Sheet, snap: Snap | None = None) -> Opened:
+    """The sheet that is meant: any pattern, what was read, a drawing, a file, or an example."""
+    if isinstance(sheet, Opened):
+        return sheet
+    if isinstance(sheet, Drawing):
+        return from_drawing(sheet, snap)
+    if isinstance(sheet, FoldFile):
+        return Opened(sheet.pattern, sheet.assignment, snapped=sheet.snapped)
+    if isinstance(sheet, CreasePattern):
+        if snap is None or snap == "exact":
+            return Opened(sheet)
+        if isinstance(snap, int):
+            moved, largest = sheet.snapped(snap)
+            return Opened(moved, snapped=largest)
+        raise UsageError("--snap auto is for drawings: give a denominator")
+    if isinstance(sheet, PanelPattern):
+        return Opened(sheet)
+    if not isinstance(sheet, str | PathLike):
+        raise UsageError(
+            f"{shown(sheet)} is not a pattern: give a sheet, a drawing, the path of a file, or the "
+            "name of an example"
+        )
+    name = os.fspath(sheet)
+    if isinstance(sheet, str) and sheet in EXAMPLES:
+        return open_pattern(example_path(sheet), snap, name=sheet)
+    if isinstance(sheet, str) and not os.path.exists(sheet):
+        raise UnknownPatternError(
+            f"{shown(sheet)} is neither a file nor an example; the examples are: "
+            f"{', '.join(EXAMPLES)}"
+        )
+    return open_pattern(sheet, snap, name=name)
