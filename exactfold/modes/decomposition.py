@@ -14,7 +14,7 @@ from exactfold.exact.surds import exact
 from exactfold.modes.components import components
 from exactfold.modes.densities import UndecidedDensityError
 from exactfold.modes.elementary import ElementaryMode, ModeSearch, Support
-from exactfold.modes.extension import Extension, extension
+from exactfold.modes.extension import Extension, extend_together, extension
 from exactfold.modes.kernel import Rows, first_order
 from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, stars
@@ -280,25 +280,24 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
     extending: list[Support] = []
     decided = True
     for support in supports:
-        verdict = extension(pattern, moving, support.example)
-        together = verdict.verdict is PROVED and not verdict.order  # for all modes of the support
+        verdict = extend_together(moving, search.modes, support.vertices)
         room = listed - len(modes)
         each: list[ElementaryMode] = []
-        if support.count <= room or (not together and support.count <= MOST_LISTED):
+        if support.count <= (room if verdict is not None else MOST_LISTED):
             each = search.listed(support)
-        if together:
+        results = [verdict or extension(pattern, moving, mode.choice) for mode in each]
+        if verdict is not None:
             extending.append(support)
-            shown = [(mode, verdict) for mode in each]
         elif each:
-            shown = [(mode, extension(pattern, moving, mode.choice)) for mode in each]
-            good = sum(result.verdict is PROVED for _, result in shown)
-            decided = decided and all(result.verdict is not UNDECIDED for _, result in shown)
+            good = sum(result.verdict is PROVED for result in results)
+            decided = decided and all(result.verdict is not UNDECIDED for result in results)
             if good:
                 extending.append(replace(support, count=good))
         else:
-            decided, shown = False, []
+            decided = False
         if support.count <= room:
-            modes += [_mode(support, mode, result) for mode, result in shown]
+            pairs = zip(each, results, strict=True)
+            modes += [_mode(support, mode, result) for mode, result in pairs]
     return Part(
         tuple(moving),
         "modes",

@@ -70,6 +70,29 @@ def extension(
     return Extension(PROVED, f"loops to order {highest}", order=highest)
 
 
+def extend_together(
+    stars: Mapping[int, Star], modes: Mapping[int, Sequence[LocalMode]], vertices: Iterable[int]
+) -> Extension | None:
+    """How all elementary modes on these vertices extend, if that needs no list of them; else None.
+
+    They do if all folds between the vertices form a forest, or if at each vertex the transmissions
+    of every local mode between any two of its active folds are linear.
+    """
+    active = set(vertices)
+    graph = nx.Graph()
+    graph.add_nodes_from(active)
+    for v in active:
+        graph.add_edges_from(e for e in stars[v].folds if e[0] in active and e[1] in active)
+    if nx.is_forest(graph):
+        return Extension(PROVED, "forest")
+    for v in active:
+        for mode in modes[v]:
+            start = mode.folds[0]
+            if not all(Transmission(stars[v], mode, start, e).is_linear for e in mode.folds[1:]):
+                return None
+    return Extension(PROVED, "linear transmissions")
+
+
 def active_graph(chosen: Mapping[int, LocalMode]) -> nx.Graph:
     """The active vertices, joined by the active folds that two of them share."""
     graph = nx.Graph()
