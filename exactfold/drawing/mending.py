@@ -109,6 +109,19 @@ def merged(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
     return with_lines(drawing, lines), repair("merge", count, stands_for, drawing.points, sentence)
 
 
+def coinciding(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
+    """Points at exactly the same place become the first of them."""
+    first: dict[Point, int] = {}
+    members = used(drawing.lines)
+    stands_for = {v: first.setdefault(drawing.points[v], v) for v in members}
+    again = [v for v in members if stands_for[v] != v]
+    if not again:
+        return drawing, []
+    lines = [Line(stands_for[a], stands_for[b], letter) for a, b, letter in drawing.lines]
+    sentence = f"{counted(len(again), 'point')} {agreeing(len(again), 'is')} at the place of others"
+    return with_lines(drawing, lines), repair("merge", len(again), again, drawing.points, sentence)
+
+
 def without_duplicates(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
     """Lines without length and lines drawn more than once are dropped.
 

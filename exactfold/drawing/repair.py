@@ -11,6 +11,7 @@ from exactfold.drawing.coordinates import Exact, Snap, exact_coordinates, resolu
 from exactfold.drawing.drawing import Drawing
 from exactfold.drawing.mending import (
     Repair,
+    coinciding,
     dissolved,
     floats,
     merged,
@@ -63,7 +64,10 @@ def repaired(
             continue
         drawing, found = _step(drawing, step, near)
         repairs += found
-        if step == "split" and found and "duplicates" in steps:
+        if step == "split" and found and "merge" in steps:
+            drawing, found = coinciding(drawing)  # crossings can meet in one point
+            repairs += found
+        if step == "split" and "duplicates" in steps:
             drawing, found = without_duplicates(drawing)
             repairs += found
     return drawing, tuple(repairs)

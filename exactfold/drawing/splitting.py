@@ -12,13 +12,15 @@ from exactfold.arrays import FloatArray
 from exactfold.drawing.construction import ExactLine, crossing
 from exactfold.drawing.drawing import Drawing, Line, Point
 from exactfold.drawing.mending import Repair, floats, groups_within, repair, used
-from exactfold.exact.surds import Number
+from exactfold.exact.surds import Number, Surd
 from exactfold.wording import agreeing, counted
 
 Junctions: TypeAlias = dict[int, list[int]]
 """For each vertex inside lines, those lines."""
 
 _FLATTEST: Final = 0.05
+_LONGEST: Final = 1024
+"""Bits of a coordinate beyond which a vertex is not moved onto its line."""
 """The least sine of an angle at which a crossing fixes a point."""
 
 
@@ -101,7 +103,8 @@ def _moved_onto_lines(
             if v in ending:
                 ending[v].append(k)
     todo = dict(sorted(junctions.items()))
-    moved = []
+    moved: list[int] = []
+    bent: list[int] = []
     farthest = 0.0
     while todo:
         ready = [
@@ -114,6 +117,9 @@ def _moved_onto_lines(
             if all(_offset(points, lines[k], v) == 0 for k in hosts):
                 continue
             place = _on_lines(points, lines, v, hosts, ending[v])
+            if _length(place) > _LONGEST:
+                bent.append(v)
+                continue
             dx, dy = (float(c - d) for c, d in zip(place, points[v], strict=True))
             farthest = max(farthest, float(np.hypot(dx, dy)))
             points[v] = place
@@ -121,7 +127,19 @@ def _moved_onto_lines(
     sentence = (
         f"{counted(len(moved), 'vertex')} moved exactly onto a line, by at most {farthest:.2g}"
     )
-    return repair("split", len(moved), sorted(moved), points, sentence)
+    kept = (
+        f"{counted(len(bent), 'vertex')} stayed beside a line, which bends there: the crossing has "
+        "too many digits"
+    )
+    return repair("split", len(moved), sorted(moved), points, sentence) + repair(
+        "split", len(bent), sorted(bent), points, kept
+    )
+
+
+def _length(point: Point) -> int:
+    """Bits of the longest numerator or denominator."""
+    parts = [x for c in point for x in (c.coefficients if isinstance(c, Surd) else (c,))]
+    return max(max(x.numerator.bit_length(), x.denominator.bit_length()) for x in parts)
 
 
 def _on_lines(

@@ -29,7 +29,8 @@ from exactfold.wording import counted
 MOST_SUPPORTS = 20_000
 MOST_LISTED = 1_000
 MOST_DIMENSION = 16
-MOST_SPACES = 20_000
+MOST_STEPS = 60_000
+MOST_LISTED_VERTICES = 60_000
 
 Counts = Mapping[int, int]
 """{dimension: number of components}."""
@@ -284,7 +285,8 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
         verdict = extend_together(moving, search.modes, support.vertices)
         room = listed - len(modes)
         each: list[ElementaryMode] = []
-        if support.count <= (room if verdict is not None else MOST_LISTED):
+        most = min(MOST_LISTED, MOST_LISTED_VERTICES // len(support.vertices))
+        if support.count <= (min(room, most) if verdict is not None else most):
             each = search.listed(support)
         results = [verdict or extension(pattern, moving, mode.choice, loops) for mode in each]
         if verdict is not None:
@@ -296,7 +298,7 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
                 extending.append(replace(support, count=good))
         else:
             decided = False
-        if support.count <= room:
+        if each and support.count <= room:
             pairs = zip(each, results, strict=True)
             modes += [_mode(support, mode, result) for mode, result in pairs]
     return Part(
@@ -318,22 +320,17 @@ def _mode(support: Support, mode: ElementaryMode, result: Extension) -> Mode:
 
 def _by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
     """Linear spaces, split where a form is a product."""
-    rows, size = first_order(moving)
     vertices = tuple(moving)
+    folds = len({edge for star in moving.values() for edge in star.folds})
+    least = folds - 2 * len(vertices)  # each vertex has two conditions
+    if least > MOST_DIMENSION:
+        return _too_many(vertices, None, f"{least} or more")
+    rows, size = first_order(moving)
     if size == 0:
         return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=0)
     if size > MOST_DIMENSION:
-        return Part(
-            vertices,
-            "subspaces",
-            None,
-            None,
-            dimension=size,
-            reason=f"the first-order motions of the part of {counted(len(vertices), 'vertex')} with "
-            f"vertex {vertices[0]} have dimension {size}, and are decomposed up to "
-            f"{MOST_DIMENSION}",
-        )
-    spaces = leaves(moving, rows, size, MOST_SPACES)
+        return _too_many(vertices, size, str(size))
+    spaces = leaves(moving, rows, size, MOST_STEPS)
     counts: dict[int, int] = {}
     for leaf in spaces:
         if leaf.dimension is None:
@@ -357,6 +354,14 @@ def _by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
         if extends
         else "whether motions of vertices with more than four folds truly fold is not decided",
     )
+
+
+def _too_many(vertices: tuple[int, ...], size: int | None, said: str) -> Part:
+    reason = (
+        f"the first-order motions of {counted(len(vertices), 'vertex')} round vertex "
+        f"{vertices[0]} have dimension {said}; they are decomposed up to {MOST_DIMENSION}"
+    )
+    return Part(vertices, "subspaces", None, None, dimension=size, reason=reason)
 
 
 def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> bool:

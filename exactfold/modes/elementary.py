@@ -21,7 +21,7 @@ Known: TypeAlias = "Mapping[Edge, Density | None]"
 _NEAR: Final = 1e-6
 _MOST_STATES: Final = 20_000
 """Most states that are carried along at once before a search is given up."""
-_MOST_STEPS: Final = 400_000
+_MOST_STEPS: Final = 60_000
 
 
 @dataclass(frozen=True)

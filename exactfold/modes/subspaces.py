@@ -53,7 +53,8 @@ def leaves(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> list[
     root of its discriminant, and splits the space; other forms stay. Parts of the sheet that share
     no active fold are independent, as every condition is one at a vertex.
 
-    Raises `TooManyModesError` if more than `most` spaces have to be looked at.
+    Raises `TooManyModesError` if this takes more than `most` steps; one is a fold of a vertex times
+    a dimension, and times the square of the degree of the field.
     """
     search = _Search(stars, most)
     found = search.solved(dict(rows), size)
@@ -64,7 +65,7 @@ class _Search:
     def __init__(self, stars: Mapping[int, Star], most: int) -> None:
         self.stars = stars
         self.most = most
-        self.seen = 0
+        self.work = 0
 
     def solved(self, rows: Rows, size: int) -> list[Leaf]:
         """The leaves of one space; the product of those of its independent parts."""
@@ -72,14 +73,16 @@ class _Search:
         for part, part_size in independent_parts(rows, size, self.stars):
             part_leaves = _maximal(self._split(part, part_size))
             total = [_sum(a, b) for a in total for b in part_leaves]
-            if len(total) > self.most:
-                raise TooManyModesError(f"more than {self.most} spaces of motions were found")
+            self._count(len(total))
         return total
 
+    def _count(self, steps: int) -> None:
+        """Add to the work done, so that a search ends the same way on every machine."""
+        self.work += steps
+        if self.work > self.most:
+            raise TooManyModesError("its spaces of motions are too many to be split one by one")
+
     def _split(self, rows: Rows, size: int) -> list[Leaf]:
-        self.seen += 1
-        if self.seen > self.most:
-            raise TooManyModesError(f"more than {self.most} spaces of motions were looked at")
         rows, size, products, left = self._reduced(rows, size)
         if not products:
             return [Leaf({e: tuple(row) for e, row in rows.items()}, size, tuple(left))]
@@ -112,9 +115,11 @@ class _Search:
         """The space after all semidefinite forms; forms that split; vertices with other forms."""
         products: list[Squares] = []
         left: list[int] = []
+        weight = common_field(x for row in rows.values() for x in row).dimension ** 2
         waiting = sorted({v for edge in rows for v in edge if v in self.stars})
         while waiting:
             v = waiting.pop(0)
+            self._count(len(self.stars[v].folds) * size * weight)
             squares = _squares(self.stars[v], rows, size)
             signs = [sign(d) for d, _ in squares]
             if not squares:

@@ -22,7 +22,7 @@ from exactfold.verdict import PROVED, REFUTED
 def by_spaces(pattern: PanelPattern) -> dict[int | None, int]:
     moving = stars(pattern)
     rows, size = first_order(moving)
-    return dict(Counter(leaf.dimension for leaf in leaves(moving, rows, size, 10_000)))
+    return dict(Counter(leaf.dimension for leaf in leaves(moving, rows, size, 10**6)))
 
 
 @pytest.mark.parametrize("zigzags", [1, 2, 3, 4])
