@@ -29,7 +29,7 @@ from exactfold.wording import counted
 MOST_SUPPORTS = 20_000
 MOST_LISTED = 1_000
 MOST_DIMENSION = 16
-MOST_STEPS = 60_000
+MOST_STEPS = 150_000
 MOST_LISTED_VERTICES = 60_000
 
 Counts = Mapping[int, int]
