@@ -44,10 +44,6 @@ def described_panels(pattern: PanelPattern, name: str | None = None) -> dict[str
     >>> data["folds"], data["field"], data["faces"]
     (0, [], [[0, 1, 2, 3]])
     """
-    field = pattern.field
-    radicands = [
-        Surd(field, r + (Fraction(0),) * (field.dimension - len(r))) for r in field.radicands
-    ]
     return {
         "name": name,
         "interior": len(pattern.interior),
@@ -55,7 +51,7 @@ def described_panels(pattern: PanelPattern, name: str | None = None) -> dict[str
         "folds": len(pattern.folds),
         "degrees_of_freedom": pattern.D,
         "sha256": pattern.sha256,
-        "field": [number_text(radicand) for radicand in radicands],
+        "field": [number_text(radicand) for radicand in pattern.radicands],
         "vertices": [[number_text(x), number_text(y)] for x, y in pattern.vertices],
         "faces": [list(face) for face in pattern.faces],
     }
