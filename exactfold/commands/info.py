@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 from exactfold import report
 from exactfold.commands.patterns import read_any, warn
 from exactfold.commands.shell import Bar, name_of
-from exactfold.count.ways import has_branches
 from exactfold.drawing.drawing import Snap
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.opening import panels
+from exactfold.pattern.opening import has_branches, panels
 from exactfold.rigidity.facts import pattern_facts
 
 if TYPE_CHECKING:

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.commands.shell import STDIN, said, say
-from exactfold.count.ways import has_branches
 from exactfold.data import EXAMPLES, example_path
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import NotCountedError, UnknownPatternError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.near_degeneracy import near_degenerate
-from exactfold.pattern.opening import Opened, open_pattern
+from exactfold.pattern.opening import Opened, has_branches, open_pattern
 from exactfold.wording import counted
 
 

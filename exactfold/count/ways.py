@@ -16,7 +16,7 @@ from exactfold.errors import SeveralSheetsError, UnknownPatternError, UsageError
 from exactfold.exact.numbers import shown
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold import FoldFile
-from exactfold.pattern.opening import Opened, from_drawing, open_pattern, panels
+from exactfold.pattern.opening import Opened, from_drawing, has_branches, open_pattern, panels
 from exactfold.progress import Progress
 
 if TYPE_CHECKING:
@@ -75,13 +75,6 @@ def count_opened(
 
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
     return replace(decompose(pattern, progress=progress), read=opened.read)
-
-
-def has_branches(pattern: CreasePattern) -> bool:
-    """Whether `count_branches` counts the sheet: D <= 1, or one vertex inside and no chord."""
-    if not pattern.interior:
-        return False
-    return pattern.Ve <= 4 or (pattern.Vi - pattern.Vt == 1 and not pattern.chords)
 
 
 def open_sheet(sheet: Sheet, snap: Snap | None = None, number: int | None = None) -> Opened:

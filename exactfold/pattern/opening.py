@@ -13,8 +13,11 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 from exactfold.drawing.drawing import Drawing, Snap
 from exactfold.drawing.fold_json import read_bytes
 from exactfold.errors import (
+    DisconnectedError,
+    DuplicateVertexError,
     FoldError,
     InputError,
+    IsolatedVertexError,
     MalformedPatternError,
     NotANumberError,
     NotJSONError,
@@ -37,6 +40,8 @@ Steps: TypeAlias = "Literal['all', 'least'] | Collection[str]"
 
 # What the strict reader says of these is right, whatever the file: repair does not help.
 _FINAL = (NotANumberError, StaleExactCoordinatesError)
+_OF_EDGES = (DuplicateVertexError, IsolatedVertexError, DisconnectedError, MalformedPatternError)
+"""What can be wrong with a triangulated sheet and not with a drawing, or is said better of that."""
 _LEAST = ("merge", "duplicates", "split", "dangling")
 """Steps without which some drawings have no panels; the others only change what they are."""
 
@@ -61,10 +66,13 @@ class Opened:
     @property
     def read(self) -> dict[str, Any] | None:
         """What was read, repaired and snapped, as JSON; None if nothing was to be done."""
-        if not self.lines:
+        lines = list(self.lines)
+        if self.snapped:
+            lines.append(f"coordinates moved by up to {float(self.snapped):.1g} by rounding")
+        if not lines:
             return None
         return {
-            "lines": list(self.lines),
+            "lines": lines,
             "field": self.field_name,
             "largest_move": self.largest_move,
         }
@@ -135,7 +143,12 @@ def opened(
         if strict is None or Path(name).suffix.lower() not in (".fold", ".json", ""):
             raise
         raise strict from None
-    return from_drawing(drawing, snap, number=number, steps=steps, merge=merge)
+    try:
+        return from_drawing(drawing, snap, number=number, steps=steps, merge=merge)
+    except (FoldError, PatternError):
+        if isinstance(strict, PatternError) and not isinstance(strict, _OF_EDGES):
+            raise strict from None  # it names the face or vertex of the file
+        raise
 
 
 def from_drawing(
@@ -224,6 +237,13 @@ def triangulated(pattern: PanelPattern) -> CreasePattern | None:
         return CreasePattern(points, pattern.faces)
     except MalformedPatternError:
         return None
+
+
+def has_branches(pattern: CreasePattern) -> bool:
+    """Whether `count_branches` counts the sheet: D <= 1, or one vertex inside and no chord."""
+    if not pattern.interior:
+        return False
+    return pattern.Ve <= 4 or (pattern.Vi - pattern.Vt == 1 and not pattern.chords)
 
 
 def panels(pattern: CreasePattern) -> PanelPattern:

@@ -20,10 +20,11 @@ _FOLDS = frozenset("MVFUJ")
 
 @dataclass(frozen=True)
 class Converted:
-    """A sheet as it is written: its panels, a letter for each edge, and the edges added as J."""
+    """A sheet as it is written: panels in their order, a letter for each edge, edges added as J."""
 
     pattern: PanelPattern
     letters: Mapping[Edge, str]
+    faces: tuple[tuple[int, ...], ...]
     joins: tuple[Edge, ...] = ()
 
     def document(self, title: str | None = None) -> dict[str, Any]:
@@ -50,7 +51,7 @@ class Converted:
             "edges_vertices": [list(edge) for edge in pattern.edges],
             "edges_assignment": [self.letters[edge] for edge in pattern.edges],
             "edges_foldAngle": [ANGLES[self.letters[edge]] for edge in pattern.edges],
-            "faces_vertices": [list(face) for face in pattern.faces],
+            "faces_vertices": [list(face) for face in self.faces],
         }
 
 
@@ -74,7 +75,8 @@ def converted(opened: Opened, *, triangulate: bool = False) -> Converted:
         pattern = PanelPattern(pattern.vertices, (*pattern.edges, *joins))
         if any(len(face) > 3 for face in pattern.faces):
             raise NonTriangularFaceError("a panel could not be cut into triangles")
-    return Converted(pattern, _letters(pattern, opened.assignment, joins), joins)
+    faces = sheet.triangles if isinstance(sheet, CreasePattern) else pattern.faces
+    return Converted(pattern, _letters(pattern, opened.assignment, joins), faces, joins)
 
 
 def _letters(
