@@ -20,7 +20,7 @@ KITE = [
     (("0", "0"), ("1", "1"), "M"),
     (("1", "0"), ("0.414213562373095", "1"), "V"),
 ]
-"""A diagonal and a crease at 67.5 degrees, which cross."""
+"""A diagonal and a crease with slope -1 - sqrt 2, which cross."""
 TWO = [
     *SQUARE[:4],
     *(((f"{float(a) + 3}", b), (f"{float(c) + 3}", d), x) for (a, b), (c, d), x in SQUARE),
@@ -39,7 +39,7 @@ def test_one_line_of_what_was_read_the_coordinates_each_repair_and_what_was_writ
         f"read {path}: CP, 6 lines (1 mountain, 1 valley, 4 border)",
         "coordinates in Q(sqrt 2), whole numbers; largest move 5e-17 of the size, tolerance 1e-09",
         "1 vertex inside of lines: 1 line cut there: at 4 (0.414214, 1)",
-        "1 crossing of lines is a vertex: at 5 (0.585786, 0.585786)",
+        "1 crossing of lines is a vertex: at 5 (0.630602, 0.630602)",
         f"wrote {out}: 6 vertices, 4 folds, 4 panels, coordinates in Q(sqrt 2)",
     ]
 
@@ -107,7 +107,7 @@ def test_without_the_flag_only_what_is_needed_is_done(tmp_path: Path) -> None:
     for flags in ([], ["--repair"], ["--steps", "dangling"]):
         result = run("convert", path, out, *flags)
         assert result.exit_code == PROVED
-        assert "1 line that ends inside" in result.stdout
+        assert "1 dangling line dropped" in result.stdout
         assert len(open_pattern(out).sheet.folds) == 2
     flat = [*SQUARE[:4], (("0", "0"), ("1", "1"), "F")]
     document = as_fold(flat)
