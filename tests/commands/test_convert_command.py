@@ -107,7 +107,7 @@ def test_without_the_flag_only_what_is_needed_is_done(tmp_path: Path) -> None:
     for flags in ([], ["--repair"], ["--steps", "dangling"]):
         result = run("convert", path, out, *flags)
         assert result.exit_code == PROVED
-        assert "1 dangling line dropped" in result.stdout
+        assert "1 line dropped that has the same panel on both sides" in result.stdout
         assert len(open_pattern(out).sheet.folds) == 2
     flat = [*SQUARE[:4], (("0", "0"), ("1", "1"), "F")]
     document = as_fold(flat)

@@ -61,11 +61,9 @@ def test_panels_drawings_and_files_are_one_sheet(tmp_path: Path) -> None:
     assert dict(expected.second_order) == {0: 1}
     for given in (path, str(path), parse_drawing(as_fold(SQUARE), "s"), open_pattern(path)):
         found = count_ways(given)
-        assert (found.pattern.folds, found.second_order) == (
-            expected.pattern.folds,
-            expected.second_order,
-        )
-        assert found.read["lines"][0].startswith("read s")
+        assert len(found.pattern.folds) == len(expected.pattern.folds) == 2
+        assert found.second_order == expected.second_order
+        assert "6 lines (1 mountain, 1 valley, 4 border)" in found.read["lines"][0]
 
 
 def test_rounding_is_never_silent(tmp_path: Path) -> None:
