@@ -84,7 +84,9 @@ class Conversion:
             return tuple(name.strip() for name in self.steps.split(",") if name.strip())
         if self.repair is None:
             return "least"
-        return "all" if self.repair else ()
+        from exactfold.drawing.repair import STEPS  # here, as it loads what a usage error needs not
+
+        return STEPS if self.repair else ()
 
 
 def _lines(opened: Opened, name: str) -> list[str]:

@@ -54,7 +54,7 @@ def test_crossing_creases_of_triangles_make_a_triangulated_sheet() -> None:
     found = sheet(CROSSED)
     assert isinstance(found.sheet, CreasePattern)
     assert found.sheet.interior == (4,)
-    assert found.assignment[0, 4] == found.assignment[2, 4] == "M"
+    assert found.assignment[0, 4] == found.assignment[3, 4] == "M"
     assert found.read is not None
     assert found.read["lines"] == list(found.lines)
     assert found.lines[-1] == "1 crossing of lines is a vertex: at 4 (0.5, 0.5)"
