@@ -15,7 +15,7 @@ from exactfold.pattern.opening import has_branches, panels
 from exactfold.rigidity.facts import pattern_facts
 
 if TYPE_CHECKING:
-    from exactfold.count.panel_facts import PanelFacts
+    from exactfold.count.motion_facts import PanelFacts
     from exactfold.pattern.panel_pattern import PanelPattern
 
 
@@ -50,7 +50,7 @@ def show_info(
 
 
 def _motions(pattern: PanelPattern) -> PanelFacts:
-    from exactfold.count.panel_facts import panel_facts  # sheets with branches need none of it
+    from exactfold.count.motion_facts import panel_facts  # sheets with branches need none of it
 
     return panel_facts(pattern)
 

@@ -4,9 +4,9 @@ from exactfold.count.find import BranchFinder as BranchFinder
 from exactfold.count.find import find_branch as find_branch
 from exactfold.count.find import find_branches as find_branches
 from exactfold.count.find import neighbours as neighbours
+from exactfold.count.motion_facts import PanelFacts as PanelFacts
+from exactfold.count.motion_facts import panel_facts as panel_facts
 from exactfold.count.on_dask import dask_engine as dask_engine
-from exactfold.count.panel_facts import PanelFacts as PanelFacts
-from exactfold.count.panel_facts import panel_facts as panel_facts
 from exactfold.count.pools import dask_pool as dask_pool
 from exactfold.count.registry import METHODS as METHODS
 from exactfold.count.registry import RegisteredSolver as RegisteredSolver

@@ -15,7 +15,7 @@ from exactfold.report.terminal import facts_table
 from exactfold.wording import counted
 
 if TYPE_CHECKING:
-    from exactfold.count.panel_facts import PanelFacts
+    from exactfold.count.motion_facts import PanelFacts
     from exactfold.rigidity.facts import PatternFacts
 
 DIGITS = 6

@@ -9,7 +9,7 @@ import pytest
 from drawings import SQUARE, as_cp, as_fold
 
 from exactfold import count_branches, write_fold
-from exactfold.count.panel_facts import panel_facts
+from exactfold.count.motion_facts import panel_facts
 from exactfold.count.ways import count_ways
 from exactfold.drawing.read import parse_drawing
 from exactfold.errors import SeveralSheetsError, UnknownPatternError, UsageError
