@@ -6,20 +6,21 @@ import io
 import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from exactfold.commands.parameters import (
-    AnySnap,
     Json,
     Pattern,
     Patterns,
+    Sheet,
     Signs,
     Snap,
     Up,
     complete_method,
     degrees,
+    distance,
     flag,
     method_name,
     whole,
@@ -29,7 +30,6 @@ from exactfold.commands.shell import (
     OUTPUT_FAILED,
     Bar,
     apart,
-    name_of,
     not_a_dash,
     output_failed,
     reported,
@@ -122,7 +122,8 @@ def count(
         ),
     ] = None,
     as_json: Json = False,
-    snap: AnySnap = None,
+    snap: Snap = None,
+    sheet: Sheet = None,
     seed: Annotated[
         int, typer.Option(parser=whole(0), metavar="S", help="Seed of the complex homotopy.")
     ] = 0,
@@ -145,7 +146,7 @@ def count(
                 "--certificate, --stream, --resume and --workers go with one pattern and "
                 "without --jsonl"
             )
-        batch = Batch(patterns, jsonl, jobs, dask, method, seed, snap, as_json, everything)
+        batch = Batch(patterns, jsonl, jobs, dask, method, seed, snap, sheet, as_json, everything)
         raise typer.Exit(batch.run())
     if jobs is not None:
         raise UsageError("--jobs goes with several patterns or --jsonl")
@@ -162,6 +163,7 @@ def count(
         dask,
         as_json,
         snap,
+        sheet,
         seed,
         everything,
         verbose,
@@ -221,6 +223,7 @@ def branch(
     ] = None,
     as_json: Json = False,
     snap: Snap = None,
+    sheet: Sheet = None,
 ) -> None:
     """Find and prove the one branch with given vertex signs, and no other.
 
@@ -237,7 +240,7 @@ def branch(
     if certificate is not None and (pops is not None or batch is not None):
         raise UsageError("--certificate goes with a single branch")
     apart(certificate, pattern)
-    proved = Asked(pattern, snap, signs, up, batch, pops, certificate, as_json).answer()
+    proved = Asked(pattern, snap, sheet, signs, up, batch, pops, certificate, as_json).answer()
     raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
 
 
@@ -268,6 +271,7 @@ def export(
     ] = False,
     as_json: Json = False,
     snap: Snap = None,
+    sheet: Sheet = None,
 ) -> None:
     """Write one branch as a FOLD file that simulators can fold.
 
@@ -280,7 +284,7 @@ def export(
     if (signs is not None) + (up is not None) + (place is not None) != 1:
         raise UsageError("give one of --signs, --up and --branch")
     apart(output, pattern)
-    asked = Wanted(pattern, snap, signs, up, place, output, amount, force, as_json)
+    asked = Wanted(pattern, snap, sheet, signs, up, place, output, amount, force, as_json)
     raise typer.Exit(asked.answer())
 
 
@@ -337,20 +341,59 @@ def info(
     ] = False,
     as_json: Json = False,
     snap: Snap = None,
+    sheet: Sheet = None,
 ) -> None:
-    """Report what is exactly known of a pattern without solving for its branches."""
-    from exactfold import report
-    from exactfold.commands.patterns import read
-    from exactfold.rigidity.facts import pattern_facts
+    """Report what is exactly known of a pattern without solving for the ways to fold it."""
+    from exactfold.commands.info import show_info
 
-    with Bar("reading") as bar:
-        sheet = read(pattern, snap).pattern
-        facts = pattern_facts(sheet, bar)
-        expected, table = report.expectation(facts), report.info_report(facts, exact=exact)
-    if as_json:
-        print(json.dumps({**facts.to_dict(name_of(pattern)), "expected": expected}))
-    else:
-        report.show(table)
+    show_info(pattern, snap, sheet, exact, as_json)
+
+
+@app.command(cls=Command)
+@reported
+def convert(
+    pattern: Pattern,
+    output: Annotated[
+        Path, typer.Argument(metavar="OUT.fold", help="The FOLD file to write; - for stdout.")
+    ],
+    snap: Snap = None,
+    merge: Annotated[
+        Any,
+        typer.Option(
+            parser=distance,
+            metavar="EPS",
+            help="Merge points that are this close, in units of the size of the drawing.",
+        ),
+    ] = None,
+    repair: Annotated[
+        bool | None,
+        typer.Option(
+            "--repair/--no-repair",
+            metavar="",
+            help="Do every step of repair, or none. Default: only what it takes to find panels.",
+        ),
+    ] = None,
+    steps: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAMES",
+            help="Instead: these steps, such as merge,split; docs/files.md explains them.",
+        ),
+    ] = None,
+    triangulate: Annotated[
+        bool, flag("--triangulate", text="Cut panels into triangles by edges with the letter J.")
+    ] = False,
+    sheet: Sheet = None,
+    as_json: Json = False,
+) -> None:
+    """Write a drawing of any format as a FOLD file with exact coordinates.
+
+    Says what was read, each repair with its places, and how coordinates became
+    exact. Every command reads the file that is written as the identical sheet.
+    """
+    from exactfold.commands.convert import Conversion
+
+    Conversion(pattern, output, snap, merge, repair, steps, triangulate, sheet, as_json).run()
 
 
 @app.command(cls=Command)

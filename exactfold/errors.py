@@ -87,6 +87,10 @@ class CrossingEdgesError(FoldError):
     """Two edges of the file cross, or a vertex lies inside an edge."""
 
 
+class IrrationalCoordinatesError(FoldError):
+    """A file whose coordinates have square roots, where rational ones are needed."""
+
+
 class DanglingEdgeError(FoldError):
     """An edge that is not a side of any face."""
 

@@ -9,7 +9,7 @@ from collections.abc import Generator, Iterator
 from contextlib import ExitStack, closing, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from exactfold.branches.result import BranchCount
 from exactfold.commands.guard import NO_MEMORY
@@ -29,6 +29,7 @@ from exactfold.commands.shell import (
 from exactfold.count.batch import Job, Source, count_job, read_source
 from exactfold.count.on_dask import LOCAL
 from exactfold.count.pools import Pool, dask_pool, process_pool
+from exactfold.drawing.drawing import Snap
 from exactfold.errors import (
     NotEnoughMemoryError,
     UnknownPatternError,
@@ -37,10 +38,12 @@ from exactfold.errors import (
     WorkerDiedError,
 )
 from exactfold.memory import is_shortage, shortage
-from exactfold.modes.decomposition import Decomposition
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import available_cores
+
+if TYPE_CHECKING:
+    from exactfold.modes.decomposition import Decomposition
 
 FAILED = "failed"
 """In place of a status: there is an error."""
@@ -95,7 +98,8 @@ class Batch:
     dask: str | None
     method: str
     seed: int
-    snap: int | None
+    snap: Snap | None
+    sheet: int | None
     as_json: bool
     everything: bool
 
@@ -141,7 +145,7 @@ class Batch:
 
         def jobs() -> Iterator[Job]:
             for path in self.patterns:
-                job = Job(str(path), _source(path), self.method, self.seed, self.snap)
+                job = Job(str(path), _source(path), self.method, self.seed, self.snap, self.sheet)
                 found = known.take(job, names)
                 if found is None:
                     yield job
@@ -205,9 +209,11 @@ class Known:
         self._lines: dict[str, list[Line]] = {}
         for data in found:
             if data["sha256"] is not None and data["status"] != FAILED:
-                warned = bool((data["result"] or {}).get("warnings"))
+                result = data["result"] or {}
+                warned = bool(result.get("warnings") or result.get("near_misses"))
                 line = Line(data["name"], data["status"], data["exit_code"], warned=warned)
-                self._lines.setdefault(_key(data["sha256"], data["asked"]), []).append(line)
+                asked = {"sheet": None, **data["asked"]}  # lines of earlier versions have none
+                self._lines.setdefault(_key(data["sha256"], asked), []).append(line)
 
     def take(self, job: Job, names: set[str]) -> Line | None:
         """The line of this file, or of one with its content that has another name now."""
@@ -240,7 +246,7 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
         "sha256": _digest(job),
         "asked": _asked(job),
     }
-    if isinstance(result, BranchCount | Decomposition):
+    if not isinstance(result, Exception):
         status, code = str(result.status), EXIT[result.status]
         data |= {"status": status, "exit_code": code, "error": None}
         data["result"] = result.to_dict(name=job.name)
@@ -248,7 +254,7 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
         if (warning := result.warning) is not None:
             message = f"{message}{'; ' if message else ''}warning: {warning}"
         warned = warning is not None
-        ways = result.ways if isinstance(result, Decomposition) else result.distinct
+        ways = result.distinct if isinstance(result, BranchCount) else result.ways
         return Line(job.name, status, code, json.dumps(data), ways, message, warned)
     code = exit_code(result)
     error = error_document(result)["error"]
@@ -261,7 +267,7 @@ def _digest(job: Job) -> str | None:
 
 
 def _asked(job: Job) -> dict[str, Any]:
-    return {"method": job.method, "seed": job.seed, "snap": job.snap}
+    return {"method": job.method, "seed": job.seed, "snap": job.snap, "sheet": job.number}
 
 
 def _key(digest: str | None, asked: dict[str, Any]) -> str:

@@ -11,6 +11,7 @@ from exactfold.branches.branch import Branch
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, name_of, say
 from exactfold.count.find import BranchFinder
+from exactfold.drawing.drawing import Snap
 from exactfold.errors import UnreadableFileError, UsageError
 from exactfold.verdict import PROVED
 
@@ -20,7 +21,8 @@ class Asked:
     """What was asked for, as text from the command line."""
 
     pattern: Path
-    snap: int | None
+    snap: Snap | None
+    sheet: int | None
     signs: str | None
     up: str | None
     batch: Path | None
@@ -37,13 +39,14 @@ class Asked:
         """Find, prove and print; whether all branches were proved.
 
         Of many branches none is kept: with JSON each is printed when it is found, and of the others
-        the row of the table remains. Raises the errors of `load_fold` and `BranchFinder`.
+        the row of the table remains. Raises the errors of `read` and `BranchFinder`.
         """
         from exactfold import report
 
         proved, rows = True, []
         with Bar("reading") as bar:
-            finder = BranchFinder(read(self.pattern, self.snap).pattern)
+            sheet = read(self.pattern, self.snap, self.sheet, "branch")
+            finder = BranchFinder(sheet.pattern)
             bar("setting up")
             for name, result in self._found(finder, bar):
                 proved &= result.status is PROVED

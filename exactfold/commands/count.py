@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from exactfold import report
 from exactfold.branches.result import BranchCount
@@ -13,13 +14,15 @@ from exactfold.commands.shell import EXIT, Bar, apart, name_of, say
 from exactfold.commands.stream import Streaming, advice
 from exactfold.count.stream import StreamedCount
 from exactfold.count.ways import count_opened
-from exactfold.drawing.coordinates import Snap
+from exactfold.drawing.drawing import Snap
 from exactfold.errors import UsageError
 from exactfold.evidence.entries import write_certificate
 from exactfold.evidence.listing import certificate as certificate_of
-from exactfold.modes.decomposition import Decomposition
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.verdict import PROVED
+
+if TYPE_CHECKING:  # branches are counted without what panels need
+    from exactfold.modes.decomposition import Decomposition
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,7 @@ class Asked:
     dask: str | None
     as_json: bool
     snap: Snap | None
+    sheet: int | None
     seed: int
     everything: bool
     verbose: bool
@@ -42,7 +46,7 @@ class Asked:
     def run(self) -> int:
         """Count, write what was asked for and print the answer; the exit code.
 
-        Raises the errors of `load_fold`, `count_branches` and `Streaming`, and `UsageError`.
+        Raises the errors of `read_any`, `count_branches` and `Streaming`, and `UsageError`.
         """
         apart(self.certificate, self.pattern, self.stream)
         streamed = None if self.stream is None else self._streamed(self.stream)
@@ -50,7 +54,7 @@ class Asked:
         written = self._certified(result, streamed)
         if self.as_json:
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
-        elif isinstance(result, Decomposition):
+        elif not isinstance(result, BranchCount):
             panels = report.panels_report(
                 result, written, everything=self.everything, verbose=self.verbose
             )
@@ -67,8 +71,6 @@ class Asked:
         return EXIT[result.status]
 
     def _streamed(self, file: Path) -> StreamedCount:
-        if isinstance(self.snap, str):
-            raise UsageError("--stream takes a denominator for --snap")
         if self.method != "auto":
             raise UsageError("--stream has a method of its own: leave --method away")
         return Streaming(
@@ -78,6 +80,7 @@ class Asked:
             self.workers,
             self.dask,
             self.snap,
+            self.sheet,
             self.seed,
             self.certificate,
         ).run()
@@ -86,7 +89,7 @@ class Asked:
         if self.resume or self.workers is not None or self.dask is not None:
             raise UsageError("--resume, --workers and --dask go with --stream")
         with Bar("reading") as bar:
-            opened = read_any(self.pattern, self.snap)
+            opened = read_any(self.pattern, self.snap, self.sheet)
             sheet = opened.sheet
             if isinstance(sheet, CreasePattern) and (better := advice(sheet)) is not None:
                 say(better)
@@ -99,7 +102,7 @@ class Asked:
         """Where the certificate was written; where it was not, say why."""
         if self.certificate is None:
             return None
-        if isinstance(result, Decomposition):
+        if not isinstance(result, BranchCount):
             say("no certificate was written: those of rigid panels are still to come")
         elif result.status is not PROVED:
             say("no certificate was written: nothing is proved")

@@ -15,6 +15,7 @@ from exactfold.commands.patterns import read
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder
+from exactfold.drawing.drawing import Snap
 from exactfold.errors import NotCountedError, UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
@@ -29,7 +30,8 @@ class Wanted:
     """What was asked for on the command line; exactly one of `signs`, `up` and `place` is given."""
 
     file: Path
-    snap: int | None
+    snap: Snap | None
+    sheet: int | None
     signs: str | None
     up: str | None
     place: int | None
@@ -41,14 +43,14 @@ class Wanted:
     def answer(self) -> int:
         """Find the branch, write it and say so; the exit code.
 
-        Raises the errors of `load_fold`, `BranchFinder`, `count_branches` and `exported`, but for
+        Raises the errors of `read`, `BranchFinder`, `count_branches` and `exported`, but for
         `UndecidedBranchError`, which is said on stderr with what `BranchFinder` gave as a reason.
         """
         output = None if self.output is None or str(self.output) == "-" else self.output
         if output is None and self.as_json:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
-            pattern = read(self.file, self.snap).pattern
+            pattern = read(self.file, self.snap, self.sheet, "export").pattern
             branch = self._branch(pattern, bar)
             bar("writing")
             try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,7 +11,9 @@ import typer
 
 from exactfold.commands.shell import standard_input
 from exactfold.count.registry import ALIASES, METHODS
-from exactfold.drawing.coordinates import Snap as Snapping
+from exactfold.drawing.drawing import Snap as Snapping
+from exactfold.errors import NotANumberError
+from exactfold.exact.numbers import parse_rational
 
 
 def complete_pattern(incomplete: str) -> list[str]:
@@ -30,7 +33,7 @@ def complete_pattern(incomplete: str) -> list[str]:
         if text.startswith(incomplete) and not entry.name.startswith("."):
             if entry.is_dir():
                 found.append(f"{text}/")
-            elif entry.suffix == ".fold":
+            elif entry.suffix in (".fold", ".svg", ".cp", ".opx", ".ori", ".orh"):
                 found.append(text)
     return found
 
@@ -63,6 +66,17 @@ def degrees(text: object) -> float:
         raise typer.BadParameter(f"{str(text)!r} is not a number") from None
 
 
+def distance(text: object) -> Fraction:
+    """A positive number, such as 1e-6, exactly as it is written."""
+    try:
+        value = parse_rational(str(text))
+    except NotANumberError:
+        raise typer.BadParameter(f"{str(text)!r} is not a number") from None
+    if value <= 0:
+        raise typer.BadParameter(f"{text} is not positive")
+    return value
+
+
 def method_name(text: object) -> str:
     """The name of a method; names of earlier versions are taken, too."""
     name = str(text)
@@ -83,7 +97,7 @@ def snapping(text: object) -> Snapping:
     return "exact" if text == "exact" else whole(1)(text)
 
 
-_ONE = "A FOLD file with triangular faces, - for standard input, or a name: see `examples`."
+_ONE = "A FOLD, SVG, CP, OPX or ORI file, - for standard input, or a name: see `examples`."
 
 Pattern = Annotated[
     Path,
@@ -104,18 +118,18 @@ Patterns = Annotated[
     ),
 ]
 Snap = Annotated[
-    int | None,
-    typer.Option(
-        parser=whole(1), metavar="DEN", help="Round coordinates to multiples of 1/DEN first."
-    ),
-]
-AnySnap = Annotated[
     Any,
     typer.Option(
         parser=snapping,
         metavar="DEN|auto|exact",
         help="Round coordinates to multiples of 1/DEN; or find the exact numbers that were meant "
         "(auto: the rule for drawings); or take them as written (exact).",
+    ),
+]
+Sheet = Annotated[
+    int | None,
+    typer.Option(
+        "--sheet", parser=whole(1), metavar="N", help="Of a drawing with several sheets: the N-th."
     ),
 ]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]

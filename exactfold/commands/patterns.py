@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.commands.shell import STDIN, said, say
-from exactfold.count.ways import has_branches
 from exactfold.data import EXAMPLES, example_path
-from exactfold.drawing.coordinates import Snap
-from exactfold.errors import UnknownPatternError
+from exactfold.drawing.drawing import Snap
+from exactfold.errors import NotCountedError, UnknownPatternError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold import FoldFile, load_fold
 from exactfold.pattern.near_degeneracy import near_degenerate
-from exactfold.pattern.opening import Opened, open_pattern
+from exactfold.pattern.opening import Opened, has_branches, open_pattern
+from exactfold.wording import counted
+
+
+@dataclass(frozen=True)
+class Triangulated:
+    """A triangulated sheet, and how it was read."""
+
+    pattern: CreasePattern
+    opened: Opened
 
 
 def located(path: Path) -> Path:
@@ -31,27 +39,46 @@ def located(path: Path) -> Path:
     )
 
 
-def read(path: Path, snap: int | None) -> FoldFile:
-    """The pattern that is meant; raises the errors of `located` and `load_fold`.
+def read(path: Path, snap: Snap | None, number: int | None, needs: str) -> Triangulated:
+    """The triangulated sheet that is meant, for a command that `needs` one.
 
-    What a designer should know of it before the answer is read is said on stderr.
+    What a designer should know of it before the answer is read is said on stderr. Raises the
+    errors of `located` and `open_pattern`, and `NotCountedError` for a sheet of larger panels or
+    with square roots.
     """
-    file = load_fold(located(path), snap, name=said(path))
-    if (found := near_degenerate(file.pattern)) is not None:
-        say(f"warning: {found.text}")
-    return file
+    opened = read_any(path, snap, number)
+    if not isinstance(opened.sheet, CreasePattern):
+        if opened.sheet.field.radicands:
+            raise NotCountedError(
+                f"{needs} takes triangulated sheets with rational coordinates, and those of this "
+                f"one lie in {opened.field_name}: `exactfold count` takes them as they are, and "
+                "`exactfold convert --triangulate --snap DEN` rounds those of a drawing"
+            )
+        large = sum(len(face) > 3 for face in opened.sheet.faces)
+        raise NotCountedError(
+            f"{needs} takes triangulated sheets, and this one has {counted(large, 'panel')} with "
+            "more than three sides: `exactfold count` says how its panels fold while they stay "
+            "rigid, and `exactfold convert --triangulate` cuts them into triangles that may bend"
+        )
+    if not has_branches(opened.sheet):
+        warn(opened.sheet)
+    return Triangulated(opened.sheet, opened)
 
 
-def read_any(path: Path, snap: Snap | None) -> Opened:
+def read_any(path: Path, snap: Snap | None, number: int | None = None) -> Opened:
     """The sheet that is meant, of any format; what was read and repaired is said on stderr.
 
     Raises the errors of `located` and `open_pattern`.
     """
-    opened = open_pattern(located(path), snap, name=said(path))
+    opened = open_pattern(located(path), snap, name=said(path), number=number)
     for line in opened.lines:
         say(line)
-    if isinstance(opened.sheet, CreasePattern):
-        found = near_degenerate(opened.sheet) if has_branches(opened.sheet) else None
-        if found is not None:
-            say(f"warning: {found.text}")
+    if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
+        warn(opened.sheet)
     return opened
+
+
+def warn(pattern: CreasePattern) -> None:
+    """Say on stderr what a designer should know of a sheet."""
+    if (found := near_degenerate(pattern)) is not None:
+        say(f"warning: {found.text}")

@@ -14,6 +14,7 @@ from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
 from exactfold.count.collect import check_countable
 from exactfold.count.on_dask import LOCAL, dask_engine
 from exactfold.count.stream import StreamedCount, stream_branches
+from exactfold.drawing.drawing import Snap
 from exactfold.errors import (
     NotApplicableError,
     NotCountedError,
@@ -39,7 +40,8 @@ class Streaming:
     resume: bool
     workers: int | None
     dask: str | None
-    snap: int | None
+    snap: Snap | None
+    sheet: int | None
     seed: int
     certificate: Path | None
 
@@ -47,7 +49,7 @@ class Streaming:
     def again(self) -> str:
         """The command that continues."""
         words = ["exactfold", "count", str(self.pattern), "--stream", str(self.file), "--resume"]
-        for name in ("workers", "dask", "snap", "seed", "certificate"):
+        for name in ("workers", "dask", "snap", "sheet", "seed", "certificate"):
             if value := getattr(self, name):  # the seed is 0 by default, the others None
                 words += [f"--{name}", str(value)]
         return shlex.join(words)
@@ -64,12 +66,13 @@ class Streaming:
         if self.file.exists() and not self.file.is_file():
             raise UsageError(f"{self.file} is not a file")
         with Bar("reading") as bar:
-            file = read(self.pattern, self.snap)
+            file = read(self.pattern, self.snap, self.sheet, "--stream")
             _require_streamable(file.pattern)
             if self.file.exists() and not self.resume:
                 raise UsageError(f"{self.file} is there already; --resume continues it")
             with interruptible(), self._resumable():
-                return replace(self._streamed(file.pattern, bar), snapped=file.snapped)
+                result = self._streamed(file.pattern, bar)
+                return replace(result, snapped=file.opened.snapped, read=file.opened.read)
 
     def _streamed(self, pattern: CreasePattern, bar: Bar) -> StreamedCount:
         cluster = nullcontext() if self.dask is None else dask_engine(self.dask, self.workers)

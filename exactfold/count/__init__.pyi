@@ -4,6 +4,8 @@ from exactfold.count.find import BranchFinder as BranchFinder
 from exactfold.count.find import find_branch as find_branch
 from exactfold.count.find import find_branches as find_branches
 from exactfold.count.find import neighbours as neighbours
+from exactfold.count.motion_facts import PanelFacts as PanelFacts
+from exactfold.count.motion_facts import panel_facts as panel_facts
 from exactfold.count.on_dask import dask_engine as dask_engine
 from exactfold.count.pools import dask_pool as dask_pool
 from exactfold.count.registry import METHODS as METHODS
@@ -14,3 +16,5 @@ from exactfold.count.registry import solvers as solvers
 from exactfold.count.registry import unregister_solver as unregister_solver
 from exactfold.count.stream import StreamedCount as StreamedCount
 from exactfold.count.stream import stream_branches as stream_branches
+from exactfold.count.ways import count_opened as count_opened
+from exactfold.count.ways import count_ways as count_ways

@@ -6,22 +6,25 @@ import os
 from collections.abc import Generator, Iterable, Sized
 from contextlib import closing
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from exactfold.branches.result import BranchCount
 from exactfold.count.pools import Pool, process_pool
 from exactfold.count.registry import choose
 from exactfold.count.ways import count_opened, open_sheet
 from exactfold.data import EXAMPLES, example_path
-from exactfold.drawing.coordinates import Snap
+from exactfold.drawing.drawing import Snap
 from exactfold.drawing.fold_json import read_bytes
 from exactfold.errors import InputError, NotEnoughMemoryError, UnreadableFileError, UsageError
 from exactfold.memory import is_shortage, shortage
-from exactfold.modes.decomposition import Decomposition
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.loading import PatternLike
 from exactfold.pattern.opening import Opened, opened
 from exactfold.progress import Progress
+
+if TYPE_CHECKING:
+    from exactfold.modes.decomposition import Decomposition
 
 Source = bytes | CreasePattern | InputError
 """What is sent to a worker: the bytes of a FOLD file, a pattern, or why there is neither."""
@@ -29,13 +32,14 @@ Source = bytes | CreasePattern | InputError
 
 @dataclass(frozen=True)
 class Job:
-    """A pattern to count, and how: as for `count_branches` and `load_fold`."""
+    """A pattern to count, and how: as for `count_ways`."""
 
     name: str
     source: Source
     method: str = "auto"
     seed: int = 0
     snap: Snap | None = None
+    number: int | None = None
 
     @property
     def opened(self) -> Opened:
@@ -43,8 +47,8 @@ class Job:
         if isinstance(self.source, InputError):
             raise self.source
         if isinstance(self.source, bytes):
-            return opened(self.source, self.name, self.snap)
-        return open_sheet(self.source, self.snap)
+            return opened(self.source, self.name, self.snap, number=self.number)
+        return open_sheet(self.source, self.snap, self.number)
 
 
 def read_source(path: str | os.PathLike[str]) -> bytes | UnreadableFileError:

@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import os
+import sys
 from dataclasses import replace
 from os import PathLike
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
 from exactfold.count.collect import count_branches
 from exactfold.count.registry import METHODS, choose
 from exactfold.data import EXAMPLES, example_path
 from exactfold.drawing.drawing import Drawing
-from exactfold.errors import UnknownPatternError, UsageError
+from exactfold.errors import SeveralSheetsError, UnknownPatternError, UsageError
 from exactfold.exact.numbers import shown
-from exactfold.modes.decomposition import Decomposition, decompose
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold import FoldFile
-from exactfold.pattern.opening import Opened, from_drawing, open_pattern, panels
-from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.opening import Opened, from_drawing, has_branches, open_pattern, panels
 from exactfold.progress import Progress
 
 if TYPE_CHECKING:
     from exactfold.branches.result import BranchCount
-    from exactfold.drawing.coordinates import Snap
+    from exactfold.drawing.drawing import Snap
+    from exactfold.modes.decomposition import Decomposition
+    from exactfold.pattern.panel_pattern import PanelPattern
 
 Sheet: TypeAlias = (
     "CreasePattern | PanelPattern | FoldFile | Opened | Drawing | str | PathLike[str]"
@@ -38,24 +39,27 @@ def count_ways(
     method: str = "auto",
     seed: int = 0,
     snap: Snap | None = None,
+    number: int | None = None,
     progress: Progress | None = None,
 ) -> BranchCount | Decomposition:
     """In how many ways a sheet folds, whatever its faces; the result says which theory applied.
 
     A triangulated sheet with four boundary vertices (D = 1), with three, or with one interior
     vertex has branches: `count_branches`. Every other sheet has motions of rigid panels:
-    `decompose`. Files of all formats are read (`open_pattern`), drawings repaired and made exact.
+    `decompose`. Files of all formats are read (`open_pattern`), drawings repaired and made exact;
+    `number`, from 1, chooses among the sheets of a drawing with several.
 
     Raises the errors of `open_pattern` and `count_branches`.
 
     >>> count_ways("two-vertex")
     <BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary vertices>>
+    >>> from exactfold.pattern.panel_pattern import PanelPattern
     >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)])
     >>> count_ways(square)
     <Decomposition: proved, {0: 1}, <PanelPattern: 0 interior vertices, 0 folds, 1 panel>>
     """
     choose(method)
-    opened = open_sheet(sheet, snap)
+    opened = open_sheet(sheet, snap, number)
     return count_opened(opened, method=method, seed=seed, progress=progress)
 
 
@@ -67,23 +71,20 @@ def count_opened(
     if isinstance(sheet, CreasePattern) and has_branches(sheet):
         result = count_branches(sheet, method=method, seed=seed, progress=progress)
         return replace(result, snapped=opened.snapped, read=opened.read)
+    from exactfold.modes.decomposition import decompose  # here, as branches do without
+
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
     return replace(decompose(pattern, progress=progress), read=opened.read)
 
 
-def has_branches(pattern: CreasePattern) -> bool:
-    """Whether `count_branches` counts the sheet: D <= 1, or one vertex inside and no chord."""
-    if not pattern.interior:
-        return False
-    return pattern.Ve <= 4 or (pattern.Vi - pattern.Vt == 1 and not pattern.chords)
-
-
-def open_sheet(sheet: Sheet, snap: Snap | None = None) -> Opened:
+def open_sheet(sheet: Sheet, snap: Snap | None = None, number: int | None = None) -> Opened:
     """The sheet that is meant: any pattern, what was read, a drawing, a file, or an example."""
+    if not isinstance(sheet, str | PathLike | Drawing) and number not in (None, 1):
+        raise SeveralSheetsError(f"there is no sheet {number}: a pattern is one sheet")
     if isinstance(sheet, Opened):
         return sheet
     if isinstance(sheet, Drawing):
-        return from_drawing(sheet, snap)
+        return from_drawing(sheet, snap, number=number)
     if isinstance(sheet, FoldFile):
         return Opened(sheet.pattern, sheet.assignment, snapped=sheet.snapped)
     if isinstance(sheet, CreasePattern):
@@ -93,7 +94,7 @@ def open_sheet(sheet: Sheet, snap: Snap | None = None) -> Opened:
             moved, largest = sheet.snapped(snap)
             return Opened(moved, snapped=largest)
         raise UsageError("--snap auto is for drawings: give a denominator")
-    if isinstance(sheet, PanelPattern):
+    if _is_panels(sheet):
         return Opened(sheet)
     if not isinstance(sheet, str | PathLike):
         raise UsageError(
@@ -102,10 +103,16 @@ def open_sheet(sheet: Sheet, snap: Snap | None = None) -> Opened:
         )
     name = os.fspath(sheet)
     if isinstance(sheet, str) and sheet in EXAMPLES:
-        return open_pattern(example_path(sheet), snap, name=sheet)
+        return open_pattern(example_path(sheet), snap, name=sheet, number=number)
     if isinstance(sheet, str) and not os.path.exists(sheet):
         raise UnknownPatternError(
             f"{shown(sheet)} is neither a file nor an example; the examples are: "
             f"{', '.join(EXAMPLES)}"
         )
-    return open_pattern(sheet, snap, name=name)
+    return open_pattern(sheet, snap, name=name, number=number)
+
+
+def _is_panels(sheet: object) -> TypeGuard[PanelPattern]:
+    """Asked of the module, as a pattern that is there has loaded it."""
+    module = sys.modules.get("exactfold.pattern.panel_pattern")
+    return module is not None and isinstance(sheet, module.PanelPattern)

@@ -6,18 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
-from typing import Final, Literal, TypeAlias
+from typing import Final
 
 from exactfold.drawing.candidates import RADICANDS, field_name
 from exactfold.drawing.construction import constructed
-from exactfold.drawing.drawing import Drawing, Point
+from exactfold.drawing.drawing import Drawing, Point, Snap
 from exactfold.drawing.fitting import Model, Written, fitted_model, frames, refined
 from exactfold.errors import MalformedPatternError, UsageError
 from exactfold.exact.numbers import snap as snapped
 from exactfold.exact.surds import Surd
 from exactfold.wording import agreeing, counted
-
-Snap: TypeAlias = "Literal['auto', 'exact'] | int"
 
 _FINEST: Final = Fraction(1, 10**9)
 """No closer than this to a number, in units of the size."""
@@ -114,10 +112,10 @@ def exact_coordinates(
     >>> print(found.text)
     coordinates in Q(sqrt 2), denominators up to 2; largest move 2e-10 of the size, tolerance 1e-09
     """
+    if snap == "exact":
+        return Exact(drawing, reason="the file has exact ones" if drawing.exact else "as asked for")
     written = _fractions(drawing)
     size = _size(written)
-    if snap == "exact":
-        return Exact(drawing, reason="as asked for")
     if isinstance(snap, int) and not isinstance(snap, bool):
         near = [(snapped(x, snap), snapped(y, snap)) for x, y in written]
         move = max(

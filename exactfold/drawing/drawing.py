@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple, TypeAlias
 
-from exactfold.exact.surds import Number
+if TYPE_CHECKING:
+    from exactfold.exact.surds import Number
 
-Point: TypeAlias = tuple[Number, Number]
+Point: TypeAlias = "tuple[Number, Number]"
+Snap: TypeAlias = "Literal['auto', 'exact'] | int"
+"""How coordinates become exact: found, as written, or multiples of 1/Snap."""
 LETTERS: Final = "BMVFUCJ"
 """FOLD's letters: border, mountain, valley, flat, unassigned, cut, join."""
 
@@ -27,10 +30,12 @@ class Drawing:
     A reader gives fractions; `exact_coordinates` may turn them into numbers with square roots.
     `source` says in a few words what was read ("SVG of 1200 x 800, colours of Origami Simulator");
     `remarks` is what the reader left out or took for something, one sentence each. Points may
-    coincide nearly, lines may cross or repeat: `repaired` mends that.
+    coincide nearly, lines may cross or repeat: `repaired` mends that. `exact` says that the file
+    states exact coordinates beside its decimals, which then nothing has to find.
     """
 
     points: tuple[Point, ...]
     lines: tuple[Line, ...]
     source: str
     remarks: tuple[str, ...] = ()
+    exact: bool = False

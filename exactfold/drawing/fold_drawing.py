@@ -15,6 +15,7 @@ from exactfold.drawing.fold_json import (
     index_lists,
     list_at,
 )
+from exactfold.drawing.fold_surds import surd_points
 from exactfold.errors import (
     EmptyDrawingError,
     FoldedStateError,
@@ -37,9 +38,10 @@ def read_fold_drawing(text: str) -> Drawing:
     The top level is read if it has flat coordinates, otherwise the first flat frame of
     `file_frames`, with what it inherits. Coordinates have two components, or three in a plane
     z, y or x = constant (to within 1e-9 of the size), which is seen from where its normal points;
-    `vertices_exactfold:coords` goes before `vertices_coords`. Edges without a letter are U; sides
-    of faces that are not listed as edges become lines, B if they belong to one face, else U.
-    Repeated edges are kept, and are named in the remarks if their letters differ.
+    `vertices_exactfold:surds` and `vertices_exactfold:coords` go before `vertices_coords`, and make
+    the drawing `exact`. Edges without a letter are U; sides of faces that are not listed as edges
+    become lines, B if they belong to one face, else U. Repeated edges are kept, and are named in
+    the remarks if their letters differ.
 
     Raises `NotJSONError`, `NotANumberError`, a subclass of `FoldError`, `EmptyDrawingError`, or
     `FoldedStateError` if all coordinates are those of a folded state.
@@ -110,7 +112,7 @@ def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
     if not rows:
         raise MissingCoordinatesError("`vertices_coords` is missing or empty")
     points, plane, remarks = _flattened([components(v, row) for v, row in enumerate(rows)])
-    exact = exact_points(frame, points)
+    exact = surd_points(frame, points) or [*exact_points(frame, points)]
     edges = index_lists(frame, "edges_vertices", "edge", len(points))
     faces = index_lists(frame, "faces_vertices", "face", len(points))
     for k, edge in enumerate(edges):
@@ -132,7 +134,9 @@ def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
     lines = [line for line in lines if line.start != line.end] + missing
     if not lines:
         raise EmptyDrawingError("neither `edges_vertices` nor `faces_vertices` is given")
-    return Drawing(tuple(exact or points), tuple(lines), source + plane, tuple(remarks))
+    return Drawing(
+        tuple(exact or points), tuple(lines), source + plane, tuple(remarks), bool(exact)
+    )
 
 
 def _flattened(

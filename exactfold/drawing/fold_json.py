@@ -25,8 +25,14 @@ from exactfold.wording import agreeing, counted
 EXACT_KEY: Final = "vertices_exactfold:coords"
 """The key of exact coordinates in a FOLD file, beside the floats of `vertices_coords`."""
 
+SURDS_KEY: Final = "vertices_exactfold:surds"
+"""The key of coordinates with square roots: for each vertex the coefficients of x and of y."""
+FIELD_KEY: Final = "frame_exactfold:field"
+"""The key of their field: for each root r1, r2, ... the coefficients of the number under it."""
+
 _PREFIXES: Final = ("file_", "frame_", "vertices_", "edges_", "faces_")
-_AGREEMENT: Final = Fraction(1, 10**9)
+AGREEMENT: Final = Fraction(1, 10**9)
+"""Exact coordinates and floats agree to within this share of the largest float."""
 
 
 def read_bytes(path: str | PathLike[str]) -> bytes:
@@ -168,7 +174,7 @@ def exact_points(
             f"`{EXACT_KEY}` has {len(rows)} vertices and `vertices_coords` has {len(stated)}: "
             f"delete `{EXACT_KEY}` if another program changed the pattern"
         )
-    tolerance = _AGREEMENT * max(abs(c) for point in stated for c in point[:2])
+    tolerance = AGREEMENT * max(abs(c) for point in stated for c in point[:2])
     result = []
     for v, row in enumerate(rows):
         if not isinstance(row, list) or len(row) != 2 or not all(isinstance(c, str) for c in row):

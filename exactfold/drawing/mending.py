@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 import networkx as nx
@@ -61,7 +61,7 @@ def repair(
 
 def with_lines(drawing: Drawing, lines: Iterable[Line]) -> Drawing:
     """The same points with other lines."""
-    return Drawing(drawing.points, tuple(lines), drawing.source, drawing.remarks)
+    return replace(drawing, lines=tuple(lines))
 
 
 def used(lines: Iterable[Line]) -> list[int]:

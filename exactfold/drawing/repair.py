@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
-from exactfold.drawing.coordinates import Exact, Snap, exact_coordinates, resolution
-from exactfold.drawing.drawing import Drawing
+from exactfold.drawing.coordinates import Exact, exact_coordinates, resolution
+from exactfold.drawing.drawing import Drawing, Snap
 from exactfold.drawing.mending import (
     Repair,
     coinciding,
@@ -151,4 +151,4 @@ def _used_only(drawing: Drawing) -> Drawing:
         raise MalformedPatternError("the drawing has no lines")
     stand_in = drawing.points[min(members)]
     points = tuple(p if v in members else stand_in for v, p in enumerate(drawing.points))
-    return Drawing(points, drawing.lines, drawing.source, drawing.remarks)
+    return replace(drawing, points=points)

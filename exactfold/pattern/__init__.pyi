@@ -9,6 +9,13 @@ from exactfold.pattern.fold_writing import write_fold as write_fold
 from exactfold.pattern.loading import load as load
 from exactfold.pattern.near_degeneracy import NearDegeneracy as NearDegeneracy
 from exactfold.pattern.near_degeneracy import near_degenerate as near_degenerate
+from exactfold.pattern.opening import Opened as Opened
+from exactfold.pattern.opening import from_drawing as from_drawing
+from exactfold.pattern.opening import open_pattern as open_pattern
+from exactfold.pattern.panel_pattern import PanelPattern as PanelPattern
+from exactfold.pattern.panel_writing import Converted as Converted
+from exactfold.pattern.panel_writing import converted as converted
 from exactfold.pattern.random_squares import RandomSquare as RandomSquare
 from exactfold.pattern.random_squares import random_square as random_square
 from exactfold.pattern.random_squares import sample_random_square as sample_random_square
+from exactfold.pattern.triangulating import triangulating_edges as triangulating_edges

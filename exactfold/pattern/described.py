@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from exactfold.exact.numbers import format_rational
-from exactfold.exact.surds import Number, Surd
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.panel_pattern import PanelPattern
+
+if TYPE_CHECKING:  # sheets of triangles do without
+    from exactfold.exact.surds import Number
+    from exactfold.pattern.panel_pattern import PanelPattern
 
 
 def described(
@@ -39,15 +41,12 @@ def described_panels(pattern: PanelPattern, name: str | None = None) -> dict[str
 
     `field` holds the numbers under the square roots r1, r2, ... that coordinates use.
 
+    >>> from exactfold.pattern.panel_pattern import PanelPattern
     >>> square = PanelPattern([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (0, 3)])
     >>> data = described_panels(square)
     >>> data["folds"], data["field"], data["faces"]
     (0, [], [[0, 1, 2, 3]])
     """
-    field = pattern.field
-    radicands = [
-        Surd(field, r + (Fraction(0),) * (field.dimension - len(r))) for r in field.radicands
-    ]
     return {
         "name": name,
         "interior": len(pattern.interior),
@@ -55,7 +54,7 @@ def described_panels(pattern: PanelPattern, name: str | None = None) -> dict[str
         "folds": len(pattern.folds),
         "degrees_of_freedom": pattern.D,
         "sha256": pattern.sha256,
-        "field": [number_text(radicand) for radicand in radicands],
+        "field": [number_text(radicand) for radicand in pattern.radicands],
         "vertices": [[number_text(x), number_text(y)] for x, y in pattern.vertices],
         "faces": [list(face) for face in pattern.faces],
     }
@@ -68,4 +67,6 @@ def number_text(value: Number) -> str:
     >>> number_text(Fraction(1, 2)), number_text(RATIONALS.adjoined(2).root - 1)
     ('1/2', '-1 + r1')
     """
-    return repr(value) if isinstance(value, Surd) else format_rational(Fraction(value))
+    if isinstance(value, int | Fraction):
+        return format_rational(Fraction(value))
+    return repr(value)

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from exactfold.drawing.fold_json import (
+    SURDS_KEY,
     components,
     exact_points,
     fold_document,
@@ -23,6 +24,7 @@ from exactfold.errors import (
     CutEdgeError,
     DanglingEdgeError,
     InputError,
+    IrrationalCoordinatesError,
     MissingCoordinatesError,
     NonTriangularFaceError,
     NotFoldError,
@@ -31,7 +33,6 @@ from exactfold.errors import (
 )
 from exactfold.exact.numbers import over_common_denominator, shown, snap
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
-from exactfold.pattern.planar import trace_faces
 from exactfold.pattern.validate import rounded_to
 from exactfold.wording import counted
 
@@ -164,6 +165,8 @@ def _pattern(
     """The pattern with the faces given, or, if there are none, traced in the planar graph."""
     rebuilt = not faces
     if rebuilt:
+        from exactfold.pattern.planar import trace_faces  # here, as most files have faces
+
         flat, _ = over_common_denominator(x for point in points for x in point)
         faces = trace_faces(list(zip(flat[::2], flat[1::2], strict=True)), edges)
     for k, face in enumerate(faces):
@@ -177,6 +180,10 @@ def _pattern(
 def _points(
     document: Mapping[str, Any], denominator: int | None, frames: str
 ) -> tuple[list[Point], Fraction, bool]:
+    if document.get(SURDS_KEY):
+        raise IrrationalCoordinatesError(
+            f"coordinates have square roots (`{SURDS_KEY}`): only sheets of panels may have them"
+        )
     rows = list_at(document, "vertices_coords")
     if not rows:
         raise MissingCoordinatesError(f"`vertices_coords` is missing or empty{frames}")

@@ -5,24 +5,23 @@ from __future__ import annotations
 import json
 import os
 import secrets
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, SupportsFloat
 
 from exactfold.drawing.fold_json import EXACT_KEY
 from exactfold.errors import NotApplicableError, UnwritableFileError, UsageError
 from exactfold.exact.numbers import format_rational, shown
-from exactfold.pattern.crease_pattern import Edge
+from exactfold.pattern.crease_pattern import Edge, Point
 
 if TYPE_CHECKING:
     from exactfold.pattern.loading import PatternLike
 
-_ANGLES: Final = {"M": -180, "V": 180, "F": 0, "U": 0, "B": 0}
-_RANGES: Final = {"M": (-180, 0), "V": (0, 180), "F": (0, 0), "U": (0, 0), "B": (0, 0)}
+ANGLES: Final = {"M": -180, "V": 180, "F": 0, "U": 0, "B": 0, "J": 0}
 """Degrees by letter; FOLD wants 0 where nothing is assigned."""
+_RANGES: Final = {"M": (-180, 0), "V": (0, 180), "F": (0, 0), "U": (0, 0), "B": (0, 0)}
 
 
 def fold_document(
@@ -61,27 +60,35 @@ def fold_document(
             raise UsageError(f"edge {edge} cannot be assigned {letter!r}")
         letters[edge] = letter
     targets = _targets(letters, angles)
-    document: dict[str, Any] = {
-        "file_spec": 1.2,
-        "file_creator": "exactfold",
-        "file_classes": ["singleModel"],
-    }
-    if title is not None:
-        document["file_title"] = title
-    document |= {
-        "frame_classes": ["creasePattern"],
-        "frame_attributes": ["2D"],
-        # Two components: of three, Origami Simulator's pattern view draws x and z only.
-        "vertices_coords": [
-            [_double(v, x), _double(v, y)] for v, (x, y) in enumerate(pattern.vertices)
-        ],
-        EXACT_KEY: [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
+    return headed_document(title) | {
+        **coordinate_keys(pattern.vertices),
         "edges_vertices": [list(edge) for edge in letters],
         "edges_assignment": list(letters.values()),
         "edges_foldAngle": targets,
         "faces_vertices": [list(triangle) for triangle in pattern.triangles],
     }
-    return document
+
+
+def headed_document(title: str | None = None) -> dict[str, Any]:
+    """The keys that every file of ours begins with."""
+    titled = {} if title is None else {"file_title": title}
+    return {
+        "file_spec": 1.2,
+        "file_creator": "exactfold",
+        "file_classes": ["singleModel"],
+        **titled,
+        "frame_classes": ["creasePattern"],
+        "frame_attributes": ["2D"],
+    }
+
+
+def coordinate_keys(points: Sequence[Point]) -> dict[str, Any]:
+    """Rational points as doubles and exactly; raises `NotApplicableError` beyond doubles."""
+    return {
+        # Two components: of three, Origami Simulator's pattern view draws x and z only.
+        "vertices_coords": [[double(v, x), double(v, y)] for v, (x, y) in enumerate(points)],
+        EXACT_KEY: [[format_rational(x), format_rational(y)] for x, y in points],
+    }
 
 
 def write_fold(
@@ -148,7 +155,7 @@ def _targets(
 ) -> list[int] | list[float]:
     """`edges_foldAngle`, in the order of the letters."""
     if angles is None:
-        return [_ANGLES[letter] for letter in letters.values()]
+        return [ANGLES[letter] for letter in letters.values()]
     for edge, angle in angles.items():
         if edge not in letters:
             raise UsageError(f"{edge} is not an edge (i, j), i < j, of the pattern")
@@ -174,7 +181,8 @@ def _value(value: object, indent: str) -> str:
     return json.dumps(value)
 
 
-def _double(vertex: int, value: Fraction) -> float:
+def double(vertex: int, value: SupportsFloat) -> float:
+    """The nearest double; raises `NotApplicableError` beyond their range."""
     try:
         return float(value)
     except OverflowError:

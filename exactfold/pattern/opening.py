@@ -2,36 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from exactfold.drawing.coordinates import Snap
-from exactfold.drawing.drawing import Drawing
+from exactfold.drawing.drawing import Drawing, Snap
 from exactfold.drawing.fold_json import read_bytes
-from exactfold.drawing.read import parse_drawing
-from exactfold.drawing.repair import exact_sheets
 from exactfold.errors import (
+    DisconnectedError,
+    DuplicateVertexError,
     FoldError,
     InputError,
+    IsolatedVertexError,
     MalformedPatternError,
     NotANumberError,
     NotJSONError,
     PatternError,
     SeveralSheetsError,
     StaleExactCoordinatesError,
+    UnknownFormatError,
+    UsageError,
 )
-from exactfold.exact.surds import rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold import parse_bytes
-from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+# Drawings need libraries that take long to load; triangulated sheets are read without them.
+if TYPE_CHECKING:
+    from exactfold.drawing.repair import Sheets
+    from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+Steps: TypeAlias = "Literal['all', 'least'] | Collection[str]"
+"""Steps of repair: all of them, as few as it takes to read the drawing, or those named."""
 
 # What the strict reader says of these is right, whatever the file: repair does not help.
 _FINAL = (NotANumberError, StaleExactCoordinatesError)
+_OF_EDGES = (DuplicateVertexError, IsolatedVertexError, DisconnectedError, MalformedPatternError)
+"""What can be wrong with a triangulated sheet and not with a drawing, or is said better of that."""
+_LEAST = ("merge", "duplicates", "split", "dangling")
+"""Steps without which some drawings have no panels; the others only change what they are."""
 
 
 @dataclass(frozen=True)
@@ -54,10 +66,13 @@ class Opened:
     @property
     def read(self) -> dict[str, Any] | None:
         """What was read, repaired and snapped, as JSON; None if nothing was to be done."""
-        if not self.lines:
+        lines = list(self.lines)
+        if self.snapped:
+            lines.append(f"coordinates moved by up to {float(self.snapped):.1g} by rounding")
+        if not lines:
             return None
         return {
-            "lines": list(self.lines),
+            "lines": lines,
             "field": self.field_name,
             "largest_move": self.largest_move,
         }
@@ -69,46 +84,85 @@ def open_pattern(
     *,
     name: str | None = None,
     number: int | None = None,
+    steps: Steps = "all",
+    merge: Fraction | None = None,
 ) -> Opened:
     """The sheet in a file of any format that `read_drawing` knows.
 
     A FOLD file of triangles is read as it stands (`load_fold`); `snap` is a denominator there.
     Anything else, also a FOLD file with panels, crossings, near-duplicate vertices or a frame in
     another plane, is read as a drawing: repaired, its coordinates made exact (`exact_sheets`). A
-    file with several sheets needs `number`, from 1.
+    file with several sheets needs `number`, from 1. `steps` and `merge` are those of `repaired`;
+    with "least" a drawing that is a sheet as it stands is not repaired, and of others points are
+    merged, lines cut where they meet, and loose ends dropped. With `merge` or steps that are named
+    also a file of triangles is read as a drawing.
 
-    Raises the errors of `read_drawing`, `exact_sheets` and `PanelPattern`, and
-    `SeveralSheetsError` if there is more than one sheet and none is chosen.
+    Raises the errors of `read_drawing`, `exact_sheets` and `PanelPattern`, with the name of the
+    file before the message, and `SeveralSheetsError` if there is more than one sheet and none is
+    chosen.
     """
-    return opened(read_bytes(path), name or str(path), snap, number=number)
+    raw = read_bytes(path)
+    known = name or str(path)
+    try:
+        return opened(raw, known, snap, number=number, steps=steps, merge=merge)
+    except UnknownFormatError:
+        raise  # it begins with the name
+    except InputError as error:
+        error.args = (f"{known}: {error}",)
+        raise
 
 
-def opened(raw: bytes, name: str, snap: Snap | None = None, *, number: int | None = None) -> Opened:
-    """As `open_pattern`, from the bytes of a file."""
-    if snap in (None, "exact") or isinstance(snap, int):
+def opened(
+    raw: bytes,
+    name: str,
+    snap: Snap | None = None,
+    *,
+    number: int | None = None,
+    steps: Steps = "all",
+    merge: Fraction | None = None,
+) -> Opened:
+    """As `open_pattern`, from the bytes of a file; messages do not begin with its name."""
+    strict: InputError | None = None
+    plain = merge is None and isinstance(steps, str) and number in (None, 1)
+    if plain and snap != "auto":
         try:
             file = parse_bytes(raw, name, snap if isinstance(snap, int) else None)
         except _FINAL:
             raise
         except (NotJSONError, FoldError, PatternError) as error:
-            strict: InputError | None = error
+            strict = error
         else:
             return Opened(file.pattern, file.assignment, (), file.snapped)
-    else:
-        strict = None
+    from exactfold.drawing.read import parse_drawing
+
     try:
         drawing = parse_drawing(raw, name)
-    except (NotJSONError, FoldError):
+    except _FINAL:
+        raise
+    except (NotJSONError, FoldError, UnknownFormatError):
         if strict is None or Path(name).suffix.lower() not in (".fold", ".json", ""):
             raise
         raise strict from None
-    return from_drawing(drawing, snap, number=number)
+    try:
+        return from_drawing(drawing, snap, number=number, steps=steps, merge=merge)
+    except (FoldError, PatternError):
+        if isinstance(strict, PatternError) and not isinstance(strict, _OF_EDGES):
+            raise strict from None  # it names the face or vertex of the file
+        raise
 
 
 def from_drawing(
-    drawing: Drawing, snap: Snap | None = None, *, number: int | None = None
+    drawing: Drawing,
+    snap: Snap | None = None,
+    *,
+    number: int | None = None,
+    steps: Steps = "all",
+    merge: Fraction | None = None,
 ) -> Opened:
     """The sheet of a drawing: repaired, with exact coordinates, its panels traced.
+
+    A drawing with exact coordinates of its own keeps them, and is repaired only where it is no
+    sheet without that; lines F and J join panels all the same.
 
     >>> from exactfold.drawing.drawing import Line
     >>> crossed = Drawing(((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (1, 2)),
@@ -118,7 +172,35 @@ def from_drawing(
     >>> sheet.sheet, sheet.assignment[4, 5], len(sheet.lines)
     (<PanelPattern: 0 interior vertices, 1 fold, 2 panels>, 'M', 3)
     """
-    found = exact_sheets(drawing, snap="auto" if snap is None else snap)
+    from exactfold.drawing.repair import exact_sheets
+
+    rule: Snap = snap or ("exact" if drawing.exact else "auto")
+    attempts = _attempts(drawing, steps, merge)
+    for k, chosen in enumerate(attempts, 1):
+        try:
+            found = exact_sheets(drawing, snap=rule, merge=merge, steps=chosen)
+            return _chosen(drawing, found, number)
+        except (FoldError, PatternError):
+            if k == len(attempts):
+                raise
+    raise UsageError("no steps of repair were given")
+
+
+def _attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Collection[str]]:
+    """The sets of steps to try in turn."""
+    from exactfold.drawing.repair import STEPS
+
+    if steps == "least":
+        return [(), _LEAST] if merge is None else [_LEAST]
+    if steps == "all":
+        return [("join",), STEPS] if drawing.exact and merge is None else [STEPS]
+    return [steps]
+
+
+def _chosen(drawing: Drawing, found: Sheets, number: int | None) -> Opened:
+    """One sheet of a drawing, as a pattern."""
+    from exactfold.pattern.panel_pattern import PanelPattern
+
     if number is None and len(found.sheets) > 1:
         raise SeveralSheetsError(
             f"the drawing holds {len(found.sheets)} sheets: choose one with --sheet N, or "
@@ -140,12 +222,14 @@ def from_drawing(
         MappingProxyType(letters),
         tuple(lines),
         largest_move=found.coordinates.largest_move,
-        field_name=found.coordinates.field_name,
+        field_name=pattern.field_name,
     )
 
 
 def triangulated(pattern: PanelPattern) -> CreasePattern | None:
     """The sheet as a `CreasePattern`, None if it has larger panels or irrational coordinates."""
+    from exactfold.exact.surds import rational
+
     if pattern.field.radicands or any(len(face) != 3 for face in pattern.faces):
         return None
     points = [(rational(x), rational(y)) for x, y in pattern.vertices]
@@ -155,6 +239,13 @@ def triangulated(pattern: PanelPattern) -> CreasePattern | None:
         return None
 
 
+def has_branches(pattern: CreasePattern) -> bool:
+    """Whether `count_branches` counts the sheet: D <= 1, or one vertex inside and no chord."""
+    if not pattern.interior:
+        return False
+    return pattern.Ve <= 4 or (pattern.Vi - pattern.Vt == 1 and not pattern.chords)
+
+
 def panels(pattern: CreasePattern) -> PanelPattern:
     """A triangulated sheet as a sheet of panels.
 
@@ -162,4 +253,6 @@ def panels(pattern: CreasePattern) -> PanelPattern:
     >>> panels(single_vertex(4))
     <PanelPattern: 1 interior vertex, 4 folds, 4 panels>
     """
+    from exactfold.pattern.panel_pattern import PanelPattern
+
     return PanelPattern(pattern.vertices, pattern.edges)

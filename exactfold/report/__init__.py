@@ -3,7 +3,7 @@
 from exactfold.report.batch import batch_report
 from exactfold.report.branch import branch_report, branch_row, branches_report, export_report
 from exactfold.report.count import count_report
-from exactfold.report.info import examples_report, expectation, info_report
+from exactfold.report.info import examples_report, expectation, info_report, panels_info
 from exactfold.report.panels import panels_report
 from exactfold.report.terminal import console, show
 
@@ -18,6 +18,7 @@ __all__ = [
     "expectation",
     "export_report",
     "info_report",
+    "panels_info",
     "panels_report",
     "show",
 ]

@@ -12,9 +12,10 @@ from rich.text import Text
 
 from exactfold.exact.numbers import decimal_near, format_rational, parse_rational
 from exactfold.report.terminal import facts_table
-from exactfold.verdict import UNDECIDED
+from exactfold.wording import counted
 
 if TYPE_CHECKING:
+    from exactfold.count.motion_facts import PanelFacts
     from exactfold.rigidity.facts import PatternFacts
 
 DIGITS = 6
@@ -24,8 +25,13 @@ LISTED = 8
 """Entries of a list in the table of `exactfold info`."""
 
 
-def info_report(facts: PatternFacts, *, exact: bool = False) -> Table:
-    """The table; with `exact` also ranks, stresses, forms, the digest and the exact area."""
+def info_report(
+    facts: PatternFacts, motions: PanelFacts | None = None, *, exact: bool = False
+) -> Table:
+    """The table; with `exact` also ranks, stresses, forms, the digest and the exact area.
+
+    `motions` are given where `count` decomposes the motions of the sheet.
+    """
     pattern = facts.pattern
     rows = [
         ("vertices", f"{pattern.Vi} interior, {pattern.Ve} boundary"),
@@ -50,8 +56,8 @@ def info_report(facts: PatternFacts, *, exact: bool = False) -> Table:
             ),
         ),
         ("folds that split the sheet", _listed([f"{i}-{j}" for i, j in pattern.chords], ", ")),
-        ("expected", expectation(facts)),
     ]
+    rows += [("expected", expectation(facts))] if motions is None else _motion_rows(motions)
     if exact:
         rank = f"{facts.rigidity_rank}, by {facts.rank_by}"
         if facts.rank_by == "theorem":
@@ -64,6 +70,34 @@ def info_report(facts: PatternFacts, *, exact: bool = False) -> Table:
             ("sha256", pattern.sha256),
         ]
     return facts_table(list(rows))
+
+
+def panels_info(facts: PanelFacts, *, exact: bool = False) -> Table:
+    """The table of a sheet of rigid panels; with `exact` also the digest."""
+    pattern = facts.pattern
+    degrees = ", ".join(f"{n} of degree {d}" for d, n in facts.degree_counts.items())
+    rows = [
+        ("vertices", f"{len(pattern.interior)} interior, {len(pattern.border)} boundary"),
+        (
+            "panels, edges, folds",
+            f"{len(pattern.faces)}, {len(pattern.edges)}, {len(pattern.folds)}",
+        ),
+        ("folds - 3 interior vertices", f"D = {pattern.D}"),
+        ("coordinates", f"in {pattern.field_name}"),
+        ("interior degrees", degrees or "none"),
+        *_motion_rows(facts),
+    ]
+    return facts_table([*rows, ("sha256", pattern.sha256)] if exact else list(rows))
+
+
+def _motion_rows(facts: PanelFacts) -> list[tuple[str, str]]:
+    parts = [f"{counted(len(part), 'vertex')} with {part[0]}" for part in facts.parts]
+    return [
+        ("folds that stay flat", _listed([f"{i}-{j}" for i, j in facts.flat], ", ")),
+        ("folds from border to border", _listed([f"{i}-{j}" for i, j in facts.free], ", ")),
+        ("parts that move independently", _listed(parts)),
+        ("expected", facts.expected),
+    ]
 
 
 def _number(value: Fraction, exact: bool) -> str:
@@ -82,23 +116,16 @@ def _listed(entries: list[str], separator: str = "; ") -> str:
 
 
 def expectation(facts: PatternFacts) -> str:
-    """What `count` will find, from the numbers of vertices alone."""
+    """What `count` will find where it counts branches, from the numbers of vertices alone."""
     pattern = facts.pattern
     free = pattern.Vi - pattern.Vt
-    if not pattern.interior:
-        return "no interior vertex: nothing to count"
     if pattern.degrees_of_freedom == 0:
         return "rigid: 0 ways to start folding"
     if pattern.degrees_of_freedom == 1:
         ways = f"2^{free} ways to start folding, fewer if a vertex is flat on some of them"
         return ways if free == pattern.Vi else f"{ways}; with multiplicity 2^{pattern.Vi}"
-    if free == 1 and not pattern.without_rigid_parts()[0].chords:
-        dimension = pattern.degrees_of_freedom
-        return f"one family of ways to start folding, of dimension {dimension} (single vertex)"
-    return (
-        f"{UNDECIDED}: with {pattern.degrees_of_freedom} degrees of freedom the ways to fold form "
-        "continuous families, which are not counted"
-    )
+    dimension = pattern.degrees_of_freedom
+    return f"one family of ways to start folding, of dimension {dimension} (single vertex)"
 
 
 def examples_report(examples: Mapping[str, str]) -> Group:

@@ -26,6 +26,10 @@ COUNT_KEYS = {
     *("pattern", "status", "method", "distinct", "with_multiplicity", "real", "nonreal"),
     *("true_branches", "certificate", "warnings", "seconds", "branches", "format", "version", "by"),
 }
+PANEL_KEYS = {
+    *("theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"),
+    *("near_misses", "read"),
+}
 EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree"}
 BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
 
@@ -78,9 +82,8 @@ def test_verbose_also_says_how(two_vertex):
         ),
         (
             scrambled(1, HEXAGON, 2, loose=True),
-            r"the number of ways to start folding is UNDECIDED \(.*\): the sheet has 6 "
-            "boundary vertices, so it has 3 degrees of freedom; its ways to fold form continuous "
-            "families, not a list",
+            r"the number of ways to fold is UNDECIDED \(.*\): the part of 2 vertices with "
+            "vertex 6: ",
         ),
     ],
     ids=["none", "one", "infinitely many", "flat", "undecided"],
@@ -117,7 +120,10 @@ def test_count_json_has_the_documented_keys(name):
     assert result.exit_code == PROVED
     assert result.stdout.count("\n") == 1
     data = json.loads(result.stdout)
-    assert COUNT_KEYS <= set(data) <= COUNT_KEYS | EXTRA_KEYS
+    assert COUNT_KEYS | PANEL_KEYS <= set(data) <= COUNT_KEYS | PANEL_KEYS | EXTRA_KEYS
+    assert data["theory"] == "branches"
+    assert (data["components"], data["modes_count"], data["read"]) == (None, None, None)
+    assert data["modes"] == data["flat_folds"] == data["free_folds"] == data["near_misses"] == []
     assert set(data["pattern"]) == PATTERN_KEYS
     pattern = read_fold(path)
     assert data["pattern"]["sha256"] == pattern.sha256
@@ -171,8 +177,9 @@ def test_undecided_exits_4(tmp_path):
     assert data["status"] == "undecided"
     assert data["distinct"] is None
     assert data["certificate"] is None
-    assert "6 boundary vertices, so it has 3 degrees of freedom" in data["reason"]
-    assert "`exactfold info`" in data["reason"]
+    assert data["theory"] == "subspaces"
+    assert data["components"] == {"second_order": None, "true": None}
+    assert data["reason"].startswith("the part of 2 vertices with vertex 6: ")
     assert "no certificate was written" in result.stderr
     assert not out.exists()
 

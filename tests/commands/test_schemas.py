@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from drawings import SQUARE, as_cp
 from files import written
 from jsonschema import Draft202012Validator, ValidationError
 from running import PROVED, UNDECIDED, run
@@ -85,7 +86,32 @@ def test_other_counts(tmp_path: Path, pattern: CreasePattern) -> None:
     write_fold(pattern, tmp_path / "p.fold")
     data = printed("count", "count", tmp_path / "p.fold")
     assert data["by"] == ("enumeration" if data["status"] == "proved" else None)
-    printed("info", "info", tmp_path / "p.fold")
+    assert printed("info", "info", tmp_path / "p.fold")["triangles"] == len(pattern.triangles)
+
+
+def test_sheets_of_panels(tmp_path: Path) -> None:
+    path, out, lines = tmp_path / "s.cp", tmp_path / "o.fold", tmp_path / "o.jsonl"
+    path.write_text(as_cp(SQUARE))
+    data = printed("count", "count", path)
+    assert (data["theory"], data["status"], data["pattern"]["faces"]) == (
+        *("modes", "proved"),
+        [[0, 1, 2, 4], [0, 4, 2, 3]],
+    )
+    assert data["read"]["lines"][0] == f"read {path}: CP, 6 lines (1 mountain, 1 valley, 4 border)"
+    known = printed("info", "info", path)
+    assert (known["triangles"], known["panels"], known["field"]) == (None, 2, "Q")
+    converted = printed("convert", "convert", path, out, "--triangulate")
+    assert (converted["joins"], converted["output"]) == (["1-4", "3-4"], str(out))
+    assert printed("convert", "convert", "two-vertex", out)["read"] is None
+    printed("batch", "count", path, tmp_path / "none", "--jobs", 1, "--jsonl", lines)
+    found = [valid(json.loads(x), "batch-line") for x in lines.read_text().splitlines()]
+    assert sorted(line["status"] for line in found) == ["failed", "proved"]
+    for wrong in ({"panels": None}, {"triangles": 2}, {"field": 2}, {"parts": None, "more": 1}):
+        with pytest.raises(ValidationError):
+            valid({**known, **wrong}, "info")
+    for wrong in ({"joins": ["1"]}, {"read": {}}, {"more": 1}):
+        with pytest.raises(ValidationError):
+            valid({**converted, **wrong}, "convert")
 
 
 def test_errors_and_invalid_certificates(tmp_path: Path) -> None:

@@ -294,7 +294,7 @@ def test_every_command_ends_with_130_on_ctrl_c(monkeypatch: pytest.MonkeyPatch) 
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("exactfold.commands.count.count_branches", stop)
+    monkeypatch.setattr("exactfold.commands.count.count_opened", stop)
     result = run("count", TWO)
     assert result.exit_code == INTERRUPTED
     assert result.stderr == "exactfold: interrupted\n"

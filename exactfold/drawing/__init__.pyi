@@ -1,0 +1,11 @@
+from exactfold.drawing.coordinates import Exact as Exact
+from exactfold.drawing.coordinates import exact_coordinates as exact_coordinates
+from exactfold.drawing.drawing import Drawing as Drawing
+from exactfold.drawing.drawing import Line as Line
+from exactfold.drawing.mending import Repair as Repair
+from exactfold.drawing.read import parse_drawing as parse_drawing
+from exactfold.drawing.read import read_drawing as read_drawing
+from exactfold.drawing.repair import STEPS as STEPS
+from exactfold.drawing.repair import Sheets as Sheets
+from exactfold.drawing.repair import exact_sheets as exact_sheets
+from exactfold.drawing.repair import repaired as repaired

@@ -1,0 +1,120 @@
+"""Any sheet in, the right theory out: branches of triangles, motions of panels."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from drawings import SQUARE, as_cp, as_fold
+
+from exactfold import count_branches, write_fold
+from exactfold.count.motion_facts import panel_facts
+from exactfold.count.ways import count_ways
+from exactfold.drawing.read import parse_drawing
+from exactfold.errors import SeveralSheetsError, UnknownPatternError, UsageError
+from exactfold.modes.decomposition import decompose
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.families import single_vertex, two_vertex
+from exactfold.pattern.opening import has_branches, open_pattern, panels
+from exactfold.pattern.panel_pattern import PanelPattern
+
+BORDER = [(0, 1), (1, 2), (2, 3), (0, 3)]
+CORNERS = [(0, 0), (2, 0), (2, 2), (0, 2)]
+CROSS = PanelPattern([*CORNERS, (1, 1)], [*BORDER, (0, 4), (1, 4), (2, 4), (3, 4)])
+"""A square with both diagonals: one vertex of degree 4."""
+PENTAGON = CreasePattern(
+    [(0, 0), (4, 0), (5, 3), (2, 5), (-1, 3), (1, 2), (3, 2)],
+    [(0, 1, 5), (1, 6, 5), (1, 2, 6), (2, 3, 6), (3, 5, 6), (3, 4, 5), (4, 0, 5)],
+)
+"""Triangulated, with two interior and five boundary vertices."""
+
+
+def test_sheets_with_branches_have_branches() -> None:
+    for pattern in (two_vertex(), single_vertex(5)):
+        assert has_branches(pattern)
+        found = count_ways(pattern)
+        assert found.to_dict()["theory"] == "branches"
+        assert found.distinct == count_branches(pattern).distinct
+
+
+def test_triangulated_sheets_with_more_freedom_are_decomposed() -> None:
+    assert not has_branches(PENTAGON)
+    found = count_ways(PENTAGON)
+    assert found == decompose(panels(PENTAGON))
+    assert dict(found.second_order) == {2: 2}
+
+
+def test_a_sheet_without_interior_vertex_folds_at_each_fold() -> None:
+    sheet = CreasePattern(CORNERS, [(0, 1, 2), (0, 2, 3)])
+    assert not has_branches(sheet)
+    found = count_ways(sheet)
+    assert (dict(found.true), found.free, found.ways) == ({1: 1}, ((0, 2),), 1)
+    blank = count_ways(PanelPattern(CORNERS, BORDER))
+    assert (dict(blank.true), blank.ways) == ({0: 1}, 0)
+
+
+def test_panels_drawings_and_files_are_one_sheet(tmp_path: Path) -> None:
+    path = tmp_path / "s.cp"
+    path.write_text(as_cp(SQUARE))
+    expected = count_ways(open_pattern(path).sheet)
+    assert dict(expected.second_order) == {0: 1}
+    for given in (path, str(path), parse_drawing(as_fold(SQUARE), "s"), open_pattern(path)):
+        found = count_ways(given)
+        assert len(found.pattern.folds) == len(expected.pattern.folds) == 2
+        assert found.second_order == expected.second_order
+        assert "6 lines (1 mountain, 1 valley, 4 border)" in found.read["lines"][0]
+
+
+def test_rounding_is_never_silent(tmp_path: Path) -> None:
+    path = tmp_path / "p.fold"
+    write_fold(PENTAGON, path)
+    near = [(x + Fraction(k, 10**6), y) for k, (x, y) in enumerate(PENTAGON.vertices)]
+    write_fold(CreasePattern(near, PENTAGON.triangles), path)
+    assert count_ways(path).read is None
+    rounded = count_ways(path, snap=1)
+    assert rounded.pattern == panels(PENTAGON)
+    assert rounded.read["lines"] == ["coordinates moved by up to 6e-06 by rounding"]
+
+
+def test_what_is_no_sheet_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="3 is not a pattern"):
+        count_ways(3)  # type: ignore[arg-type]
+    with pytest.raises(UnknownPatternError, match="two-vertex"):
+        count_ways("crane")
+    with pytest.raises(UsageError, match="--snap auto is for drawings"):
+        count_ways(two_vertex(), snap="auto")
+    for given in (two_vertex(), CROSS):
+        assert count_ways(given, number=1) == count_ways(given)
+        with pytest.raises(SeveralSheetsError, match="there is no sheet 2"):
+            count_ways(given, number=2)
+
+
+@pytest.mark.parametrize(
+    ("sheet", "degrees", "flat", "free", "parts", "words"),
+    [
+        (CROSS, {4: 4}, (), (), ((4,),), "1 part with vertices that may fold, at most four"),
+        (
+            PanelPattern([*CORNERS, (1, 1)], [*BORDER, (0, 4), (1, 4), (2, 4)]),
+            *({4: 3}, ((1, 4),), (), ((4,),), "1 part with vertices that may fold, at most four"),
+        ),
+        (
+            PanelPattern([*CORNERS, (Fraction(1, 2), 1)], [*BORDER, (0, 4), (1, 4), (2, 4)]),
+            *({4: 3}, ((0, 4), (1, 4), (2, 4)), (), (), "rigid: no fold can fold"),
+        ),
+        (
+            PanelPattern(CORNERS, [*BORDER, (0, 2)]),
+            *({}, (), ((0, 2),), (), "1 fold from border to border, folds freely"),
+        ),
+        (panels(PENTAGON), {5: 4, 6: 4}, (), (), ((5, 6),), ""),
+    ],
+    ids=["cross", "straight pair", "rigid", "free", "pentagon"],
+)
+def test_facts_of_panels_agree_with_the_count(sheet, degrees, flat, free, parts, words) -> None:
+    facts, found = panel_facts(sheet), decompose(sheet)
+    if words:
+        assert facts.degrees == degrees
+        assert (facts.flat, facts.free, facts.parts) == (flat, free, parts)
+        assert facts.expected.startswith(words)
+    assert (facts.flat, facts.free) == (found.flat, found.free)
+    assert facts.parts == tuple(part.vertices for part in found.parts)
