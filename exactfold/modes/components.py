@@ -26,7 +26,7 @@ def components(supports: Sequence[Support], free_folds: int) -> dict[int, int]:
 
     Raises `TooManyModesError` beyond a million maximal sets of supports.
 
-    >>> components([Support((1, 2), (), 2), Support((3,), (), 1), Support((2, 3), (), 1)], 0)
+    >>> components([Support((1, 2), 2), Support((3,), 1), Support((2, 3), 1)], 0)
     {1: 1, 2: 2}
     """
     if not supports:

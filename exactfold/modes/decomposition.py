@@ -14,7 +14,7 @@ from exactfold.exact.surds import exact
 from exactfold.modes.components import components
 from exactfold.modes.densities import UndecidedDensityError
 from exactfold.modes.elementary import ElementaryMode, ModeSearch, Support
-from exactfold.modes.extension import Extension, extension
+from exactfold.modes.extension import Extension, Loops, extend_together, extension
 from exactfold.modes.kernel import Rows, first_order
 from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, stars
@@ -279,26 +279,26 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
     modes: list[Mode] = []
     extending: list[Support] = []
     decided = True
+    loops: Loops = {}
     for support in supports:
-        verdict = extension(pattern, moving, support.example)
-        together = verdict.verdict is PROVED and not verdict.order  # for all modes of the support
+        verdict = extend_together(moving, search.modes, support.vertices)
         room = listed - len(modes)
         each: list[ElementaryMode] = []
-        if support.count <= room or (not together and support.count <= MOST_LISTED):
+        if support.count <= (room if verdict is not None else MOST_LISTED):
             each = search.listed(support)
-        if together:
+        results = [verdict or extension(pattern, moving, mode.choice, loops) for mode in each]
+        if verdict is not None:
             extending.append(support)
-            shown = [(mode, verdict) for mode in each]
         elif each:
-            shown = [(mode, extension(pattern, moving, mode.choice)) for mode in each]
-            good = sum(result.verdict is PROVED for _, result in shown)
-            decided = decided and all(result.verdict is not UNDECIDED for _, result in shown)
+            good = sum(result.verdict is PROVED for result in results)
+            decided = decided and all(result.verdict is not UNDECIDED for result in results)
             if good:
                 extending.append(replace(support, count=good))
         else:
-            decided, shown = False, []
+            decided = False
         if support.count <= room:
-            modes += [_mode(support, mode, result) for mode, result in shown]
+            pairs = zip(each, results, strict=True)
+            modes += [_mode(support, mode, result) for mode, result in pairs]
     return Part(
         tuple(moving),
         "modes",
@@ -323,9 +323,15 @@ def _by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
     if size == 0:
         return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=0)
     if size > MOST_DIMENSION:
-        raise TooManyModesError(
-            f"its first-order motions have dimension {size}, and are decomposed up to "
-            f"{MOST_DIMENSION}"
+        return Part(
+            vertices,
+            "subspaces",
+            None,
+            None,
+            dimension=size,
+            reason=f"the first-order motions of the part of {counted(len(vertices), 'vertex')} with "
+            f"vertex {vertices[0]} have dimension {size}, and are decomposed up to "
+            f"{MOST_DIMENSION}",
         )
     spaces = leaves(moving, rows, size, MOST_SPACES)
     counts: dict[int, int] = {}
@@ -356,12 +362,16 @@ def _by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
 def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> bool:
     """Whether a linear space is spanned by elementary modes that truly fold, apart from each other.
 
-    Other folds are then held flat, so this can prove that a space extends and never that it does
+    One vertex alone has true motions near the flat state as its motions to second order, by Morse's
+    lemma. Other folds are held flat, so this can prove that a space extends and never that it does
     not: a motion might use them at a higher order.
     """
-    if leaf.vertices:
-        return False
     for rows, size in independent_parts(dict(leaf.rows), leaf.size, moving):
+        active = [star.vertex for star in moving.values() if set(star.folds) & set(rows)]
+        if len(active) == 1 and size == len(rows) - 2:
+            continue
+        if set(active) & set(leaf.vertices):
+            return False
         modes = [_local(star, rows) for star in moving.values() if set(star.folds) & set(rows)]
         if size != 1 or any(len(mode.folds) > 4 for mode in modes):
             return False

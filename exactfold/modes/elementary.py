@@ -1,8 +1,8 @@
-"""Elementary modes of a sheet whose vertices have at most four folds: found by their supports."""
+"""Elementary modes of a sheet whose vertices have at most four folds: counted, not listed."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final, TypeAlias
@@ -15,21 +15,23 @@ from exactfold.modes.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
 Choice: TypeAlias = "tuple[LocalMode, Choice] | None"
+Known: TypeAlias = "Mapping[Edge, Density | None]"
+"""Folds that lead to vertices without a local mode yet: their density, None if they are flat."""
+
 _NEAR: Final = 1e-6
-_MOST_STATES: Final = 4096
-"""Most sets of relative densities that are carried along before a search is given up."""
+_MOST_STATES: Final = 20_000
+"""Most states that are carried along at once before a search is given up."""
+_MOST_STEPS: Final = 400_000
 
 
 @dataclass(frozen=True)
 class Support:
-    """The vertices and folds that move together, and in how many ways: `count` elementary modes.
+    """A set of vertices that are active together, and in how many ways: `count` elementary modes.
 
-    All modes of a support have these active folds; they differ in the local modes chosen, of which
-    `example` is one choice.
+    `example` is one of these modes, as its local modes.
     """
 
     vertices: tuple[int, ...]
-    folds: tuple[Edge, ...]
     count: int
     example: tuple[LocalMode, ...] = ()
 
@@ -52,22 +54,26 @@ class ElementaryMode:
 
 @dataclass(frozen=True)
 class _State:
-    """What the rest of a search must know: densities on the frontier, and how often they occur."""
+    """What the rest of a search must know, and in how many ways it was reached."""
 
-    frontier: Mapping[Edge, Density]
+    assigned: int  # a bit for each vertex
+    known: Known
     count: int
     choice: Choice
-    all_densities: Mapping[Edge, Density] | None  # kept where modes are listed one by one
+    densities: Mapping[Edge, Density] | None  # of all folds, kept where modes are listed
 
 
 class ModeSearch:
     """The search for elementary modes on given stars, all with at most four folds.
 
-    Supports are enumerated by depth first search from their smallest vertex, which takes the vertex
-    that closes most faces next; the choices of local modes on one support are carried along as a
-    table of relative densities on the frontier, so that they are counted without being listed.
-    Every comparison of densities is exact. `near_misses` holds folds where a loop closed to within
-    1e-6 and not exactly, with the quotient of the two densities: the drawing may be rounded.
+    For each vertex in turn the modes are found of which it is the smallest vertex. A state is a
+    set of vertices with local modes and the densities, up to a common factor, of the folds that
+    lead on. Next comes the vertex with fewest local modes that fit, and of these one with most
+    folds known, so that what is forced is done first and loops close early. States that agree are
+    one from then on, with their numbers added: modes are counted without being listed. Floats only
+    propose which states agree; every comparison of densities is exact. `near_misses` holds folds
+    where a loop closed to within 1e-6 and not exactly, with the quotient of the two densities: the
+    drawing may be rounded.
     """
 
     def __init__(self, stars: Mapping[int, Star], ground: SurdField) -> None:
@@ -75,152 +81,126 @@ class ModeSearch:
         self.stars = stars
         self.modes = {v: local_modes(star) for v, star in stars.items()}
         self.near_misses: dict[Edge, float] = {}
+        self._bit = {v: 1 << k for k, v in enumerate(sorted(stars))}
         self._gains: dict[tuple[int, int, Edge, Edge], Density] = {}
+        self._steps = 0
 
     def supports(self, limit: int) -> list[Support]:
-        """All supports with at least one elementary mode, by their smallest vertex.
+        """All sets of vertices with elementary modes, by their smallest vertex.
 
-        Raises `TooManyModesError` beyond `limit`.
+        Raises `TooManyModesError` beyond `limit`, or if the search takes too long.
         """
         found: list[Support] = []
         for seed in sorted(self.stars):
-            for vertices, folds, table in self._grown(seed, listing=False):
-                count = sum(state.count for state in table)
-                found.append(Support(vertices, folds, count, _chosen(table[0])))
-                if len(found) > limit:
-                    raise TooManyModesError(f"more than {limit} sets of folds move together")
+            ended: dict[int, _State] = {}
+            for state in self._grown(seed, self._bits(self.stars), listing=False):
+                before = ended.get(state.assigned)
+                count = state.count + (before.count if before else 0)
+                ended[state.assigned] = _State(state.assigned, {}, count, state.choice, None)
+            found += [
+                Support(self._vertices(mask), state.count, _chosen(state.choice))
+                for mask, state in ended.items()
+            ]
+            if len(found) > limit:
+                raise TooManyModesError(f"more than {limit} sets of vertices move together")
         return found
 
     def listed(self, support: Support) -> list[ElementaryMode]:
-        """Every elementary mode of a support.
+        """Every elementary mode of a support; raises `TooManyModesError` beyond 20,000 states."""
+        wanted = self._bits(support.vertices)
+        return [
+            ElementaryMode(_chosen(state.choice), dict(sorted((state.densities or {}).items())))
+            for state in self._grown(support.vertices[0], wanted, listing=True)
+            if state.assigned == wanted
+        ]
 
-        Raises `TooManyModesError` if there are more than 4096.
-        """
-        only = set(support.folds)
-        for _, folds, table in self._grown(support.vertices[0], listing=True, only=only):
-            if folds == support.folds:
-                return [_elementary(state) for state in table]
-        return []
+    def _bits(self, vertices: Iterable[int]) -> int:
+        return sum(self._bit[v] for v in vertices)
 
-    def _grown(
-        self, seed: int, *, listing: bool, only: set[Edge] | None = None
-    ) -> Iterator[tuple[tuple[int, ...], tuple[Edge, ...], list[_State]]]:
-        """Supports whose smallest vertex is `seed`, each with its table."""
-        active: dict[Edge, bool] = {}
-        assigned: dict[int, tuple[Edge, ...]] = {}
-        start = [_State({}, 1, None, {} if listing else None)]
-        frames: list[_Frame] = [_Frame(seed, self._kinds(seed, active, only), start)]
-        while frames:
-            frame = frames[-1]
-            frame.undo(active, assigned)
-            kind = next(frame.kinds, None)
-            if kind is None:
-                frames.pop()
-                continue
-            folds, modes = kind
-            if not self._assign(frame, folds, active, assigned, seed):
-                continue
-            table = self._extended(frame, folds, modes, assigned)
-            if not table:
-                continue
-            following = self._next(active, assigned)
-            if following is None:
-                moving = tuple(sorted(edge for edge, state in active.items() if state))
-                yield tuple(sorted(assigned)), moving, table
-                continue
-            frames.append(_Frame(following, self._kinds(following, active, only), table))
+    def _vertices(self, mask: int) -> tuple[int, ...]:
+        return tuple(v for v, bit in self._bit.items() if mask & bit)
 
-    def _kinds(
-        self, v: int, active: Mapping[Edge, bool], only: set[Edge] | None
-    ) -> Iterator[tuple[tuple[Edge, ...], list[LocalMode]]]:
-        """The sets of folds that can be active at v beside what is known, with their modes."""
-        by_folds: dict[tuple[Edge, ...], list[LocalMode]] = {}
-        for mode in self.modes[v]:
-            by_folds.setdefault(mode.folds, []).append(mode)
-        star = self.stars[v].folds
-        for folds, modes in by_folds.items():
-            fits = all(active.get(edge, edge in folds) == (edge in folds) for edge in star)
-            if fits and (only is None or only.issuperset(folds)):
-                yield folds, modes
+    def _grown(self, seed: int, allowed: int, *, listing: bool) -> list[_State]:
+        """The final states of all modes on allowed vertices of which `seed` is the smallest."""
+        allowed &= -self._bit[seed]  # no vertex before the seed
+        ended: list[_State] = []
+        level = [_State(0, {}, 1, None, {} if listing else None)]
+        vertex: int | None = seed
+        while level:
+            table = _Table(listing)
+            for state in level:
+                if state.assigned:
+                    vertex = self._next(state)
+                if vertex is None:
+                    ended.append(state)
+                    continue
+                self._steps += 1
+                for mode in self.modes[vertex]:
+                    new = self._joined(state, mode, allowed)
+                    if new is not None:
+                        table.add(new)
+            if self._steps > _MOST_STEPS:
+                raise TooManyModesError(f"its modes were not all found in {_MOST_STEPS} steps")
+            level = table.states
+        return ended
 
-    def _assign(
-        self,
-        frame: _Frame,
-        folds: tuple[Edge, ...],
-        active: dict[Edge, bool],
-        assigned: dict[int, tuple[Edge, ...]],
-        seed: int,
-    ) -> bool:
-        """Make these folds of the vertex active, the others not; False at a vertex below `seed`."""
-        v = frame.vertex
-        assigned[v] = folds
-        frame.entered = True
-        for edge in self.stars[v].folds:
-            if edge in active:
-                continue
-            active[edge] = edge in folds
-            frame.trail.append(edge)
-            other = edge[0] + edge[1] - v
-            if edge in folds and other < seed and other in self.stars:
-                return False
-        return True
+    def _fits(self, state: _State, mode: LocalMode) -> bool:
+        """Whether a local mode has the folds active that are known to be, and no others."""
+        return all(
+            (state.known[edge] is not None) == (edge in mode.folds)
+            for edge in self.stars[mode.vertex].folds
+            if edge in state.known
+        )
 
-    def _next(self, active: Mapping[Edge, bool], assigned: Mapping[int, object]) -> int | None:
-        """The vertex on the frontier with most folds decided, the earliest of these."""
-        best, most = None, 0
-        for edge, moving in active.items():
-            if not moving:
+    def _next(self, state: _State) -> int | None:
+        """An active vertex without a local mode; None if there is none."""
+        best, rank = None, (0, 0)
+        seen = set()
+        for edge, density in state.known.items():
+            if density is None:
                 continue
             for v in edge:
-                if v in self.stars and v not in assigned:
-                    known = sum(f in active for f in self.stars[v].folds)
-                    if known > most:
-                        best, most = v, known
+                if v in seen or v not in self.stars or state.assigned & self._bit[v]:
+                    continue
+                seen.add(v)
+                ways = sum(self._fits(state, mode) for mode in self.modes[v])
+                folds = sum(f in state.known for f in self.stars[v].folds)
+                if best is None or (ways, -folds) < rank:
+                    best, rank = v, (ways, -folds)
         return best
 
-    def _extended(
-        self,
-        frame: _Frame,
-        folds: tuple[Edge, ...],
-        modes: list[LocalMode],
-        assigned: Mapping[int, object],
-    ) -> list[_State]:
-        """The table after the vertex of the frame has taken these folds."""
-        table = _Table()
-        for state in frame.table:
-            for mode in modes:
-                new = self._joined(state, mode, assigned)
-                if new is not None:
-                    table.add(new)
-        return table.states
-
-    def _joined(
-        self, state: _State, mode: LocalMode, assigned: Mapping[int, object]
-    ) -> _State | None:
-        """The state with this local mode; None if it contradicts a density that is known."""
-        known = [edge for edge in mode.folds if edge in state.frontier]
-        root = known[0] if known else mode.folds[0]
-        scale = state.frontier[root] if known else self.roots.density(Fraction(1))
+    def _joined(self, state: _State, mode: LocalMode, allowed: int) -> _State | None:
+        """The state with this local mode; None if it contradicts what is known."""
+        if not self._fits(state, mode):
+            return None
+        given = {edge: d for edge in mode.folds if (d := state.known.get(edge)) is not None}
+        root = next(iter(given), mode.folds[0])
+        scale = given.get(root) or self.roots.density(Fraction(1))
         densities = {edge: scale.times(self._gain(mode, root, edge)) for edge in mode.folds}
-        for edge in known[1:]:
-            ratio = densities[edge].over(state.frontier[edge])
+        for edge, density in given.items():
+            if edge == root:
+                continue
+            ratio = densities[edge].over(density)
             if not ratio.is_one():
                 if abs(ratio.approx - 1) < _NEAR:
                     self.near_misses.setdefault(edge, ratio.approx)
                 return None
-        frontier = {edge: d for edge, d in state.frontier.items() if edge not in known}
-        for edge in mode.folds:
+        assigned = state.assigned | self._bit[mode.vertex]
+        star = self.stars[mode.vertex].folds
+        known = {edge: d for edge, d in state.known.items() if edge not in star}
+        for edge in star:
             other = edge[0] + edge[1] - mode.vertex
-            if edge not in known and other in self.stars and other not in assigned:
-                frontier[edge] = densities[edge]
-        everything = state.all_densities
+            if edge in state.known or other not in self.stars:
+                continue
+            if edge in densities and not allowed & self._bit[other]:
+                return None
+            known[edge] = densities.get(edge)
+        everything = state.densities
         if everything is not None:
             everything = {**everything, **densities}
-        elif frontier:
-            unit = frontier[min(frontier)]
-            if unit.factors or unit.base != 1:
-                frontier = {edge: d.over(unit) for edge, d in frontier.items()}
-        return _State(frontier, state.count, (mode, state.choice), everything)
+        else:
+            known = _scaled(known)
+        return _State(assigned, known, state.count, (mode, state.choice), everything)
 
     def _gain(self, mode: LocalMode, start: Edge, end: Edge) -> Density:
         key = mode.vertex, mode.index, start, end
@@ -229,46 +209,34 @@ class ModeSearch:
         return self._gains[key]
 
 
-class _Frame:
-    """One vertex of the search: what can still be tried there, and what to undo."""
-
-    def __init__(
-        self,
-        vertex: int,
-        kinds: Iterator[tuple[tuple[Edge, ...], list[LocalMode]]],
-        table: list[_State],
-    ) -> None:
-        self.vertex, self.kinds, self.table = vertex, kinds, table
-        self.trail: list[Edge] = []
-        self.entered = False
-
-    def undo(self, active: dict[Edge, bool], assigned: dict[int, tuple[Edge, ...]]) -> None:
-        """Forget what was assigned here."""
-        for edge in self.trail:
-            del active[edge]
-        self.trail.clear()
-        if self.entered:
-            del assigned[self.vertex]
-            self.entered = False
+def _scaled(known: Known) -> dict[Edge, Density | None]:
+    """The same densities up to a factor, the first of them 1."""
+    active = [edge for edge, density in known.items() if density is not None]
+    unit = known[min(active)] if active else None
+    if unit is None or (not unit.factors and unit.base == 1):
+        return dict(known)
+    return {edge: d if d is None else d.over(unit) for edge, d in known.items()}
 
 
 class _Table:
-    """States, those with the same densities on the frontier merged; floats only propose."""
+    """States, equal ones merged with their counts added; floats only propose which are equal."""
 
-    def __init__(self) -> None:
+    def __init__(self, listing: bool) -> None:
         self.states: list[_State] = []
+        self._listing = listing
         self._places: dict[tuple[object, ...], list[int]] = {}
 
     def add(self, state: _State) -> None:
         """Add a state, or its count to that of an equal one."""
-        if state.all_densities is None:
-            key = tuple((edge, f"{state.frontier[edge].approx:.6e}") for edge in state.frontier)
-            places = self._places.setdefault(tuple(sorted(key)), [])
+        if not self._listing:
+            known = sorted(state.known.items())
+            near = tuple((e, None if d is None else f"{d.approx:.6e}") for e, d in known)
+            places = self._places.setdefault((state.assigned, near), [])
             for k in places:
-                if _equal(self.states[k].frontier, state.frontier):
-                    old = self.states[k]
-                    total = old.count + state.count
-                    self.states[k] = _State(old.frontier, total, old.choice, None)
+                old = self.states[k]
+                if _equal(old.known, state.known):
+                    count = old.count + state.count
+                    self.states[k] = _State(old.assigned, old.known, count, old.choice, None)
                     return
             places.append(len(self.states))
         self.states.append(state)
@@ -278,19 +246,15 @@ class _Table:
             )
 
 
-def _equal(a: Mapping[Edge, Density], b: Mapping[Edge, Density]) -> bool:
-    return a.keys() == b.keys() and all(a[edge].over(b[edge]).is_one() for edge in a)
+def _equal(a: Known, b: Known) -> bool:
+    """Whether densities on the same folds, known to be flat on the same, are equal."""
+    pairs = [(x, b[edge]) for edge, x in a.items()]
+    return all(x is None or y is None or x.over(y).is_one() for x, y in pairs)
 
 
-def _chosen(state: _State) -> tuple[LocalMode, ...]:
+def _chosen(choice: Choice) -> tuple[LocalMode, ...]:
     chosen: list[LocalMode] = []
-    at = state.choice
-    while at is not None:
-        mode, at = at
+    while choice is not None:
+        mode, choice = choice
         chosen.append(mode)
     return tuple(sorted(chosen, key=lambda mode: mode.vertex))
-
-
-def _elementary(state: _State) -> ElementaryMode:
-    densities = state.all_densities or {}
-    return ElementaryMode(_chosen(state), dict(sorted(densities.items())))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import networkx as nx
 from flint import arb, ctx
@@ -20,6 +19,9 @@ from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 _BITS: Final = 256
 _MOST_NONLINEAR: Final = 6
 _MOST_ROOTS: Final = 5
+
+Loops: TypeAlias = "dict[tuple[object, ...], Extension]"
+"""What is known of loops: by the transmissions round them, so that loops of one shape share it."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,10 @@ class Extension:
 
 
 def extension(
-    pattern: PanelPattern, stars: Mapping[int, Star], modes: Iterable[LocalMode]
+    pattern: PanelPattern,
+    stars: Mapping[int, Star],
+    modes: Iterable[LocalMode],
+    known: Loops | None = None,
 ) -> Extension:
     """Whether the elementary mode made of these local modes continues to a motion of rigid panels.
 
@@ -47,6 +52,8 @@ def extension(
     at most (2^k, 2^k), and meets the diagonal at the origin no more often unless it is the
     diagonal). The first order that fails proves that it does not extend.
 
+    `known` keeps what was found of loops, for other modes of the same sheet.
+
     UNDECIDED means that a loop has too many nonlinear transmissions or square roots for this test.
     """
     chosen = {local.vertex: local for local in modes}
@@ -54,7 +61,7 @@ def extension(
     if nx.is_forest(graph):
         return Extension(PROVED, "forest")
     nonlinear, highest = False, 0
-    known: dict[object, Extension] = {}  # loops of one shape close together
+    known = {} if known is None else known
     for cycle in cycle_basis(pattern, graph):
         steps = _steps(cycle, stars, chosen)
         shape = tuple(step.key for step in steps)
@@ -70,6 +77,29 @@ def extension(
     return Extension(PROVED, f"loops to order {highest}", order=highest)
 
 
+def extend_together(
+    stars: Mapping[int, Star], modes: Mapping[int, Sequence[LocalMode]], vertices: Iterable[int]
+) -> Extension | None:
+    """How all elementary modes on these vertices extend, if that needs no list of them; else None.
+
+    They do if all folds between the vertices form a forest, or if at each vertex the transmissions
+    of every local mode between any two of its active folds are linear.
+    """
+    active = set(vertices)
+    graph = nx.Graph()
+    graph.add_nodes_from(active)
+    for v in active:
+        graph.add_edges_from(e for e in stars[v].folds if e[0] in active and e[1] in active)
+    if nx.is_forest(graph):
+        return Extension(PROVED, "forest")
+    for v in active:
+        for mode in modes[v]:
+            start = mode.folds[0]
+            if not all(Transmission(stars[v], mode, start, e).is_linear for e in mode.folds[1:]):
+                return None
+    return Extension(PROVED, "linear transmissions")
+
+
 def active_graph(chosen: Mapping[int, LocalMode]) -> nx.Graph:
     """The active vertices, joined by the active folds that two of them share."""
     graph = nx.Graph()
@@ -80,21 +110,38 @@ def active_graph(chosen: Mapping[int, LocalMode]) -> nx.Graph:
 
 
 def cycle_basis(pattern: PanelPattern, graph: nx.Graph) -> list[tuple[int, ...]]:
-    """Loops of active vertices that generate all: the panels inside, if these are enough.
+    """Loops of active vertices that generate all: the faces of the active graph.
 
-    A basis has edges - vertices + parts loops. Panels whose sides are all active are independent in
-    a sheet with a border, so that as many of them as that are a basis.
+    In each block (a part that no single vertex cuts) every fold is a side of two of its faces, so
+    that any one face is the sum of the others: the longest, mostly the outer one, is left out.
     """
-    parts: int = nx.number_connected_components(graph)
-    wanted = graph.number_of_edges() - graph.number_of_nodes() + parts
-    inner = [
-        face
-        for face in pattern.faces
-        if all(graph.has_edge(i, j) for i, j in pairwise((*face, face[0])))
-    ]
-    if len(inner) == wanted:
-        return inner
-    return [tuple(cycle) for cycle in nx.minimum_cycle_basis(graph)]
+    found: list[tuple[int, ...]] = []
+    for block in nx.biconnected_component_edges(graph):
+        sides = {half for i, j in block for half in ((i, j), (j, i))}
+        if len(sides) == 2:
+            continue  # one fold is in no loop
+        faces = _faces(pattern, sides)
+        faces.remove(max(faces, key=len))
+        found += faces
+    return found
+
+
+def _faces(pattern: PanelPattern, sides: set[tuple[int, int]]) -> list[tuple[int, ...]]:
+    """The faces of a plane graph, given by its directed edges."""
+    after: dict[tuple[int, int], tuple[int, int]] = {}
+    for v in {v for v, _ in sides}:
+        around = [u for u in pattern.stars[v] if (v, u) in sides]
+        for k, u in enumerate(around):
+            after[u, v] = (v, around[k - 1])
+    faces = []
+    while after:
+        start, half = after.popitem()
+        face = [start[1]]
+        while half in after:
+            face.append(half[1])
+            half = after.pop(half)
+        faces.append(tuple(face))
+    return faces
 
 
 def _steps(
@@ -121,8 +168,9 @@ def _round(cycle: Sequence[int], steps: Sequence[Transmission]) -> Extension:
         )
     order = 2**bent + 1
     terms = order // 2 + 1
-    if (failing := _failing_in_balls(steps, terms)) is not None:
-        return _refuted(cycle, failing)
+    for few in (2, terms):
+        if (failing := _failing_in_balls(steps, few)) is not None:
+            return _refuted(cycle, failing)
     values = [x for step in steps for x in (step.gain, *(step.quadratic or ()))]
     if len({x.field.radicands for x in values if isinstance(x, Surd)}) > _MOST_ROOTS:
         return Extension(UNDECIDED, f"the loop {where} closes to {_BITS} bits; it needs many roots")

@@ -1,15 +1,20 @@
 """The complete decompositions of known sheets, by two ways that share little."""
 
+import random
 from collections import Counter
 
+import networkx as nx
 import pytest
 from panel_sheets import grid, mesh, miura, tiling
 
 from exactfold.modes.decomposition import decompose
 from exactfold.modes.elementary import ModeSearch
+from exactfold.modes.extension import cycle_basis
 from exactfold.modes.kernel import first_order
 from exactfold.modes.stars import stars
 from exactfold.modes.subspaces import leaves
+from exactfold.pattern.families import single_vertex
+from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import PROVED, REFUTED
 
@@ -93,3 +98,35 @@ def test_independent_lines_cross() -> None:
     """Two lines each way: either both of one direction fold, or both of the other."""
     result = decompose(grid(3, 3, lambda i, j: (i, j)))
     assert result.second_order == result.true == {2: 2}
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_faces_of_the_active_graph_are_a_basis_of_its_loops(seed: int) -> None:
+    pattern = mesh(5, 4, seed)
+    inside = set(pattern.interior)
+    shared = [edge for edge in pattern.folds if inside.issuperset(edge)]
+    graph = nx.Graph()
+    graph.add_nodes_from(inside)
+    graph.add_edges_from(random.Random(seed).sample(shared, 25))
+    loops = cycle_basis(pattern, graph)
+    parts = nx.number_connected_components(graph)
+    assert len(loops) == graph.number_of_edges() - graph.number_of_nodes() + parts > 3
+    bit = {frozenset(edge): 1 << k for k, edge in enumerate(graph.edges)}
+    basis: list[int] = []
+    for loop in loops:
+        assert len(set(loop)) == len(loop)
+        mask = 0
+        for side in zip(loop, (*loop[1:], loop[0]), strict=True):
+            mask ^= bit[frozenset(side)]
+        for other in basis:
+            mask = min(mask, mask ^ other)
+        assert mask != 0, "a loop is a sum of the others"
+        basis.append(mask)
+
+
+@pytest.mark.parametrize("folds", [5, 6, 8])
+def test_one_vertex_has_one_cone_that_truly_folds(folds: int) -> None:
+    result = decompose(panels(single_vertex(folds)))
+    assert result.theory == "subspaces"
+    assert result.second_order == result.true == {folds - 3: 1}
+    assert result.rigid is REFUTED
