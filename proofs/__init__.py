@@ -30,4 +30,5 @@ MODULES: tuple[str, ...] = (
     "random_squares",
     "branch_counts",
     "multiplicity",
+    "panels",
 )

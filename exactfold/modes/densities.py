@@ -11,7 +11,7 @@ from typing import Final, TypeAlias
 
 from flint import arb
 
-from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField, exact
+from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField, exact, sign
 
 Factors: TypeAlias = Mapping[int, int]
 _PRECISIONS: Final = (64, 256, 2048)
@@ -90,12 +90,12 @@ class Density:
         quotient = self.base / exact(other.base)
         return Density(quotient, self._joined(other, -1), self.roots)
 
-    def _joined(self, other: Density, sign: int) -> Factors:
+    def _joined(self, other: Density, power_sign: int) -> Factors:
         if not other.factors:
             return self.factors
         factors = dict(self.factors)
         for number, power in other.factors.items():
-            factors[number] = factors.get(number, 0) + sign * power
+            factors[number] = factors.get(number, 0) + power_sign * power
         return MappingProxyType({number: power for number, power in factors.items() if power})
 
     def is_one(self) -> bool:
@@ -121,6 +121,15 @@ class Density:
             f"a product of {len(self.factors)} gains is 1 to {_PRECISIONS[-1]} bits; it needs too "
             "many square roots to be compared exactly"
         )
+
+    @property
+    def sign(self) -> int:
+        """1 or -1, exactly."""
+        result = sign(self.base)
+        for number, power in self.factors.items():
+            if power % 2:
+                result *= sign(self.roots.factors[number])
+        return result
 
     def ball(self, bits: int) -> arb:
         """An enclosure of the product."""

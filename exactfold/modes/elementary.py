@@ -49,7 +49,7 @@ class ElementaryMode:
     @property
     def signs(self) -> dict[Edge, int]:
         """1 or -1 for each active fold; all of them turn on the other side of the sheet."""
-        return {edge: 1 if density.approx > 0 else -1 for edge, density in self.densities.items()}
+        return {edge: density.sign for edge, density in self.densities.items()}
 
 
 @dataclass(frozen=True)

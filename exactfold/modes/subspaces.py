@@ -256,8 +256,11 @@ def _maximal(found: Iterable[Leaf]) -> list[Leaf]:
 
 
 def _inside(leaf: Leaf, other: Leaf) -> bool:
-    """Whether the space of one leaf lies in that of another, where all the other's forms vanish."""
-    if not set(leaf.rows) <= set(other.rows) or not set(other.vertices) <= set(leaf.vertices):
+    """Whether the motions of one leaf lie in the space of another, and with it in the other leaf.
+
+    A leaf holds all motions in its space: on a motion, the forms that are left vanish as well.
+    """
+    if not set(leaf.rows) <= set(other.rows):
         return False
     folds = list(other.rows)
     zero = (Fraction(0),) * leaf.size
