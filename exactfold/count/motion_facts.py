@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
-from exactfold.modes.decomposition import _groups as groups
+from exactfold.modes.decomposition import groups_of as groups
 from exactfold.modes.stars import stars
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern

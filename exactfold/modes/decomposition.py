@@ -203,7 +203,7 @@ def decompose(
     free = tuple(e for e in pattern.folds if not interior.intersection(e) and e not in held)
     active = {edge for star in moving.values() for edge in star.folds}
     rest = tuple(e for e in pattern.folds if e not in active and e not in free)
-    groups = _groups(moving)
+    groups = groups_of(moving)
     found: list[Part] = []
     for number, group in enumerate(groups):
         if progress is not None:
@@ -251,7 +251,7 @@ def _modes_count(found: Iterable[Part]) -> int | None:
     return total
 
 
-def _groups(moving: Mapping[int, Star]) -> list[tuple[int, ...]]:
+def groups_of(moving: Mapping[int, Star]) -> list[tuple[int, ...]]:
     """Vertices joined by folds that may fold, smallest first."""
     graph = nx.Graph()
     graph.add_nodes_from(moving)
