@@ -50,6 +50,10 @@ def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> Non
         assert re.fullmatch(pattern, run.stdout.rstrip()), f"{command}\n{run.stdout}{run.stderr}"
 
 
+READ = re.compile(r"exactfold: (read zigzags: |coordinates in |12 vertices inside of lines: )")
+"""What is told of the shipped drawing as it is read."""
+
+
 def commands(page: Path) -> list[str]:
     """The commands of a page in their order: `$` lines of console blocks, first cells of tables."""
     text = page.read_text(encoding="utf-8")
@@ -78,7 +82,8 @@ def test_all_commands_run_as_printed_in_their_order(name: str, tmp_path: Path) -
             text=True,
             check=False,
         )
-        assert (done.returncode, done.stderr) == (0, ""), command
+        told = [line for line in done.stderr.splitlines() if not READ.match(line)]
+        assert (done.returncode, told) == (0, []), command
         assert done.stdout or "-o" in command
 
 

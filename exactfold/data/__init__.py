@@ -1,16 +1,18 @@
-"""Example patterns shipped with the package, as FOLD files with exact coordinates."""
+"""Example patterns shipped with the package: triangulated sheets as FOLD files, and drawings."""
 
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 from exactfold.errors import UsageError
 
-__all__ = ["EXAMPLES", "example_path", "examples"]
+__all__ = ["DRAWINGS", "EXAMPLES", "SHEETS", "example_path", "examples"]
 
-EXAMPLES: Final = (
+SHEETS: Final = (
     "two-vertex",
     "single-vertex-4",
     "flat-octahedron",
@@ -20,6 +22,13 @@ EXAMPLES: Final = (
     "waterbomb",
     "random-8",
 )
+"""Triangulated sheets, which `load` takes."""
+
+DRAWINGS: Final = MappingProxyType({"zigzags": "zigzags.svg"})
+"""Files as people draw them, by name: sheets of panels, whose points are found by reading."""
+
+EXAMPLES: Final = (*DRAWINGS, *SHEETS)
+"""All names that stand for files."""
 
 
 def example_path(name: str) -> Path:
@@ -30,18 +39,23 @@ def example_path(name: str) -> Path:
     """
     if name not in EXAMPLES:
         raise UsageError(f"no example {name!r}; there are: {', '.join(EXAMPLES)}")
-    return Path(__file__).with_name(f"{name}.fold")
+    return Path(__file__).with_name(DRAWINGS.get(name, f"{name}.fold"))
 
 
 def examples() -> dict[str, str]:
     """The shipped patterns, in the order of `EXAMPLES`: what each is, in one line, by name.
 
-    Counts, `load` and all other functions that take a pattern accept these names.
+    Counts take these names, and `load` takes those in `SHEETS`.
 
     >>> examples()["single-vertex-4"]
     'One interior vertex with four folds: two ways to start folding.'
     """
-    return {
-        name: json.loads(example_path(name).read_text(encoding="utf-8"))["file_description"]
-        for name in EXAMPLES
-    }
+    return {name: _described(example_path(name)) for name in EXAMPLES}
+
+
+def _described(path: Path) -> str:
+    """What a file says of itself: the title of a FOLD file, the `desc` of an SVG drawing."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".fold":
+        return str(json.loads(text)["file_description"])
+    return str(re.findall(r"<desc>(.*?)</desc>", text)[0])

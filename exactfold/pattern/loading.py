@@ -6,7 +6,7 @@ import os
 from os import PathLike
 from typing import TypeAlias
 
-from exactfold.data import EXAMPLES, example_path
+from exactfold.data import DRAWINGS, SHEETS, example_path
 from exactfold.errors import UnknownPatternError, UsageError
 from exactfold.exact.numbers import shown
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -19,12 +19,13 @@ PatternLike: TypeAlias = "CreasePattern | FoldFile | str | PathLike[str]"
 def load(what: PatternLike, snap: int | None = None) -> CreasePattern:
     """The pattern that is meant: a shipped example by name, a path, a pattern, or a `FoldFile`.
 
-    Text that is a name in `EXAMPLES` is that example, whatever files there are ("./two-vertex" is
+    Text that is a name in `SHEETS` is that example, whatever files there are ("./two-vertex" is
     a file of this name); all other text and every `Path` is the path of a FOLD file, read by
     `read_fold`. With `snap`, all coordinates are rounded to multiples of 1/snap.
 
     Raises `UnknownPatternError`, which lists the names, for text that is neither a name nor a file;
-    what `read_fold` raises; `UsageError` for anything else than the four kinds.
+    what `read_fold` raises; `UsageError` for the name of a drawing, and for anything else than the
+    four kinds.
 
     >>> load("two-vertex")
     <CreasePattern: 2 interior and 4 boundary vertices>
@@ -45,12 +46,17 @@ def load(what: PatternLike, snap: int | None = None) -> CreasePattern:
             "file, or the name of an example"
         )
     if isinstance(what, str):
-        if what in EXAMPLES:
+        if what in DRAWINGS:
+            raise UsageError(
+                f"{what} is a drawing with panels of any number of sides, not a sheet of "
+                "triangles: `count_ways` takes it"
+            )
+        if what in SHEETS:
             return read_fold(example_path(what), snap)
         if not os.path.exists(what):
             raise UnknownPatternError(
                 f"{shown(what)} is neither a file nor an example; the examples are: "
-                f"{', '.join(EXAMPLES)}"
+                f"{', '.join(SHEETS)}"
             )
     return read_fold(what, snap)
 

@@ -5,10 +5,10 @@ import json
 import pytest
 from running import BAD_INPUT, INVALID, PROVED, error_class, run
 
-from exactfold.data import EXAMPLES, example_path
+from exactfold.data import SHEETS, example_path
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_certificate_is_written_and_valid(tmp_path, name):
     out = tmp_path / "c.json"
     counted = run("count", example_path(name), "--json", "--certificate", out)

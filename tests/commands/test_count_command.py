@@ -14,7 +14,7 @@ from running import (
 from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
 
 from exactfold import count_branches, random_square, read_fold, write_fold
-from exactfold.data import EXAMPLES, example_path
+from exactfold.data import SHEETS, example_path
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES
 
@@ -113,7 +113,7 @@ def test_many_vertices_are_listed_and_not_in_columns(tmp_path):
     assert second.split()[:2] == ["2", str(read_fold(path).interior[-1])]
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_count_json_has_the_documented_keys(name):
     path = example_path(name)
     result = run("count", path, "--json")

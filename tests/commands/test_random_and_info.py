@@ -11,7 +11,7 @@ from running import (
 from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled
 
 from exactfold import random_square, read_fold, write_fold
-from exactfold.data import EXAMPLES, example_path
+from exactfold.data import SHEETS, example_path
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES
 
@@ -44,7 +44,7 @@ def test_random_to_an_unwritable_path(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_info_agrees_with_count(name):
     data = json.loads(run("info", example_path(name), "--json").stdout)
     counted = json.loads(run("count", example_path(name), "--json").stdout)

@@ -16,7 +16,7 @@ from sheets import HEXAGON, TRIANGLE, nested_triangles, scrambled
 
 from exactfold import CreasePattern, read_fold, schema, write_fold
 from exactfold.count import METHODS
-from exactfold.data import EXAMPLES, example_path
+from exactfold.data import SHEETS, example_path
 from exactfold.errors import UsageError
 from exactfold.rigidity import curvature_form
 from exactfold.schemas import VERSIONS
@@ -47,7 +47,7 @@ def test_a_kind_that_there_is_not() -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_counts(name: str, method: str) -> None:
     if name in LARGE and method == "groebner":
         method = "homotopy"
@@ -57,7 +57,7 @@ def test_counts(name: str, method: str) -> None:
     assert data["pattern"]["name"] == str(path)
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_every_other_command(name: str, tmp_path: Path) -> None:
     path, out, lines = example_path(name), tmp_path / "c.json", tmp_path / "o.jsonl"
     printed("info", "info", path)

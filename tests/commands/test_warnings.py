@@ -9,7 +9,7 @@ import pytest
 from running import PROVED, run
 
 from exactfold import CreasePattern, count_branches, count_many, read_fold, write_fold
-from exactfold.data import EXAMPLES, example_path
+from exactfold.data import SHEETS, example_path
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern import near_degenerate
 
@@ -118,6 +118,6 @@ def test_python_callers_find_the_warning(moved: Path) -> None:
     assert "warning" not in count_branches("flat-vertex")._repr_html_()
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_shipped_patterns_have_no_warning(name: str) -> None:
     assert run("info", name).stderr == ""

@@ -5,7 +5,7 @@ from counting import check_generic
 from sheets import SQUARE, scrambled
 
 from exactfold import PROVED, count_branches, random_square, read_fold
-from exactfold.data import EXAMPLES, example_path
+from exactfold.data import SHEETS, example_path
 from exactfold.pattern.families import FAMILIES, h1_sequence
 
 # (distinct, with multiplicity); None where D > 1 or flat vertices make it other than a power of 2.
@@ -31,7 +31,7 @@ def test_families(name):
     assert (result.distinct, result.with_multiplicity) == EXPECTED[name]
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_examples(name):
     result = count_branches(read_fold(example_path(name)))
     assert result.status is PROVED
@@ -39,7 +39,7 @@ def test_examples(name):
 
 
 def test_every_family_and_example_is_expected():
-    assert set(FAMILIES) | set(EXAMPLES) == set(EXPECTED)
+    assert set(FAMILIES) | set(SHEETS) == set(EXPECTED)
 
 
 @pytest.mark.parametrize("size", range(1, 7))

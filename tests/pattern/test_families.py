@@ -2,7 +2,7 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold.data import EXAMPLES, example_path
+from exactfold.data import SHEETS, example_path
 from exactfold.errors import NotApplicableError, PatternError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import (
@@ -180,16 +180,16 @@ EXPECTED = {
 }
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_shipped_examples_are_what_the_builders_make(name):
     assert read_fold(example_path(name)) == EXPECTED[name]()
 
 
 def test_every_shipped_file_is_listed():
     folder = example_path("two-vertex").parent
-    assert {path.stem for path in folder.glob("*.fold")} == set(EXAMPLES) == set(EXPECTED)
+    assert {path.stem for path in folder.glob("*.fold")} == set(SHEETS) == set(EXPECTED)
 
 
 def test_unknown_example_error():
-    with pytest.raises(UsageError, match=r"no example 'three-vertex'; there are: two-vertex"):
+    with pytest.raises(UsageError, match=r"no example 'three-vertex'; there are: zigzags, two-vertex,"):
         example_path("three-vertex")

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from pattern_strategies import patterns, quick
 
-from exactfold.data import EXAMPLES
+from exactfold.data import SHEETS
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.graphs import embedding, face_graph, vertex_graph
 from exactfold.pattern.loading import load
 
-PATTERNS = {name: load(name) for name in EXAMPLES} | {n: make() for n, make in DEGENERATE.items()}
+PATTERNS = {name: load(name) for name in SHEETS} | {n: make() for n, make in DEGENERATE.items()}
 shipped = pytest.mark.parametrize("pattern", PATTERNS.values(), ids=PATTERNS.keys())
 
 

@@ -9,7 +9,8 @@ import pytest
 import rooms
 
 import exactfold
-from exactfold.data import EXAMPLES, example_path, examples
+from exactfold.count.ways import count_ways
+from exactfold.data import DRAWINGS, EXAMPLES, SHEETS, example_path, examples
 from exactfold.errors import NotJSONError, UnknownPatternError, UnreadableFileError, UsageError
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.fold import load_fold, read_fold
@@ -24,7 +25,7 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_examples_are_loaded_by_name_from_anywhere(name, here):
     assert load(name) == read_fold(example_path(name))
 
@@ -47,8 +48,17 @@ def test_the_name_of_an_example_is_not_a_file(here):
 def test_unknown_pattern_error_lists_the_names(what, here):
     with pytest.raises(UnknownPatternError, match="is neither a file nor an example") as caught:
         load(what)
-    assert str(caught.value).endswith(", ".join(EXAMPLES))
+    assert str(caught.value).endswith(", ".join(SHEETS))
     assert len(str(caught.value)) < 250
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_a_drawing_is_no_sheet_of_triangles_error(name):
+    with pytest.raises(
+        UsageError, match=rf"^{name} is a drawing .* `count_ways` takes it$"
+    ):
+        load(name)
+    assert count_ways(name).status is exactfold.PROVED
 
 
 def test_a_path_is_never_the_name_of_an_example(here):
@@ -147,7 +157,11 @@ def test_every_example_is_described_in_one_line():
     found = examples()
     assert tuple(found) == EXAMPLES
     for name, text in found.items():
-        assert text == json.loads(example_path(name).read_text())["file_description"]
+        source = example_path(name).read_text()
+        if name in DRAWINGS:
+            assert f"<desc>{text}</desc>" in source
+        else:
+            assert text == json.loads(source)["file_description"]
         assert text.endswith(".")
         assert "\n" not in text
         assert 20 < len(text) < 120

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold.data import EXAMPLES
+from exactfold.data import SHEETS
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import collinear_folds
@@ -25,9 +25,9 @@ def moved(pattern, vertex, dx, dy=0):
     return CreasePattern(points, pattern.triangles)
 
 
-@pytest.mark.parametrize("name", [*EXAMPLES, *DEGENERATE])
+@pytest.mark.parametrize("name", [*SHEETS, *DEGENERATE])
 def test_what_is_exact_is_not_almost_so(name):
-    assert near_degenerate(load(name) if name in EXAMPLES else DEGENERATE[name]()) is None
+    assert near_degenerate(load(name) if name in SHEETS else DEGENERATE[name]()) is None
 
 
 @pytest.mark.parametrize("vertex", [4, 5])
