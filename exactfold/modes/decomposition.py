@@ -5,12 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import Any
 
 import networkx as nx
 
 from exactfold.errors import TooManyModesError
-from exactfold.exact.surds import exact
+from exactfold.exact.surds import Number, exact
 from exactfold.modes.components import components
 from exactfold.modes.densities import UndecidedDensityError
 from exactfold.modes.elementary import ElementaryMode, ModeSearch, Support
@@ -18,7 +19,7 @@ from exactfold.modes.extension import Extension, Loops, extend_together, extensi
 from exactfold.modes.kernel import Rows, first_order
 from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, stars
-from exactfold.modes.subspaces import Leaf, independent_parts, leaves
+from exactfold.modes.subspaces import Leaf, independent_parts, leaves, rank
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.progress import Progress
@@ -152,8 +153,9 @@ class Decomposition:
 class Part:
     """A part of the sheet that moves independently: vertices joined by folds that may fold.
 
-    `spaces` are the leaves where vertices have more than four folds; `dimension` is the number of
-    first-order motions, None where it was not needed.
+    `spaces` are the leaves where vertices have more than four folds, `folds` says whether some of
+    them are known to fold; `dimension` is the number of first-order motions, None where it was not
+    needed.
     """
 
     vertices: tuple[int, ...]
@@ -165,6 +167,7 @@ class Part:
     modes: tuple[Mode, ...] = ()
     dimension: int | None = None
     near_misses: Mapping[Edge, float] = field(default_factory=dict)
+    folds: bool = False
     reason: str = ""
 
 
@@ -236,7 +239,7 @@ def _rigidity(result: Decomposition) -> Verdict:
         return PROVED
     if result.free or any(mode.extends.verdict is PROVED for mode in result.modes):
         return REFUTED
-    if any(part.true is not None and set(part.true) - {0} for part in result.parts):
+    if any(part.folds or set(part.true or {0: 1}) - {0} for part in result.parts):
         return REFUTED
     known = all(part.true is not None and set(part.true) == {0} for part in result.parts)
     return PROVED if known else UNDECIDED
@@ -341,17 +344,20 @@ def _by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
         counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
     if not counts:
         return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size)
-    extends = all(_extends(pattern, moving, leaf) for leaf in spaces)
     ordered = dict(sorted(counts.items()))
+    folding = [_extends(pattern, moving, leaf) for leaf in spaces]
+    alone = len(moving) == 1 or all(_is_regular(moving, rows, size, leaf) for leaf in spaces)
+    known = all(folding) and alone
     return Part(
         vertices,
         "subspaces",
         ordered,
-        ordered if extends else None,
+        ordered if known else None,
         spaces=tuple(spaces),
         dimension=size,
+        folds=any(folding),
         reason=""
-        if extends
+        if known
         else "whether motions of vertices with more than four folds truly fold is not decided",
     )
 
@@ -365,7 +371,7 @@ def _too_many(vertices: tuple[int, ...], size: int | None, said: str) -> Part:
 
 
 def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> bool:
-    """Whether a linear space is spanned by elementary modes that truly fold, apart from each other.
+    """Whether a space of motions is tangent to true ones: modes that fold apart from each other.
 
     One vertex alone has true motions near the flat state as its motions to second order, by Morse's
     lemma. Other folds are held flat, so this can prove that a space extends and never that it does
@@ -384,6 +390,27 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
         if extension(pattern, stars, modes).verdict is not PROVED:
             return False
     return True
+
+
+def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -> bool:
+    """Whether a leaf is a line at which the conditions have full rank.
+
+    At w on the line the derivatives `dK_v(w)` of all vertices leave in the space of first-order
+    motions that line alone; then one curve of true motions at most is tangent to it
+    (docs/panels.md, 5).
+    """
+    if leaf.size != 1 or leaf.vertices:
+        return False
+    found: list[list[Number]] = []
+    for star in moving.values():
+        w = [leaf.rows[edge][0] if edge in leaf.rows else Fraction(0) for edge in star.folds]
+        weights = star.derivative(w)
+        row: list[Number] = [Fraction(0)] * size
+        for weight, edge in zip(weights, star.folds, strict=True):
+            if weight != 0 and edge in rows:
+                row = [x + weight * y for x, y in zip(row, rows[edge], strict=True)]
+        found.append(row)
+    return rank(found, size) == size - 1
 
 
 def _local(star: Star, rows: Rows) -> LocalMode:

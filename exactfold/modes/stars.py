@@ -36,6 +36,22 @@ class Star:
                 total = total + wk * wj * bracket(dk, dj)
         return total
 
+    def derivative(self, w: Sequence[Number]) -> list[Number]:
+        """The gradient of `form` at w.
+
+        >>> right = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))
+        >>> right.derivative((1, 0, 1, 0))
+        [0, 2, 0, 0]
+        """
+        found: list[Number] = []
+        for j, dj in enumerate(self.directions):
+            total: Number = 0
+            for k, (dk, wk) in enumerate(zip(self.directions, w, strict=True)):
+                if k != j:
+                    total = total + wk * (bracket(dk, dj) if k < j else bracket(dj, dk))
+            found.append(total)
+        return found
+
     def only(self, folds: Iterable[Edge]) -> Star:
         """The star with these folds, the others held flat."""
         wanted = set(folds)

@@ -54,9 +54,7 @@ def test_unknown_pattern_error_lists_the_names(what, here):
 
 @pytest.mark.parametrize("name", DRAWINGS)
 def test_a_drawing_is_no_sheet_of_triangles_error(name):
-    with pytest.raises(
-        UsageError, match=rf"^{name} is a drawing .* `count_ways` takes it$"
-    ):
+    with pytest.raises(UsageError, match=rf"^{name} is a drawing .* `count_ways` takes it$"):
         load(name)
     assert count_ways(name).status is exactfold.PROVED
 
