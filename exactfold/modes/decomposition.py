@@ -40,12 +40,13 @@ class Mode:
     """One elementary mode: a one-parameter motion, and whether it truly folds.
 
     `assignment` holds M or V for each active fold, on one side of the sheet; on the other all
-    letters are exchanged.
+    letters are exchanged. `choice` are the local modes it is made of.
     """
 
     active: tuple[int, ...]
     assignment: Mapping[Edge, str]
     extends: Extension
+    choice: tuple[LocalMode, ...] = field(default=(), repr=False)
 
     def to_dict(self) -> dict[str, Any]:
         """The mode as it stands in JSON."""
@@ -65,7 +66,8 @@ class Decomposition:
     None if it is not known. `second_order` is the same for all motions to second order, of which
     some may not fold; `status` is PROVED if it is known. `rigid` says whether the sheet cannot move
     at all. `flat` are folds that stay flat in every real motion, `free` those with both ends on the
-    border. `theory` is "modes" if all vertices have at most four folds, else "subspaces".
+    border; `held` are those that were not to fold. `theory` is "modes" if all vertices have at most
+    four folds, else "subspaces".
     """
 
     pattern: PanelPattern
@@ -81,6 +83,7 @@ class Decomposition:
     reason: str = ""
     parts: tuple[Part, ...] = ()
     near_misses: Mapping[Edge, float] = field(default_factory=dict)
+    held: tuple[Edge, ...] = ()
     read: Mapping[str, Any] | None = None
     seconds: float = field(default=0.0, compare=False)
 
@@ -151,6 +154,7 @@ class Decomposition:
 class Part:
     """A part of the sheet that moves independently: vertices joined by folds that may fold.
 
+    `extending` tells how many modes of each support truly fold, None where it is not known.
     `spaces` are the leaves where vertices have more than four folds; `dimension` is the number of
     first-order motions, None where it was not needed.
     """
@@ -160,6 +164,7 @@ class Part:
     second_order: Counts | None
     true: Counts | None
     supports: tuple[Support, ...] = ()
+    extending: tuple[int | None, ...] = ()
     spaces: tuple[Leaf, ...] = ()
     modes: tuple[Mode, ...] = ()
     dimension: int | None = None
@@ -221,6 +226,7 @@ def decompose(
         modes_count=_modes_count(found),
         parts=tuple(found),
         near_misses={edge: x for part in found for edge, x in part.near_misses.items()},
+        held=tuple(sorted(held)),
         seconds=time.perf_counter() - start,
     )
     if result.second_order is None:
@@ -277,8 +283,7 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
     search = ModeSearch(moving, pattern.field)
     supports = search.supports(MOST_SUPPORTS)
     modes: list[Mode] = []
-    extending: list[Support] = []
-    decided = True
+    extending: list[int | None] = []
     for support in supports:
         verdict = extension(pattern, moving, support.example)
         together = verdict.verdict is PROVED and not verdict.order  # for all modes of the support
@@ -287,24 +292,25 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
         if support.count <= room or (not together and support.count <= MOST_LISTED):
             each = search.listed(support)
         if together:
-            extending.append(support)
             shown = [(mode, verdict) for mode in each]
-        elif each:
-            shown = [(mode, extension(pattern, moving, mode.choice)) for mode in each]
-            good = sum(result.verdict is PROVED for _, result in shown)
-            decided = decided and all(result.verdict is not UNDECIDED for _, result in shown)
-            if good:
-                extending.append(replace(support, count=good))
+            extending.append(support.count)
         else:
-            decided, shown = False, []
+            shown = [(mode, extension(pattern, moving, mode.choice)) for mode in each]
+            found = [result.verdict for _, result in shown]
+            known = each and UNDECIDED not in found
+            extending.append(found.count(PROVED) if known else None)
         if support.count <= room:
             modes += [_mode(support, mode, result) for mode, result in shown]
+    decided = None not in extending
+    counted = zip(supports, extending, strict=True)
+    moves = [replace(support, count=good) for support, good in counted if good]
     return Part(
         tuple(moving),
         "modes",
         components(supports, 0),
-        components(extending, 0) if decided else None,
+        components(moves, 0) if decided else None,
         supports=tuple(supports),
+        extending=tuple(extending),
         modes=tuple(modes),
         near_misses=search.near_misses,
         reason="" if decided else "for some modes it is not known whether they truly fold",
@@ -313,7 +319,7 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
 
 def _mode(support: Support, mode: ElementaryMode, result: Extension) -> Mode:
     letters = {edge: "V" if s > 0 else "M" for edge, s in mode.signs.items()}
-    return Mode(support.vertices, letters, result)
+    return Mode(support.vertices, letters, result, mode.choice)
 
 
 def _by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
