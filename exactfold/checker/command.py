@@ -41,7 +41,8 @@ def load(text: str) -> dict[str, Any]:
     """The JSON object of a certificate of any kind but the compact; raises `FormatError`."""
     try:
         data = read_json(text)
-        return _reader(data if isinstance(data, dict) else {}).read(data)
+        known: dict[str, Any] = _reader(data if isinstance(data, dict) else {}).read(data)
+        return known
     except FormatError as error:
         raise FormatError(_stranger(text) or error) from None
 
@@ -51,7 +52,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
     Returns the claims; raises `CertificateError` at the first that is not supported.
     """
-    return _reader(data).check(data)
+    claims: dict[str, Any] = _reader(data).check(data)
+    return claims
 
 
 def _reader(data: dict[str, Any]) -> ModuleType:

@@ -12,7 +12,7 @@ BRANCH, BRANCH_VERSION = "exactfold branch", 1
 """One branch with given vertex signs (docs/branch.md)."""
 
 PANELS, PANELS_VERSION = "panels", 3
-"""The kind of a certificate of a sheet of rigid panels; its format is `LISTING` (docs/certificate.md)."""
+"""All motions of a sheet of rigid panels: a kind of the format `LISTING` (docs/certificate.md)."""
 
 # Bounds on the memory and the work that one file can ask for.
 MOST_BITS = 1 << 14  # of a box in a listing, and digits of its numbers

@@ -1,4 +1,4 @@
-"""Components of the motions of a sheet of panels: maximal sets of supports without common vertex."""
+"""Components of the motions of a sheet of panels: maximal sets of modes without common vertex."""
 
 from __future__ import annotations
 

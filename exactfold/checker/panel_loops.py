@@ -35,63 +35,79 @@ class Step:
     quadratic: tuple[Number, Number, Number] | None
 
 
-def step(modes: Modes, chosen: Mapping[int, int], v: int, start: int, end: int) -> Step:
-    """From the fold v-start to the fold v-end, on the line of motions that is chosen at v."""
-    gain = modes.gain(v, chosen[v], start, end)
-    if len(modes.lines[v][chosen[v]].densities) == 2:
-        return Step(v, gain, None)
-    near = modes.near[v]
-    first = near.index(start)
-    ring = near[first:] + near[:first]
-    if ring[3] == end:  # seen in a mirror, which turns all brackets, of which even numbers occur
-        ring = [start, *ring[:0:-1]]
-    d = [modes.sheet.vector(v, u) for u in ring]
+class Loops:
+    """The transmissions of a sheet, and which loops they close; what was found is kept."""
 
-    def c(i: int, j: int) -> Number:
-        return cross(d[i - 1], d[j - 1])
+    def __init__(self, modes: Modes) -> None:
+        self.modes = modes
+        self._steps: dict[tuple[int, int, int, int], Step] = {}
+        self._closing: dict[object, bool] = {}
 
-    two = modes.sheet.tower.number(2)
-    if ring[1] == end:
-        q = c(1, 2) * (c(3, 4) * dot(d[0], d[1]) + c(1, 2) * dot(d[2], d[3]))
-        found = (c(2, 3) * c(2, 4), q, -(two * c(2, 3) * c(4, 1)))
-    else:
-        near_start, far = c(1, 2) * c(4, 1), c(2, 3) * c(3, 4)
-        q = far * dot(d[0], d[0]) - near_start * dot(d[2], d[2])
-        found = (far, q, modes.sheet.tower.number(0))
-    return Step(v, gain, found if q.sign() else None)
+    def step(self, v: int, line: int, start: int, end: int) -> Step:
+        """From the fold v-start to the fold v-end, on one line of motions at v."""
+        key = (v, line, start, end)
+        if key not in self._steps:
+            self._steps[key] = self._made(*key)
+        return self._steps[key]
 
+    def _made(self, v: int, line: int, start: int, end: int) -> Step:
+        modes = self.modes
+        gain = modes.gain(v, line, start, end)
+        if len(modes.lines[v][line].densities) == 2:
+            return Step(v, gain, None)
+        near = modes.near[v]
+        first = near.index(start)
+        ring = near[first:] + near[:first]
+        if (
+            ring[3] == end
+        ):  # seen in a mirror, which turns all brackets, of which even numbers occur
+            ring = [start, *ring[:0:-1]]
+        d = [modes.sheet.vector(v, u) for u in ring]
 
-def steps_of(modes: Modes, chosen: Mapping[int, int], loop: Sequence[int]) -> list[Step]:
-    """The transmissions round a loop."""
-    return [step(modes, chosen, *corner) for corner in corners_of(loop)]
+        def c(i: int, j: int) -> Number:
+            return cross(d[i - 1], d[j - 1])
 
+        if ring[1] == end:
+            q = c(1, 2) * (c(3, 4) * dot(d[0], d[1]) + c(1, 2) * dot(d[2], d[3]))
+            half = c(2, 3) * c(4, 1)
+            return Step(v, gain, (c(2, 3) * c(2, 4), q, -half - half) if q.sign() else None)
+        by_start, by_end = c(1, 2) * c(4, 1), c(2, 3) * c(3, 4)
+        q = by_end * dot(d[0], d[0]) - by_start * dot(d[2], d[2])
+        return Step(v, gain, (by_end, q, modes.sheet.tower.number(0)) if q.sign() else None)
 
-def closes(modes: Modes, chosen: Mapping[int, int], loop: tuple[int, ...]) -> bool:
-    """Whether the composite round a loop, which closes at first order, is the identity."""
-    steps = steps_of(modes, chosen, loop)
-    bent = sum(found.quadratic is not None for found in steps)
-    if not bent:
-        return True
-    require(bent <= MOST_BENT, f"the loop {name(loop)} has too many transmissions not linear")
-    order = 2**bent + 1
-    if any(_differs(steps, order, bits) is not None for bits in _BITS):
-        return False
-    joined = Joined(modes, loop, chosen)
-    zero = joined.tower.number(0)
-    composite = composed(steps, order, joined.of, zero, joined.tower.number(1))
-    return not any(value.sign() for value in composite[1:])
+    def steps(self, chosen: Mapping[int, int], loop: Sequence[int]) -> list[Step]:
+        """The transmissions round a loop."""
+        return [self.step(v, chosen[v], u, w) for v, u, w in corners_of(loop)]
 
+    def closes(self, chosen: Mapping[int, int], loop: tuple[int, ...]) -> bool:
+        """Whether the composite round a loop, which closes at first order, is the identity."""
+        key = (loop, tuple(chosen[v] for v in loop))
+        if key not in self._closing:
+            self._closing[key] = self._closes(chosen, loop)
+        return self._closing[key]
 
-def fails(modes: Modes, chosen: Mapping[int, int], loop: tuple[int, ...], order: int) -> bool:
-    """Whether the composite round a loop differs from the identity at just this odd order."""
-    steps = steps_of(modes, chosen, loop)
-    for bits in _BITS:
-        if _differs(steps, order, bits) == order:
+    def _closes(self, chosen: Mapping[int, int], loop: tuple[int, ...]) -> bool:
+        steps = self.steps(chosen, loop)
+        bent = sum(found.quadratic is not None for found in steps)
+        if not bent:
             return True
-    joined = Joined(modes, loop, chosen)
-    zero = joined.tower.number(0)
-    composite = composed(steps, order, joined.of, zero, joined.tower.number(1))
-    return bool(composite[order // 2].sign())
+        require(bent <= MOST_BENT, f"the loop {name(loop)} has too many transmissions not linear")
+        order = 2**bent + 1
+        if any(_differs(steps, order, bits) is not None for bits in _BITS):
+            return False
+        return not any(value.sign() for value in self._exact(chosen, loop, order)[1:])
+
+    def fails(self, chosen: Mapping[int, int], loop: tuple[int, ...], order: int) -> bool:
+        """Whether the composite round a loop differs from the identity at this odd order."""
+        steps = self.steps(chosen, loop)
+        if any(_differs(steps, order, bits) == order for bits in _BITS):
+            return True
+        return bool(self._exact(chosen, loop, order)[order // 2].sign())
+
+    def _exact(self, chosen: Mapping[int, int], loop: tuple[int, ...], order: int) -> Series:
+        joined = Joined(self.modes, loop, chosen)
+        zero, one = joined.tower.number(0), joined.tower.number(1)
+        return composed(self.steps(chosen, loop), order, joined.of, zero, one)
 
 
 def _differs(steps: Sequence[Step], order: int, bits: int) -> int | None:

@@ -49,7 +49,7 @@ class PanelSheet:
         self._check_connected()
         self._check_apart()
         self.around = {v: self._turned(v, near) for v, near in self.around.items()}
-        outer = []
+        outer: list[tuple[int, ...]] = []
         self.panels: list[tuple[int, ...]] = []
         for walk in walks(self.around):
             (self.panels if self.area(walk).sign() > 0 else outer).append(walk)

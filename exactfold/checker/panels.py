@@ -14,7 +14,7 @@ from typing import Any
 
 from .formats import LISTING, PANELS, PANELS_VERSION
 from .panel_components import components
-from .panel_loops import MOST_ORDER, closes, fails, steps_of
+from .panel_loops import MOST_ORDER, Loops
 from .panel_modes import Modes, Support, corners_of, name, named
 from .panel_sheet import Edge, pair, read_panels
 from .reading import (
@@ -65,11 +65,11 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     for v, around in near.items():
         require(len(around) <= 4, f"vertex {v} has {len(around)} folds that may fold")
     modes = Modes(sheet, near)
-    found = _supports(modes)
+    found, loops = _supports(modes), Loops(modes)
     free = [e for e in sheet.folds if sheet.border.issuperset(e) and e not in held]
     live = {tuple(sorted((v, u))) for v, around in near.items() for u in around}
     extending = [
-        _extending(modes, support, entry)
+        _extending(loops, support, entry)
         for support, entry in _paired(found, items(claims["supports"], "supports"))
     ]
     second = components([(s.vertices, s.count) for s in found], len(free))
@@ -149,9 +149,9 @@ def _paired(found: Sequence[Support], given: list[Any]) -> Iterator[tuple[Suppor
         raise CertificateError(f"the folds {folds[:20]} are no support")
 
 
-def _extending(modes: Modes, support: Support, entry: dict[str, Any]) -> int | None:
+def _extending(loops: Loops, support: Support, entry: dict[str, Any]) -> int | None:
     """How many modes of a support truly fold, as claimed and verified; None if nothing is said."""
-    kind = kind_of(modes, support)
+    kind = kind_of(loops, support)
     by, number = entry["by"], entry["extending"]
     require(by == kind, f"{named(support)} extends by {kind}, not by {by!a}")
     require(number is not None or kind == "loops", f"all modes of {named(support)} extend")
@@ -159,10 +159,10 @@ def _extending(modes: Modes, support: Support, entry: dict[str, Any]) -> int | N
         good = support.count
     else:
         require(support.count <= MOST_LISTED, f"the modes of {named(support)} are too many")
-        rows = modes.listed(support)
-        listed = _listed(modes, support, rows, entry["modes"])
+        rows = loops.modes.listed(support)
+        listed = _listed(loops.modes, support, rows, entry["modes"])
         verdicts = [
-            _extends(modes, support, row, mode, number is None)
+            _extends(loops, support, row, mode, number is None)
             for row, mode in zip(rows, listed, strict=True)
         ]
         good = sum(verdict is True for verdict in verdicts)
@@ -172,12 +172,12 @@ def _extending(modes: Modes, support: Support, entry: dict[str, Any]) -> int | N
     return good
 
 
-def kind_of(modes: Modes, support: Support) -> str:
+def kind_of(loops: Loops, support: Support) -> str:
     """Why the modes of a support extend, or by what it is to be decided."""
     if not support.loops:
         return "forest"
     chosen = {v: choices[0] for v, choices in support.choices.items()}  # all are linear, or none
-    steps = [found for loop in support.loops for found in steps_of(modes, chosen, loop)]
+    steps = [found for loop in support.loops for found in loops.steps(chosen, loop)]
     return "linear" if all(found.quadratic is None for found in steps) else "loops"
 
 
@@ -228,7 +228,7 @@ def letters_of(modes: Modes, support: Support, row: dict[int, int]) -> str:
 
 
 def _extends(
-    modes: Modes,
+    loops: Loops,
     support: Support,
     row: dict[int, int],
     mode: dict[str, Any] | None,
@@ -246,12 +246,12 @@ def _extends(
                 f"{name(loop)} is no loop of {named(support)}",
             )
         shown = f"the loop {name(loop)} of {named(support)} is not seen to fail at order {order}"
-        require(fails(modes, row, loop, order), shown)
+        require(loops.fails(row, loop, order), shown)
         return False
     require(mode is None or mode["loop"] is mode["order"] is None, "a loop that fails nothing")
     if open_ones and said in (None, "undecided"):
         return None
-    good = all(closes(modes, row, loop) for loop in support.loops)
+    good = all(loops.closes(row, loop) for loop in support.loops)
     verdict = "proved" if good else "refuted"
     require(said in (None, verdict), f"a mode of {named(support)} is {verdict}, not {said!a}")
     return good
