@@ -9,7 +9,7 @@ more than four folds are verified where their folds have no first-order motion a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from .formats import LISTING, PANELS, PANELS_VERSION
@@ -65,18 +65,16 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     for v, around in near.items():
         require(len(around) <= 4, f"vertex {v} has {len(around)} folds that may fold")
     modes = Modes(sheet, near)
-    found, loops = _supports(modes), Loops(modes)
     free = [e for e in sheet.folds if sheet.border.issuperset(e) and e not in held]
-    live = {tuple(sorted((v, u))) for v, around in near.items() for u in around}
-    extending = [
-        _extending(loops, support, entry)
-        for support, entry in _paired(found, items(claims["supports"], "supports"))
-    ]
+    live = {pair(v, u) for v, around in near.items() for u in around}
+    pairs = _paired(_supports(modes), items(claims["supports"], "supports"))
+    found, loops = [support for support, _ in pairs], Loops(modes)
+    extending = [_extending(loops, support, entry) for support, entry in pairs]
     second = components([(s.vertices, s.count) for s in found], len(free))
     true = None
-    if None not in extending:
+    if all(complete for _, complete in extending):
         counted = zip(found, extending, strict=True)
-        true = components([(s.vertices, n) for s, n in counted if n], len(free))
+        true = components([(s.vertices, n) for s, (n, _) in counted if n], len(free))
     facts = {
         "interior": len(sheet.interior),
         "border": len(sheet.border),
@@ -87,9 +85,11 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
         "free": [list(edge) for edge in free],
         "second_order": second,
         "true": true,
-        "rigid": _rigid(second, true, free or any(extending)),
+        "rigid": _rigid(second, true, free or any(n for n, _ in extending)),
         "modes": sum(support.count for support in found),
     }
+    if claims["rigid"] == "undecided":  # which claims nothing
+        facts["rigid"] = "undecided"
     for key, fact in facts.items():
         require(_same(claims[key], fact), f"claim {key} = {claims[key]!a}, but it is {fact!a}")
     return dict(claims)
@@ -106,8 +106,8 @@ def _same(claim: Any, fact: Any) -> bool:
     if isinstance(fact, dict):
         return (
             isinstance(claim, dict)
-            and claim == fact
-            and all(map(_same, claim.values(), fact.values()))
+            and claim.keys() == fact.keys()
+            and all(_same(claim[key], fact[key]) for key in fact)
         )
     if isinstance(fact, list):
         return isinstance(claim, list) and len(claim) == len(fact) and all(map(_same, claim, fact))
@@ -125,51 +125,43 @@ def _supports(modes: Modes) -> list[Support]:
     return found
 
 
-def _paired(found: Sequence[Support], given: list[Any]) -> Iterator[tuple[Support, Any]]:
+def _paired(found: Sequence[Support], given: list[Any]) -> list[tuple[Support, dict[str, Any]]]:
     """Each support with what the file says of it: all of them, each once, and no other."""
-    entries: dict[tuple[Edge, ...], Any] = {}
+    known = {support.folds: support for support in found}
+    entries: dict[tuple[Edge, ...], dict[str, Any]] = {}
     for entry in given:
         keys(entry, "vertices folds count extending by modes", "a support")
-        folds = tuple(_edges(entry["folds"], "folds"))
-        require(folds not in entries, f"the support with folds {folds[:20]} appears twice")
+        folds = tuple(_edges(entry["folds"], "folds of a support"))
+        require(folds in known, f"the folds {list(folds)[:20]} are no support")
+        require(folds not in entries, f"a support with the folds {list(folds)[:20]} appears twice")
         entries[folds] = entry
-    for support in found:
-        entry = entries.pop(support.folds, None)
-        if entry is None:
-            raise CertificateError(f"{named(support)} is missing")
-        require(
-            _same(entry["vertices"], list(support.vertices)), f"{named(support)} has other vertices"
-        )
-        require(
-            _same(entry["count"], support.count),
-            f"{named(support)} has {support.count} modes, not {entry['count']!a}",
-        )
-        yield support, entry
-    for folds in entries:
-        raise CertificateError(f"the folds {folds[:20]} are no support")
+    for folds, support in known.items():
+        require(folds in entries, f"{named(support)} is missing")
+        for key, fact in (("vertices", list(support.vertices)), ("count", support.count)):
+            claim = entries.get(folds, {}).get(key, fact)
+            require(_same(claim, fact), f"{key} of {named(support)}: {claim!a}, but it is {fact!a}")
+    return [(support, entries[folds]) for folds, support in known.items() if folds in entries]
 
 
-def _extending(loops: Loops, support: Support, entry: dict[str, Any]) -> int | None:
-    """How many modes of a support truly fold, as claimed and verified; None if nothing is said."""
+def _extending(loops: Loops, support: Support, entry: dict[str, Any]) -> tuple[int, bool]:
+    """How many modes of a support truly fold, verified, and whether that is claimed of all."""
     kind = kind_of(loops, support)
     by, number = entry["by"], entry["extending"]
     require(by == kind, f"{named(support)} extends by {kind}, not by {by!a}")
     require(number is not None or kind == "loops", f"all modes of {named(support)} extend")
     if entry["modes"] is None and (number is None or kind != "loops"):
-        good = support.count
+        good = 0 if number is None else support.count
     else:
         require(support.count <= MOST_LISTED, f"the modes of {named(support)} are too many")
         rows = loops.modes.listed(support)
-        listed = _listed(loops.modes, support, rows, entry["modes"])
         verdicts = [
             _extends(loops, support, row, mode, number is None)
-            for row, mode in zip(rows, listed, strict=True)
+            for row, mode in _listed(loops.modes, support, rows, entry["modes"])
         ]
         good = sum(verdict is True for verdict in verdicts)
-    if number is None:
-        return None
-    require(_same(number, good), f"{good} modes of {named(support)} extend, not {number!a}")
-    return good
+    shown = f"{good} modes of {named(support)} extend, not {number!a}"
+    require(number is None or _same(number, good), shown)
+    return good, number is not None
 
 
 def kind_of(loops: Loops, support: Support) -> str:
@@ -183,34 +175,33 @@ def kind_of(loops: Loops, support: Support) -> str:
 
 def _listed(
     modes: Modes, support: Support, rows: list[dict[int, int]], given: Any
-) -> list[dict[str, Any] | None]:
-    """What the file says of each mode of a support: all of them, if any are listed."""
+) -> list[tuple[dict[int, int], dict[str, Any] | None]]:
+    """Each mode with what the file says of it: all of them, if any are listed."""
     if given is None:
-        return [None] * len(rows)
+        return [(row, None) for row in rows]
+    known = {_choice(support, row): row for row in rows}
     entries: dict[str, dict[str, Any]] = {}
     for mode in items(given, "modes"):
         keys(mode, "choice assignment extends loop order", "a mode")
-        require(mode["choice"] not in entries, f"a mode of {named(support)} appears twice")
-        entries[mode["choice"]] = mode
-    found = []
-    for row in rows:
-        choice = "".join(
-            "0" if len(support.choices[v]) == 1 else "-+"[support.choices[v].index(row[v])]
-            for v in support.vertices
-        )
-        mode = entries.pop(choice, None)
-        if mode is None:
-            raise CertificateError(f"the mode {choice} of {named(support)} is missing")
+        choice = mode["choice"]
+        require(choice in known, f"{choice!a} is no mode of {named(support)}")
+        require(choice not in entries, f"the mode {choice} of {named(support)} appears twice")
+        entries[choice] = mode
+    for choice, row in known.items():
+        require(choice in entries, f"the mode {choice} of {named(support)} is missing")
         letters = letters_of(modes, support, row)
         mirrored = letters.translate(str.maketrans("MV", "VM"))
         require(
-            mode["assignment"] in (letters, mirrored),
+            entries.get(choice, {}).get("assignment", letters) in (letters, mirrored),
             f"the mode {choice} of {named(support)} has the letters {letters}",
         )
-        found.append(mode)
-    for choice in entries:
-        raise CertificateError(f"{choice!a} is no mode of {named(support)}")
-    return found
+    return [(known[choice], mode) for choice, mode in entries.items() if choice in known]
+
+
+def _choice(support: Support, row: dict[int, int]) -> str:
+    """The lines of a mode, vertex by vertex: 0 where there is only one, else - and +."""
+    places = ((support.choices[v], row[v]) for v in support.vertices)
+    return "".join("0" if len(lines) == 1 else "-+"[lines.index(k)] for lines, k in places)
 
 
 def letters_of(modes: Modes, support: Support, row: dict[int, int]) -> str:
