@@ -57,8 +57,8 @@ class PanelSheet:
         for walk in (*self.panels, *outer):
             sides = set(zip(walk, (*walk[1:], walk[0]), strict=True))
             for i, j in sorted(sides):
-                require((j, i) not in sides, f"edge {i}-{j} has one face on both sides")
-        [rim] = outer
+                require(i > j or (j, i) not in sides, f"edge {i}-{j} has one face on both sides")
+        rim = outer[0]
         self.border = set(rim)
         require(len(self.border) == len(rim), "the border passes a vertex twice")
         sides = {pair(i, j) for i, j in zip(rim, (*rim[1:], rim[0]), strict=True)}
@@ -184,10 +184,9 @@ def read_panels(data: Any) -> tuple[PanelSheet, str]:
     for k, value in enumerate(items(data["radicands"], "radicands")):
         require(k < 6, "the field has more than 6 square roots")
         radicand = coefficients(value, f"radicand {k}")
-        above, _ = tower.adjoined(radicand)
-        require(above is not tower, f"radicand {k} is a square")
+        require(tower.adjoined(radicand)[0] is not tower, f"radicand {k} is a square")
         lines.append(f"r {_text(radicand)}")
-        tower = above
+        tower = Tower((*tower.radicands, radicand.parts))
     points = []
     for k, value in enumerate(items(data["vertices"], "vertices")):
         x, y = (coefficients(c, f"vertex {k}") for c in items(value, f"vertex {k}", 2))

@@ -107,16 +107,15 @@ _CLAIM = re.compile(r"claim (\w+) = .*, but it is (.*)")
 def matched(document: Document) -> Document:
     """The certificate with the facts that its pattern and supports seem to show."""
     made: Document = json.loads(json.dumps(document))
-    for _ in range(20):
+    while True:
         try:
             verified(made)
+            return made
         except CertificateError as error:
             found = _CLAIM.match(str(error))
             if found is None:
                 raise
             made["claims"][found[1]] = ast.literal_eval(found[2])
-    verified(made)
-    return made
 
 
 def stopped(document: Document, message: str) -> None:
