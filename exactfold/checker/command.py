@@ -16,7 +16,7 @@ from typing import Any
 
 from . import branch, compact, listing, panels
 from .compact_lines import lines
-from .formats import BRANCH, COMPACT, LISTING, MOST_LINE, PANELS_VERSION
+from .formats import BRANCH, COMPACT, LISTING, MOST_LINE
 from .reading import CertificateError, FormatError, plain, read_json
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
@@ -60,7 +60,7 @@ def _reader(data: dict[str, Any]) -> ModuleType:
     """The module that reads and checks a JSON object."""
     if data.get("format") == BRANCH:
         return branch
-    if data.get("format") == LISTING and data.get("version") == PANELS_VERSION:
+    if data.get("format") == LISTING and "kind" in data:
         return panels
     return listing
 
