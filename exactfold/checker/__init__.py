@@ -9,10 +9,11 @@ their own, and verify every claim. The folder alone is enough. Exit code 0: ever
 some claim is not supported. 3: not a certificate. 70: a worker process died, memory is short, or a
 defect of this program; nothing is known of the file.
 
-Three kinds of certificates are told apart by what is in the file: listings of all branches
+Four kinds of certificates are told apart by what is in the file: listings of all branches
 (`listing`, docs/certificate.md), compact ones with one root for each sign vector (`compact`,
-docs/compact-certificate.md), and proofs of one branch (`branch`, docs/branch.md), which are checked
-by formulas of their own. `formats` owns their names, versions and limits.
+docs/compact-certificate.md), proofs of one branch (`branch`, docs/branch.md), which are checked by
+formulas of their own, and all motions of a sheet of rigid panels (`panels`, docs/certificate.md).
+`formats` owns their names, versions and limits.
 
 Floating point is used in one place, to choose the matrix Y of Krawczyk's test, which may be any.
 Modules import each other relatively, and nothing else of exactfold, so that they run under any

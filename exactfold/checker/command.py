@@ -11,11 +11,12 @@ from concurrent.futures import BrokenExecutor
 from contextlib import suppress
 from io import BytesIO
 from os import PathLike
+from types import ModuleType
 from typing import Any
 
-from . import branch, compact, listing
+from . import branch, compact, listing, panels
 from .compact_lines import lines
-from .formats import BRANCH, COMPACT, MOST_LINE
+from .formats import BRANCH, COMPACT, LISTING, MOST_LINE
 from .reading import CertificateError, FormatError, plain, read_json
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
@@ -37,22 +38,31 @@ _ADVICE = defaultdict(
 
 
 def load(text: str) -> dict[str, Any]:
-    """The JSON object of a listing or of a certificate of one branch; raises `FormatError`."""
+    """The JSON object of a certificate of any kind but the compact; raises `FormatError`."""
     try:
         data = read_json(text)
-        if isinstance(data, dict) and data.get("format") == BRANCH:
-            return branch.read(data)
-        return listing.read(data)
+        known: dict[str, Any] = _reader(data if isinstance(data, dict) else {}).read(data)
+        return known
     except FormatError as error:
         raise FormatError(_stranger(text) or error) from None
 
 
 def check(data: dict[str, Any]) -> dict[str, Any]:
-    """Verify every claim of a JSON object that is a listing or a certificate of one branch.
+    """Verify every claim of a JSON object, a certificate of any kind but the compact.
 
     Returns the claims; raises `CertificateError` at the first that is not supported.
     """
-    return branch.check(data) if data.get("format") == BRANCH else listing.check(data)
+    claims: dict[str, Any] = _reader(data).check(data)
+    return claims
+
+
+def _reader(data: dict[str, Any]) -> ModuleType:
+    """The module that reads and checks a JSON object."""
+    if data.get("format") == BRANCH:
+        return branch
+    if data.get("format") == LISTING and "kind" in data:
+        return panels
+    return listing
 
 
 def verify(
@@ -119,6 +129,8 @@ def _printed(kind: str, several: bool) -> str:
 
 def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
+    if "supports" in claims:
+        return panels.summary(claims)
     return branch.summary(claims) if "gauge" in claims else listing.summary(claims)
 
 

@@ -11,6 +11,9 @@ COMPACT, COMPACT_VERSION = "exactfold compact certificate", 1
 BRANCH, BRANCH_VERSION = "exactfold branch", 1
 """One branch with given vertex signs (docs/branch.md)."""
 
+PANELS, PANELS_VERSION = "panels", 3
+"""All motions of a sheet of rigid panels: a kind of the format `LISTING` (docs/certificate.md)."""
+
 # Bounds on the memory and the work that one file can ask for.
 MOST_BITS = 1 << 14  # of a box in a listing, and digits of its numbers
 MOST_UNITS = 52  # bits of the boxes in a compact block, and the largest radius byte

@@ -15,7 +15,7 @@ from exactfold.commands.stream import Streaming, advice
 from exactfold.count.stream import StreamedCount
 from exactfold.count.ways import count_opened
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import UsageError
+from exactfold.errors import NotApplicableError, UsageError
 from exactfold.evidence.entries import write_certificate
 from exactfold.evidence.listing import certificate as certificate_of
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -103,8 +103,15 @@ class Asked:
         if self.certificate is None:
             return None
         if not isinstance(result, BranchCount):
-            say("no certificate was written: those of rigid panels are still to come")
-        elif result.status is not PROVED:
+            from exactfold.evidence.panels import certificate_of_panels
+
+            try:
+                write_certificate(certificate_of_panels(result), self.certificate)
+            except NotApplicableError as error:
+                say(f"no certificate was written: {error}")
+                return None
+            return str(self.certificate)
+        if result.status is not PROVED:
             say("no certificate was written: nothing is proved")
         elif streamed is not None and result.proof is None:
             say(f"the proof is in {self.stream}; no other was written")

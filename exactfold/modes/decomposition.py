@@ -42,12 +42,13 @@ class Mode:
     """One elementary mode: a one-parameter motion, and whether it truly folds.
 
     `assignment` holds M or V for each active fold, on one side of the sheet; on the other all
-    letters are exchanged.
+    letters are exchanged. `choice` are the local modes it is made of.
     """
 
     active: tuple[int, ...]
     assignment: Mapping[Edge, str]
     extends: Extension
+    choice: tuple[LocalMode, ...] = field(default=(), repr=False)
 
     def to_dict(self) -> dict[str, Any]:
         """The mode as it stands in JSON."""
@@ -67,7 +68,8 @@ class Decomposition:
     None if it is not known. `second_order` is the same for all motions to second order, of which
     some may not fold; `status` is PROVED if it is known. `rigid` says whether the sheet cannot move
     at all. `flat` are folds that stay flat in every real motion, `free` those with both ends on the
-    border. `theory` is "modes" if all vertices have at most four folds, else "subspaces".
+    border; `held` are those that were not to fold. `theory` is "modes" if all vertices have at most
+    four folds, else "subspaces".
     """
 
     pattern: PanelPattern
@@ -83,6 +85,7 @@ class Decomposition:
     reason: str = ""
     parts: tuple[Part, ...] = ()
     near_misses: Mapping[Edge, float] = field(default_factory=dict)
+    held: tuple[Edge, ...] = ()
     read: Mapping[str, Any] | None = None
     seconds: float = field(default=0.0, compare=False)
 
@@ -225,6 +228,7 @@ def decompose(
         modes_count=_modes_count(found),
         parts=tuple(found),
         near_misses={edge: x for part in found for edge, x in part.near_misses.items()},
+        held=tuple(sorted(held)),
         seconds=time.perf_counter() - start,
     )
     if result.second_order is None:
@@ -318,7 +322,7 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
 
 def _mode(support: Support, mode: ElementaryMode, result: Extension) -> Mode:
     letters = {edge: "V" if s > 0 else "M" for edge, s in mode.signs.items()}
-    return Mode(support.vertices, letters, result)
+    return Mode(support.vertices, letters, result, mode.choice)
 
 
 def _by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:

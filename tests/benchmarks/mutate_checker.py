@@ -44,6 +44,8 @@ TESTS = {
     "forged_compact": "compact compact_lines command",
     "forged_blocks": "compact_blocks",
     "forged_branches": "branch branch_proof command",
+    "panels_checker": "panels panel_components panel_lines panel_loops panel_modes panel_sheet "
+    "towers intervals",
     "recognised": "command",
     "fixtures": "",
 }

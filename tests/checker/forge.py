@@ -85,7 +85,8 @@ def without(message: str) -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         names = "algebraic boxes branch branch_proof classes compact compact_blocks equations "
-        for name in (names + "flat_sheets listing reading sheet stress").split():
+        names += "flat_sheets listing panel_components panel_loops panel_modes panel_sheet panels "
+        for name in (names + "reading sheet stress towers").split():
             patch.setattr(import_module(f"exactfold.checker.{name}"), "require", weaker)
         yield
 

@@ -24,6 +24,7 @@ KINDS = {
     "rigid-nested.json": "VALID: 0 branches (0 with multiplicity, 0 real) of the sheet with 3",
     "single-vertex-nine-folds.json": "VALID: 1 branches (1 with multiplicity, 1 real) of the sheet",
     "compact-blocks-of-4.txt": "VALID: 16 branches (16 with multiplicity, 16 real) of the sheet",
+    "panels-bent.json": "VALID: the motions of the sheet of 12 folds and 4 interior vertices have",
     "branch-reflex.json": "VALID: exactly one branch has the vertex signs +0- (3); 10 of 10",
 }
 WAYS = ("folder", "zipapp", "module")

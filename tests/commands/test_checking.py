@@ -19,6 +19,32 @@ def test_certificate_is_written_and_valid(tmp_path, name):
     assert checked.stdout.startswith("VALID: ")
 
 
+def test_certificates_of_panels(tmp_path):
+    drawing = tmp_path / "cross.fold"
+    points = [[-1, -1], [1, -1], [1, 1], [-1, 1], [0, 0], [0, -1], [1, 0], [0, 1], [-1, 0]]
+    rim = [[0, 5], [5, 1], [1, 6], [6, 2], [2, 7], [7, 3], [3, 8], [8, 0]]
+    folds = [[4, 5], [4, 6], [4, 7], [4, 8]]
+    letters = ["B"] * 8 + ["U"] * 4
+    keys = ("vertices_coords", "edges_vertices", "edges_assignment")
+    drawing.write_text(json.dumps(dict(zip(keys, (points, rim + folds, letters), strict=True))))
+    out = tmp_path / "c.json"
+    counted = run("count", drawing, "--json", "--certificate", out)
+    assert counted.exit_code == PROVED
+    assert json.loads(counted.stdout)["certificate"] == str(out)
+    data = json.loads(run("check", out, "--json").stdout)
+    assert data["valid"] is True
+    assert data["claims"]["second_order"] == data["claims"]["true"] == {"1": 2}
+    more = {"vertices_coords": points}
+    more["edges_vertices"] = [*rim, *folds, *([4, k] for k in (0, 1))]
+    more["edges_assignment"] = letters + ["U"] * 2
+    drawing.write_text(json.dumps(more))
+    out.unlink()
+    counted = run("count", drawing, "--json", "--certificate", out)
+    assert json.loads(counted.stdout)["certificate"] is None
+    assert "no certificate was written" in counted.stderr
+    assert not out.exists()
+
+
 def test_check_json(certificate):
     data = json.loads(run("check", certificate, "--json").stdout)
     assert data["valid"] is True

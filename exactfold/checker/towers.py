@@ -1,0 +1,193 @@
+"""Exact real numbers in towers of square roots, Q(sqrt a)(sqrt b)..., and enclosures of them.
+
+A tower is a chain of fields; each level adjoins the positive square root of a positive number of
+the level below that is no square there. A number has 2^m rational coefficients: those of the level
+below, then those that belong to the new root.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cached_property
+from math import isqrt
+
+from .intervals import Interval
+from .reading import require
+
+Parts = tuple[Fraction, ...]
+_BITS = 128
+
+
+class Tower:
+    """Q with the square roots of `radicands`, one after the other."""
+
+    def __init__(self, radicands: tuple[Parts, ...] = ()) -> None:
+        self.radicands = radicands
+        self.size = 1 << len(radicands)
+        self._enclosed: dict[int, list[Interval]] = {}
+
+    def number(self, value: Fraction | int | Number) -> Number:
+        """A rational number, or a number of a lower level, here."""
+        parts = value.parts if isinstance(value, Number) else (Fraction(value),)
+        return Number(self, parts + (Fraction(0),) * (self.size - len(parts)))
+
+    def adjoined(self, radicand: Number) -> tuple[Tower, Number]:
+        """The positive root of a positive number, in this field or in one level more."""
+        require(radicand.sign() > 0, "the square root of a number that is not positive")
+        value = self.number(radicand)
+        known = self._root(value.parts)
+        if known is not None:
+            root = Number(self, known)
+            return self, -root if root.sign() < 0 else root
+        above = Tower((*self.radicands, value.parts))
+        return above, Number(above, (Fraction(0),) * self.size + (Fraction(1),) + value.zeros)
+
+    def times(self, a: Parts, b: Parts) -> Parts:
+        """The product of two numbers of one level."""
+        if len(a) == 1:
+            return (a[0] * b[0],)
+        half = len(a) // 2
+        low = self.times(a[:half], b[:half])
+        if not any(a[half:]) and not any(b[half:]):
+            return low + a[half:]
+        square = self.times(self.times(a[half:], b[half:]), self._radicand(half))
+        cross = _plus(self.times(a[:half], b[half:]), self.times(a[half:], b[:half]))
+        return _plus(low, square) + cross
+
+    def norm(self, a: Parts) -> Parts:
+        """(x + y r)(x - y r) = x^2 - y^2 r^2, one level below."""
+        half = len(a) // 2
+        square = self.times(self.times(a[half:], a[half:]), self._radicand(half))
+        return _minus(self.times(a[:half], a[:half]), square)
+
+    def inverse(self, a: Parts) -> Parts:
+        """1 / (x + y r) = (x - y r) / norm."""
+        if len(a) == 1:
+            return (1 / a[0],)
+        half = len(a) // 2
+        over = self.inverse(self.norm(a))
+        return self.times(a[:half], over) + tuple(-c for c in self.times(a[half:], over))
+
+    def sign(self, a: Parts) -> int:
+        """The sign of x + y r: where x and y have opposite signs, x decides if x^2 > y^2 r^2."""
+        if len(a) == 1:
+            return (a[0] > 0) - (a[0] < 0)
+        half = len(a) // 2
+        first, second = self.sign(a[:half]), self.sign(a[half:])
+        if first * second < 0:
+            return first * self.sign(self.norm(a))
+        return first or second
+
+    def products(self, bits: int) -> list[Interval]:
+        """Enclosures of the products of roots that the coefficients belong to."""
+        if bits not in self._enclosed:
+            found = [Interval.of(Fraction(1), bits)]
+            for radicand in self.radicands:
+                root = enclosed(radicand, found, bits).root()
+                found += [product * root for product in found]
+            self._enclosed[bits] = found
+        return self._enclosed[bits]
+
+    def _radicand(self, half: int) -> Parts:
+        return self.radicands[half.bit_length() - 1]
+
+    def _root(self, a: Parts) -> Parts | None:
+        """A square root in the field, None if there is none.
+
+        (x + y r)^2 = p + q r means x^2 + y^2 r^2 = p and 2 x y = q, so that x^2 = (p + n) / 2 with
+        n one of the roots of the norm p^2 - q^2 r^2.
+        """
+        if len(a) == 1:
+            return _rational_root(a[0])
+        half = len(a) // 2
+        p, q = a[:half], a[half:]
+        zero = (Fraction(0),) * half
+        if not any(q):
+            whole = self._root(p)
+            if whole is not None:
+                return whole + zero
+            part = self._root(self.times(p, self.inverse(self._radicand(half))))
+            return None if part is None else zero + part
+        n = self._root(self.norm(a))
+        for root in () if n is None else (n, tuple(-c for c in n)):
+            x = self._root(tuple((s + t) / 2 for s, t in zip(p, root, strict=True)))
+            if x is not None and any(x):
+                return x + tuple(c / 2 for c in self.times(q, self.inverse(x)))
+        return None
+
+
+class Number:
+    """A number of a tower; two numbers go together if the tower of one extends the other's."""
+
+    __slots__ = ("__dict__", "parts", "tower")
+
+    def __init__(self, tower: Tower, parts: Parts) -> None:
+        self.tower, self.parts = tower, parts
+
+    @property
+    def zeros(self) -> Parts:
+        """As many zeros as there are coefficients after the first."""
+        return (Fraction(0),) * (len(self.parts) - 1)
+
+    def _both(self, other: Number) -> tuple[Tower, Parts, Parts]:
+        if self.tower is other.tower:
+            return self.tower, self.parts, other.parts
+        tower = max(self.tower, other.tower, key=lambda tower: tower.size)
+        return tower, tower.number(self).parts, tower.number(other).parts
+
+    def __add__(self, other: Number) -> Number:
+        tower, a, b = self._both(other)
+        return Number(tower, _plus(a, b))
+
+    def __sub__(self, other: Number) -> Number:
+        tower, a, b = self._both(other)
+        return Number(tower, _minus(a, b))
+
+    def __mul__(self, other: Number) -> Number:
+        tower, a, b = self._both(other)
+        return Number(tower, tower.times(a, b))
+
+    def __truediv__(self, other: Number) -> Number:
+        tower, a, b = self._both(other)
+        return Number(tower, tower.times(a, tower.inverse(b)))
+
+    def __neg__(self) -> Number:
+        return Number(self.tower, tuple(-c for c in self.parts))
+
+    def sign(self) -> int:
+        """1, 0 or -1, exactly: an enclosure decides where it can."""
+        return self._sign
+
+    @cached_property
+    def _sign(self) -> int:
+        if not any(self.parts[1:]):
+            return self.tower.sign(self.parts[:1])
+        return self.enclosed(_BITS).sign() or self.tower.sign(self.parts)
+
+    def enclosed(self, bits: int) -> Interval:
+        """An interval that holds the number."""
+        return enclosed(self.parts, self.tower.products(bits), bits)
+
+
+def enclosed(parts: Parts, products: list[Interval], bits: int) -> Interval:
+    """An interval that holds the sum of coefficients times products of roots."""
+    total = Interval.of(Fraction(0), bits)
+    for c, product in zip(parts, products, strict=True):
+        if c:
+            total = total + Interval.of(c, bits) * product
+    return total
+
+
+def _plus(a: Parts, b: Parts) -> Parts:
+    return tuple(x + y for x, y in zip(a, b, strict=True))
+
+
+def _minus(a: Parts, b: Parts) -> Parts:
+    return tuple(x - y for x, y in zip(a, b, strict=True))
+
+
+def _rational_root(value: Fraction) -> Parts | None:
+    if value < 0:
+        return None
+    p, q = isqrt(value.numerator), isqrt(value.denominator)
+    return (Fraction(p, q),) if value == Fraction(p, q) ** 2 else None

@@ -1,0 +1,125 @@
+"""Certificates of sheets of panels, and forgeries that one line of the checker alone stops."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+from collections.abc import Iterable
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from forge import refused, verified, without
+from panel_sheets import grid, mesh, miura, tiling
+
+from exactfold.checker.reading import CertificateError
+from exactfold.evidence.panels import certificate_of_panels
+from exactfold.exact.surds import RATIONALS
+from exactfold.modes.decomposition import decompose
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+Document = dict[str, Any]
+
+
+def twist() -> PanelPattern:
+    """A square twist on thirds: a pinwheel of four pleats round a square."""
+    corners, along = [(1, -1)], [(2, 1)]
+    for _ in range(3):
+        corners.append((-corners[-1][1], corners[-1][0]))
+        along.append((-along[-1][1], along[-1][0]))
+    points, edges, rim = list(corners), [(k, (k + 1) % 4) for k in range(4)], []
+    for k, (x, y) in enumerate(along):
+        for v in (k, (k + 1) % 4):
+            rim.append(len(points))
+            edges.append((v, len(points)))
+            points.append((corners[v][0] + 2 * x, corners[v][1] + 2 * y))
+    edges += [(rim[k], rim[(k + 1) % 8]) for k in range(8)]
+    return PanelPattern([(Fraction(x, 3), Fraction(y, 3)) for x, y in points], edges)
+
+
+def bent() -> PanelPattern:
+    """Two zigzags with equal second differences and different slopes across two straight rows."""
+    offsets = (0, 1, 0, 3)
+    columns = [(0, 0), (1, 0), (1, 1), (0, 0)]
+
+    def place(i: int, j: int) -> tuple[Fraction, Fraction]:
+        moves, slope = columns[i]
+        return Fraction(8 * i + moves * offsets[j] + slope * j), Fraction(4 * j)
+
+    return grid(3, 3, place)
+
+
+def square() -> PanelPattern:
+    """A fold from border to border."""
+    return PanelPattern(
+        [(0, 0), (3, 0), (3, 3), (0, 3), (1, 0), (1, 3)],
+        [(0, 4), (4, 1), (1, 2), (2, 5), (5, 3), (3, 0), (4, 5)],
+    )
+
+
+_ROOT = RATIONALS.adjoined(2).root
+_NESTED = RATIONALS.adjoined(2).adjoined(2 + _ROOT).root
+SHEETS = {
+    "miura": lambda: miura(1, 3),
+    "two rows": lambda: miura(2, 2),
+    "three rows": lambda: miura(3, 3),
+    "strip": lambda: mesh(1, 5, 5),
+    "long strip": lambda: mesh(1, 20, 20),
+    "tiling": lambda: tiling(2, 2),
+    "rigid": lambda: mesh(3, 3, 5),
+    "twist": twist,
+    "crossing": lambda: grid(3, 3, lambda i, j: (i, j)),
+    "square": square,
+    "bent": bent,
+    "surds": lambda: grid(
+        3, 2, lambda i, j: (4 * i + j % 2 * _ROOT / 2, 3 * j + i % 2 * (_ROOT - 1))
+    ),
+    "nested": lambda: grid(2, 2, lambda i, j: (i * _NESTED + j % 2, 2 * j + i % 2 * _ROOT / 2)),
+}
+
+
+@cache
+def _text(name: str, held: tuple[Edge, ...]) -> str:
+    return json.dumps(certificate_of_panels(decompose(SHEETS[name](), flat=held)))
+
+
+def certified(name: str, held: Iterable[Edge] = ()) -> Document:
+    """A fresh copy of the certificate of a sheet."""
+    document: Document = json.loads(_text(name, tuple(held)))
+    return document
+
+
+def drawn(points: Iterable[tuple[int, int]], edges: Iterable[tuple[int, int]]) -> Document:
+    """A certificate of a drawing that no reader would take, with no supports."""
+    made = certified("square")
+    made["pattern"] = {
+        "radicands": [],
+        "vertices": [[[str(x)], [str(y)]] for x, y in points],
+        "edges": sorted([i, j] for i, j in edges),
+    }
+    return made
+
+
+_CLAIM = re.compile(r"claim (\w+) = .*, but it is (.*)")
+
+
+def matched(document: Document) -> Document:
+    """The certificate with the facts that its pattern and supports seem to show."""
+    made: Document = json.loads(json.dumps(document))
+    while True:
+        try:
+            verified(made)
+            return made
+        except CertificateError as error:
+            found = _CLAIM.match(str(error))
+            if found is None:
+                raise
+            made["claims"][found[1]] = ast.literal_eval(found[2])
+
+
+def stopped(document: Document, message: str) -> None:
+    """Refused with this message, and accepted without that line once its facts match."""
+    with without(message):
+        forged = matched(document)
+    refused(forged, message)

@@ -1,0 +1,420 @@
+"""Certificates of sheets of panels: what the checker accepts, and a forgery for what it refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from forge import refused, verified
+from forge_panels import SHEETS, Document, certified, drawn, matched, stopped
+from panel_sheets import grid
+
+from exactfold import checker
+from exactfold.checker import panel_components, panel_loops, panel_modes, panel_sheet, panels
+from exactfold.errors import NotApplicableError
+from exactfold.evidence.panels import certificate_of_panels
+from exactfold.modes.decomposition import decompose
+from exactfold.pattern.panel_pattern import PanelPattern
+
+KNOWN = {
+    "miura": {"1": 8},
+    "two rows": {"1": 3, "2": 1},
+    "three rows": {"1": 7, "3": 1},
+    "strip": {"1": 32},
+    "long strip": {"1": 1 << 20},
+    "tiling": {"1": 2},
+    "rigid": {"0": 1},
+    "twist": {"1": 6},
+    "crossing": {"2": 2},
+    "square": {"1": 1},
+    "bent": {"1": 3, "2": 1},
+    "surds": {"1": 4},
+    "nested": {"1": 2},
+}
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_valid(name: str) -> None:
+    claims = verified(certified(name))
+    assert claims["second_order"] == KNOWN[name]
+    assert claims["true"] == ({"1": 2, "2": 1} if name == "bent" else KNOWN[name])
+    assert claims["rigid"] == ("proved" if name == "rigid" else "refuted")
+
+
+def test_summary(tmp_path: Path) -> None:
+    path = tmp_path / "bent.json"
+    path.write_text(json.dumps(certified("bent")))
+    claims = checker.verify(path)
+    assert checker.summary(claims) == (
+        "VALID: the motions of the sheet of 12 folds and 4 interior vertices have the components "
+        "3 of dimension 1, 1 of dimension 2 to second order, truly 2 of dimension 1, 1 of "
+        f"dimension 2; sha256 {claims['sha256']}"
+    )
+
+
+def test_folds_held_flat() -> None:
+    claims = verified(certified("square", [(4, 5)]))
+    assert claims["second_order"] == claims["true"] == {"0": 1}
+    assert claims["held"] == claims["flat"] == [[4, 5]]
+    assert ", 1 folds held flat have" in checker.summary(claims)
+    inner = certified("crossing", [(5, 6)])
+    assert verified(inner)["second_order"] != KNOWN["crossing"]
+
+
+def test_no_certificate_where_vertices_have_more_folds() -> None:
+    star = [(2, 0), (1, 2), (-1, 2), (-2, 0), (-1, -2), (1, -2)]
+    rim = [(k, (k + 1) % 6) for k in range(6)]
+    sheet = PanelPattern([*star, (0, 0)], [*rim, *((k, 6) for k in range(6))])
+    with pytest.raises(NotApplicableError, match="only where all vertices have at most four folds"):
+        certificate_of_panels(decompose(sheet))
+
+
+def test_an_undecided_extension_claims_nothing() -> None:
+    made = certified("tiling")
+    [support] = made["claims"]["supports"]
+    support["extending"] = None
+    refused(made, "claim true = {'1': 2}, but it is None")
+    made["claims"]["true"] = None
+    assert verified(made)["rigid"] == "refuted"
+    for mode in support["modes"]:
+        mode["extends"] = "undecided"
+    made["claims"]["rigid"] = "undecided"
+    assert "truly not decided" in checker.summary(verified(made))
+    support["modes"] = None
+    assert verified(made)["true"] is None
+
+
+# --- the drawing ---------------------------------------------------------------------------------
+
+CORNERS = [(0, 0), (4, 0), (4, 4), (0, 4)]
+SIDES = [(0, 1), (1, 2), (2, 3), (0, 3)]
+
+
+@pytest.mark.parametrize(
+    ("points", "edges", "message"),
+    [
+        ([], [(1, 0), (1, 2), (2, 3), (0, 3)], "1-0 is no edge"),
+        ([(1, 1)], [], "vertex 4 is on no edge"),
+        (
+            [(1, 1), (2, 1), (1, 2)],
+            [(4, 5), (5, 6), (4, 6)],
+            "the drawing has 2 outer faces, not one",
+        ),
+        ([(1, 1)], [(0, 4)], "edge 0-4 has one face on both sides"),
+        ([(5, 4), (4, 5)], [(2, 4), (4, 5), (2, 5)], "the border passes a vertex twice"),
+    ],
+)
+def test_drawings_that_are_no_sheet(
+    points: list[tuple[int, int]], edges: list[tuple[int, int]], message: str
+) -> None:
+    sides = [] if (1, 0) in edges else SIDES
+    stopped(drawn([*CORNERS, *points], [*sides, *edges]), message)
+
+
+@pytest.mark.parametrize(
+    ("points", "edges"),
+    [
+        ([(0, 0), (4, 0), (0, 4), (2, 0)], [(0, 1), (1, 2), (0, 2), (0, 3), (2, 3)]),
+        ([(0, 0), (4, 0), (0, 4), (2, 2), (4, 4)], [(0, 1), (1, 2), (0, 2), (3, 4), (1, 4)]),
+    ],
+)
+def test_edges_that_touch(points: list[tuple[int, int]], edges: list[tuple[int, int]]) -> None:
+    with pytest.raises(checker.CertificateError, match=r"edges .* meet"):
+        verified(drawn(points, edges))
+
+
+def test_a_strip_that_turns_until_it_overlaps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each panel is in order, and only the border meets itself, in several places."""
+    along = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1)]
+    points = [(r * x, r * y) for x, y in along for r in (1, 3)]
+    edges = [(2 * k, 2 * k + 1) for k in range(5)]
+    edges += [(k, k + 2) for k in range(8)]
+    with monkeypatch.context() as patch:
+        patch.setattr(panel_sheet.PanelSheet, "_check_apart", lambda _: None)
+        forged = matched(drawn(points, edges))
+    refused(forged, "edges 6-8 and 0-2 meet")
+
+
+def test_edges_are_sorted() -> None:
+    made = certified("square")
+    made["pattern"]["edges"].reverse()
+    stopped(made, "the edges are not sorted")
+
+
+@pytest.mark.parametrize(
+    ("radicands", "message"),
+    [
+        ([["4"]], "radicand 0 is a square"),
+        ([["-2"]], "the square root of a number that is not positive"),
+        ([["2"], ["3", "2"]], "radicand 1 is a square"),
+        ([[str(p)] for p in (2, 3, 5, 7, 11, 13, 17)], "the field has more than 6 square roots"),
+    ],
+)
+def test_fields(radicands: list[list[str]], message: str) -> None:
+    made = certified("square")
+    size = 1
+    made["pattern"]["radicands"] = []
+    for radicand in radicands:
+        made["pattern"]["radicands"].append(radicand + ["0"] * (size - len(radicand)))
+        size *= 2
+    for point in made["pattern"]["vertices"]:
+        for c in point:
+            c += ["0"] * (size - 1)
+    stopped(made, message)
+
+
+# --- supports, modes and components --------------------------------------------------------------
+
+
+def supports_of(made: Document) -> list[Document]:
+    found: list[Document] = made["claims"]["supports"]
+    return found
+
+
+def test_a_support_is_missing() -> None:
+    made = certified("two rows")
+    lost = supports_of(made).pop()
+    where = "-".join(map(str, lost["vertices"]))
+    stopped(made, f"the support of vertices {where} is missing")
+
+
+def test_a_support_too_many() -> None:
+    made = certified("two rows")
+    more = {**supports_of(made)[0], "folds": [[0, 1]]}
+    supports_of(made).append(more)
+    stopped(made, "the folds [(0, 1)] are no support")
+
+
+def test_a_support_twice() -> None:
+    made = certified("strip")
+    [support] = supports_of(made)
+    supports_of(made).append(support)
+    folds = [tuple(edge) for edge in support["folds"]]
+    stopped(made, f"a support with the folds {folds} appears twice")
+
+
+def test_vertices_and_numbers_of_a_support() -> None:
+    made = certified("strip")
+    [support] = supports_of(made)
+    where = "-".join(map(str, support["vertices"]))
+    right = support["vertices"]
+    support["vertices"] = right[1:]
+    stopped(made, f"vertices of the support of vertices {where}: {right[1:]}, but it is {right}")
+    support["vertices"], support["count"] = right, 31
+    stopped(made, f"count of the support of vertices {where}: 31, but it is 32")
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "claims"),
+    [
+        ("strip", "forest", ("linear", "loops", None)),
+        ("crossing", "forest", ("loops",)),
+        ("tiling", "loops", ("forest", "linear")),
+    ],
+)
+def test_how_a_support_extends(name: str, kind: str, claims: tuple[str | None, ...]) -> None:
+    for claim in claims:
+        made = certified(name)
+        support = supports_of(made)[0]
+        support["by"] = claim
+        where = "-".join(map(str, support["vertices"]))
+        stopped(made, f"the support of vertices {where} extends by {kind}, not by {claim!a}")
+
+
+def test_linear_transmissions() -> None:
+    made = certified("three rows")
+    kinds = [support["by"] for support in supports_of(made)]
+    assert kinds.count("linear") == 4
+    assert set(kinds) == {"linear", "forest"}
+
+
+def test_numbers_that_extend() -> None:
+    made = certified("strip")
+    [support] = supports_of(made)
+    where = "-".join(map(str, support["vertices"]))
+    support["extending"] = None
+    stopped(made, f"all modes of the support of vertices {where} extend")
+    support["extending"] = 31
+    stopped(made, f"32 modes of the support of vertices {where} extend, not 31")
+    support["modes"] = None
+    refused(made, f"32 modes of the support of vertices {where} extend, not 31")
+    support["extending"] = 32
+    verified(made)
+
+
+TILING = "the support of vertices 5-6-9-10"
+
+
+def test_modes_that_are_listed() -> None:
+    made = certified("tiling")
+    modes = supports_of(made)[0]["modes"]
+    one, other = (dict(mode) for mode in modes)
+    del modes[1]
+    supports_of(made)[0]["extending"] = 1
+    stopped(made, f"the mode {other['choice']} of {TILING} is missing")
+    supports_of(made)[0]["extending"] = 2
+    modes[:] = [one, other, dict(one)]
+    stopped(made, f"the mode {one['choice']} of {TILING} appears twice")
+    modes[:] = [one, other, {**one, "choice": "++++"}]
+    stopped(made, f"'++++' is no mode of {TILING}")
+    letters = one["assignment"]
+    turned = letters.translate(str.maketrans("MV", "VM"))
+    modes[:] = [{**one, "assignment": turned}, other]
+    verified(made)
+    false = letters[:-1] + ("M" if letters[-1] == "V" else "V")
+    modes[:] = [{**one, "assignment": false}, other]
+    with pytest.raises(checker.CertificateError, match="has the letters"):
+        verified(made)
+
+
+def refutation(made: Document) -> tuple[Document, Document, str]:
+    """The mode of the bent zigzags that does not extend, its support, and their name."""
+    for support in supports_of(made):
+        for mode in support["modes"]:
+            if mode["extends"] == "refuted":
+                return support, mode, "-".join(map(str, support["vertices"]))
+    raise AssertionError
+
+
+def test_a_mode_that_does_not_extend() -> None:
+    made = certified("bent")
+    support, mode, where = refutation(made)
+    mode.update(extends="proved", loop=None, order=None)
+    support["extending"] = 1
+    message = f"a mode of the support of vertices {where} is refuted, not 'proved'"
+    refused(made, message)
+    support["modes"] = None
+    refused(made, f"0 modes of the support of vertices {where} extend, not 1")
+    support["extending"] = 0
+    verified(made)
+
+
+def test_a_mode_that_extends_is_not_refuted() -> None:
+    made = certified("tiling")
+    [support] = supports_of(made)
+    mode = support["modes"][0]
+    support["extending"] = 1
+    mode["extends"] = "refuted"
+    for loop in ([5, 9, 10, 6], [6, 10, 9, 5]):
+        for order in (3, 17):
+            mode.update(loop=loop, order=order)
+            shown = "-".join(map(str, loop))
+            message = f"the loop {shown} of {TILING} is not seen to fail at order {order}"
+            stopped(made, message)
+    for order in (0, 1, 4, 67):
+        mode.update(loop=[5, 9, 10, 6], order=order)
+        refused(made, f"there is no order {order}")
+    for loop in ([], [5], [5, 9], [5, 9, 6, 10], [5, 9, 10, 6, 5], [0, 1, 5, 4]):
+        mode.update(loop=loop, order=3)
+        with pytest.raises(checker.CertificateError, match=r"is no loop of|not seen to fail"):
+            verified(made)
+    mode.update(extends="refuted", loop=None, order=None)
+    refused(made, "a loop is not a list")
+    support["extending"] = 2
+    mode.update(extends="proved", loop=[5, 9, 10, 6], order=3)
+    stopped(made, "a loop that fails nothing")
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("interior", 5),
+        ("border", 11),
+        ("folds", 13),
+        ("sha256", "0" * 64),
+        ("flat", [[5, 6]]),
+        ("free", [[5, 6]]),
+        ("second_order", {"1": 3}),
+        ("second_order", {"1": 4, "2": 1}),
+        ("second_order", {"1": 3, "2": True}),
+        ("second_order", {"1": 3, "2": 1, "3": 0}),
+        ("true", {"1": 3, "2": 1}),
+        ("true", None),
+        ("rigid", "proved"),
+        ("modes", 4),
+    ],
+)
+def test_claims(key: str, value: object) -> None:
+    made = certified("bent")
+    right = made["claims"][key]
+    made["claims"][key] = value
+    stopped(made, f"claim {key} = {value!a}, but it is {right!a}")
+
+
+def test_folds_that_are_held() -> None:
+    made = certified("crossing", [(5, 6)])
+    made["claims"]["held"] = []
+    with pytest.raises(checker.CertificateError):
+        verified(made)
+    made = certified("square")
+    made["claims"]["held"] = [[0, 4]]
+    stopped(made, "0-4 is held flat, and no fold")
+    made = certified("square", [(4, 5)])
+    made["claims"]["held"] = [[4, 5], [4, 5]]
+    stopped(made, "held are not sorted")
+
+
+def test_vertices_with_more_than_four_folds() -> None:
+    star = [(2, 0), (1, 2), (-1, 2), (-2, 0), (-1, -2), (1, -2), (0, 0)]
+    rim = [(min(k, (k + 1) % 6), max(k, (k + 1) % 6)) for k in range(6)]
+    made = drawn(star, [*rim, *((k, 6) for k in range(6))])
+    refused(made, "vertex 6 has 6 folds that may fold")
+
+
+# --- limits --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "module", "limit", "value", "message"),
+    [
+        ("strip", panels, "MOST_LISTED", 31, "the modes of {} are too many"),
+        ("two rows", panels, "MOST_SUPPORTS", 4, "there are more than 4 supports"),
+        ("two rows", panel_modes, "MOST_STEPS", 9, "the search takes more than 9 steps"),
+        ("tiling", panel_modes, "MOST_ROWS", 15, "the loop 5-9-10-6 has too many choices"),
+        ("tiling", panel_modes, "MOST_ROOTS", 0, "the loop 5-9-10-6 needs too many square roots"),
+        (
+            "tiling",
+            panel_loops,
+            "MOST_BENT",
+            3,
+            "the loop 5-9-10-6 has too many transmissions not linear",
+        ),
+        ("two rows", panel_components, "MOST_SETS", 3, "the components take more than 3 steps"),
+    ],
+)
+def test_limits(
+    name: str,
+    module: object,
+    limit: str,
+    value: int,
+    message: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made = certified(name)
+    where = "-".join(map(str, supports_of(made)[0]["vertices"]))
+    monkeypatch.setattr(module, limit, value)
+    stopped(made, message.format(f"the support of vertices {where}"))
+
+
+def test_reading() -> None:
+    made = certified("square")
+    with pytest.raises(checker.FormatError, match="the kind 'sheets' is not known"):
+        checker.load(json.dumps({**made, "kind": "sheets"}))
+    with pytest.raises(checker.FormatError, match="expected an object with the keys"):
+        checker.load(json.dumps({**made, "more": 1}))
+    for place in ("pattern", "claims"):
+        with pytest.raises(checker.CertificateError, match="expected an object with the keys"):
+            verified({**made, place: {**made[place], "more": 1}})
+    made["pattern"]["vertices"] = 7
+    refused(made, "vertices is not a list")
+
+
+def test_matched_changes_facts_only() -> None:
+    made = certified("bent")
+    assert matched(made) == made
+
+
+def test_a_free_fold_is_in_every_component() -> None:
+    sheet = grid(2, 2, lambda i, j: (i, j))
+    assert verified(certificate_of_panels(decompose(sheet)))["second_order"] == {"1": 2}
