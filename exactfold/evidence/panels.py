@@ -94,7 +94,7 @@ def _support(
     listed: list[Mode] | None,
 ) -> Document:
     """A support with the number of its modes that truly fold, and the modes if they are listed."""
-    first = extension(pattern, moving, support.example)
+    first = listed[0].extends if listed else extension(pattern, moving, support.example)
     by = "loops"
     if first.verdict is PROVED and not first.order:
         by = "forest" if first.by == "forest" else "linear"
