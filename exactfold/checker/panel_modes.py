@@ -198,7 +198,7 @@ class Modes:
                         whole = (*old, *(row[corners.index(v)] for v in fresh))
                         short = tuple(whole[k] for k in kept)
                         new[short] = new.get(short, 0) + count
-                require(len(new) <= MOST_ROWS, f"the modes of {named(support)} are too many")
+                require(len(new) <= MOST_ROWS, f"{named(support)} takes more than {MOST_ROWS} rows")
             table, order = new, [following[k] for k in kept]
         places = sorted(range(len(order)), key=lambda k: order[k])
         return {tuple(row[k] for k in places): count for row, count in table.items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from panel_sheets import grid
 
 from exactfold import checker
 from exactfold.checker import panel_components, panel_loops, panel_modes, panel_sheet, panels
+from exactfold.checker.towers import Number
 from exactfold.errors import NotApplicableError
 from exactfold.evidence.panels import certificate_of_panels
 from exactfold.modes.decomposition import decompose
@@ -380,6 +382,7 @@ def test_vertices_with_more_than_four_folds() -> None:
             3,
             "the loop 5-9-10-6 has too many transmissions not linear",
         ),
+        ("strip", panel_modes, "MOST_ROWS", 16, "{} takes more than 16 rows"),
         ("two rows", panel_components, "MOST_SETS", 3, "the components take more than 3 steps"),
     ],
 )
@@ -408,6 +411,59 @@ def test_reading() -> None:
             verified({**made, place: {**made[place], "more": 1}})
     made["pattern"]["vertices"] = 7
     refused(made, "vertices is not a list")
+
+
+def test_what_nothing_else_refuses_is_malformed() -> None:
+    made = certified("strip")
+    supports_of(made)[0]["modes"][0]["choice"] = []
+    refused(made, "malformed: TypeError while checking")
+
+
+@pytest.mark.parametrize("name", ["tiling", "bent", "strip"])
+def test_transmissions_close_the_vertices(name: str) -> None:
+    """Round a vertex the product of the quaternions 1 + tau d has no vector part."""
+    sheet, _ = panel_sheet.read_panels(certified(name)["pattern"])
+    modes = panel_modes.Modes(sheet, sheet.live([]))
+    loops = panel_loops.Loops(modes)
+    zero, one = sheet.tower.number(0), sheet.tower.number(1)
+    bent = 0
+    for v, near in modes.near.items():
+        for line, found in enumerate(modes.lines[v]):
+            for start in found.densities:
+                product = (1.0, 0.0, 0.0, 0.0)
+                for u in near:
+                    tau = 0.0
+                    if u in found.densities:
+                        step = loops.step(v, line, start, u) if u != start else None
+                        series = (
+                            [one]
+                            if step is None
+                            else panel_loops.composed([step], 33, lambda _, value: value, zero, one)
+                        )
+                        bent += step is not None and step.quadratic is not None
+                        tau = sum(
+                            approximate(c) * 0.004 ** (2 * n + 1) for n, c in enumerate(series)
+                        )
+                    x, y = (tau * approximate(c) for c in sheet.vector(v, u))
+                    product = times(product, (1.0, x, y, 0.0))
+                assert max(map(abs, product[1:])) < 1e-13
+    assert bent > 10
+
+
+def approximate(number: Number) -> float:
+    """The number in floating point."""
+    found = number.enclosed(200)
+    return float(Fraction(found.low + found.high, 2 << 200))
+
+
+def times(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, float, float, float]:
+    """The product of two quaternions."""
+    return (
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    )
 
 
 def test_matched_changes_facts_only() -> None:

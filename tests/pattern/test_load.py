@@ -134,6 +134,7 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "rigidity.PatternFacts",
         "modes.Decomposition",
         "count.PanelFacts",
+        "pattern.Converted",
     }
     of_panels = {"modes.decompose", "count.panel_facts", "pattern.triangulating_edges"}
     taking = {
