@@ -3,8 +3,8 @@
 Only the pattern and the folds that are held flat are taken from the file. The flat closure, the
 lines of motions at each vertex, the supports with the numbers of their modes, the components and
 which modes truly fold are found again, and every claim is compared. Why the answer is complete:
-the structure theorem, and the theorem of transmissions, in docs/panels.md, 2 and 4. Sheets where more than
-four folds of a vertex may fold are refused.
+the structure theorem, and the theorem of transmissions, in docs/panels.md, 2 and 4. Sheets
+where more than four folds of a vertex may fold are refused.
 """
 
 from __future__ import annotations

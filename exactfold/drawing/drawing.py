@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:
     from exactfold.exact.surds import Number
+from exactfold.wording import counted
 
 Point: TypeAlias = "tuple[Number, Number]"
 Snap: TypeAlias = "Literal['auto', 'exact'] | int"
@@ -39,3 +40,8 @@ class Drawing:
     source: str
     remarks: tuple[str, ...] = ()
     exact: bool = False
+
+    def __repr__(self) -> str:
+        return (
+            f"<Drawing: {counted(len(self.points), 'point')}, {counted(len(self.lines), 'line')}>"
+        )

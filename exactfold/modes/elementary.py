@@ -13,6 +13,7 @@ from exactfold.modes.densities import Density, Roots
 from exactfold.modes.local import LocalMode, local_modes
 from exactfold.modes.stars import Star
 from exactfold.pattern.panel_pattern import Edge
+from exactfold.wording import counted
 
 Choice: TypeAlias = "tuple[LocalMode, Choice] | None"
 Known: TypeAlias = "Mapping[Edge, Density | None]"
@@ -34,6 +35,10 @@ class Support:
     vertices: tuple[int, ...]
     count: int
     example: tuple[LocalMode, ...] = ()
+
+    def __repr__(self) -> str:
+        size = counted(len(self.vertices), "vertex")
+        return f"<Support: {size} from {self.vertices[0]}, {counted(self.count, 'mode')}>"
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from exactfold.exact.surds import Number, common_field, exact, joined, real_root
 from exactfold.modes.kernel import Rows, imposed
 from exactfold.modes.stars import Star, bracket
 from exactfold.pattern.panel_pattern import Edge
+from exactfold.wording import counted
 
 Vector: TypeAlias = list[Number]
 Squares: TypeAlias = list[tuple[Number, Vector]]
@@ -33,6 +34,10 @@ class Leaf:
     rows: Mapping[Edge, tuple[Number, ...]]
     size: int
     vertices: tuple[int, ...]
+
+    def __repr__(self) -> str:
+        left = f", {counted(len(self.vertices), 'form')} left" if self.vertices else ""
+        return f"<Leaf: {counted(len(self.rows), 'fold')}, dimension {self.size}{left}>"
 
     @property
     def dimension(self) -> int | None:

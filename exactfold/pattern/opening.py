@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from exactfold.drawing.drawing import Drawing, Snap
@@ -62,6 +61,9 @@ class Opened:
     snapped: Fraction = Fraction(0)
     largest_move: float = 0.0
     field_name: str = "Q"
+
+    def __repr__(self) -> str:
+        return f"<Opened: {self.sheet!r}, in {self.field_name}>"
 
     @property
     def read(self) -> dict[str, Any] | None:
@@ -219,7 +221,7 @@ def _chosen(drawing: Drawing, found: Sheets, number: int | None) -> Opened:
     lines += [str(repair) for repair in found.repairs]
     return Opened(
         triangulated(pattern) or pattern,
-        MappingProxyType(letters),
+        letters,
         tuple(lines),
         largest_move=found.coordinates.largest_move,
         field_name=pattern.field_name,

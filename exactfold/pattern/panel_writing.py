@@ -14,6 +14,7 @@ from exactfold.pattern.fold_writing import ANGLES, coordinate_keys, double, head
 from exactfold.pattern.opening import Opened, panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.pattern.triangulating import triangulating_edges
+from exactfold.wording import counted
 
 _FOLDS = frozenset("MVFUJ")
 
@@ -26,6 +27,9 @@ class Converted:
     letters: Mapping[Edge, str]
     faces: tuple[tuple[int, ...], ...]
     joins: tuple[Edge, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<Converted: {self.pattern!r}, {counted(len(self.joins), 'edge')} added>"
 
     def document(self, title: str | None = None) -> dict[str, Any]:
         """The sheet as a FOLD 1.2 object, ready for `json.dumps`.

@@ -18,7 +18,9 @@ from exactfold import errors
 from exactfold.algebra.exact_solution import RootClass
 from exactfold.algebra.quotient import QuotientAlgebra
 from exactfold.certify.box import Uncertified
-from exactfold.pattern.families import H1Triangulation, sample_h1_sequence
+from exactfold.pattern.families import H1Triangulation, sample_h1_sequence, single_vertex
+from exactfold.pattern.opening import panels
+from exactfold.pattern.panel_writing import converted
 from exactfold.pattern.random_squares import sample_random_square
 from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
@@ -40,6 +42,11 @@ def _streamed(folder):
     return exactfold.stream_branches(PATTERN, folder / "branches.txt")
 
 
+DRAWING = exactfold.read_drawing(exactfold.data.example_path("zigzags"))
+SHEETS = exactfold.drawing.exact_sheets(DRAWING)
+OPENED = exactfold.open_pattern(exactfold.data.example_path("zigzags"))
+MOTIONS = exactfold.decompose(OPENED.sheet)
+SPACES = exactfold.decompose(panels(single_vertex(5)))
 VALUES = {
     "pattern": PATTERN,
     "pattern with long coordinates": exactfold.CreasePattern(
@@ -75,6 +82,20 @@ VALUES = {
     "solution": SOLUTION,
     "class": SOLUTION.classes[0],
     "algebra": exactfold.algebra.quotient_algebra(SYSTEM.chart.system),
+    "drawing": DRAWING,
+    "line": DRAWING.lines[0],
+    "sheets": SHEETS,
+    "repair": SHEETS.repairs[0],
+    "exact coordinates": SHEETS.coordinates,
+    "opened drawing": OPENED,
+    "converted drawing": converted(OPENED),
+    "panels": OPENED.sheet,
+    "facts of panels": exactfold.count.panel_facts(OPENED.sheet),
+    "decomposition": MOTIONS,
+    "mode": MOTIONS.modes[0],
+    "extension": MOTIONS.modes[0].extends,
+    "support": MOTIONS.parts[0].supports[0],
+    "leaf": SPACES.parts[0].spaces[0],
     "count": COUNT,
     "exact count": EXACT,
     "count with flat vertices": exactfold.count_branches(FLAT),
