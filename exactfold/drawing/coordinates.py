@@ -52,6 +52,9 @@ class Exact:
     kept: tuple[int, ...] = ()
     reason: str = ""
 
+    def __repr__(self) -> str:
+        return f"<Exact: {self.drawing!r}, in {self.field_name}>"
+
     @property
     def points(self) -> tuple[Point, ...]:
         """The exact points."""

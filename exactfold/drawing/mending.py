@@ -37,6 +37,9 @@ class Repair:
     places: tuple[Place, ...]
     sentence: str
 
+    def __repr__(self) -> str:
+        return f"<Repair: {self.step}, {self.count}>"
+
     def __str__(self) -> str:
         where = ", ".join(f"{p.point} ({p.x:.6g}, {p.y:.6g})" for p in self.places)
         more = ", ..." if self.count > len(self.places) else ""

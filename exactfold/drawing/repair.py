@@ -23,6 +23,7 @@ from exactfold.drawing.mending import (
 from exactfold.drawing.sheets import bordered, sheets
 from exactfold.drawing.splitting import split
 from exactfold.errors import MalformedPatternError, UsageError
+from exactfold.wording import counted
 
 STEPS: Final = ("merge", "duplicates", "split", "join", "dangling", "dissolve", "border")
 """The steps in their order."""
@@ -80,6 +81,10 @@ class Sheets:
     sheets: tuple[Drawing, ...]
     coordinates: Exact
     repairs: tuple[Repair, ...]
+
+    def __repr__(self) -> str:
+        sheets, repairs = counted(len(self.sheets), "sheet"), counted(len(self.repairs), "repair")
+        return f"<Sheets: {sheets} after {repairs}>"
 
 
 def exact_sheets(

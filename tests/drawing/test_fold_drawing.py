@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 from drawings import SQUARE, as_fold, drawn, places
 
-from exactfold.data import EXAMPLES, example_path
+from exactfold.data import SHEETS, example_path
 from exactfold.drawing.fold_drawing import read_fold_drawing
 from exactfold.drawing.read import read_drawing
 from exactfold.errors import (
@@ -33,7 +33,7 @@ def sheet(**keys):
     return read(**{k: v for k, v in {**document, **keys}.items() if v is not None})
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_the_shipped_examples_are_the_patterns_that_the_strict_reader_gives(name):
     strict = load_fold(example_path(name))
     drawing = read_drawing(example_path(name))
