@@ -317,6 +317,39 @@ def simple(value: Number) -> Number:
     return value
 
 
+def ball(value: Number, bits: int) -> arb:
+    """An enclosure of a number, computed with `bits` bits."""
+    return (value if isinstance(value, Surd) else RATIONALS.number(value)).ball(bits)
+
+
+def rank_at_least(rows: Sequence[Sequence[Number]], bits: int = 256) -> int:
+    """A lower bound of the rank of a matrix: pivots of an elimination in balls that are not 0.
+
+    >>> root = RATIONALS.adjoined(2).root
+    >>> rank_at_least([[root, 2], [1, root], [1, 1]])
+    2
+    """
+    before = ctx.prec
+    ctx.prec = bits
+    try:
+        left = [[ball(x, bits) for x in row] for row in rows]
+        found = 0
+        for column in range(len(left[0]) if left else 0):
+            sure = [row for row in left if not row[column].contains(0)]
+            if not sure:
+                continue
+            pivot = max(sure, key=lambda row: float(abs(row[column].mid())))
+            found += 1
+            left = [
+                [x - row[column] / pivot[column] * y for x, y in zip(row, pivot, strict=True)]
+                for row in left
+                if row is not pivot
+            ]
+    finally:
+        ctx.prec = before
+    return found
+
+
 def rational(value: Number) -> Fraction:
     """The number as a fraction; raises `UsageError` if it is irrational."""
     plain = simple(value)

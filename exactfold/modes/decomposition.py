@@ -11,7 +11,7 @@ from typing import Any
 import networkx as nx
 
 from exactfold.errors import TooManyModesError
-from exactfold.exact.surds import Number, exact
+from exactfold.exact.surds import Number, exact, rank_at_least
 from exactfold.modes.components import components
 from exactfold.modes.densities import UndecidedDensityError
 from exactfold.modes.elementary import ElementaryMode, ModeSearch, Support
@@ -19,7 +19,7 @@ from exactfold.modes.extension import Extension, Loops, extend_together, extensi
 from exactfold.modes.kernel import Rows, first_order
 from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, stars
-from exactfold.modes.subspaces import Leaf, independent_parts, leaves, rank
+from exactfold.modes.subspaces import Leaf, independent_parts, leaves
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.progress import Progress
@@ -400,7 +400,7 @@ def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -
     """Whether a leaf is a line at which the conditions have full rank.
 
     At w on the line the derivatives `dK_v(w)` of all vertices leave in the space of first-order
-    motions that line alone; then one curve of true motions at most is tangent to it
+    motions that line alone, shown by balls; then one curve of true motions at most is tangent to it
     (docs/panels.md, 5).
     """
     if leaf.size != 1 or leaf.vertices:
@@ -414,7 +414,7 @@ def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -
             if weight != 0 and edge in rows:
                 row = [x + weight * y for x, y in zip(row, rows[edge], strict=True)]
         found.append(row)
-    return rank(found, size) == size - 1
+    return rank_at_least(found) >= size - 1
 
 
 def _local(star: Star, rows: Rows) -> LocalMode:

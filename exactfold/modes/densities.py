@@ -11,7 +11,7 @@ from typing import Final, TypeAlias
 
 from flint import arb
 
-from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField, exact, sign
+from exactfold.exact.surds import Number, Surd, SurdField, ball, exact, sign
 
 Factors: TypeAlias = Mapping[int, int]
 _PRECISIONS: Final = (64, 256, 2048)
@@ -104,8 +104,9 @@ class Density:
         An enclosure that leaves 1 out proves that it is not; that it is, is shown in the field of
         all roots that occur. Raises `UndecidedDensityError` if these are too many.
 
-        >>> roots = Roots(RATIONALS)
-        >>> root, half = roots.density(RATIONALS.adjoined(2).root), roots.density(Fraction(1, 2))
+        >>> rationals = SurdField(())
+        >>> roots = Roots(rationals)
+        >>> root, half = roots.density(rationals.adjoined(2).root), roots.density(Fraction(1, 2))
         >>> one = root.times(root).times(half)
         >>> one.is_one(), one.times(root).is_one()
         (True, False)
@@ -133,7 +134,7 @@ class Density:
 
     def ball(self, bits: int) -> arb:
         """An enclosure of the product."""
-        total = _ball(self.base, bits)
+        total = ball(self.base, bits)
         for number, power in self.factors.items():
             total *= self.roots.factors[number].ball(bits) ** power
         return total
@@ -159,9 +160,3 @@ class Density:
             for _ in range(abs(power)):
                 total = total * value if power > 0 else total / value
         return total
-
-
-def _ball(value: Number, bits: int) -> arb:
-    if isinstance(value, Surd):
-        return value.ball(bits)
-    return RATIONALS.number(value).ball(bits)

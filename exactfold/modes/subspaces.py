@@ -164,11 +164,6 @@ def _squares(star: Star, rows: Rows, size: int) -> Squares:
     return [(d, _combined(functional, basis, size)) for d, functional in _diagonalised(form)]
 
 
-def rank(rows: Sequence[Sequence[Number]], size: int) -> int:
-    """The rank of a matrix with `size` columns, exactly."""
-    return len(_row_space(joined(rows), size)[0])
-
-
 def _row_space(rows: Sequence[Sequence[Number]], size: int) -> tuple[list[Vector], list[Vector]]:
     """A basis of the span of the rows taken from them, and every row in that basis."""
     basis: list[Vector] = []
