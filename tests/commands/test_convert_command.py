@@ -11,7 +11,7 @@ from files import written
 from running import BAD_INPUT, PROVED, UNDECIDED, USAGE, run
 
 from exactfold import CreasePattern, read_fold
-from exactfold.data import EXAMPLES, example_path
+from exactfold.data import SHEETS, example_path
 from exactfold.pattern.opening import open_pattern
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -89,7 +89,7 @@ def test_all_formats_give_one_file(tmp_path: Path, writer) -> None:
     assert len(sheet.folds) == len(sheet.faces) == 2
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", SHEETS)
 def test_triangulated_sheets_stay_what_they_are(tmp_path: Path, name: str) -> None:
     out = tmp_path / "out.fold"
     assert run("convert", name, out).exit_code == PROVED
