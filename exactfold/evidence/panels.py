@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from exactfold.checker.formats import LISTING, PANELS, PANELS_VERSION
-from exactfold.errors import NotApplicableError
+from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.evidence.entries import Document
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, Surd
@@ -115,7 +115,11 @@ def _by_folds(
             )
             continue
         groups: dict[tuple[Edge, ...], list[tuple[LocalMode, ...]]] = {}
-        for mode in search.listed(support):
+        try:
+            modes = search.listed(support)
+        except TooManyModesError as error:
+            raise NotApplicableError(f"a certificate lists the modes: {error}") from None
+        for mode in modes:
             groups.setdefault(tuple(mode.densities), []).append(mode.choice)
         for edges, choices in sorted(groups.items()):
             yield _Together(support.vertices, edges, len(choices), tuple(choices))

@@ -111,8 +111,9 @@ class ModeSearch:
         return found
 
     def listed(self, support: Support) -> list[ElementaryMode]:
-        """Every elementary mode of a support; raises `TooManyModesError` beyond 20,000 states."""
+        """Every elementary mode of a support; raises `TooManyModesError` if they are too many."""
         wanted = self._bits(support.vertices)
+        self._steps = 0
         return [
             ElementaryMode(_chosen(state.choice), dict(sorted((state.densities or {}).items())))
             for state in self._grown(support.vertices[0], wanted, listing=True)

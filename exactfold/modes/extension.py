@@ -66,10 +66,10 @@ def extension(
         steps = _steps(cycle, stars, chosen)
         shape = tuple(step.key for step in steps)
         if shape not in known:
-            known[shape] = _round(cycle, steps)
+            known[shape] = _round(steps)
         result = known[shape]
         if result.verdict is not PROVED:
-            return result
+            return _named(result, cycle)
         highest = max(highest, result.order)
         nonlinear = nonlinear or result.order > 1
     if not nonlinear:
@@ -129,7 +129,7 @@ def cycle_basis(pattern: PanelPattern, graph: nx.Graph) -> list[tuple[int, ...]]
 def _faces(pattern: PanelPattern, sides: set[tuple[int, int]]) -> list[tuple[int, ...]]:
     """The faces of a plane graph, given by its directed edges."""
     after: dict[tuple[int, int], tuple[int, int]] = {}
-    for v in {v for v, _ in sides}:
+    for v in sorted({v for v, _ in sides}):
         around = [u for u in pattern.stars[v] if (v, u) in sides]
         for k, u in enumerate(around):
             after[u, v] = (v, around[k - 1])
@@ -156,37 +156,38 @@ def _steps(
     ]
 
 
-def _round(cycle: Sequence[int], steps: Sequence[Transmission]) -> Extension:
-    """Whether the transmissions round one loop of vertices compose to the identity."""
+def _round(steps: Sequence[Transmission]) -> Extension:
+    """Whether the transmissions round a loop compose to the identity, of any loop of its shape."""
     bent = sum(not step.is_linear for step in steps)
     if bent == 0:
         return Extension(PROVED, "linear transmissions", order=1)
-    where = "-".join(str(v) for v in cycle)
     if bent > _MOST_NONLINEAR:
-        return Extension(
-            UNDECIDED, f"the loop {where} has {bent} vertices with nonlinear transmissions"
-        )
+        return Extension(UNDECIDED, f"has {bent} vertices with nonlinear transmissions")
     order = 2**bent + 1
     terms = order // 2 + 1
     for few in (2, terms):
         if (failing := _failing_in_balls(steps, few)) is not None:
-            return _refuted(cycle, failing)
+            return _refuted(failing)
     values = [x for step in steps for x in (step.gain, *(step.quadratic or ()))]
     if len({x.field.radicands for x in values if isinstance(x, Surd)}) > _MOST_ROOTS:
-        return Extension(UNDECIDED, f"the loop {where} closes to {_BITS} bits; it needs many roots")
+        return Extension(UNDECIDED, f"closes to {_BITS} bits; it needs many square roots")
     number = JoinedField(values).number
     exact = composed([step.series(terms, number) for step in steps], number)
     for n in range(1, terms):
         if exact[n] != 0:
-            return _refuted(cycle, 2 * n + 1)
+            return _refuted(2 * n + 1)
     return Extension(PROVED, f"loops to order {order}", order=order)
 
 
-def _refuted(cycle: Sequence[int], order: int) -> Extension:
+def _refuted(order: int) -> Extension:
+    return Extension(REFUTED, f"does not close at order {order}", order=order)
+
+
+def _named(result: Extension, cycle: Sequence[int]) -> Extension:
+    """What is known of loops of a shape, said of one of them."""
     where = "-".join(str(v) for v in cycle)
-    return Extension(
-        REFUTED, f"the loop {where} does not close at order {order}", tuple(cycle), order
-    )
+    refuted = tuple(cycle) if result.verdict is REFUTED else ()
+    return Extension(result.verdict, f"the loop {where} {result.by}", refuted, result.order)
 
 
 def _failing_in_balls(steps: Sequence[Transmission], terms: int) -> int | None:

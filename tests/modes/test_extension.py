@@ -1,0 +1,56 @@
+"""Which loop is named where a mode does not fold."""
+
+from fractions import Fraction
+from itertools import pairwise
+
+from panel_sheets import grid
+
+from exactfold.modes.decomposition import decompose
+from exactfold.modes.elementary import ModeSearch
+from exactfold.modes.extension import Loops, extension
+from exactfold.modes.stars import stars
+from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.verdict import REFUTED
+
+
+def bent() -> PanelPattern:
+    """Two zigzags with equal second differences and different slopes across two straight rows."""
+    offsets, columns = (0, 1, 0, 3), [(0, 0), (1, 0), (1, 1), (0, 0)]
+
+    def place(i: int, j: int) -> tuple[Fraction, Fraction]:
+        moves, slope = columns[i]
+        return Fraction(8 * i + moves * offsets[j] + slope * j), Fraction(4 * j)
+
+    return grid(3, 3, place)
+
+
+def renumbered(pattern: PanelPattern, first: int) -> PanelPattern:
+    """The same sheet with new vertices on one border edge before all others."""
+    (a, b), *_ = pattern.border_edges
+    (ax, ay), (bx, by) = pattern.vertices[a], pattern.vertices[b]
+    steps = [Fraction(k + 1, first + 1) for k in range(first)]
+    added = [(ax + (bx - ax) * t, ay + (by - ay) * t) for t in steps]
+    chain = [a + first, *range(first), b + first]
+    edges = [(i + first, j + first) for i, j in pattern.edges if (i, j) != (a, b)]
+    edges += list(pairwise(chain))
+    return PanelPattern([*added, *pattern.vertices], edges)
+
+
+def test_the_loop_named_is_one_of_the_mode_also_if_its_shape_was_seen_before() -> None:
+    known: Loops = {}
+    for first in (0, 3):
+        pattern = renumbered(bent(), first)
+        moving = stars(pattern)
+        search = ModeSearch(moving, pattern.field)
+        modes = [mode for support in search.supports(100) for mode in search.listed(support)]
+        found = [extension(pattern, moving, mode.choice, known) for mode in modes]
+        [refuted] = [result for result in found if result.verdict is REFUTED]
+        assert set(refuted.cycle) == {v + first for v in (5, 6, 9, 10)}
+        assert "-".join(map(str, refuted.cycle)) in refuted.by
+        assert refuted.order == 3
+    assert len(known) == 1  # the shape is shared, or the second sheet would show nothing
+
+
+def test_the_listed_modes_name_their_own_loops() -> None:
+    for mode in decompose(bent()).modes:
+        assert set(mode.extends.cycle) <= set(mode.active)
