@@ -43,7 +43,7 @@ from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import available_cores
 
 if TYPE_CHECKING:
-    from exactfold.modes.decomposition import Decomposition
+    from exactfold.modes.result import Decomposition
 
 FAILED = "failed"
 """In place of a status: there is an error."""

@@ -22,7 +22,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.verdict import PROVED
 
 if TYPE_CHECKING:  # branches are counted without what panels need
-    from exactfold.modes.decomposition import Decomposition
+    from exactfold.modes.result import Decomposition
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from exactfold.pattern.opening import Opened, opened
 from exactfold.progress import Progress
 
 if TYPE_CHECKING:
-    from exactfold.modes.decomposition import Decomposition
+    from exactfold.modes.result import Decomposition
 
 Source = bytes | CreasePattern | InputError
 """What is sent to a worker: the bytes of a FOLD file, a pattern, or why there is neither."""

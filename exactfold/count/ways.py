@@ -22,7 +22,7 @@ from exactfold.progress import Progress
 if TYPE_CHECKING:
     from exactfold.branches.result import BranchCount
     from exactfold.drawing.drawing import Snap
-    from exactfold.modes.decomposition import Decomposition
+    from exactfold.modes.result import Decomposition
     from exactfold.pattern.panel_pattern import PanelPattern
 
 Sheet: TypeAlias = (

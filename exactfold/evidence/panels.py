@@ -12,10 +12,11 @@ from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.evidence.entries import Document
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, Surd
-from exactfold.modes.decomposition import MOST_LISTED, Counts, Decomposition, Mode
+from exactfold.modes.decomposition import MOST_LISTED
 from exactfold.modes.elementary import ModeSearch, Support
 from exactfold.modes.extension import Loops, extension
 from exactfold.modes.local import LocalMode, local_modes
+from exactfold.modes.result import Counts, Decomposition, Mode
 from exactfold.modes.stars import Star, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED

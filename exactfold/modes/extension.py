@@ -9,7 +9,8 @@ from typing import Any, Final, TypeAlias
 import networkx as nx
 from flint import arb, ctx
 
-from exactfold.exact.surds import JoinedField, Number, Surd
+from exactfold.exact.joined_fields import JoinedField
+from exactfold.exact.surds import Number, Surd
 from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, edge_of
 from exactfold.modes.transmission import Transmission, composed

@@ -10,7 +10,8 @@ from typing import Final, TypeAlias
 import networkx as nx
 
 from exactfold.errors import TooManyModesError
-from exactfold.exact.surds import Number, common_field, exact, joined, real_root, sign
+from exactfold.exact.joined_fields import joined
+from exactfold.exact.surds import Number, common_field, exact, real_root, sign
 from exactfold.modes.kernel import Rows, imposed
 from exactfold.modes.stars import Star, bracket
 from exactfold.pattern.panel_pattern import Edge

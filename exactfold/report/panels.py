@@ -15,7 +15,7 @@ from exactfold.wording import agreeing, counted
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from exactfold.modes.decomposition import Decomposition
+    from exactfold.modes.result import Decomposition
 
 NAMED = 12
 """Most folds that are named in a line."""

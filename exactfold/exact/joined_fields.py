@@ -1,0 +1,91 @@
+"""Numbers of several fields of square roots together: in one tower, or enclosed in balls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from flint import ctx
+
+from exactfold.errors import UsageError
+from exactfold.exact.surds import RATIONALS, Coefficients, Number, Surd, ball
+
+
+class JoinedField:
+    """A tower that grows to hold numbers of several fields, and those numbers in it.
+
+    >>> two, three = RATIONALS.adjoined(2).root, RATIONALS.adjoined(3).root
+    >>> tower = JoinedField([two, three])
+    >>> tower.number(two) * tower.number(three) < 3, tower.field.dimension
+    (True, 4)
+    """
+
+    def __init__(self, values: Iterable[Number]) -> None:
+        self.field = RATIONALS
+        self._roots: dict[tuple[Coefficients, ...], Surd | None] = {}
+        for value in values:
+            if isinstance(value, Surd):
+                for level in range(1, len(value.field.radicands) + 1):
+                    self._root(value.field.radicands[:level])
+
+    def number(self, value: Number) -> Surd:
+        """The number in the tower."""
+        if not isinstance(value, Surd):
+            return self.field.number(value)
+        return self._lifted(value.field.radicands, value.coefficients)
+
+    def _lifted(self, radicands: tuple[Coefficients, ...], a: Coefficients) -> Surd:
+        if len(a) == 1:
+            return self.field.number(a[0])
+        half, below = len(a) // 2, radicands[:-1]
+        low = self._lifted(below, a[:half])
+        if not any(a[half:]):
+            return low
+        return low + self._root(radicands) * self._lifted(below, a[half:])
+
+    def _root(self, radicands: tuple[Coefficients, ...]) -> Surd:
+        known = self._roots.get(radicands)
+        if known is None:
+            square = self._lifted(radicands[:-1], radicands[-1])
+            self.field = self.field.adjoined(square)
+            known = self.field.square_root(square)
+            if known is None:
+                raise UsageError(f"{square} has no square root in the field made for it")
+            self._roots[radicands] = known
+        return known
+
+
+def joined(rows: Sequence[Sequence[Number]]) -> list[list[Number]]:
+    """The entries of a matrix in one field, if they are not all in a chain of fields."""
+    fields = {x.field for row in rows for x in row if isinstance(x, Surd)}
+    if len(fields) < 2:
+        return [list(row) for row in rows]
+    tower = JoinedField(x for row in rows for x in row)
+    return [[tower.number(x) for x in row] for row in rows]
+
+
+def rank_at_least(rows: Sequence[Sequence[Number]], bits: int = 256) -> int:
+    """A lower bound of the rank of a matrix: pivots of an elimination in balls that are not 0.
+
+    >>> root = RATIONALS.adjoined(2).root
+    >>> rank_at_least([[root, 2], [1, root], [1, 1]])
+    2
+    """
+    before = ctx.prec
+    ctx.prec = bits
+    try:
+        left = [[ball(x, bits) for x in row] for row in rows]
+        found = 0
+        for column in range(len(left[0]) if left else 0):
+            sure = [row for row in left if not row[column].contains(0)]
+            if not sure:
+                continue
+            pivot = max(sure, key=lambda row: float(abs(row[column].mid())))
+            found += 1
+            left = [
+                [x - row[column] / pivot[column] * y for x, y in zip(row, pivot, strict=True)]
+                for row in left
+                if row is not pivot
+            ]
+    finally:
+        ctx.prec = before
+    return found

@@ -1,0 +1,156 @@
+"""What is known of the motions of a sheet of rigid panels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from exactfold.modes.elementary import Support
+from exactfold.modes.extension import Extension
+from exactfold.modes.local import LocalMode
+from exactfold.modes.subspaces import Leaf
+from exactfold.pattern.described import described_panels
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.schemas import headed
+from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+
+Counts = Mapping[int, int]
+"""{dimension: number of components}."""
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One elementary mode: a one-parameter motion, and whether it truly folds.
+
+    `assignment` holds M or V for each active fold, on one side of the sheet; on the other all
+    letters are exchanged. `choice` are the local modes it is made of.
+    """
+
+    active: tuple[int, ...]
+    assignment: Mapping[Edge, str]
+    extends: Extension
+    choice: tuple[LocalMode, ...] = field(default=(), repr=False)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The mode as it stands in JSON."""
+        return {
+            "active": list(self.active),
+            "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
+            "extends": str(self.extends.verdict),
+            "by": self.extends.by,
+        }
+
+
+@dataclass(frozen=True)
+class Decomposition:
+    """The ways in which a sheet of rigid panels starts to fold, and which of them truly fold.
+
+    `true` is {dimension: number} of the components of the true configurations near the flat state,
+    None if it is not known. `second_order` is the same for all motions to second order, of which
+    some may not fold; `status` is PROVED if it is known. `rigid` says whether the sheet cannot move
+    at all. `flat` are folds that stay flat in every real motion, `free` those with both ends on the
+    border; `held` are those that were not to fold. `theory` is "modes" if all vertices have at most
+    four folds, else "subspaces".
+    """
+
+    pattern: PanelPattern
+    theory: str
+    status: Verdict
+    rigid: Verdict
+    second_order: Counts | None
+    true: Counts | None
+    flat: tuple[Edge, ...]
+    free: tuple[Edge, ...]
+    modes: tuple[Mode, ...] = ()
+    modes_count: int | None = None
+    reason: str = ""
+    parts: tuple[Part, ...] = ()
+    near_misses: Mapping[Edge, float] = field(default_factory=dict)
+    held: tuple[Edge, ...] = ()
+    read: Mapping[str, Any] | None = None
+    seconds: float = field(default=0.0, compare=False)
+
+    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold count --json`: `schema("count")`.
+
+        What belongs to branches of triangulated sheets is null.
+        """
+        counts = (self.second_order, self.true)
+        rigid = {PROVED: True, REFUTED: False}.get(self.rigid)
+        return {
+            **headed("count"),
+            "pattern": described_panels(self.pattern, name),
+            "status": str(self.status),
+            "reason": self.reason,
+            "by": "enumeration" if self.status is PROVED else None,
+            "method": self.theory,
+            "why": "",
+            **dict.fromkeys(("distinct", "with_multiplicity", "real", "nonreal")),
+            "true_branches": str(UNDECIDED if self.true is None else PROVED),
+            **dict.fromkeys(("dimension", "degree")),
+            "certificate": certificate,
+            "warnings": [],
+            "seconds": round(self.seconds, 3),
+            "open_questions": [part.reason for part in self.parts if part.reason],
+            "settings": {},
+            "branches": [],
+            "theory": self.theory,
+            "rigid": rigid,
+            "components": {
+                key: None if value is None else {str(k): n for k, n in value.items()}
+                for key, value in zip(("second_order", "true"), counts, strict=True)
+            },
+            "modes_count": self.modes_count,
+            "modes": [mode.to_dict() for mode in self.modes],
+            "flat_folds": [f"{i}-{j}" for i, j in self.flat],
+            "free_folds": [f"{i}-{j}" for i, j in self.free],
+            "near_misses": [
+                {"fold": f"{i}-{j}", "quotient": x} for (i, j), x in self.near_misses.items()
+            ],
+            "read": None if self.read is None else dict(self.read),
+        }
+
+    @property
+    def ways(self) -> int | None:
+        """The number of components that truly fold, 0 for a rigid sheet; None if not known."""
+        if self.true is None:
+            return None
+        return sum(number for dimension, number in self.true.items() if dimension)
+
+    @property
+    def warning(self) -> str | None:
+        """What to know of the drawing before the result is read: a loop that nearly closes."""
+        if not self.near_misses:
+            return None
+        (i, j), quotient = next(iter(self.near_misses.items()))
+        return (
+            f"a loop of folds nearly closes at {i}-{j}, off by {abs(quotient - 1):.1e}: the "
+            "drawing may be rounded (try --snap auto)"
+        )
+
+    def __repr__(self) -> str:
+        counts = "" if self.second_order is None else f", {dict(self.second_order)}"
+        return f"<Decomposition: {self.status}{counts}, {self.pattern!r}>"
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the sheet that moves independently: vertices joined by folds that may fold.
+
+    `spaces` are the leaves where vertices have more than four folds, `folds` says whether some of
+    them are known to fold; `dimension` is the number of first-order motions, None where it was not
+    needed.
+    """
+
+    vertices: tuple[int, ...]
+    theory: str
+    second_order: Counts | None
+    true: Counts | None
+    supports: tuple[Support, ...] = ()
+    spaces: tuple[Leaf, ...] = ()
+    modes: tuple[Mode, ...] = ()
+    dimension: int | None = None
+    near_misses: Mapping[Edge, float] = field(default_factory=dict)
+    folds: bool = False
+    reason: str = ""
