@@ -50,6 +50,11 @@ def panels_answer(result: Decomposition) -> Text:
     ...     [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)])
     >>> print(panels_answer(replace(decompose(square), seconds=0.01)))
     2 ways to fold - PROVED (0.01 s); each a one-parameter folding of rigid panels
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> print(panels_answer(replace(decompose(panels(single_vertex(5))), seconds=0.01)))
+    1 family of ways to fold, of dimension 2 - PROVED (0.01 s); the dimension is the number of folds
+    that can be folded independently
     """
     took = f" ({result.seconds:.2f} s)"
     if result.rigid is PROVED:
@@ -75,6 +80,11 @@ def _ways(counts: Mapping[int, int]) -> str:
     if set(counts) <= {1}:
         return f"{counted(counts.get(1, 0), 'way')} to fold"
     total = sum(counts.values())
+    if len(counts) == 1:
+        each = "" if total == 1 else "each "
+        return (
+            f"{counted(total, 'family')} of ways to fold, {each}of dimension {next(iter(counts))}"
+        )
     kinds = " and ".join(f"{n} of dimension {d}" for d, n in counts.items())
     return f"{counted(total, 'family')} of ways to fold, {kinds}"
 
