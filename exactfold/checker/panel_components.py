@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from .reading import require
 
@@ -26,12 +26,24 @@ def components(supports: Weighted, free: int) -> dict[str, int]:
             for k in chosen:
                 number *= supports[group[k]][1]
             found[len(chosen)] = found.get(len(chosen), 0) + number
-        product: dict[int, int] = {}
-        for a, m in total.items():
-            for b, n in found.items():
-                product[a + b] = product.get(a + b, 0) + m * n
-        total = product
+        total = _product(total, found)
     return {str(dimension): total[dimension] for dimension in sorted(total)}
+
+
+def times(counts: dict[str, int], others: Sequence[Mapping[int, int]]) -> dict[str, int]:
+    """The components of independent parts: dimensions add, numbers multiply."""
+    total = {int(dimension): number for dimension, number in counts.items()}
+    for other in others:
+        total = _product(total, other)
+    return {str(dimension): total[dimension] for dimension in sorted(total)}
+
+
+def _product(total: Mapping[int, int], other: Mapping[int, int]) -> dict[int, int]:
+    product: dict[int, int] = {}
+    for a, m in total.items():
+        for b, n in other.items():
+            product[a + b] = product.get(a + b, 0) + m * n
+    return product
 
 
 def _groups(supports: Weighted) -> list[list[int]]:

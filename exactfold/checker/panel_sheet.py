@@ -13,6 +13,8 @@ from .towers import Number, Tower
 
 Edge = tuple[int, int]
 Vector = tuple[Number, Number]
+Near = dict[int, list[int]]
+"""The neighbours of vertices, counter-clockwise."""
 _GRID = 64  # bits of the rounded boxes in which edges are looked for
 
 
@@ -154,6 +156,20 @@ class PanelSheet:
 
     def _side(self, a: int, b: int, v: int) -> int:
         return cross(self.vector(a, b), self.vector(a, v)).sign()
+
+
+def connected(near: Near) -> list[Near]:
+    """The parts of a graph, its vertices sorted; neighbours that are no vertices join nothing."""
+    found, left = [], dict(near)
+    while left:
+        stack = [min(left)]
+        part = {stack[0]: left.pop(stack[0])}
+        while stack:
+            fresh = [u for u in part[stack.pop()] if u in left]
+            part.update({u: left.pop(u) for u in fresh if u in left})
+            stack += fresh
+        found.append(dict(sorted(part.items())))
+    return found
 
 
 def walks(around: Mapping[int, list[int]]) -> list[tuple[int, ...]]:

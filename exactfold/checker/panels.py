@@ -3,8 +3,8 @@
 Only the pattern and the folds that are held flat are taken from the file. The flat closure, the
 lines of motions at each vertex, the supports with the numbers of their modes, the components and
 which modes truly fold are found again, and every claim is compared. Why the answer is complete:
-the structure theorem, and the theorem of transmissions, in docs/panels.md, 2 and 4. Sheets
-where more than four folds of a vertex may fold are refused.
+the structure theorem, and the theorem of transmissions, in docs/panels.md, 2 and 4. Parts of the
+sheet where more than four folds of a vertex may fold are split into spaces (`panel_leaves`).
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from .formats import LISTING, PANELS, PANELS_VERSION
-from .panel_components import components
+from .panel_components import components, times
+from .panel_leaves import Verified, verified_part
 from .panel_loops import MOST_ORDER, Loops
 from .panel_modes import Modes, Support, corners_of, name, named
-from .panel_sheet import Edge, pair, read_panels
+from .panel_sheet import Edge, Near, PanelSheet, connected, pair, read_panels
 from .reading import (
     MALFORMED,
     CertificateError,
@@ -56,25 +57,32 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
 def _check(data: dict[str, Any]) -> dict[str, Any]:
     claims = data["claims"]
-    keys(claims, f"{FACTS} supports", "claims")
+    given = claims.get("spaces", []) if isinstance(claims, dict) else []
+    keys(claims, f"{FACTS} supports" + (" spaces" if given else ""), "claims")
     sheet, digest = read_panels(data["pattern"])
     held = _edges(claims["held"], "held")
     for i, j in held:
         require((i, j) in sheet.folds, f"{i}-{j} is held flat, and no fold")
     near = sheet.live(held)
-    for v, around in near.items():
-        require(len(around) <= 4, f"vertex {v} has {len(around)} folds that may fold")
-    modes = Modes(sheet, near)
+    groups = connected(near)
+    large = [group for group in groups if any(len(around) > 4 for around in group.values())]
+    small = {v for group in groups if group not in large for v in group}
+    modes = Modes(sheet, {v: around for v, around in near.items() if v in small})
     free = [e for e in sheet.folds if sheet.border.issuperset(e) and e not in held]
     live = {pair(v, u) for v, around in near.items() for u in around}
     pairs = _paired(_supports(modes), items(claims["supports"], "supports"))
     found, loops = [support for support, _ in pairs], Loops(modes)
     extending = [_extending(loops, support, entry) for support, entry in pairs]
+    parts = _parts(sheet, large, items(given, "spaces"))
     second = components([(s.vertices, s.count) for s in found], len(free))
+    second = times(second, [part.second for part in parts])
     true = None
-    if all(complete for _, complete in extending):
+    known = [part.true for part in parts if part.true is not None]
+    if all(complete for _, complete in extending) and len(known) == len(parts):
         counted = zip(found, extending, strict=True)
         true = components([(s.vertices, n) for s, (n, _) in counted if n], len(free))
+        true = times(true, known)
+    moves = free or any(n for n, _ in extending) or any(part.folds for part in parts)
     facts = {
         "interior": len(sheet.interior),
         "border": len(sheet.border),
@@ -85,8 +93,8 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
         "free": [list(edge) for edge in free],
         "second_order": second,
         "true": true,
-        "rigid": _rigid(second, true, free or any(n for n, _ in extending)),
-        "modes": sum(support.count for support in found),
+        "rigid": _rigid(second, true, moves),
+        "modes": None if large else sum(support.count for support in found),
     }
     if claims["rigid"] == "undecided":  # which claims nothing
         facts["rigid"] = "undecided"
@@ -112,6 +120,19 @@ def _same(claim: Any, fact: Any) -> bool:
     if isinstance(fact, list):
         return isinstance(claim, list) and len(claim) == len(fact) and all(map(_same, claim, fact))
     return type(claim) is type(fact) and bool(claim == fact)
+
+
+def _parts(sheet: PanelSheet, large: list[Near], given: list[Any]) -> list[Verified]:
+    """Each part with vertices of more than four folds, with what the file says of it."""
+    entries: dict[tuple[int, ...], Any] = {}
+    for entry in given:
+        keys(entry, "vertices complete leaves", "a part")
+        vertices = tuple(natural(v, "a vertex") for v in items(entry["vertices"], "vertices"))
+        entries[vertices] = entry
+    require(len(entries) == len(given), "a part of the sheet appears twice")
+    places = [tuple(part) for part in large]
+    require(sorted(entries) == sorted(places), "the parts with spaces of motions are others")
+    return [verified_part(sheet, part, entries[tuple(part)]) for part in large]
 
 
 # --- supports ------------------------------------------------------------------------------------

@@ -47,9 +47,11 @@ class Tower:
         if len(a) == 1:
             return (a[0] * b[0],)
         half = len(a) // 2
+        if not any(b[half:]):
+            a, b = b, a
         low = self.times(a[:half], b[:half])
-        if not any(a[half:]) and not any(b[half:]):
-            return low + a[half:]
+        if not any(a[half:]):
+            return low + (self.times(a[:half], b[half:]) if any(b[half:]) else a[half:])
         square = self.times(self.times(a[half:], b[half:]), self._radicand(half))
         cross = _plus(self.times(a[:half], b[half:]), self.times(a[half:], b[:half]))
         return _plus(low, square) + cross
@@ -132,7 +134,9 @@ class Number:
     def _both(self, other: Number) -> tuple[Tower, Parts, Parts]:
         if self.tower is other.tower:
             return self.tower, self.parts, other.parts
-        tower = max(self.tower, other.tower, key=lambda tower: tower.size)
+        low, tower = sorted((self.tower, other.tower), key=lambda tower: tower.size)
+        same = tower.radicands[: len(low.radicands)] == low.radicands
+        require(same, "two numbers of fields of which none extends the other")
         return tower, tower.number(self).parts, tower.number(other).parts
 
     def __add__(self, other: Number) -> Number:

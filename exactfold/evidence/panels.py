@@ -16,7 +16,7 @@ from exactfold.modes.decomposition import MOST_LISTED
 from exactfold.modes.elementary import ModeSearch, Support
 from exactfold.modes.extension import Loops, extension
 from exactfold.modes.local import LocalMode, local_modes
-from exactfold.modes.result import Counts, Decomposition, Mode
+from exactfold.modes.result import Counts, Decomposition, Mode, Part
 from exactfold.modes.stars import Star, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
@@ -26,8 +26,7 @@ def certificate_of_panels(result: Decomposition) -> Document:
     """The certificate of a complete decomposition, as a JSON object for `exactfold.checker`.
 
     It holds the pattern and the claims (docs/certificate.md, panels); the checker finds all of them
-    again. Raises `NotApplicableError` if the decomposition is not proved, or if vertices have more
-    than four folds.
+    again. Raises `NotApplicableError` if the decomposition is not proved.
 
     >>> from exactfold.modes.decomposition import decompose
     >>> from exactfold.pattern.panel_pattern import PanelPattern
@@ -38,10 +37,6 @@ def certificate_of_panels(result: Decomposition) -> Document:
     """
     if result.status is not PROVED or result.second_order is None:
         raise NotApplicableError(f"the decomposition is {result.status} ({result.reason})")
-    if result.theory != "modes":
-        raise NotApplicableError(
-            "there are certificates of panels only where all vertices have at most four folds"
-        )
     pattern = result.pattern
     moving = stars(pattern, result.held)
     listed: dict[tuple[Edge, ...], list[Mode]] = {}
@@ -50,8 +45,10 @@ def certificate_of_panels(result: Decomposition) -> Document:
     supports = [
         _support(pattern, moving, together, listed.get(together.folds))
         for part in result.parts
+        if part.theory == "modes"
         for together in _by_folds(pattern, {v: moving[v] for v in part.vertices}, part.supports)
     ]
+    spaces = [_spaces(part) for part in result.parts if part.theory == "subspaces"]
     return {
         "format": LISTING,
         "version": PANELS_VERSION,
@@ -70,6 +67,7 @@ def certificate_of_panels(result: Decomposition) -> Document:
             "rigid": str(result.rigid),
             "modes": result.modes_count,
             "supports": supports,
+            **({"spaces": spaces} if spaces else {}),
         },
         "provenance": {"method": result.theory, "python": platform.python_version()},
     }
@@ -86,6 +84,26 @@ def _pattern(pattern: PanelPattern) -> Document:
         "vertices": [[parts(x), parts(y)] for x, y in pattern.vertices],
         "edges": _pairs(pattern.edges),
     }
+
+
+def _spaces(part: Part) -> Document:
+    """The leaves of a part by their folds, dimension and cone, and how many of each kind fold."""
+    kinds: dict[tuple[tuple[Edge, ...], int, int | None], list[bool]] = {}
+    for leaf, folds in zip(part.spaces, part.folding, strict=True):
+        cone = leaf.vertices[0] if leaf.vertices else None
+        kinds.setdefault((leaf.folds, leaf.dimension or 0, cone), []).append(folds)
+    leaves = [
+        {
+            "folds": _pairs(folds),
+            "dimension": dimension,
+            "cone": cone,
+            "number": len(each),
+            "extending": sum(each),
+        }
+        for (folds, dimension, cone), each in kinds.items()
+    ]
+    complete = part.true is not None
+    return {"vertices": list(part.vertices), "complete": complete, "leaves": leaves}
 
 
 @dataclass(frozen=True)

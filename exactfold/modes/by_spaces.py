@@ -14,7 +14,7 @@ from exactfold.modes.local import LocalMode
 from exactfold.modes.result import Part
 from exactfold.modes.stars import Star
 from exactfold.modes.subspaces import Leaf, independent_parts, leaves
-from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.verdict import PROVED
 from exactfold.wording import counted
 
@@ -58,8 +58,8 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
         ordered,
         ordered if known else None,
         spaces=tuple(spaces),
+        folding=tuple(folding),
         dimension=size,
-        folds=any(folding),
         reason=""
         if known
         else "whether motions of vertices with more than four folds truly fold is not decided",
@@ -78,8 +78,9 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
     """Whether a space of motions is tangent to true ones: modes that fold apart from each other.
 
     One vertex alone has true motions near the flat state as its motions to second order, by Morse's
-    lemma. Other folds are held flat, so this can prove that a space extends and never that it does
-    not: a motion might use them at a higher order.
+    lemma. A part extends if all its conditions are independent at one of its points
+    (`_is_independent`), or if it is a mode that does. Other folds are held flat, so this can prove
+    that a space extends and never that it does not: a motion might use them at a higher order.
     """
     for rows, size in independent_parts(dict(leaf.rows), leaf.size, moving):
         active = [star.vertex for star in moving.values() if set(star.folds) & set(rows)]
@@ -87,6 +88,8 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
             continue
         if set(active) & set(leaf.vertices):
             return False
+        if _is_independent({v: moving[v].only(rows) for v in active}, rows, size):
+            continue
         modes = [_local(star, rows) for star in moving.values() if set(star.folds) & set(rows)]
         if size != 1 or any(len(mode.folds) > 4 for mode in modes):
             return False
@@ -105,16 +108,42 @@ def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -
     """
     if leaf.size != 1 or leaf.vertices:
         return False
+    point = {edge: row[0] for edge, row in leaf.rows.items()}
+    return rank_at_least(_derivatives(moving, rows, size, point)) >= size - 1
+
+
+def _is_independent(stars: Mapping[int, Star], space: Rows, size: int) -> bool:
+    """Whether all closing conditions are independent near a point of a space of motions.
+
+    If the first-order conditions of these vertices are independent, and so are the derivatives of
+    the `K_v` at a point of the space, in the first-order motions, then true motions near the flat
+    state are tangent to all points of the space near that one (docs/panels.md, 5).
+    """
+    rows, dimension = first_order(stars)
+    folds = {edge for star in stars.values() for edge in star.folds}
+    if dimension != len(folds) - 2 * len(stars):
+        return False
+    weights = range(1, size + 1)
+    point = {
+        e: sum((w * x for w, x in zip(weights, row, strict=True)), start=Fraction(0))
+        for e, row in space.items()
+    }
+    return rank_at_least(_derivatives(stars, rows, dimension, point)) == len(stars)
+
+
+def _derivatives(
+    stars: Mapping[int, Star], rows: Rows, size: int, point: Mapping[Edge, Number]
+) -> list[list[Number]]:
+    """The derivatives of all `K_v` at a point, on the space of first-order motions."""
     found: list[list[Number]] = []
-    for star in moving.values():
-        w = [leaf.rows[edge][0] if edge in leaf.rows else Fraction(0) for edge in star.folds]
-        weights = star.derivative(w)
+    for star in stars.values():
+        weights = star.derivative([point.get(edge, Fraction(0)) for edge in star.folds])
         row: list[Number] = [Fraction(0)] * size
         for weight, edge in zip(weights, star.folds, strict=True):
             if weight != 0 and edge in rows:
                 row = [x + weight * y for x, y in zip(row, rows[edge], strict=True)]
         found.append(row)
-    return rank_at_least(found) >= size - 1
+    return found
 
 
 def _local(star: Star, rows: Rows) -> LocalMode:

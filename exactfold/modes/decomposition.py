@@ -95,7 +95,7 @@ def _rigidity(result: Decomposition) -> Verdict:
         return PROVED
     if result.free or any(mode.extends.verdict is PROVED for mode in result.modes):
         return REFUTED
-    if any(part.folds or set(part.true or {0: 1}) - {0} for part in result.parts):
+    if any(any(part.folding) or set(part.true or {0: 1}) - {0} for part in result.parts):
         return REFUTED
     known = all(part.true is not None and set(part.true) == {0} for part in result.parts)
     return PROVED if known else UNDECIDED

@@ -138,8 +138,8 @@ class Decomposition:
 class Part:
     """A part of the sheet that moves independently: vertices joined by folds that may fold.
 
-    `spaces` are the leaves where vertices have more than four folds, `folds` says whether some of
-    them are known to fold; `dimension` is the number of first-order motions, None where it was not
+    `spaces` are the leaves where vertices have more than four folds, `folding` says of each whether
+    it is shown to fold; `dimension` is the number of first-order motions, None where it was not
     needed.
     """
 
@@ -149,8 +149,8 @@ class Part:
     true: Counts | None
     supports: tuple[Support, ...] = ()
     spaces: tuple[Leaf, ...] = ()
+    folding: tuple[bool, ...] = ()
     modes: tuple[Mode, ...] = ()
     dimension: int | None = None
     near_misses: Mapping[Edge, float] = field(default_factory=dict)
-    folds: bool = False
     reason: str = ""

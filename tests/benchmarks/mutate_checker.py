@@ -46,6 +46,7 @@ TESTS = {
     "forged_branches": "branch branch_proof command",
     "panels_checker": "panels panel_components panel_lines panel_loops panel_modes panel_sheet "
     "towers intervals",
+    "forged_spaces": "panel_leaves panel_reduction panel_spaces panels towers",
     "recognised": "command",
     "fixtures": "",
 }

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from forge import refused, verified
 from forge_panels import SHEETS, Document, certified, drawn, matched, stopped
-from panel_sheets import grid
+from panel_sheets import grid, outlined
 
 from exactfold import checker
 from exactfold.checker import panel_components, panel_loops, panel_modes, panel_sheet, panels
@@ -17,7 +17,6 @@ from exactfold.checker.towers import Number
 from exactfold.errors import NotApplicableError
 from exactfold.evidence.panels import certificate_of_panels
 from exactfold.modes.decomposition import decompose
-from exactfold.pattern.panel_pattern import PanelPattern
 
 KNOWN = {
     "miura": {"1": 8},
@@ -64,11 +63,14 @@ def test_folds_held_flat() -> None:
     assert verified(inner)["second_order"] != KNOWN["crossing"]
 
 
-def test_no_certificate_where_vertices_have_more_folds() -> None:
-    star = [(2, 0), (1, 2), (-1, 2), (-2, 0), (-1, -2), (1, -2)]
-    rim = [(k, (k + 1) % 6) for k in range(6)]
-    sheet = PanelPattern([*star, (0, 0)], [*rim, *((k, 6) for k in range(6))])
-    with pytest.raises(NotApplicableError, match="only where all vertices have at most four folds"):
+def test_no_certificate_of_what_is_not_decided() -> None:
+    """Two vertices with six folds that share one: two forms are left."""
+    points = [(0, 0), (9, 0), (3, -5), (6, -5), (12, -4), (14, 0), (12, 4), (6, 5), (3, 5)]
+    points += [(-3, 4), (-5, 0), (-3, -4)]
+    folds = [(0, 1), (0, 2), (0, 8), (0, 9), (0, 10), (0, 11)]
+    folds += [(1, 3), (1, 4), (1, 5), (1, 6), (1, 7)]
+    sheet = outlined([(Fraction(x), Fraction(y)) for x, y in points], folds, 2)
+    with pytest.raises(NotApplicableError, match="the decomposition is undecided"):
         certificate_of_panels(decompose(sheet))
 
 
@@ -358,10 +360,11 @@ def test_folds_that_are_held() -> None:
 
 
 def test_vertices_with_more_than_four_folds() -> None:
+    """They are no supports, and have to be listed as spaces."""
     star = [(2, 0), (1, 2), (-1, 2), (-2, 0), (-1, -2), (1, -2), (0, 0)]
     rim = [(min(k, (k + 1) % 6), max(k, (k + 1) % 6)) for k in range(6)]
     made = drawn(star, [*rim, *((k, 6) for k in range(6))])
-    refused(made, "vertex 6 has 6 folds that may fold")
+    refused(made, "the parts with spaces of motions are others")
 
 
 # --- limits --------------------------------------------------------------------------------------

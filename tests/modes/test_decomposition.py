@@ -2,10 +2,12 @@
 
 import random
 from collections import Counter
+from fractions import Fraction
 
 import networkx as nx
+import numpy as np
 import pytest
-from panel_sheets import grid, mesh, miura, tiling
+from panel_sheets import grid, mesh, miura, outlined, tiling
 
 from exactfold.modes.decomposition import decompose
 from exactfold.modes.elementary import ModeSearch
@@ -130,3 +132,40 @@ def test_one_vertex_has_one_cone_that_truly_folds(folds: int) -> None:
     assert result.theory == "subspaces"
     assert result.second_order == result.true == {folds - 3: 1}
     assert result.rigid is REFUTED
+
+
+def test_lines_where_all_conditions_are_independent_truly_fold() -> None:
+    """Eight lines of a triangle with corners of five, four and four folds, and true motions.
+
+    Newton's method finds a configuration near each line in which all vertices close.
+    """
+    points = [(0, 0), (8, 0), (3, 7), (-5, 2), (-6, -3), (-1, -6), (8, -7), (15, 3), (5, 8)]
+    points.append((-2, 14))
+    folds = [(0, 1), (1, 2), (0, 2), (0, 3), (0, 4), (0, 5), (1, 6), (1, 7), (2, 8), (2, 9)]
+    sheet = outlined([(Fraction(x), Fraction(y)) for x, y in points], folds, 3)
+    result = decompose(sheet)
+    assert result.second_order == result.true == {1: 8}
+    around = stars(sheet).values()
+    order = sorted(sheet.folds)
+
+    def gaps(tau: np.ndarray) -> np.ndarray:
+        found = []
+        for star in around:
+            turn = np.eye(2, dtype=complex)
+            for edge, (dx, dy) in zip(star.folds, star.directions, strict=True):
+                x, y = (float(c) * tau[order.index(edge)] for c in (dx, dy))
+                turn = turn @ np.array([[1, y + 1j * x], [-y + 1j * x, 1]])
+            found += [turn[0, 0].imag, turn[0, 1].real, turn[0, 1].imag]
+        return np.array(found)
+
+    for leaf in result.parts[0].spaces:
+        row = np.array([float(leaf.rows.get(edge, [0])[0]) for edge in order])
+        start = 0.01 * row / abs(row).max() / 5
+        tau = start.copy()
+        for _ in range(20):
+            steps = 1e-7 * np.eye(len(order))
+            slopes = np.array([(gaps(tau + s) - gaps(tau - s)) / 2e-7 for s in steps]).T
+            slopes = np.vstack([slopes, row])  # the amplitude stays
+            tau = tau - np.linalg.lstsq(slopes, np.append(gaps(tau), 0), rcond=None)[0]
+        assert abs(gaps(tau)).max() < 1e-13
+        assert abs(tau - start).max() < abs(start).max() / 20

@@ -1,0 +1,163 @@
+"""Which spaces of motions truly fold, and whether they are all true motions (docs/panels.md, 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from .panel_loops import Loops
+from .panel_modes import Modes, Support
+from .panel_reduction import BITS, enclosed, reduced
+from .panel_sheet import Edge, PanelSheet, pair
+from .panel_spaces import Leaf, Motion, Spaces, folds_of
+from .reading import integer, items, keys, natural, require
+
+Kind = tuple[tuple[Edge, ...], int, int | None]
+
+
+@dataclass
+class Verified:
+    """{dimension: number} of the components of a part: to second order, and truly if it is known.
+
+    `folds` says whether some of them are shown to fold.
+    """
+
+    second: dict[int, int]
+    true: dict[int, int] | None
+    folds: bool
+
+
+def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) -> Verified:
+    """The components of a part, found again and compared with what the file says of it.
+
+    The file gives the leaves by their folds, dimension and cone, with how many there are, and how
+    many of these are said to fold; "complete" says that all true motions are among them.
+    """
+    what = f"the part of vertex {next(iter(near))}"
+    spaces = Spaces(sheet, near)
+    found: dict[Kind, list[Leaf]] = {}
+    for leaf in spaces.leaves():
+        found.setdefault((leaf.folds, leaf.dimension, leaf.cone), []).append(leaf)
+    claimed = dict(_kinds(given["leaves"]))
+    require(len(claimed) == len(given["leaves"]), f"{what} has leaves of one kind twice")
+    require(claimed.keys() == found.keys(), f"{what} has other leaves than those listed")
+    second: dict[int, int] = {}
+    folding = 0
+    for kind, (number, extending) in claimed.items():
+        leaves = found.get(kind, [])
+        require(number == len(leaves), f"{what} has {len(leaves)} leaves of a kind, not {number}")
+        shown = sum(extends(spaces, leaf) for leaf in leaves) if extending else 0
+        folds = f"{what} has {shown} leaves of a kind that fold, not {extending}"
+        require(extending <= shown, folds)
+        second[kind[1]] = second.get(kind[1], 0) + number
+        folding += extending
+    second = second or {0: 1}
+    true = None
+    require(type(given["complete"]) is bool, f'{what}: "complete" is neither true nor false')
+    if given["complete"]:
+        total = sum(number for number, _ in claimed.values())
+        require(folding == total, f"{what} has leaves that are not shown to fold")
+        regular = complete(spaces, [leaf for leaves in found.values() for leaf in leaves])
+        require(regular, f"{what} may have other true motions")
+        true = second
+    return Verified(second, true, folding > 0)
+
+
+def _kinds(given: Any) -> Iterable[tuple[Kind, tuple[int, int]]]:
+    for entry in items(given, "leaves"):
+        keys(entry, "folds dimension cone number extending", "a leaf")
+        ends = [items(fold, "a fold", 2) for fold in items(entry["folds"], "folds")]
+        folds = tuple((integer(i), integer(j)) for i, j in ends)
+        cone = None if entry["cone"] is None else natural(entry["cone"], "a vertex")
+        numbers = natural(entry["number"], "number"), natural(entry["extending"], "extending")
+        yield (folds, natural(entry["dimension"], "dimension"), cone), numbers
+
+
+def extends(spaces: Spaces, leaf: Leaf) -> bool:
+    """Whether a leaf is shown to be tangent to true motions: its parts fold apart from each other.
+
+    A part that is all local motions of one vertex folds, by Morse's lemma; one at a point of which
+    all closing conditions are independent, by the implicit function theorem. A part with one
+    parameter, at whose vertices two or four folds are active, is a mode, which folds if its loops
+    close.
+    """
+    return all(_folds(spaces, part, leaf.cone) for part in spaces.parts(leaf.basis))
+
+
+def _folds(spaces: Spaces, part: list[Motion], cone: int | None) -> bool:
+    folds = set(folds_of(part))
+    near = {v: [u for u in around if pair(v, u) in folds] for v, around in spaces.near.items()}
+    near = {v: around for v, around in near.items() if around}
+    if len(near) == 1 and len(part) == len(folds) - 2:
+        return True
+    if cone in near:
+        return False
+    if _independent(Spaces(spaces.sheet, near), part):
+        return True
+    if len(part) != 1 or any(len(around) > 4 for around in near.values()):
+        return False
+    return _closes(spaces.sheet, near, part[0])
+
+
+def _closes(sheet: PanelSheet, near: Mapping[int, list[int]], motion: Motion) -> bool:
+    """Whether the mode of a motion closes its loops: it is the one that intervals leave over."""
+    modes = Modes(sheet, near)
+    support = modes.support({v: frozenset(around) for v, around in near.items()})
+    rows = [row for row in modes.listed(support) if _agrees(modes, support, row, motion)]
+    loops = Loops(modes)
+    return len(rows) == 1 and all(loops.closes(rows[0], loop) for loop in support.loops)
+
+
+def _agrees(modes: Modes, support: Support, row: dict[int, int], motion: Motion) -> bool:
+    """Whether the quotients of the densities may be those of a mode."""
+    for v, around in support.active.items():
+        first, *others = sorted(around)
+        for u in others:
+            start, end = (pair(v, w) for w in (first, u))
+            quotient = (motion[end] / motion[start]).enclosed(BITS)
+            if (quotient - modes.gain(v, row[v], first, u).enclosed(BITS)).sign():
+                return False
+    return True
+
+
+def complete(spaces: Spaces, leaves: list[Leaf]) -> bool:
+    """Whether true motions are shown to be no more than the leaves that extend.
+
+    So it is for one vertex alone, and where each leaf is a line at which the derivatives of all
+    forms leave, in the space of first-order motions, that line alone.
+    """
+    return len(spaces.near) == 1 or all(_regular(spaces, leaf) for leaf in leaves)
+
+
+def _regular(spaces: Spaces, leaf: Leaf) -> bool:
+    if len(leaf.basis) != 1:
+        return False
+    return _rank(spaces, leaf.basis[0]) >= len(spaces.first_order) - 1
+
+
+def _independent(spaces: Spaces, part: list[Motion]) -> bool:
+    """Whether the conditions of first order are independent, and all forms at a point of a part."""
+    folds = {pair(v, u) for v, around in spaces.near.items() for u in around}
+    if len(spaces.first_order) != len(folds) - 2 * len(spaces.near):
+        return False
+    point: Motion = {}
+    for weight, motion in enumerate(part, 1):
+        point = spaces.plus(point, spaces.sheet.tower.number(weight), motion)
+    return _rank(spaces, point) == len(spaces.near)
+
+
+def _rank(spaces: Spaces, point: Motion) -> int:
+    """A lower bound of the rank of the derivatives of all forms at a point, by intervals."""
+    place = enclosed(point)
+    basis = [enclosed(motion) for motion in spaces.first_order]
+    rows = []
+    for v in spaces.near:
+        weights = spaces.gradient(v, place, lambda x: x.enclosed(BITS))
+        row = {}
+        for k, motion in enumerate(basis):
+            terms = [weights[fold] * motion[fold] for fold in weights.keys() & motion.keys()]
+            if terms:
+                row[k, k] = sum(terms[1:], start=terms[0])
+        rows.append(row)
+    return len(reduced(rows))

@@ -1,0 +1,245 @@
+"""Motions of a part of a sheet whose vertices may have more than four folds: spaces and cones.
+
+A space of first-order motions is given by a basis; a basis vector holds its densities by fold. On a
+space a form that is semidefinite leaves its kernel, a form of inertia (1, 1) two spaces, and one
+of inertia (1, q) with q > 1, left alone, a cone that spans the space (docs/panels.md, 5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+from .panel_reduction import Vector, inside, reduced, zero
+from .panel_sheet import Edge, PanelSheet, cross, pair
+from .reading import require
+from .towers import Number
+
+MOST_STEPS = 1 << 22  # products of densities in one search
+MOST_LEAVES = 1 << 12
+
+Motion = dict[Edge, Number]
+"""The densities that are not 0."""
+Space = list[Motion]
+Squares = list[tuple[Number, list[Number]]]
+
+
+@dataclass
+class Leaf:
+    """A space on which all forms vanish, or where that of the vertex `cone` does not."""
+
+    basis: Space
+    cone: int | None
+
+    @property
+    def dimension(self) -> int:
+        """Of the motions."""
+        return len(self.basis) - (self.cone is not None)
+
+    @property
+    def folds(self) -> tuple[Edge, ...]:
+        """Those that are not flat on all of it."""
+        return folds_of(self.basis)
+
+
+def folds_of(basis: Space) -> tuple[Edge, ...]:
+    """The folds that are not flat in all motions."""
+    return tuple(sorted({fold for motion in basis for fold in motion}))
+
+
+class Spaces:
+    """The spaces of motions of a part: vertices with the neighbours over folds that may fold."""
+
+    def __init__(self, sheet: PanelSheet, near: Mapping[int, list[int]]) -> None:
+        self.sheet, self.near, self.steps = sheet, near, 0
+        self._known: dict[int, list[tuple[Edge, Edge, Number]]] = {}
+        self.first_order = self._first_order()
+
+    def leaves(self) -> list[Leaf]:
+        """All components of the motions, but for the flat state alone."""
+        return [leaf for leaf in self._leaves(self.first_order) if leaf.basis]
+
+    def _first_order(self) -> Space:
+        """All densities with sum_j w_j d_j = 0 at each vertex, one condition after the other."""
+        one = self.sheet.tower.number(1)
+        folds = sorted({pair(v, u) for v, around in self.near.items() for u in around})
+        space: Space = [{fold: one} for fold in folds]
+        for v, around in self.near.items():
+            for axis in (0, 1):
+                weights = {pair(v, u): self.sheet.vector(v, u)[axis] for u in around}
+                space = self._vanishing(space, [[self._value(weights, m) for m in space]])
+        return space
+
+    def _value(self, weights: Mapping[Edge, Number], motion: Motion) -> Number:
+        total = self.sheet.tower.number(0)
+        for fold in weights.keys() & motion.keys():
+            total = total + weights[fold] * motion[fold]
+        return total
+
+    def _vanishing(self, space: Space, rows: Sequence[Sequence[Number]]) -> Space:
+        """Where linear functions are 0 that have these values on the basis."""
+        todo = [list(row) for row in rows]
+        for n, row in enumerate(todo):
+            active = [k for k, value in enumerate(row) if not zero(value)]
+            if not active:
+                continue
+            pivot = min(active, key=lambda k: len(space[k]))
+            changed = {k: -(row[k] / row[pivot]) for k in active if k != pivot}
+            space = [
+                self.plus(motion, changed[k], space[pivot]) if k in changed else motion
+                for k, motion in enumerate(space)
+                if k != pivot
+            ]
+            for later in todo[n + 1 :]:
+                for k, weight in changed.items():
+                    later[k] = later[k] + weight * later[pivot]
+                del later[pivot]
+        return space
+
+    def plus(self, motion: Motion, weight: Number, other: Motion) -> Motion:
+        """The sum of a motion and a multiple of another."""
+        found = dict(motion)
+        self._count(len(other))
+        for fold, value in other.items():
+            total = weight * value
+            if fold in found:
+                total = found[fold] + total
+            if zero(total):
+                del found[fold]
+            else:
+                found[fold] = total
+        return found
+
+    def _count(self, steps: int) -> None:
+        self.steps += steps
+        require(self.steps <= MOST_STEPS, f"the spaces of motions take over {MOST_STEPS} steps")
+
+    def _leaves(self, space: Space) -> list[Leaf]:
+        """The leaves of a space: sums of those of its parts that share no fold."""
+        total = [Leaf([], None)]
+        for part in self.parts(space):
+            leaves = self._maximal(self._split(part))
+            number = len(total) * len(leaves)
+            require(number <= MOST_LEAVES, f"there are more than {MOST_LEAVES} spaces of motions")
+            total = [self._sum(a, b) for a in total for b in leaves]
+        return total
+
+    def _maximal(self, found: list[Leaf]) -> list[Leaf]:
+        """The leaves that are in no other; what is in the space of one is in the leaf as well."""
+        kept: list[Leaf] = []
+        for leaf in sorted(found, key=lambda leaf: (-len(leaf.basis), leaf.cone is not None)):
+            if not any(inside(leaf.basis, other.basis) for other in kept):
+                kept.append(leaf)
+        return kept
+
+    def _sum(self, a: Leaf, b: Leaf) -> Leaf:
+        require(a.cone is None or b.cone is None, f"the forms of vertices {a.cone}, {b.cone} stay")
+        return Leaf([*a.basis, *b.basis], b.cone if a.cone is None else a.cone)
+
+    def parts(self, space: Space) -> list[Space]:
+        """The space as a direct sum: one part for each set of folds joined by vertices.
+
+        All conditions met so far are conditions on the densities at one vertex, so that the part of
+        a motion on such a set, the other folds flat, meets them as well.
+        """
+        groups: list[set[Edge]] = []
+        for fold in folds_of(space):
+            together = {fold}
+            apart = []
+            for group in groups:
+                if any(v in self.near and v in fold for other in group for v in other):
+                    together |= group
+                else:
+                    apart.append(group)
+            groups = [*apart, together]
+        if len(groups) < 2:
+            return [space] if space else []
+        parts = []
+        for group in groups:
+            cut = [{fold: m[fold] for fold in m if fold in group} for m in space]
+            parts.append([dict(motion) for _, motion in reduced(cut)])
+        require(sum(map(len, parts)) == len(space), "the parts of a space do not add up to it")
+        return parts
+
+    def _split(self, space: Space) -> list[Leaf]:
+        """The leaves of a part: of a semidefinite form the kernel, of a product both factors."""
+        products: list[Squares] = []
+        left: list[int] = []
+        for v in sorted({v for fold in folds_of(space) for v in fold if v in self.near}):
+            squares = self._squares(v, space)
+            signs = [d.sign() for d, _ in squares]
+            if signs and abs(sum(signs)) == len(signs):
+                return self._leaves(self._vanishing(space, [values for _, values in squares]))
+            if len(signs) == 2:
+                products.append(squares)
+            elif signs:
+                left.append(v)
+        if not products:
+            require(len(left) < 2, f"the forms of vertices {', '.join(map(str, left))} stay")
+            return [Leaf(space, left[0] if left else None)]
+        found = []
+        for values in self._factors(products, space):
+            found += self._leaves(self._vanishing(space, [values]))
+        return found
+
+    def _squares(self, v: int, space: Space) -> Squares:
+        """The form of a vertex as sum d_k l_k^2, with the values of the l_k on the basis."""
+        gradients = [self.gradient(v, motion, lambda x: x) for motion in space]
+        work = [[self._value(weights, motion) for motion in space] for weights in gradients]
+        found: Squares = []
+        while True:
+            k = next((k for k, row in enumerate(work) if not zero(row[k])), None)
+            if k is not None:
+                values, value = work[k], work[k][k]
+            else:
+                pairs = ((i, j) for i, row in enumerate(work) for j in range(i))
+                first = next(((i, j) for i, j in pairs if not zero(work[i][j])), None)
+                if first is None:
+                    return found
+                i, j = first
+                values = [x + y for x, y in zip(work[i], work[j], strict=True)]
+                value = work[i][j] + work[i][j]
+            found.append((self.sheet.tower.number(1) / value, values))
+            self._count(len(work) ** 2)
+            work = [
+                [x - a * b / value for x, b in zip(row, values, strict=True)]
+                for row, a in zip(work, values, strict=True)
+            ]
+
+    def gradient(self, v: int, motion: Vector, of: Callable[[Number], Any]) -> dict[Edge, Any]:
+        """The derivatives of sum_{k<j} w_k w_j [d_k, d_j] at a motion; `of` converts numbers."""
+        found: dict[Edge, Any] = {}
+        for start, end, bracket in self._brackets(v):
+            for fold, other in ((start, end), (end, start)):
+                if other in motion:
+                    self._count(1)
+                    term = of(bracket) * motion[other]
+                    found[fold] = found[fold] + term if fold in found else term
+        return found
+
+    def _brackets(self, v: int) -> list[tuple[Edge, Edge, Number]]:
+        if v not in self._known:
+            spokes = [(pair(v, u), self.sheet.vector(v, u)) for u in self.near[v]]
+            pairs = combinations(spokes, 2)
+            self._known[v] = [(f, g, cross(c, d)) for (f, c), (g, d) in pairs]
+        return self._known[v]
+
+    def _factors(self, products: Sequence[Squares], space: Space) -> Iterator[list[Number]]:
+        """d l^2 + e m^2, signs apart, is d (l - r m)(l + r m) with r^2 = -e / d.
+
+        The root is adjoined to a field that holds the whole space, as numbers of the space and the
+        root are multiplied later; a form whose root is there is taken first.
+        """
+        towers = (value.tower for motion in space for value in motion.values())
+        tower = max(towers, key=lambda tower: tower.size)
+        best, fewest = None, None
+        for (d, first), (e, second) in products:
+            above, root = tower.adjoined(-(e / d))
+            if fewest is None or above.size < fewest:
+                best, fewest = (first, second, root), above.size
+        if best is not None:
+            first, second, root = best
+            for r in (root, -root):
+                yield [x + r * y for x, y in zip(first, second, strict=True)]
