@@ -27,10 +27,10 @@ def panels_report(
     """The answer, the modes, what stays flat, and what is open."""
     parts: list[Any] = [panels_answer(result)]
     notes = _notes(result, everything)
-    if certificate is not None:
-        notes.append(f"certificate: {certificate}")
     if notes:
         parts += ["", *(Text(note) for note in notes)]
+    if certificate is not None:
+        parts += ["", Text(f"certificate: {certificate}")]
     if result.modes:
         parts += ["", _table(result, everything)]
         parts += more_text(len(result.modes) - (len(result.modes) if everything else SHOWN))
