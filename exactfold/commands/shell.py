@@ -35,6 +35,8 @@ from exactfold.schemas import headed
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from exactfold.commands.display import Display
 
 EXIT = {PROVED: 0, REFUTED: 1, UNDECIDED: 4}
@@ -149,17 +151,41 @@ def stopped(advice: str = "") -> NoReturn:
     raise typer.Exit(INTERRUPTED) from None
 
 
+_asked: list[int] = []
+"""Signals of this `interruptible` block; a library in which the exception was lost forgets one."""
+
+
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Within this block SIGTERM is a `KeyboardInterrupt`, as Ctrl-C is (main thread only)."""
+    """Within this block SIGTERM is a `KeyboardInterrupt`, as Ctrl-C is (main thread only).
+
+    Python drops an exception that is raised while it collects garbage or calls back from C. So the
+    interruption is raised again at the next line of progress, and at the end of the block.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    numbers = {signal.SIGTERM}
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is to be ignored
+        numbers.add(signal.SIGINT)
+    before = {number: signal.signal(number, _interrupt) for number in numbers}
     try:
         yield
+        _insist()
     finally:
-        signal.signal(signal.SIGTERM, before)
+        _asked.clear()
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _interrupt(number: int, _: FrameType | None) -> NoReturn:
+    _asked.append(number)
+    raise KeyboardInterrupt
+
+
+def _insist() -> None:
+    if _asked and threading.current_thread() is threading.main_thread():
+        raise KeyboardInterrupt
 
 
 @contextmanager
@@ -204,6 +230,7 @@ class Bar:
 
     def __call__(self, stage: str, done: int = 0, total: int = 0, note: str = "") -> None:
         """Say how far a stage has come; a total of 0 means that it is not known."""
+        _insist()
         with self.lock:
             self.state = (stage, done, total, note)
             if self.display is not None:

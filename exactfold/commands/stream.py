@@ -70,7 +70,7 @@ class Streaming:
             _require_streamable(file.pattern)
             if self.file.exists() and not self.resume:
                 raise UsageError(f"{self.file} is there already; --resume continues it")
-            with interruptible(), self._resumable():
+            with self._resumable(), interruptible():
                 result = self._streamed(file.pattern, bar)
                 return replace(result, snapped=file.opened.snapped, read=file.opened.read)
 

@@ -211,6 +211,7 @@ def test_a_dead_worker_is_no_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 SIGNALLED = """
 import os, signal, sys
+from contextlib import suppress
 from exactfold.cli import main
 from exactfold.evidence import journal
 from exactfold.count import conveyor, engines, stream
@@ -220,7 +221,10 @@ append = journal.Journal.append
 def then_signal(self, body):
     append(self, body)
     if self.blocks == 3:
-        if os.environ["SENT_TO"] == "group":
+        if os.environ["SENT_TO"] == "lost":
+            with suppress(KeyboardInterrupt):  # as Python does while it collects garbage
+                os.kill(os.getpid(), signal.SIGINT)
+        elif os.environ["SENT_TO"] == "group":
             os.killpg(0, signal.SIGINT)
         else:
             os.kill(os.getpid(), signal.SIGTERM)
@@ -233,15 +237,16 @@ if __name__ == "__main__":
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 @pytest.mark.parametrize(
-    ("whole", "engine"),
+    ("sent", "engine"),
     [
-        (True, "--workers 2"),
-        (False, "--workers 2"),
-        pytest.param(True, "--dask local", marks=pytest.mark.slow),
+        ("group", "--workers 2"),
+        ("process", "--workers 2"),
+        ("lost", "--workers 1"),
+        pytest.param("group", "--dask local", marks=pytest.mark.slow),
     ],
 )
 def test_interruptions_leave_a_file_to_resume(
-    whole: bool, engine: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    sent: str, engine: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Ctrl-C reaches all processes of a terminal, SIGTERM only the one that is meant."""
     if "dask" in engine:
@@ -252,7 +257,7 @@ def test_interruptions_leave_a_file_to_resume(
     given = ["count", str(fold), "--stream", str(file), *engine.split()]
     done = subprocess.run(  # returns when every worker has closed stderr: none is left behind
         [sys.executable, str(script), *given],
-        env={**os.environ, "SENT_TO": "group" if whole else "process"},
+        env={**os.environ, "SENT_TO": sent},
         capture_output=True,
         text=True,
         start_new_session=True,
