@@ -13,7 +13,7 @@ from panel_sheets import grid, outlined
 
 from exactfold import checker
 from exactfold.checker import panel_components, panel_loops, panel_modes, panel_sheet, panels
-from exactfold.checker.towers import Number
+from exactfold.checker.intervals import Interval
 from exactfold.errors import NotApplicableError
 from exactfold.evidence.panels import certificate_of_panels
 from exactfold.modes.decomposition import decompose
@@ -428,7 +428,7 @@ def test_transmissions_close_the_vertices(name: str) -> None:
     sheet, _ = panel_sheet.read_panels(certified(name)["pattern"])
     modes = panel_modes.Modes(sheet, sheet.live([]))
     loops = panel_loops.Loops(modes)
-    zero, one = sheet.tower.number(0), sheet.tower.number(1)
+    zero, one = (Interval.of(Fraction(n), 256) for n in (0, 1))
     bent = 0
     for v, near in modes.near.items():
         for line, found in enumerate(modes.lines[v]):
@@ -438,25 +438,23 @@ def test_transmissions_close_the_vertices(name: str) -> None:
                     tau = 0.0
                     if u in found.densities:
                         step = loops.step(v, line, start, u) if u != start else None
-                        series = (
-                            [one]
-                            if step is None
-                            else panel_loops.composed([step], 33, lambda _, value: value, zero, one)
-                        )
+                        series = [one] if step is None else composed([step], zero, one)
                         bent += step is not None and step.quadratic is not None
-                        tau = sum(
-                            approximate(c) * 0.004 ** (2 * n + 1) for n, c in enumerate(series)
-                        )
-                    x, y = (tau * approximate(c) for c in sheet.vector(v, u))
+                        tau = sum(middle(c) * 0.004 ** (2 * n + 1) for n, c in enumerate(series))
+                    x, y = (tau * middle(c.enclosed(256)) for c in sheet.vector(v, u))
                     product = times(product, (1.0, x, y, 0.0))
                 assert max(map(abs, product[1:])) < 1e-13
     assert bent > 10
 
 
-def approximate(number: Number) -> float:
+def composed(steps: list[panel_loops.Step], zero: Interval, one: Interval) -> list[Interval]:
+    """The series up to order 33, in intervals."""
+    return panel_loops.composed(steps, 33, lambda _, value: value.enclosed(256), zero, one)
+
+
+def middle(found: Interval) -> float:
     """The number in floating point."""
-    found = number.enclosed(200)
-    return float(Fraction(found.low + found.high, 2 << 200))
+    return float(Fraction(found.low + found.high, 2 << found.bits))
 
 
 def times(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, float, float, float]:
