@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cached_property
 from math import lcm
 from types import MappingProxyType
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from exactfold.errors import MalformedPatternError, PinchError
 from exactfold.exact.numbers import format_rational
@@ -19,6 +19,8 @@ from exactfold.wording import counted
 
 Edge: TypeAlias = tuple[int, int]
 Point: TypeAlias = tuple[Number, Number]
+_LONGEST: Final = 256
+"""Bits of a common denominator up to which whole numbers are shorter than fractions."""
 
 
 @dataclass(frozen=True)
@@ -140,12 +142,22 @@ class PanelPattern:
 
     @cached_property
     def scaled_vertices(self) -> tuple[Point, ...]:
-        """The vertices times a whole number that clears all denominators."""
+        """The vertices times a whole number that clears all denominators, if there is a short one.
+
+        Many crossings of lines have long denominators without a common factor: then the vertices
+        as they are, since their multiples would be longer than all of them together.
+        """
 
         def parts(value: Number) -> Sequence[Fraction]:
             return value.coefficients if isinstance(value, Surd) else (Fraction(value),)
 
-        scale = lcm(*(p.denominator for point in self.vertices for c in point for p in parts(c)))
+        scale = 1
+        for denominator in {
+            p.denominator for point in self.vertices for c in point for p in parts(c)
+        }:
+            scale = lcm(scale, denominator)
+            if scale.bit_length() > _LONGEST:
+                return self.vertices
         return tuple((_whole(x * scale), _whole(y * scale)) for x, y in self.vertices)
 
     def direction(self, start: int, end: int) -> Point:
