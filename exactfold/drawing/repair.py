@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
 from exactfold.drawing.coordinates import Exact, exact_coordinates, resolution
 from exactfold.drawing.drawing import Drawing, Snap
+from exactfold.drawing.inexactness import GAP, clear_distances
 from exactfold.drawing.mending import (
     Repair,
     coinciding,
@@ -22,12 +23,15 @@ from exactfold.drawing.mending import (
 )
 from exactfold.drawing.sheets import bordered, sheets
 from exactfold.drawing.splitting import split
-from exactfold.errors import MalformedPatternError, UsageError
+from exactfold.errors import FoldError, MalformedPatternError, PatternError, UsageError
 from exactfold.wording import counted
 
 STEPS: Final = ("merge", "duplicates", "split", "join", "dangling", "dissolve", "border")
 """The steps in their order."""
 _NEAR: Final = Fraction(1, 10**6)
+_COARSEST: Final = Fraction(1, 300)
+"""No automatic merging beyond this share of the size."""
+_TRIALS: Final = 3
 
 
 def repaired(
@@ -111,14 +115,53 @@ def exact_sheets(
     >>> made.sheets[0].points[4], len(made.sheets[0].lines), made.coordinates.denominator
     ((Fraction(1, 3), Fraction(0, 1)), 7, 3)
     """
-    near = _distance(drawing, merge)
+    distances, noted = _tried(drawing, merge, steps)
     first = [step for step in STEPS[:2] if step in steps]
-    before, begun = repaired(drawing, merge=near, steps=first)
+    before, begun = repaired(drawing, merge=distances[0], steps=first)
     found = exact_coordinates(_used_only(before), snap, tolerance=tolerance)
-    coarse = max(near, 2 * found.tolerance) if merge is None else near
     # Snapping can bring points together that were further apart than the merging distance.
-    after, ended = repaired(found.drawing, merge=coarse, steps=steps)
-    return Sheets(sheets(after), found, (*begun, *ended))
+    least = 2 * found.tolerance if merge is None else Fraction(0)
+    done: list[tuple[int, Sheets]] = []
+    refusals: list[FoldError | PatternError] = []
+    for distance in distances:
+        try:
+            after, ended = repaired(found.drawing, merge=max(distance, least), steps=steps)
+            made = Sheets(sheets(after), found, (*noted(distance), *begun, *ended))
+        except (FoldError, PatternError) as error:
+            refusals.append(error)
+            continue
+        loose = sum(repair.count for repair in ended if repair.step == "dangling")
+        done.append((loose, made))
+        if not loose:
+            break
+    if not done:
+        raise refusals[0]
+    return min(done, key=lambda pair: pair[0])[1]
+
+
+def _tried(
+    drawing: Drawing, merge: Fraction | None, steps: Collection[str]
+) -> tuple[list[Fraction], Callable[[Fraction], list[Repair]]]:
+    """Distances to merge at, the next where a sheet has holes or loose ends; and what is said."""
+    near = _distance(drawing, merge)
+    if merge is not None or "merge" not in steps or drawing.exact:
+        return [near], lambda distance: []
+    clean, _ = repaired(drawing, merge=near, steps=STEPS[:2])
+    if not (size := _extent(clean)):
+        return [near], lambda distance: []
+    clear = clear_distances(clean, float(near) * size, float(_COARSEST) * size)
+    distances = [Fraction(distance / size * (1 + 1e-9)) for distance in clear[:_TRIALS]]
+
+    def noted(distance: Fraction) -> list[Repair]:
+        if distance <= near * Fraction(101, 100):
+            return []
+        sentence = (
+            f"the drawing is inexact: what misses by up to {float(distance):.1e} of the size is "
+            f"taken to meet, as nothing misses by {GAP:g} times that or less"
+        )
+        return [Repair("merge", 1, (), sentence)]
+
+    return distances or [near], noted
 
 
 def _step(drawing: Drawing, step: str, near: Fraction) -> tuple[Drawing, list[Repair]]:
