@@ -17,14 +17,14 @@ GAP: Final = 4.0
 """A distance is clear if no other is between it and this many times it."""
 
 
-def clear_distances(drawing: Drawing, least: float, most: float) -> list[float]:
+def clear_distances(drawing: Drawing, least: float, most: float, gap: float = GAP) -> list[float]:
     """Distances from `least` to `most` that separate what was meant to meet from the design.
 
     Ends of lines, and crossings of lines with all ends well away, miss each other and other lines
-    by distances d. One of them is clear if no other lies in (d, 4 d]: then all that is drawn with
-    an error of d is far smaller than what was meant to be apart. `least` itself is the first if it
-    is clear. Sorted; empty if the sizes run into each other. By floats, which only propose at what
-    distance points are merged.
+    by distances d. One of them is clear if no other lies in (d, `gap` d]: then an error of d is far
+    smaller than what was meant to be apart. `least` itself is the first if it is clear. Sorted;
+    empty if the sizes run into each other. By floats, which only propose at what distance points
+    are merged.
 
     >>> from exactfold.drawing.drawing import Line
     >>> points = [(0, 0), (10, 0), (10, 10), (0, 10), (5, 0.02), (5, 10)]
@@ -32,10 +32,10 @@ def clear_distances(drawing: Drawing, least: float, most: float) -> list[float]:
     >>> clear_distances(Drawing(tuple(points), (*square, Line(4, 5, "M")), ""), 1e-5, 0.1)
     [1e-05, 0.02]
     """
-    distances = np.sort(_misses(drawing, GAP * most))
+    distances = np.sort(_misses(drawing, gap * most))
     distances = np.array([least, *distances[distances > least]])
     following = np.array([*distances[1:], np.inf])
-    clear = (following > GAP * distances) & (distances <= most)
+    clear = (following > gap * distances) & (distances <= most)
     return [float(distance) for distance in distances[clear]]
 
 
