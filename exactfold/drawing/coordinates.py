@@ -11,7 +11,7 @@ from typing import Final
 from exactfold.drawing.candidates import RADICANDS, field_name
 from exactfold.drawing.construction import constructed
 from exactfold.drawing.drawing import Drawing, Point, Snap
-from exactfold.drawing.fitting import Model, Written, fitted_model, frames, refined
+from exactfold.drawing.fitting import Frame, Model, Written, fitted_model, frames, refined
 from exactfold.errors import MalformedPatternError, UsageError
 from exactfold.exact.numbers import snap as snapped
 from exactfold.exact.surds import Surd
@@ -140,8 +140,9 @@ def exact_coordinates(
     if tolerance is None and common * size <= _WRITTEN:
         return Exact(drawing, denominator=common)
     best: Exact | None = None
+    seen = frames(written)
     for within in [tolerance] if tolerance is not None else _tolerances(written, size):
-        found = _fitted(drawing, written, size, within)
+        found = _fitted(drawing, written, seen, size, within)
         # A coarser tolerance fits more by chance: it must explain far more.
         if found is not None and (best is None or 2 * len(found.kept) < len(best.kept)):
             best = found
@@ -176,11 +177,13 @@ def resolution(drawing: Drawing) -> Fraction:
 # --- fitting -------------------------------------------------------------------------------------
 
 
-def _fitted(drawing: Drawing, written: Written, size: Fraction, within: Fraction) -> Exact | None:
+def _fitted(
+    drawing: Drawing, written: Written, seen: Sequence[Frame], size: Fraction, within: Fraction
+) -> Exact | None:
     best: Model | None = None
     for radicand in RADICANDS:
-        for origin, unit in frames(written):
-            model = fitted_model(written, origin, unit, radicand, within * size / unit)
+        for frame in seen:
+            model = fitted_model(frame, radicand, within * size / frame.unit)
             if model.bits < _LEAST_BITS:
                 continue
             if not model.open:
@@ -198,7 +201,8 @@ def _finished(
     model: Model,
 ) -> Exact:
     model = refined(model)
-    made = constructed(model.places, model.known, drawing.lines, model.radicand, model.within)
+    frame, limit = model.frame, float(model.within)
+    made = constructed(frame.places, model.known, drawing.lines, model.radicand, limit)
     points: list[Point] = []
     kept = []
     for v, ((x, y), stand_in) in enumerate(zip(model.known, model.representatives, strict=True)):
@@ -208,18 +212,19 @@ def _finished(
         if x is None or y is None:
             kept.append(v)
         points.append((stand_in[0] if x is None else x, stand_in[1] if y is None else y))
-    (x0, y0), unit = model.origin, model.unit
+    (x0, y0), unit = frame.origin, frame.unit
     move = max(
         abs(float(a * unit + c - b))
         for point, drawn in zip(points, written, strict=True)
         for a, b, c in zip(point, drawn, (x0, y0), strict=True)
     )
-    fitting = [point for v, point in enumerate(points) if v not in set(kept)]
+    left = set(kept)
+    fitting = [point for v, point in enumerate(points) if v not in left]
     return Exact(
         _with(drawing, points),
         radicand=model.radicand if any(isinstance(c, Surd) for p in points for c in p) else 1,
         denominator=_largest(fitting),
-        origin=model.origin,
+        origin=frame.origin,
         unit=unit,
         tolerance=within,
         largest_move=move / float(size),
