@@ -133,7 +133,7 @@ def exact_sheets(
             return Sheets(sheets(after), found, (*_noted(distance, near), *begun, *ended))
         except (FoldError, PatternError) as error:
             dropped = sum(repair.count for repair in ended if repair.step == "dangling")
-            if 2 * dropped > (whole := dropped + len(after.lines)):
+            if after.lines and 2 * dropped > (whole := dropped + len(after.lines)):
                 error.args = (
                     f"{error}; {dropped} of {whole} lines had been dropped, as one panel lies on "
                     "both their sides: do the lines meet?",
