@@ -8,13 +8,21 @@ from fractions import Fraction
 from math import lcm
 from typing import Final
 
-from exactfold.drawing.candidates import RADICANDS, field_name
+from exactfold.drawing.candidates import RADICANDS
 from exactfold.drawing.construction import constructed
 from exactfold.drawing.drawing import Drawing, Point, Snap
-from exactfold.drawing.fitting import Frame, Model, Written, fitted_model, frames, refined
+from exactfold.drawing.fitting import (
+    Frame,
+    Model,
+    Written,
+    extended,
+    fitted_model,
+    frames,
+    refined,
+)
 from exactfold.errors import MalformedPatternError, UsageError
 from exactfold.exact.numbers import snap as snapped
-from exactfold.exact.surds import Surd
+from exactfold.exact.surds import Surd, common_field
 from exactfold.wording import agreeing, counted
 
 _FINEST: Final = Fraction(1, 10**9)
@@ -33,7 +41,7 @@ _MOST_KEPT: Final = 0.5
 class Exact:
     """A drawing with exact coordinates, and what became of its decimals.
 
-    `drawing` has points in Q (fractions) or in one Q(sqrt `radicand`) (surds where irrational), in
+    `drawing` has points in Q (fractions) or in Q(sqrt `radicand`), or that with one more root, in
     units of `unit` from `origin`, as `snap` found them. `largest_move` and `tolerance` are in units
     of the larger side of the drawing; `bits` is minus the logarithm of the probability that random
     decimals fit as well. `constructed` counts the vertices found as crossings of straight lines,
@@ -62,8 +70,8 @@ class Exact:
 
     @property
     def field_name(self) -> str:
-        """The field in words: `Q` or `Q(sqrt 2)`."""
-        return field_name(self.radicand)
+        """The field in words: `Q`, `Q(sqrt 2)` or `Q(sqrt 2, sqrt (2 + r1))`."""
+        return common_field(c for point in self.points for c in point).name
 
     @property
     def text(self) -> str:
@@ -99,7 +107,8 @@ def exact_coordinates(
     tolerance, if a random number would hardly have one so small (decimals on a grid of at most
     1,024 steps across the drawing are what was meant); first as written, then with the
     width or the height of the drawing as unit. Other vertices become crossings of straight lines
-    of the drawing where two are known. `tolerance` is in units of the larger side; without it, it
+    of the drawing where two are known; coordinates that are left are numbers with one more root, such
+    as sqrt (2 + sqrt 2) for lengths at 22.5 degrees, if half of them are. `tolerance` is in units of the larger side; without it, it
     is the last digit the file has, at least 1e-9, and up to 1e-6 where the digits hold noise. With
     `snap=n` coordinates become the nearest multiples of 1/n, and with "exact" they stay.
 
@@ -202,7 +211,9 @@ def _finished(
 ) -> Exact:
     model = refined(model)
     frame, limit = model.frame, float(model.within)
-    made = constructed(frame.places, model.known, drawing.lines, model.radicand, limit)
+    made = dict(constructed(frame.places, model.known, drawing.lines, model.radicand, limit))
+    model = extended(model, made)
+    made |= constructed(frame.places, model.known, drawing.lines, model.radicand, limit)
     points: list[Point] = []
     kept = []
     for v, ((x, y), stand_in) in enumerate(zip(model.known, model.representatives, strict=True)):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -11,12 +11,26 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from exactfold.arrays import FloatArray
-from exactfold.drawing.candidates import Match, matches, reduced_match
+from exactfold.drawing.candidates import Match, field_of, matches, reduced_match
 from exactfold.exact.surds import Number
 
 Written: TypeAlias = Sequence[tuple[Fraction, Fraction]]
 """Points as the file states them."""
 
+_EXTENSIONS: Final = {
+    1: [field_of(2), field_of(3), field_of(5)],
+    2: [
+        field_of(2).adjoined(2 + field_of(2).root),
+        field_of(2).adjoined(3),
+        field_of(2).adjoined(5),
+    ],
+    3: [field_of(3).adjoined(2)],
+    5: [field_of(5).adjoined(10 + 2 * field_of(5).root), field_of(5).adjoined(2)],
+}
+"""Fields with one more root, by the radicand of the field: 22.5, 15 and 18 degrees among them."""
+_SURE: Final = 12.0
+"""Bits by which a number with one more root must beat chance."""
+_SAMPLE: Final = 24
 _NOISE: Final = Fraction(1, 2**46)
 """The least noise that is expected in coordinates computed in floats."""
 
@@ -68,10 +82,45 @@ class Model:
 
 def refined(model: Model) -> Model:
     """Larger numbers for what fits none, within four times the noise of those that fit."""
+    within, field = _noise(model), field_of(model.radicand)
+    tried = {r: reduced_match(r, within, field) for r in _left(model)}
+    return _with(model, {r: match for r, match in tried.items() if match is not None})
+
+
+def extended(model: Model, made: Mapping[int, tuple[Number, Number]]) -> Model:
+    """With the points that were `made`, and one more root if half of what is left fits with it.
+
+    So are 22.5-degree designs drawn with lengths along slanted lines: most coordinates lie in
+    Q(sqrt 2), others in Q(sqrt 2, sqrt (2 + sqrt 2)).
+    """
+    within = _noise(model)
+    model = replace(model, known=[made.get(v, pair) for v, pair in enumerate(model.known)])
+    left = _left(model)
+    best: dict[Fraction, Match] = {}
+    for field in _EXTENSIONS[model.radicand] if left else ():
+        found: dict[Fraction, Match] = {}
+        for done, r in enumerate(left, 1):
+            if (match := reduced_match(r, within, field, _SURE)) is not None:
+                found[r] = match
+            if done >= _SAMPLE and 2 * len(found) < done:
+                break
+        if 2 * len(found) >= len(left) and len(found) > len(best):
+            best = found
+    return _with(model, best)
+
+
+def _noise(model: Model) -> Fraction:
+    """Four times the largest distance of a coordinate that fits from its decimals."""
     noise = [abs(float(c - r)) for c, r in _paired(model) if c is not None]
-    within = min(model.within, max(_NOISE, 4 * Fraction(max(noise, default=1.0))))
-    tried = {r: reduced_match(r, within, model.radicand) for c, r in _paired(model) if c is None}
-    found = {r: match for r, match in tried.items() if match is not None}
+    return min(model.within, max(_NOISE, 4 * Fraction(max(noise, default=1.0))))
+
+
+def _left(model: Model) -> list[Fraction]:
+    """The decimals that fit no number."""
+    return list(dict.fromkeys(r for c, r in _paired(model) if c is None))
+
+
+def _with(model: Model, found: Mapping[Fraction, Match]) -> Model:
     flat = [found[r].value if c is None and r in found else c for c, r in _paired(model)]
     bits = model.bits + sum(match.bits for match in found.values())
     return replace(model, known=list(zip(flat[::2], flat[1::2], strict=True)), bits=bits)

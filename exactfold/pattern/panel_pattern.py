@@ -13,7 +13,7 @@ from typing import Final, TypeAlias
 
 from exactfold.errors import MalformedPatternError, PinchError
 from exactfold.exact.numbers import format_rational
-from exactfold.exact.surds import Number, Surd, SurdField, common_field, simple
+from exactfold.exact.surds import Number, Surd, SurdField, common_field
 from exactfold.pattern.planar import counter_clockwise, trace_faces
 from exactfold.wording import counted
 
@@ -70,17 +70,12 @@ class PanelPattern:
     @property
     def radicands(self) -> tuple[Number, ...]:
         """The numbers under the square roots r1, r2, ... of the field."""
-        field = self.field
-        zeros = [(Fraction(0),) * (field.dimension - len(r)) for r in field.radicands]
-        pairs = zip(field.radicands, zeros, strict=True)
-        return tuple(simple(Surd(field, r + rest)) for r, rest in pairs)
+        return self.field.numbers
 
     @property
     def field_name(self) -> str:
         """The field in words: `Q`, `Q(sqrt 2)`, or `Q(sqrt 2, sqrt (1 + r1))`."""
-        numbers = [str(number) for number in self.radicands]
-        roots = [f"sqrt {n}" if n.isdigit() else f"sqrt ({n})" for n in numbers]
-        return f"Q({', '.join(roots)})" if roots else "Q"
+        return self.field.name
 
     @cached_property
     def faces(self) -> tuple[tuple[int, ...], ...]:
