@@ -107,10 +107,11 @@ def exact_coordinates(
     tolerance, if a random number would hardly have one so small (decimals on a grid of at most
     1,024 steps across the drawing are what was meant); first as written, then with the
     width or the height of the drawing as unit. Other vertices become crossings of straight lines
-    of the drawing where two are known; coordinates that are left are numbers with one more root, such
-    as sqrt (2 + sqrt 2) for lengths at 22.5 degrees, if half of them are. `tolerance` is in units of the larger side; without it, it
-    is the last digit the file has, at least 1e-9, and up to 1e-6 where the digits hold noise. With
-    `snap=n` coordinates become the nearest multiples of 1/n, and with "exact" they stay.
+    of the drawing where two are known; coordinates that are left are numbers with one more root,
+    such as sqrt (2 + sqrt 2) for lengths at 22.5 degrees, if half of them are. `tolerance` is in
+    units of the larger side; without it, it is the last digit the file has, at least 1e-9, and up
+    to 1e-6 where the digits hold noise. With `snap=n` coordinates become the nearest multiples of
+    1/n, and with "exact" they stay.
 
     Raises `MalformedPatternError` for a drawing without extent and `UsageError` for another `snap`,
     a tolerance that is not positive or coordinates that are irrational already. That no field was
