@@ -19,9 +19,9 @@ Junctions: TypeAlias = dict[int, list[int]]
 """For each vertex inside lines, those lines."""
 
 _FLATTEST: Final = 0.05
+"""The least sine of an angle at which a crossing fixes a point."""
 _LONGEST: Final = 1024
 """Bits of a coordinate beyond which a vertex is not moved onto its line."""
-"""The least sine of an angle at which a crossing fixes a point."""
 
 
 def split(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:

@@ -14,6 +14,7 @@ from exactfold.drawing.fold_json import read_bytes
 from exactfold.errors import (
     DisconnectedError,
     DuplicateVertexError,
+    FoldedStateError,
     FoldError,
     InputError,
     IsolatedVertexError,
@@ -143,8 +144,9 @@ def opened(
         drawing = parse_drawing(raw, name)
     except _FINAL:
         raise
-    except (NotJSONError, FoldError, UnknownFormatError):
-        if strict is None or Path(name).suffix.lower() not in (".fold", ".json", ""):
+    except (NotJSONError, FoldError, UnknownFormatError) as error:
+        folded = isinstance(error, FoldedStateError)
+        if strict is None or folded or Path(name).suffix.lower() not in (".fold", ".json", ""):
             raise
         raise strict from None
     try:
