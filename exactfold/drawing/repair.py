@@ -107,6 +107,11 @@ def exact_sheets(
     they were drawn; crossings and T-junctions are then computed in the field that was found, so
     that three creases through a point of the design meet there exactly.
 
+    Without `merge` the distance is the finest that is clear (`clear_distances`), up to 1/300 of the
+    size; where the sheet then has holes or loose ends, the next two are tried. A distance larger
+    than that of `repaired` is said first among the repairs. Where nothing is read, coarser ones are
+    tried, up to 1/100, only to name in the refusal the first that would do.
+
     Raises what `repaired`, `exact_coordinates` and `sheets` raise.
 
     >>> from exactfold.drawing.drawing import Line
