@@ -214,6 +214,10 @@ class NotCountedError(NotApplicableError):
     """The sheet is in order, but of a kind whose branches are not listed or named (exit code 4)."""
 
 
+class NotTriangulatedError(NotCountedError):
+    """A sheet with larger panels or irrational coordinates, where triangles are needed."""
+
+
 class NoInteriorVertexError(NotCountedError):
     """A pattern without interior vertices has no curvature equation and no branches to count."""
 

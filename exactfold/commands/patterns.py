@@ -8,11 +8,10 @@ from pathlib import Path
 from exactfold.commands.shell import STDIN, said, say
 from exactfold.data import EXAMPLES, example_path
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import NotCountedError, UnknownPatternError
+from exactfold.errors import UnknownPatternError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.near_degeneracy import near_degenerate
-from exactfold.pattern.opening import Opened, has_branches, open_pattern
-from exactfold.wording import counted
+from exactfold.pattern.opening import Opened, has_branches, open_pattern, triangles
 
 
 @dataclass(frozen=True)
@@ -43,26 +42,13 @@ def read(path: Path, snap: Snap | None, number: int | None, needs: str) -> Trian
     """The triangulated sheet that is meant, for a command that `needs` one.
 
     What a designer should know of it before the answer is read is said on stderr. Raises the
-    errors of `located` and `open_pattern`, and `NotCountedError` for a sheet of larger panels or
-    with square roots.
+    errors of `located`, `open_pattern` and `triangles`.
     """
     opened = read_any(path, snap, number)
-    if not isinstance(opened.sheet, CreasePattern):
-        if opened.sheet.field.radicands:
-            raise NotCountedError(
-                f"{needs} takes triangulated sheets with rational coordinates, and those of this "
-                f"one lie in {opened.field_name}: `exactfold count` takes them as they are, and "
-                "`exactfold convert --triangulate --snap DEN` rounds those of a drawing"
-            )
-        large = sum(len(face) > 3 for face in opened.sheet.faces)
-        raise NotCountedError(
-            f"{needs} takes triangulated sheets, and this one has {counted(large, 'panel')} with "
-            "more than three sides: `exactfold count` says how its panels fold while they stay "
-            "rigid, and `exactfold convert --triangulate` cuts them into triangles that may bend"
-        )
-    if not has_branches(opened.sheet):
-        warn(opened.sheet)
-    return Triangulated(opened.sheet, opened)
+    pattern = triangles(opened, needs)
+    if not has_branches(pattern):
+        warn(pattern)
+    return Triangulated(pattern, opened)
 
 
 def read_any(path: Path, snap: Snap | None, number: int | None = None) -> Opened:

@@ -6,28 +6,25 @@ import os
 from collections.abc import Generator, Iterable, Sized
 from contextlib import closing
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from exactfold.branches.result import BranchCount
 from exactfold.count.pools import Pool, process_pool
 from exactfold.count.registry import choose
-from exactfold.count.ways import count_opened, open_sheet
+from exactfold.count.ways import Sheet, count_opened, open_sheet
 from exactfold.data import EXAMPLES, example_path
 from exactfold.drawing.drawing import Snap
 from exactfold.drawing.fold_json import read_bytes
 from exactfold.errors import InputError, NotEnoughMemoryError, UnreadableFileError, UsageError
 from exactfold.memory import is_shortage, shortage
-from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold import FoldFile
-from exactfold.pattern.loading import PatternLike
 from exactfold.pattern.opening import Opened, opened
 from exactfold.progress import Progress
 
 if TYPE_CHECKING:
     from exactfold.modes.result import Decomposition
 
-Source = bytes | CreasePattern | InputError
-"""What is sent to a worker: the bytes of a FOLD file, a pattern, or why there is neither."""
+Source: TypeAlias = "bytes | Sheet | InputError"
+"""What is sent to a worker: the bytes of a file, a sheet, or why there is neither."""
 
 
 @dataclass(frozen=True)
@@ -68,23 +65,25 @@ def count_job(job: Job) -> BranchCount | Decomposition | Exception:
 
 
 def count_many(
-    patterns: Iterable[PatternLike],
+    patterns: Iterable[Sheet],
     *,
     jobs: int = 1,
     engine: Pool | None = None,
     method: str = "auto",
     seed: int = 0,
     snap: Snap | None = None,
+    number: int | None = None,
     progress: Progress | None = None,
 ) -> Generator[tuple[str, BranchCount | Decomposition | Exception], None, None]:
-    """The counts of many patterns (anything `load` takes), each with its name, as they are ready.
+    """The counts of many sheets, each with its name, as they are ready.
 
-    The name of a file or an example is its text, that of a pattern its place ("0", "1", ...). What
-    `count_branches` raises for one pattern is its result, and the others go on; a pattern whose
-    process died has a `WorkerDiedError`. With `jobs` > 1 that many processes share the work, and a
-    script needs the usual `if __name__ == "__main__"`; an `engine`, such as `dask_pool`, takes
-    their place. Files are read here, a few at a time, and sent to the workers. What to know of a
-    pattern before its count is read is the `warning` of its count.
+    A sheet is anything that `count_ways` takes. The name of a file or an example is its text, that
+    of a pattern its place ("0", "1", ...). Of drawings with several sheets the one with this
+    `number`, from 1, is counted. What `count_ways` raises for one pattern is its result, and the
+    others go on; a pattern whose process died has a `WorkerDiedError`. With `jobs` > 1 that many
+    processes share the work, and a script needs the usual `if __name__ == "__main__"`; an `engine`,
+    such as `dask_pool`, takes their place. Files are read here, a few at a time, and sent to the
+    workers. What to know of a pattern before its count is read is the `warning` of its count.
     `progress("counting", done, total)` has a total of 0 where `patterns` has no length.
 
     Raises `UsageError` for an unknown method, a negative seed or fewer jobs than 1, before
@@ -105,13 +104,11 @@ def count_many(
     if jobs < 1:
         raise UsageError(f"at least one job is needed, not {jobs}")
 
-    def job(place: int, given: PatternLike) -> Job:
-        if isinstance(given, FoldFile):
-            given = given.pattern
-        if isinstance(given, CreasePattern):
-            return Job(str(place), given, method, seed, snap)
+    def job(place: int, given: Sheet) -> Job:
+        if not isinstance(given, str | os.PathLike):
+            return Job(str(place), given, method, seed, snap, number)
         path = example_path(given) if isinstance(given, str) and given in EXAMPLES else given
-        return Job(os.fspath(given), read_source(path), method, seed, snap)
+        return Job(os.fspath(given), read_source(path), method, seed, snap, number)
 
     total = len(patterns) if isinstance(patterns, Sized) else 0
     given = (job(place, pattern) for place, pattern in enumerate(patterns))

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from math import isqrt, log, log2, sqrt
+from math import isqrt, log, log2, prod, sqrt
 from typing import Final
 
 import numpy as np
-from flint import fmpz_mat
+from flint import arb, fmpz_mat
 
 from exactfold.arrays import FloatArray, IntArray
-from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField
+from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField, simple
 
 RADICANDS: Final = (1, 2, 3, 5)
 """The fields that are tried: Q, Q(sqrt 2), Q(sqrt 3), Q(sqrt 5)."""
@@ -27,11 +27,6 @@ _BITS: Final = 10.0
 def field_of(radicand: int) -> SurdField:
     """Q for 1, else Q(sqrt radicand)."""
     return RATIONALS if radicand == 1 else RATIONALS.adjoined(radicand)
-
-
-def field_name(radicand: int) -> str:
-    """The field in words: `Q` or `Q(sqrt 2)`."""
-    return "Q" if radicand == 1 else f"Q(sqrt {radicand})"
 
 
 @dataclass(frozen=True)
@@ -112,27 +107,35 @@ def matches(values: FloatArray, within: float, radicand: int) -> list[Match | No
     return found
 
 
-def reduced_match(value: Fraction, within: Fraction, radicand: int) -> Match | None:
-    """A number (a + b sqrt d)/q of any size within a small distance, None if chance would do.
+def reduced_match(
+    value: Fraction, within: Fraction, field: SurdField, least: float = _BITS
+) -> Match | None:
+    """A number of a field, of any size, within a small distance; None if chance would do as well.
 
-    LLL finds a short vector of the lattice of (q, a, b, (q value + a + b sqrt d) / within). The
-    numbers of size at most S = q^2 (2|b| + 1) are fewer than S (1 + log S) in a unit interval.
+    Numbers are (a + b_1 w_1 + ... + b_m w_m)/q with the products w_i of roots. LLL finds a short
+    vector of the lattice of (q, a, b_1, ..., b_m, (q value + a + b_1 w_1 + ...) / within). Those of
+    size q^2 (2|b_1| + 1) ... (2|b_m| + 1) at most S are fewer than S (1 + log S)^max(m, 1) in a
+    unit interval. `least` is how many bits a match must beat chance by.
 
-    >>> reduced_match(Fraction("0.10236012565087"), Fraction(1, 10**13), 2).value
+    >>> reduced_match(Fraction("0.10236012565087"), Fraction(1, 10**13), field_of(2)).value
     17/97 + -5/97*r1
     """
     scale = 1 / within
-    rows = [[1, 0, 0, round(value * scale)], [0, 1, 0, round(scale)]]
-    if radicand > 1:
-        rows.append([0, 0, 1, isqrt(int(radicand * scale * scale))])
+    roots = field.products(int(scale).bit_length() + 64)
+    basis = [round(value * scale), *(_floor(root, scale) for root in roots)]
+    rows = [[*(int(i == k) for k in range(len(basis))), basis[i]] for i in range(len(basis))]
     shortest = fmpz_mat(rows).lll()
-    q, a, b = (int(shortest[0, k]) for k in range(3))
+    q, *parts = (int(shortest[0, k]) for k in range(len(basis)))
     if not q:
         return None
-    rational, root = Fraction(-a, q), Fraction(-b, q)
-    number = Surd(field_of(radicand), (rational, root)) if root else rational
-    size = q * q * (2 * abs(b) + 1)
-    bits = -log2(2 * float(within) * size * (1 + log(size)))
-    if bits < _BITS or abs(float(number - value)) > within:
+    number = simple(Surd(field, tuple(Fraction(-part, q) for part in parts)))
+    size = q * q * prod(2 * abs(b) + 1 for b in parts[1:])
+    crowd = size * (1 + log(size)) ** max(len(parts) - 1, 1)
+    bits = -log2(2 * float(within) * crowd)
+    if bits < least or abs(float(number - value)) > within:
         return None
     return Match(number, bits)
+
+
+def _floor(root: arb, scale: Fraction) -> int:
+    return int((root * scale.numerator / scale.denominator).mid().floor().unique_fmpz())

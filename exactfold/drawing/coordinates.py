@@ -8,13 +8,21 @@ from fractions import Fraction
 from math import lcm
 from typing import Final
 
-from exactfold.drawing.candidates import RADICANDS, field_name
+from exactfold.drawing.candidates import RADICANDS
 from exactfold.drawing.construction import constructed
 from exactfold.drawing.drawing import Drawing, Point, Snap
-from exactfold.drawing.fitting import Model, Written, fitted_model, frames, refined
+from exactfold.drawing.fitting import (
+    Frame,
+    Model,
+    Written,
+    extended,
+    fitted_model,
+    frames,
+    refined,
+)
 from exactfold.errors import MalformedPatternError, UsageError
 from exactfold.exact.numbers import snap as snapped
-from exactfold.exact.surds import Surd
+from exactfold.exact.surds import Surd, common_field
 from exactfold.wording import agreeing, counted
 
 _FINEST: Final = Fraction(1, 10**9)
@@ -33,7 +41,7 @@ _MOST_KEPT: Final = 0.5
 class Exact:
     """A drawing with exact coordinates, and what became of its decimals.
 
-    `drawing` has points in Q (fractions) or in one Q(sqrt `radicand`) (surds where irrational), in
+    `drawing` has points in Q (fractions) or in Q(sqrt `radicand`), or that with one more root, in
     units of `unit` from `origin`, as `snap` found them. `largest_move` and `tolerance` are in units
     of the larger side of the drawing; `bits` is minus the logarithm of the probability that random
     decimals fit as well. `constructed` counts the vertices found as crossings of straight lines,
@@ -62,8 +70,8 @@ class Exact:
 
     @property
     def field_name(self) -> str:
-        """The field in words: `Q` or `Q(sqrt 2)`."""
-        return field_name(self.radicand)
+        """The field in words: `Q`, `Q(sqrt 2)` or `Q(sqrt 2, sqrt (2 + r1))`."""
+        return common_field(c for point in self.points for c in point).name
 
     @property
     def text(self) -> str:
@@ -99,9 +107,11 @@ def exact_coordinates(
     tolerance, if a random number would hardly have one so small (decimals on a grid of at most
     1,024 steps across the drawing are what was meant); first as written, then with the
     width or the height of the drawing as unit. Other vertices become crossings of straight lines
-    of the drawing where two are known. `tolerance` is in units of the larger side; without it, it
-    is the last digit the file has, at least 1e-9, and up to 1e-6 where the digits hold noise. With
-    `snap=n` coordinates become the nearest multiples of 1/n, and with "exact" they stay.
+    of the drawing where two are known; coordinates that are left are numbers with one more root,
+    such as sqrt (2 + sqrt 2) for lengths at 22.5 degrees, if half of them are. `tolerance` is in
+    units of the larger side; without it, it is the last digit the file has, at least 1e-9, and up
+    to 1e-6 where the digits hold noise. With `snap=n` coordinates become the nearest multiples of
+    1/n, and with "exact" they stay.
 
     Raises `MalformedPatternError` for a drawing without extent and `UsageError` for another `snap`,
     a tolerance that is not positive or coordinates that are irrational already. That no field was
@@ -140,8 +150,9 @@ def exact_coordinates(
     if tolerance is None and common * size <= _WRITTEN:
         return Exact(drawing, denominator=common)
     best: Exact | None = None
+    seen = frames(written)
     for within in [tolerance] if tolerance is not None else _tolerances(written, size):
-        found = _fitted(drawing, written, size, within)
+        found = _fitted(drawing, written, seen, size, within)
         # A coarser tolerance fits more by chance: it must explain far more.
         if found is not None and (best is None or 2 * len(found.kept) < len(best.kept)):
             best = found
@@ -176,11 +187,13 @@ def resolution(drawing: Drawing) -> Fraction:
 # --- fitting -------------------------------------------------------------------------------------
 
 
-def _fitted(drawing: Drawing, written: Written, size: Fraction, within: Fraction) -> Exact | None:
+def _fitted(
+    drawing: Drawing, written: Written, seen: Sequence[Frame], size: Fraction, within: Fraction
+) -> Exact | None:
     best: Model | None = None
     for radicand in RADICANDS:
-        for origin, unit in frames(written):
-            model = fitted_model(written, origin, unit, radicand, within * size / unit)
+        for frame in seen:
+            model = fitted_model(frame, radicand, within * size / frame.unit)
             if model.bits < _LEAST_BITS:
                 continue
             if not model.open:
@@ -198,7 +211,10 @@ def _finished(
     model: Model,
 ) -> Exact:
     model = refined(model)
-    made = constructed(model.places, model.known, drawing.lines, model.radicand, model.within)
+    frame, limit = model.frame, float(model.within)
+    made = dict(constructed(frame.places, model.known, drawing.lines, model.radicand, limit))
+    model = extended(model, made)
+    made |= constructed(frame.places, model.known, drawing.lines, model.radicand, limit)
     points: list[Point] = []
     kept = []
     for v, ((x, y), stand_in) in enumerate(zip(model.known, model.representatives, strict=True)):
@@ -208,18 +224,19 @@ def _finished(
         if x is None or y is None:
             kept.append(v)
         points.append((stand_in[0] if x is None else x, stand_in[1] if y is None else y))
-    (x0, y0), unit = model.origin, model.unit
+    (x0, y0), unit = frame.origin, frame.unit
     move = max(
         abs(float(a * unit + c - b))
         for point, drawn in zip(points, written, strict=True)
         for a, b, c in zip(point, drawn, (x0, y0), strict=True)
     )
-    fitting = [point for v, point in enumerate(points) if v not in set(kept)]
+    left = set(kept)
+    fitting = [point for v, point in enumerate(points) if v not in left]
     return Exact(
         _with(drawing, points),
         radicand=model.radicand if any(isinstance(c, Surd) for p in points for c in p) else 1,
         denominator=_largest(fitting),
-        origin=model.origin,
+        origin=frame.origin,
         unit=unit,
         tolerance=within,
         largest_move=move / float(size),

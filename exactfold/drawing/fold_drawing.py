@@ -153,7 +153,11 @@ def _flattened(
             noise = f"{name} varies by {float(high - low):.2g} and is read as constant"
             return points, plane, [noise] if high > low else []
     extent = " x ".join(f"{float(high - low):.3g}" for low, high in bounds)
-    raise FoldedStateError(f"the vertices fill a box of {extent}: this is a folded state; {_HINT}")
+    low, high = (places.index(find(places, key=lambda p: p[2])) for find in (min, max))
+    raise FoldedStateError(
+        f"the vertices fill a box of {extent} (vertex {low} has the least z, vertex {high} the "
+        f"largest): this is a folded state; {_HINT}"
+    )
 
 
 def _check_unfolded(

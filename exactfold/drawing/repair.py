@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
 from exactfold.drawing.coordinates import Exact, exact_coordinates, resolution
 from exactfold.drawing.drawing import Drawing, Snap
+from exactfold.drawing.inexactness import GAP, clear_distances
 from exactfold.drawing.mending import (
     Repair,
     coinciding,
@@ -22,12 +23,17 @@ from exactfold.drawing.mending import (
 )
 from exactfold.drawing.sheets import bordered, sheets
 from exactfold.drawing.splitting import split
-from exactfold.errors import MalformedPatternError, UsageError
+from exactfold.errors import FoldError, MalformedPatternError, PatternError, UsageError
 from exactfold.wording import counted
 
 STEPS: Final = ("merge", "duplicates", "split", "join", "dangling", "dissolve", "border")
 """The steps in their order."""
 _NEAR: Final = Fraction(1, 10**6)
+_COARSEST: Final = Fraction(1, 300)
+"""No automatic merging beyond this share of the size."""
+_ADVISED: Final = Fraction(1, 100)
+"""No merging beyond this share of the size is advised."""
+_TRIALS: Final = 3
 
 
 def repaired(
@@ -101,6 +107,11 @@ def exact_sheets(
     they were drawn; crossings and T-junctions are then computed in the field that was found, so
     that three creases through a point of the design meet there exactly.
 
+    Without `merge` the distance is the finest that is clear (`clear_distances`), up to 1/300 of the
+    size; where the sheet then has holes or loose ends, the next two are tried. A distance larger
+    than that of `repaired` is said first among the repairs. Where nothing is read, coarser ones are
+    tried, up to 1/100, only to name in the refusal the first that would do.
+
     Raises what `repaired`, `exact_coordinates` and `sheets` raise.
 
     >>> from exactfold.drawing.drawing import Line
@@ -112,13 +123,83 @@ def exact_sheets(
     ((Fraction(1, 3), Fraction(0, 1)), 7, 3)
     """
     near = _distance(drawing, merge)
+    inexact = merge is None and "merge" in steps and not drawing.exact
+    clear = _clear(drawing, near, _COARSEST, GAP) if inexact else []
+    distances = clear[:_TRIALS] or [near]
     first = [step for step in STEPS[:2] if step in steps]
-    before, begun = repaired(drawing, merge=near, steps=first)
+    before, begun = repaired(drawing, merge=distances[0], steps=first)
     found = exact_coordinates(_used_only(before), snap, tolerance=tolerance)
-    coarse = max(near, 2 * found.tolerance) if merge is None else near
     # Snapping can bring points together that were further apart than the merging distance.
-    after, ended = repaired(found.drawing, merge=coarse, steps=steps)
-    return Sheets(sheets(after), found, (*begun, *ended))
+    least = 2 * found.tolerance if merge is None else Fraction(0)
+
+    def made(distance: Fraction) -> Sheets:
+        after, ended = repaired(found.drawing, merge=max(distance, least), steps=steps)
+        try:
+            return Sheets(sheets(after), found, (*_noted(distance, near), *begun, *ended))
+        except (FoldError, PatternError) as error:
+            dropped = sum(repair.count for repair in ended if repair.step == "dangling")
+            if after.lines and 2 * dropped > (whole := dropped + len(after.lines)):
+                error.args = (
+                    f"{error}; {dropped} of {whole} lines had been dropped, as one panel lies on "
+                    "both their sides: do the lines meet?",
+                    *error.args[1:],
+                )
+            raise
+
+    done, refusals = _until_whole(made, distances)
+    if done:
+        return min(done.values(), key=_loose)
+    if inexact and all(line.letter != "C" for line in drawing.lines):
+        coarser = _clear(drawing, distances[-1] * 2, _ADVISED, GAP / 2)[-_TRIALS:]
+        round_ones = [Fraction(f"{1.05 * float(distance):.2g}") for distance in coarser]
+        for distance in list(_until_whole(made, round_ones)[0])[:1]:
+            refusals[0].args = (
+                f"{refusals[0]}; `exactfold convert --merge {float(distance):g}` would read it, "
+                "taking what misses by up to that share of the size to meet",
+                *refusals[0].args[1:],
+            )
+    raise refusals[0]
+
+
+def _clear(drawing: Drawing, near: Fraction, most: Fraction, gap: float) -> list[Fraction]:
+    """Distances to merge at, as shares of the size, the finest first."""
+    clean, _ = repaired(drawing, merge=near, steps=STEPS[:2])
+    if not (size := _extent(clean)):
+        return []
+    clear = clear_distances(clean, float(near) * size, float(most) * size, gap)
+    return [Fraction(distance / size * (1 + 1e-9)) for distance in clear]
+
+
+def _until_whole(
+    made: Callable[[Fraction], Sheets], distances: Iterable[Fraction]
+) -> tuple[dict[Fraction, Sheets], list[FoldError | PatternError]]:
+    """The sheets by distance, up to the first that has no loose ends; and the refusals."""
+    done: dict[Fraction, Sheets] = {}
+    refusals: list[FoldError | PatternError] = []
+    for distance in distances:
+        try:
+            done[distance] = made(distance)
+        except (FoldError, PatternError) as error:
+            refusals.append(error)
+            continue
+        if not _loose(done[distance]):
+            break
+    return done, refusals
+
+
+def _loose(sheets: Sheets) -> int:
+    """How many lines were dropped because one panel lies on both their sides."""
+    return sum(repair.count for repair in sheets.repairs if repair.step == "dangling")
+
+
+def _noted(distance: Fraction, near: Fraction) -> list[Repair]:
+    if distance <= near * Fraction(101, 100):
+        return []
+    sentence = (
+        f"the drawing is inexact: what misses by up to {float(distance):.1e} of the size is "
+        f"taken to meet, as nothing misses by more, up to {GAP:g} times that"
+    )
+    return [Repair("merge", 1, (), sentence)]
 
 
 def _step(drawing: Drawing, step: str, near: Fraction) -> tuple[Drawing, list[Repair]]:

@@ -25,8 +25,13 @@ class _Part:
 
 
 def bordered(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
-    """The lines round each part of the drawing are border (B), whatever letters they have."""
-    round_it = {frozenset(pair) for part in _parts(drawing) for pair in _sides(part.outline)}
+    """The lines round each sheet of the drawing are border (B), whatever letters they have.
+
+    Creases that lie inside a panel keep their letters: they are round no sheet.
+    """
+    parts, places = _parts(drawing), floats(drawing.points)
+    outer = [part for part in parts if not any(_nested(part, other, places) for other in parts)]
+    round_it = {frozenset(pair) for part in outer for pair in _sides(part.outline)}
     lines = []
     changed = []
     for line in drawing.lines:
@@ -117,7 +122,7 @@ def _sides(cycle: Sequence[int]) -> list[tuple[int, int]]:
 def _check_nested(part: _Part, parts: Sequence[_Part], places: FloatArray) -> None:
     v = part.outline[0]
     for other in parts:
-        if other is part or not _encloses(places[list(other.outline)], places[v]):
+        if not _nested(part, other, places):
             continue
         where = f"near ({places[v][0]:.6g}, {places[v][1]:.6g})"
         rim = {frozenset(pair) for pair in _sides(part.outline)}
@@ -127,6 +132,10 @@ def _check_nested(part: _Part, parts: Sequence[_Part], places: FloatArray) -> No
             f"creases {where} lie inside a panel and are joined to the rest by no line",
             vertices=[v],
         )
+
+
+def _nested(part: _Part, other: _Part, places: FloatArray) -> bool:
+    return part is not other and _encloses(places[list(other.outline)], places[part.outline[0]])
 
 
 def _check_inside(part: _Part, places: FloatArray) -> None:

@@ -19,9 +19,9 @@ Junctions: TypeAlias = dict[int, list[int]]
 """For each vertex inside lines, those lines."""
 
 _FLATTEST: Final = 0.05
+"""The least sine of an angle at which a crossing fixes a point."""
 _LONGEST: Final = 1024
 """Bits of a coordinate beyond which a vertex is not moved onto its line."""
-"""The least sine of an angle at which a crossing fixes a point."""
 
 
 def split(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
@@ -178,7 +178,7 @@ def _crossings(
         for k in hosts:
             meets[k].add(v)
     through: dict[Point, set[int]] = {}
-    for k, m in _crossing_pairs(places, lines):
+    for k, m in crossing_pairs(places, lines):
         if not meets[k] & meets[m]:
             point = crossing(_supporting(points, lines[k]), _supporting(points, lines[m]))
             through.setdefault(point, set()).update((k, m))
@@ -191,7 +191,7 @@ def _crossings(
     return {v: sorted(hosts) for v, hosts in enumerate(through.values(), start)}
 
 
-def _crossing_pairs(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int, int]]:
+def crossing_pairs(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int, int]]:
     """Pairs of lines whose insides cross, by floats: each end well off the other line."""
     if not lines:
         return []

@@ -170,6 +170,25 @@ class SurdField:
         return 1 << len(self.radicands)
 
     @property
+    def name(self) -> str:
+        """The field in words, with r1 for its first root.
+
+        >>> field = RATIONALS.adjoined(2)
+        >>> RATIONALS.name, field.name, field.adjoined(2 + field.root).name
+        ('Q', 'Q(sqrt 2)', 'Q(sqrt 2, sqrt (2 + r1))')
+        """
+        numbers = [str(number) for number in self.numbers]
+        roots = [f"sqrt {n}" if n.isdigit() else f"sqrt ({n})" for n in numbers]
+        return f"Q({', '.join(roots)})" if roots else "Q"
+
+    @property
+    def numbers(self) -> tuple[Number, ...]:
+        """The numbers under the square roots r1, r2, ..., as numbers of this field."""
+        zeros = [(Fraction(0),) * (self.dimension - len(r)) for r in self.radicands]
+        pairs = zip(self.radicands, zeros, strict=True)
+        return tuple(simple(Surd(self, r + rest)) for r, rest in pairs)
+
+    @property
     def root(self) -> Surd:
         """r_m, the last root adjoined; raises `UsageError` in Q."""
         if not self.radicands:

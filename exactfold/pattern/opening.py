@@ -14,12 +14,14 @@ from exactfold.drawing.fold_json import read_bytes
 from exactfold.errors import (
     DisconnectedError,
     DuplicateVertexError,
+    FoldedStateError,
     FoldError,
     InputError,
     IsolatedVertexError,
     MalformedPatternError,
     NotANumberError,
     NotJSONError,
+    NotTriangulatedError,
     PatternError,
     SeveralSheetsError,
     StaleExactCoordinatesError,
@@ -27,7 +29,8 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold import parse_bytes
+from exactfold.pattern.fold import FoldFile, parse_bytes
+from exactfold.wording import counted
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
 if TYPE_CHECKING:
@@ -134,15 +137,16 @@ def opened(
         except (NotJSONError, FoldError, PatternError) as error:
             strict = error
         else:
-            return Opened(file.pattern, file.assignment, (), file.snapped)
+            return Opened(file.pattern, file.assignment, _meant(file, name), file.snapped)
     from exactfold.drawing.read import parse_drawing
 
     try:
         drawing = parse_drawing(raw, name)
     except _FINAL:
         raise
-    except (NotJSONError, FoldError, UnknownFormatError):
-        if strict is None or Path(name).suffix.lower() not in (".fold", ".json", ""):
+    except (NotJSONError, FoldError, UnknownFormatError) as error:
+        folded = isinstance(error, FoldedStateError)
+        if strict is None or folded or Path(name).suffix.lower() not in (".fold", ".json", ""):
             raise
         raise strict from None
     try:
@@ -151,6 +155,22 @@ def opened(
         if isinstance(strict, PatternError) and not isinstance(strict, _OF_EDGES):
             raise strict from None  # it names the face or vertex of the file
         raise
+
+
+def _meant(file: FoldFile, name: str) -> tuple[str, ...]:
+    """What is said where F and J in a sheet of triangles could mean panels of several triangles.
+
+    J says so by itself, F only beside M and V: where no fold has a direction, F is no more than U.
+    """
+    letters = [file.assignment.get(fold, "U") for fold in file.pattern.folds]
+    flat = sum(letter in "FJ" for letter in letters)
+    if not flat or not {"M", "V", "J"} & set(letters):
+        return ()
+    return (
+        f"read {Path(name).name}: FOLD, triangulated, as it stands: {counted(flat, 'fold')} with "
+        f"the letter F or J may bend like any other (`exactfold convert --repair` joins the panels "
+        "across them)",
+    )
 
 
 def from_drawing(
@@ -225,6 +245,29 @@ def _chosen(drawing: Drawing, found: Sheets, number: int | None) -> Opened:
         tuple(lines),
         largest_move=found.coordinates.largest_move,
         field_name=pattern.field_name,
+    )
+
+
+def triangles(opened: Opened, needs: str) -> CreasePattern:
+    """The triangulated sheet that was opened, for something that `needs` one.
+
+    Raises `NotTriangulatedError` for larger panels or square roots; it says what takes them.
+    """
+    sheet = opened.sheet
+    if isinstance(sheet, CreasePattern):
+        return sheet
+    if sheet.field.radicands:
+        raise NotTriangulatedError(
+            f"{needs} takes triangulated sheets with rational coordinates, and those of this "
+            f"one lie in {opened.field_name}: `exactfold count` (`count_ways`) takes them as they "
+            "are, and `exactfold convert --triangulate --snap DEN` rounds those of a drawing"
+        )
+    large = sum(len(face) > 3 for face in sheet.faces)
+    raise NotTriangulatedError(
+        f"{needs} takes triangulated sheets, and this one has {counted(large, 'panel')} with "
+        "more than three sides: `exactfold count` (`count_ways`) says how its panels fold while "
+        "they stay rigid, and `exactfold convert --triangulate` cuts them into triangles that may "
+        "bend"
     )
 
 

@@ -9,16 +9,18 @@ from fractions import Fraction
 from functools import cached_property
 from math import lcm
 from types import MappingProxyType
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from exactfold.errors import MalformedPatternError, PinchError
 from exactfold.exact.numbers import format_rational
-from exactfold.exact.surds import Number, Surd, SurdField, common_field, simple
+from exactfold.exact.surds import Number, Surd, SurdField, common_field
 from exactfold.pattern.planar import counter_clockwise, trace_faces
 from exactfold.wording import counted
 
 Edge: TypeAlias = tuple[int, int]
 Point: TypeAlias = tuple[Number, Number]
+_LONGEST: Final = 256
+"""Bits of a common denominator up to which whole numbers are shorter than fractions."""
 
 
 @dataclass(frozen=True)
@@ -68,17 +70,12 @@ class PanelPattern:
     @property
     def radicands(self) -> tuple[Number, ...]:
         """The numbers under the square roots r1, r2, ... of the field."""
-        field = self.field
-        zeros = [(Fraction(0),) * (field.dimension - len(r)) for r in field.radicands]
-        pairs = zip(field.radicands, zeros, strict=True)
-        return tuple(simple(Surd(field, r + rest)) for r, rest in pairs)
+        return self.field.numbers
 
     @property
     def field_name(self) -> str:
         """The field in words: `Q`, `Q(sqrt 2)`, or `Q(sqrt 2, sqrt (1 + r1))`."""
-        numbers = [str(number) for number in self.radicands]
-        roots = [f"sqrt {n}" if n.isdigit() else f"sqrt ({n})" for n in numbers]
-        return f"Q({', '.join(roots)})" if roots else "Q"
+        return self.field.name
 
     @cached_property
     def faces(self) -> tuple[tuple[int, ...], ...]:
@@ -140,12 +137,22 @@ class PanelPattern:
 
     @cached_property
     def scaled_vertices(self) -> tuple[Point, ...]:
-        """The vertices times a whole number that clears all denominators."""
+        """The vertices times a whole number that clears all denominators, if there is a short one.
+
+        Many crossings of lines have long denominators without a common factor: then the vertices
+        as they are, since their multiples would be longer than all of them together.
+        """
 
         def parts(value: Number) -> Sequence[Fraction]:
             return value.coefficients if isinstance(value, Surd) else (Fraction(value),)
 
-        scale = lcm(*(p.denominator for point in self.vertices for c in point for p in parts(c)))
+        scale = 1
+        for denominator in {
+            p.denominator for point in self.vertices for c in point for p in parts(c)
+        }:
+            scale = lcm(scale, denominator)
+            if scale.bit_length() > _LONGEST:
+                return self.vertices
         return tuple((_whole(x * scale), _whole(y * scale)) for x, y in self.vertices)
 
     def direction(self, start: int, end: int) -> Point:

@@ -42,7 +42,7 @@ BAD = {
     "boolean": (text_with("true"), "NotANumberError", "vertex 4"),
     "off the plane": (
         {**SQUARE_FOLD, "vertices_coords": [[*p, int(k == 2)] for k, p in enumerate(CORNERS)]},
-        "OffPlaneError",
+        "FoldedStateError",
         "vertex 2",
     ),
     "degenerate": (

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from drawings import SQUARE, as_cp, as_fold
 
-from exactfold import count_branches, write_fold
+from exactfold import count_branches, count_many, write_fold
 from exactfold.count.motion_facts import panel_facts
 from exactfold.count.ways import count_ways
 from exactfold.drawing.read import parse_drawing
@@ -118,3 +118,14 @@ def test_facts_of_panels_agree_with_the_count(sheet, degrees, flat, free, parts,
         assert facts.expected.startswith(words)
     assert (facts.flat, facts.free) == (found.flat, found.free)
     assert facts.parts == tuple(part.vertices for part in found.parts)
+
+
+def test_many_sheets_of_all_kinds_and_one_number_for_drawings_with_several(tmp_path) -> None:
+    apart = [((str(3 + float(a)), b), (str(3 + float(c)), d), e) for (a, b), (c, d), e in SQUARE]
+    two = tmp_path / "two.cp"
+    two.write_text(as_cp([*SQUARE[:4], *apart]))
+    found = dict(count_many([two, CROSS], number=2))
+    assert len(found[str(two)].pattern.folds) == 2
+    assert isinstance(found["1"], SeveralSheetsError)
+    assert isinstance(dict(count_many([two]))[str(two)], SeveralSheetsError)
+    assert dict(count_many([CROSS]))["0"].to_dict()["theory"] == "modes"

@@ -7,7 +7,7 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from exactfold.drawing.candidates import candidates, matches, reduced_match
+from exactfold.drawing.candidates import candidates, field_of, matches, reduced_match
 from exactfold.drawing.construction import directions
 from exactfold.drawing.coordinates import exact_coordinates, resolution
 from exactfold.drawing.drawing import Drawing, Line
@@ -191,9 +191,9 @@ def test_chance_matches_are_as_rare_as_promised():
 
 def test_lattice_reduction_finds_large_numbers_only_with_enough_digits():
     number = (1621 - 1145 * TWO) / 104
-    assert reduced_match(decimal(number, 15), Fraction(1, 10**15), 2).value == number
-    assert reduced_match(decimal(number, 6), Fraction(1, 10**6), 2) is None
-    assert reduced_match(decimal(pi / 10, 14), Fraction(1, 10**14), 2) is None
+    assert reduced_match(decimal(number, 15), Fraction(1, 10**15), field_of(2)).value == number
+    assert reduced_match(decimal(number, 6), Fraction(1, 10**6), field_of(2)) is None
+    assert reduced_match(decimal(pi / 10, 14), Fraction(1, 10**14), field_of(2)) is None
 
 
 def test_snap_to_a_denominator_reports_the_move():
@@ -228,3 +228,42 @@ def test_the_resolution_is_the_last_digit():
     assert resolution(Drawing(((Fraction("0.333"), 4), (0, 0)), (), "")) == Fraction(1, 4000)
     assert resolution(Drawing(((Fraction("0.25"), 4), (0, 0)), (), "")) == Fraction(1, 10**9)
     assert resolution(Drawing(((Fraction(1, 3), 4), (0, 0)), (), "")) == Fraction(1, 10**9)
+
+
+SLANTED = RATIONALS.adjoined(2).adjoined(2 + TWO).root / 2  # the cosine of 22.5 degrees
+WIDE = [
+    *SQUARE,
+    (TWO - 1, Fraction(1, 3)),
+    (Fraction(3, 4), 1 - TWO / 2),
+    (TWO / 4, Fraction(1, 2)),
+]
+
+
+def test_lengths_along_slanted_lines_lie_in_a_field_with_one_more_root():
+    points = [*WIDE, (SLANTED, SLANTED * (TWO - 1)), (1 - SLANTED / 2, TWO * SLANTED / 3)]
+    found = exact_coordinates(drawn(points, 16))
+    assert list(found.points) == points
+    assert found.field_name == "Q(sqrt 2, sqrt (2 + r1))"
+    assert (found.kept, found.radicand) == ((), 2)
+    assert "coordinates in Q(sqrt 2, sqrt (2 + r1)), denominators up to 6; " in found.text
+
+
+def test_two_roots_of_rational_numbers_are_found_as_well():
+    both = RATIONALS.adjoined(2).adjoined(3)
+    points = [*WIDE, (both.root / 3, TWO * both.root / 4)]
+    found = exact_coordinates(drawn(points, 16))
+    assert list(found.points) == points
+    assert found.field_name == "Q(sqrt 2, sqrt 3)"
+
+
+@pytest.mark.parametrize(
+    ("digits", "odd"),
+    [
+        (9, [(SLANTED * (3 * TWO - 4) / 5 + TWO / 7, SLANTED * 5 / 11)]),
+        (16, [(pi / 4, 1 / pi), (pi / 5, 2 / pi)]),
+    ],
+)
+def test_no_root_is_added_for_numbers_that_chance_would_fit_as_well(digits, odd):
+    found = exact_coordinates(drawn([*WIDE, *odd], digits))
+    assert found.field_name == "Q(sqrt 2)"
+    assert found.kept == tuple(range(len(WIDE), len(WIDE) + len(odd)))

@@ -9,9 +9,16 @@ import pytest
 import rooms
 
 import exactfold
+from exactfold.count.find import find_branch
 from exactfold.count.ways import count_ways
 from exactfold.data import DRAWINGS, EXAMPLES, SHEETS, example_path, examples
-from exactfold.errors import NotJSONError, UnknownPatternError, UnreadableFileError, UsageError
+from exactfold.errors import (
+    NotJSONError,
+    NotTriangulatedError,
+    UnknownPatternError,
+    UnreadableFileError,
+    UsageError,
+)
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.fold import load_fold, read_fold
 from exactfold.pattern.fold_writing import write_fold
@@ -77,6 +84,34 @@ def test_a_file_that_is_there_is_read_whatever_it_is(here):
 def test_anything_else_is_named(what, here):
     with pytest.raises(UsageError, match="is not a pattern: give a CreasePattern, a FoldFile, t"):
         load(what)
+
+
+TRIANGLES = """1 0 0 4 0
+1 4 0 4 4
+1 4 4 0 4
+1 0 4 0 0
+2 0 0 1.5 2
+2 4 0 1.5 2
+3 4 4 1.5 2
+3 0 4 1.5 2"""
+
+
+def test_drawings_of_triangles_are_loaded_whatever_their_format(here):
+    (here / "star.cp").write_text(TRIANGLES)
+    pattern = load("star.cp")
+    assert (len(pattern.vertices), len(pattern.triangles)) == (5, 4)
+    assert find_branch("star.cp", "+").status is exactfold.PROVED
+    assert load("star.cp", snap=1).vertices[4] == (2, 2)
+
+
+def test_what_is_no_sheet_of_triangles_is_refused_by_a_class_of_its_own(here):
+    (here / "panels.cp").write_text(TRIANGLES.rpartition("3 0 4")[0])
+    for function in (load, exactfold.count_branches):
+        with pytest.raises(NotTriangulatedError, match=r"1 panel with more .* \(`count_ways`\)"):
+            function("panels.cp")
+    (here / "root.cp").write_text(TRIANGLES.replace("1.5", "1.41421356237"))
+    with pytest.raises(NotTriangulatedError, match=r"lie in Q\(sqrt 2\): `exactfold count`"):
+        load("root.cp")
 
 
 def test_snapping_whatever_is_loaded(here):

@@ -50,6 +50,25 @@ def test_a_triangulated_file_is_read_as_it_stands() -> None:
     assert (found.lines, found.read) == ((), None)
 
 
+@pytest.mark.parametrize(
+    ("letters", "said"), [("UFFU", "0"), ("MVVV", "0"), ("MVVF", "1"), ("UUJU", "1")]
+)
+def test_flat_folds_between_triangles_bend_and_it_is_said_where_panels_could_be_meant(
+    letters: str, said: str
+) -> None:
+    star = [*SQUARE[:4]]
+    ends = [("0", "0"), ("1", "0"), ("1", "1"), ("0", "1")]
+    star += [(end, ("0.5", "0.25"), letter) for end, letter in zip(ends, letters, strict=True)]
+    found = opened(as_fold(star).encode(), "star.fold")
+    assert len(found.sheet.folds) == 4
+    panels_meant = opened(as_fold(star).encode(), "star.fold", steps=("join",))
+    left = sum(letter not in "FJ" for letter in letters)
+    assert len(panels_meant.sheet.folds) == left
+    assert [line for line in found.lines if "may bend" in line] == list(found.lines)
+    assert len(found.lines) == bool(int(said))
+    assert not int(said) or f"as it stands: {said} fold" in found.lines[0]
+
+
 def test_crossing_creases_of_triangles_make_a_triangulated_sheet() -> None:
     found = sheet(CROSSED)
     assert isinstance(found.sheet, CreasePattern)
