@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fractions import Fraction
+
+from flint import fmpq
 
 from exactfold.errors import TooManyModesError
 from exactfold.exact.joined_fields import rank_at_least
-from exactfold.exact.surds import Number, exact
 from exactfold.modes.extension import extension
-from exactfold.modes.kernel import Rows, first_order
+from exactfold.modes.kernel import Entry, Rows, entry, first_order, number
 from exactfold.modes.local import LocalMode
 from exactfold.modes.result import Part
 from exactfold.modes.stars import Star
@@ -81,7 +81,7 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
     lemma. Other folds are held flat, so this can prove that a space extends and never that it does
     not: a motion might use them at a higher order.
     """
-    for rows, size in independent_parts(dict(leaf.rows), leaf.size, moving):
+    for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
         active = [star.vertex for star in moving.values() if set(star.folds) & set(rows)]
         if len(active) == 1 and size == len(rows) - 2:
             continue
@@ -105,13 +105,13 @@ def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -
     """
     if leaf.size != 1 or leaf.vertices:
         return False
-    found: list[list[Number]] = []
+    found: list[list[Entry]] = []
     for star in moving.values():
-        w = [leaf.rows[edge][0] if edge in leaf.rows else Fraction(0) for edge in star.folds]
-        weights = star.derivative(w)
-        row: list[Number] = [Fraction(0)] * size
-        for weight, edge in zip(weights, star.folds, strict=True):
-            if weight != 0 and edge in rows:
+        w = [leaf.rows[edge][0] if edge in leaf.rows else 0 for edge in star.folds]
+        row: list[Entry] = [fmpq(0)] * size
+        for value, edge in zip(star.derivative(w), star.folds, strict=True):
+            if value != 0 and edge in rows:
+                weight = entry(value)
                 row = [x + weight * y for x, y in zip(row, rows[edge], strict=True)]
         found.append(row)
     return rank_at_least(found) >= size - 1
@@ -120,5 +120,9 @@ def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -
 def _local(star: Star, rows: Rows) -> LocalMode:
     """The motion of one vertex on a space with one parameter."""
     folds = tuple(edge for edge in star.folds if edge in rows)
-    scale = exact(rows[folds[0]][0])
-    return LocalMode(star.vertex, 0, folds, tuple(rows[edge][0] / scale for edge in folds))
+    scale = rows[folds[0]][0]
+    return LocalMode(star.vertex, 0, folds, tuple(number(rows[edge][0] / scale) for edge in folds))
+
+
+def _entries(leaf: Leaf) -> Rows:
+    return {edge: [entry(x) for x in row] for edge, row in leaf.rows.items()}
