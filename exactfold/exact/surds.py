@@ -81,7 +81,7 @@ class Surd:
 
     def __truediv__(self, other: Number | fmpq) -> Surd:
         if not isinstance(other, Surd):
-            return self * (fmpq(1) / to_fmpq(other))
+            return self.__mul__(fmpq(1) / to_fmpq(other))
         return self * _made(other.field, other.field.inverse(other.parts))
 
     def __rtruediv__(self, other: Fraction | fmpq | int) -> Surd:

@@ -2,42 +2,78 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from flint import fmpq
 
 from exactfold.errors import TooManyModesError
 from exactfold.exact.joined_fields import rank_at_least
 from exactfold.modes.extension import extension
+from exactfold.modes.found import FoundComponent, found_components
 from exactfold.modes.kernel import Entry, Rows, entry, first_order, number
 from exactfold.modes.local import LocalMode
 from exactfold.modes.result import Part
 from exactfold.modes.stars import Star
-from exactfold.modes.subspaces import Leaf, independent_parts, leaves
-from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.modes.subspaces import Leaf, independent_parts, leaves, reduced
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.verdict import PROVED
 from exactfold.wording import counted
 
 MOST_DIMENSION = 16
 MOST_STEPS = 150_000
+MOST_STEPS_BEYOND = 30_000
+MOST_REDUCTION = 3_000_000
+MOST_FOUND = 20_000_000
 
 
 def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
     """The motions of a part with vertices of any degree: linear spaces, and which of them fold.
 
-    Raises `TooManyModesError` where several forms are left, or the spaces are too many.
+    The dimension of the first-order motions is exact. Where the part is not decomposed, because
+    several forms are left, the spaces are too many or that dimension is too large, the result has
+    the components that were found and the folds that stay flat to second order.
+    """
+    rows, size = first_order(moving)
+    small, left = reduced(moving, rows, size, MOST_REDUCTION)
+    if left == 0:
+        still = tuple(sorted({edge for star in moving.values() for edge in star.folds}))
+        return Part(tuple(moving), "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
+    found: list[FoundComponent] | None = None
+    if size > MOST_DIMENSION:
+        reason = (
+            f"the first-order motions of {counted(len(moving), 'vertex')} round vertex "
+            f"{next(iter(moving))} have dimension {size}; they are decomposed up to "
+            f"{MOST_DIMENSION}"
+        )
+        found, ended = _found(pattern, moving, small, left)
+        if not ended or any(len(one.leaf.vertices) > 1 for one in found):
+            return _partial(moving, size, small, found, reason)
+    try:
+        most = MOST_STEPS if found is None else MOST_STEPS_BEYOND
+        return _complete(pattern, moving, (rows, size), (small, left), most, found)
+    except TooManyModesError as error:
+        if found is None:
+            where = f"the part of {counted(len(moving), 'vertex')} with vertex"
+            reason = f"{where} {next(iter(moving))}: {error}"
+            found, _ = _found(pattern, moving, small, left)
+        return _partial(moving, size, small, found, reason)
+
+
+def _complete(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    first: tuple[Rows, int],
+    smaller: tuple[Rows, int],
+    most: int,
+    found: list[FoundComponent] | None,
+) -> Part:
+    """All components; raises `TooManyModesError` where that is too much, or forms are left.
+
+    `first` are the first-order motions, `smaller` those that semidefinite forms leave.
     """
     vertices = tuple(moving)
-    folds = len({edge for star in moving.values() for edge in star.folds})
-    least = folds - 2 * len(vertices)  # each vertex has two conditions
-    if least > MOST_DIMENSION:
-        return _too_many(vertices, None, f"{least} or more")
-    rows, size = first_order(moving)
-    if size == 0:
-        return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=0)
-    if size > MOST_DIMENSION:
-        return _too_many(vertices, size, str(size))
-    spaces = leaves(moving, rows, size, MOST_STEPS)
+    (rows, size), (small, left) = first, smaller
+    spaces = leaves(moving, small, left, most)
     counts: dict[int, int] = {}
     for leaf in spaces:
         if leaf.dimension is None:
@@ -46,12 +82,18 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
                 f"{', '.join(map(str, leaf.vertices))} are left, and are not solved yet"
             )
         counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
+    still = _still(moving, (edge for leaf in spaces for edge in leaf.rows))
     if not counts:
-        return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size)
+        return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
     ordered = dict(sorted(counts.items()))
     folding = [_extends(pattern, moving, leaf) for leaf in spaces]
     alone = len(moving) == 1 or all(_is_regular(moving, rows, size, leaf) for leaf in spaces)
     known = all(folding) and alone
+    folds = any(folding)
+    if known:
+        found = []
+    elif found is None:
+        found, _ = _found(pattern, moving, small, left)
     return Part(
         vertices,
         "subspaces",
@@ -59,19 +101,43 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
         ordered if known else None,
         spaces=tuple(spaces),
         dimension=size,
-        folds=any(folding),
+        folds=folds or any(one.folds for one in found),
+        found=tuple(found),
+        still=still,
         reason=""
         if known
         else "whether motions of vertices with more than four folds truly fold is not decided",
     )
 
 
-def _too_many(vertices: tuple[int, ...], size: int | None, said: str) -> Part:
-    reason = (
-        f"the first-order motions of {counted(len(vertices), 'vertex')} round vertex "
-        f"{vertices[0]} have dimension {said}; they are decomposed up to {MOST_DIMENSION}"
+def _found(
+    pattern: PanelPattern, moving: Mapping[int, Star], rows: Rows, size: int
+) -> tuple[list[FoundComponent], bool]:
+    return found_components(
+        moving, rows, size, MOST_FOUND, lambda leaf: _extends(pattern, moving, leaf)
     )
-    return Part(vertices, "subspaces", None, None, dimension=size, reason=reason)
+
+
+def _partial(
+    moving: Mapping[int, Star], size: int, rows: Rows, found: list[FoundComponent], reason: str
+) -> Part:
+    """What is proved of a part that is not decomposed."""
+    return Part(
+        tuple(moving),
+        "subspaces",
+        None,
+        None,
+        dimension=size,
+        folds=any(one.folds for one in found),
+        found=tuple(found),
+        still=_still(moving, rows),
+        reason=reason,
+    )
+
+
+def _still(moving: Mapping[int, Star], active: Iterable[Edge]) -> tuple[Edge, ...]:
+    """The folds that are flat in all motions to second order."""
+    return tuple(sorted({e for star in moving.values() for e in star.folds} - set(active)))
 
 
 def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> bool:

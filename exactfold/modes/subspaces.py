@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final, TypeAlias
@@ -90,56 +91,67 @@ class _Search:
             raise TooManyModesError("its spaces of motions are too many to be split one by one")
 
     def _split(self, rows: Rows, size: int) -> list[Leaf]:
-        rows, size, products, left = self._reduced(rows, size)
+        rows, size, products, left = self.reduced(rows, size)
         if not products:
             return [made_leaf(rows, size, left)]
         found: list[Leaf] = []
-        for functional in self._factors(products, rows):
+        for functional in factors(products, rows):
             child, child_size = imposed(rows, size, functional)
             found += self.solved(child, child_size)
         return found
 
-    def _factors(self, products: Sequence[Squares], rows: Rows) -> tuple[Vector, Vector]:
-        """d1 l1^2 + d2 l2^2, signs apart, is d1 (l1 - r l2)(l1 + r l2) with r^2 = -d2 / d1.
-
-        A form that needs no new root is taken first.
-        """
-        field = common_field(x for row in rows.values() for x in row)
-        for squares in products:
-            square = -squares[1][0] / squares[0][0]
-            if field.square_root(field.number(square)) is not None:
-                break
-        else:
-            if len(field.radicands) >= _MOST_ROOTS:
-                raise TooManyModesError(
-                    f"the spaces of motions need more than {_MOST_ROOTS} square roots"
-                )
-        root = entry(real_root(square, field))
-        pairs = list(zip(squares[0][1], squares[1][1], strict=True))
-        return [x - root * y for x, y in pairs], [x + root * y for x, y in pairs]
-
-    def _reduced(self, rows: Rows, size: int) -> tuple[Rows, int, list[Squares], list[int]]:
+    def reduced(self, rows: Rows, size: int) -> tuple[Rows, int, list[Squares], list[int]]:
         """The space after all semidefinite forms; forms that split; vertices with other forms."""
-        products: list[Squares] = []
-        left: list[int] = []
-        weight = common_field(x for row in rows.values() for x in row).dimension ** 2
-        waiting = sorted({v for edge in rows for v in edge if v in self.stars})
-        while waiting:
-            v = waiting.pop(0)
-            self._count(len(self.stars[v].folds) * size * weight)
-            squares = _squares(self.stars[v], rows, size)
-            signs = [sign(d) for d, _ in squares]
-            if not squares:
-                continue
-            if abs(sum(signs)) == len(signs):
-                rows, size = imposed(rows, size, *(functional for _, functional in squares))
-                products, left = [], []
-                waiting = sorted({u for edge in rows for u in edge if u in self.stars})
-            elif len(signs) == 2:
-                products.append(squares)
-            else:
-                left.append(v)
-        return rows, size, products, left
+        while True:
+            products: list[Squares] = []
+            left: list[int] = []
+            before = size
+            weight = common_field(x for row in rows.values() for x in row).dimension ** 2
+            for v in sorted({v for edge in rows for v in edge if v in self.stars}):
+                self._count(len(self.stars[v].folds) * size * weight)
+                squares = squares_of(self.stars[v], rows, size)
+                if is_semidefinite(squares):
+                    rows, size = imposed(rows, size, *(functional for _, functional in squares))
+                elif len(squares) == 2:
+                    products.append(squares)
+                elif squares:
+                    left.append(v)
+            if size == before:
+                return rows, size, products, left
+
+
+def reduced(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> tuple[Rows, int]:
+    """The space without what semidefinite forms forbid; as it is if that takes `most` steps."""
+    with suppress(TooManyModesError):
+        rows, size, _, _ = _Search(stars, most).reduced(rows, size)
+    return rows, size
+
+
+def is_semidefinite(squares: Squares) -> bool:
+    """Whether a form that is not zero has one sign only."""
+    signs = {sign(d) for d, _ in squares}
+    return len(signs) == 1
+
+
+def factors(products: Sequence[Squares], rows: Rows) -> tuple[Vector, Vector]:
+    """d1 l1^2 + d2 l2^2, signs apart, is d1 (l1 - r l2)(l1 + r l2) with r^2 = -d2 / d1.
+
+    Of several forms one that needs no new root is taken. Raises `TooManyModesError` if there are
+    too many roots already.
+    """
+    field = common_field(x for row in rows.values() for x in row)
+    for squares in products:
+        square = -squares[1][0] / squares[0][0]
+        if field.square_root(field.number(square)) is not None:
+            break
+    else:
+        if len(field.radicands) >= _MOST_ROOTS:
+            raise TooManyModesError(
+                f"the spaces of motions need more than {_MOST_ROOTS} square roots"
+            )
+    root = entry(real_root(square, field))
+    pairs = list(zip(squares[0][1], squares[1][1], strict=True))
+    return [x - root * y for x, y in pairs], [x + root * y for x, y in pairs]
 
 
 def made_leaf(rows: Rows, size: int, left: Iterable[int]) -> Leaf:
@@ -148,7 +160,7 @@ def made_leaf(rows: Rows, size: int, left: Iterable[int]) -> Leaf:
     return Leaf(numbers, size, tuple(left))
 
 
-def _squares(star: Star, rows: Rows, size: int) -> Squares:
+def squares_of(star: Star, rows: Rows, size: int) -> Squares:
     """The form of a vertex on the space as sum d_i l_i^2, with independent l_i."""
     local = [(d, rows[e]) for e, d in zip(star.folds, star.directions, strict=True) if e in rows]
     directions = [(entry(x), entry(y)) for (x, y), _ in local]
