@@ -1,0 +1,165 @@
+"""Components found one by one: real ones, different ones, and none that are not."""
+
+from collections import Counter
+from collections.abc import Mapping
+from fractions import Fraction
+
+import pytest
+from flint import arb
+from panel_sheets import grid, mesh, miura, shifted_columns, tiling
+
+from exactfold.modes.decomposition import decompose
+from exactfold.modes.found import FoundComponent, found_components
+from exactfold.modes.kernel import Rows, first_order
+from exactfold.modes.regular import (
+    Forms,
+    in_balls,
+    is_component,
+    outside,
+    parameter_folds,
+    rank_at_least,
+    regular_point,
+    truly_folds,
+)
+from exactfold.modes.stars import Star, stars
+from exactfold.modes.subspaces import Leaf, leaves, made_leaf, reduced
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.verdict import REFUTED, UNDECIDED
+
+
+def triangulated(columns: int, rows: int) -> PanelPattern:
+    """A mesh whose quadrilaterals are cut by their diagonals: all vertices have six folds."""
+    plain = mesh(columns, rows, seed=columns + 10 * rows)
+    up = rows + 2
+    diagonals = [
+        (i * up + j, (i + 1) * up + j + 1) for i in range(columns + 1) for j in range(up - 1)
+    ]
+    return PanelPattern(plain.vertices, [*plain.edges, *diagonals])
+
+
+def found_in(pattern: PanelPattern) -> list[FoundComponent]:
+    moving = stars(pattern)
+    rows, size = reduced(moving, *first_order(moving), 10**6)
+    return found_components(moving, rows, size, 10**7, lambda leaf: False)[0]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "known"),
+    [
+        (miura(2, 2), {1: 3, 2: 1}),
+        (miura(3, 2), {1: 3, 3: 1}),
+        (tiling(2, 2), {1: 2}),
+        (mesh(1, 4, seed=3), {1: 16}),
+    ],
+)
+def test_all_components_of_small_sheets_are_found(
+    pattern: PanelPattern, known: dict[int, int]
+) -> None:
+    assert decompose(pattern).second_order == known
+    assert Counter(one.dimension for one in found_in(pattern)) == known
+
+
+@pytest.mark.parametrize("size", [3, 5])
+def test_a_large_triangulated_mesh_has_a_component_that_truly_folds(size: int) -> None:
+    pattern = triangulated(size, size)
+    result = decompose(pattern)
+    assert result.second_order is None
+    assert result.status is UNDECIDED
+    assert result.found == result.found_true == {pattern.D: 1}
+    assert result.parts[0].dimension == len(pattern.folds) - 2 * size**2 - len(result.free)
+    assert result.rigid is REFUTED
+
+
+@pytest.mark.parametrize("shift", [-3, 1, 2])
+def test_no_motion_that_fails_at_a_higher_order_is_said_to_fold(shift: int) -> None:
+    pattern = shifted_columns(shift)
+    known = decompose(pattern)
+    assert known.true is not None
+    assert known.true != known.second_order
+    folding = Counter(one.dimension for one in found_in(pattern) if one.folds)
+    assert all(number <= known.true.get(d, 0) for d, number in folding.items())
+
+
+def _whole(pattern: PanelPattern) -> tuple[Mapping[int, Star], Rows, int, list[Leaf]]:
+    moving = stars(pattern)
+    rows, size = first_order(moving)
+    return moving, rows, size, leaves(moving, rows, size, 10**6)
+
+
+def _point(leaf: Leaf) -> dict[Edge, float]:
+    """Densities with 1, 2, 3... for the parameters, for leaves without forms."""
+    folds = parameter_folds(leaf.rows, leaf.size)
+    return {edge: float(k + 1) for k, edge in enumerate(folds)}
+
+
+def test_a_line_in_a_plane_of_motions_is_no_component() -> None:
+    moving, rows, size, found = _whole(miura(2, 2))
+    forms, whole = Forms(moving), in_balls(rows)
+    [plane] = [leaf for leaf in found if leaf.size == 2]
+    w = regular_point(forms, plane, _point(plane))
+    assert w is not None
+    assert is_component(forms, whole, size, w, 2)
+    assert not is_component(forms, whole, size, w, 1)
+    assert all(
+        is_component(forms, whole, size, w, 1)
+        for leaf in found
+        if leaf.size == 1
+        if (w := regular_point(forms, leaf, _point(leaf))) is not None
+    )
+
+
+def test_a_point_where_components_cross_is_on_no_single_one() -> None:
+    moving, rows, size, found = _whole(mesh(1, 2, seed=4))
+    forms, whole = Forms(moving), in_balls(rows)
+    origin = {edge: arb(0) for edge in rows}
+    assert len(found) == 4
+    assert not is_component(forms, whole, size, origin, 1)
+    assert not truly_folds(moving, origin)
+
+
+def test_points_are_outside_other_components_and_not_their_own() -> None:
+    moving, _, _, found = _whole(mesh(1, 3, seed=9))
+    forms = Forms(moving)
+    points = [regular_point(forms, leaf, _point(leaf)) for leaf in found]
+    for i, w in enumerate(points):
+        assert w is not None
+        assert [outside(w, leaf) for leaf in found] == [i != k for k in range(len(found))]
+
+
+def test_a_zero_of_the_forms_is_enclosed_only_near_one() -> None:
+    pattern = triangulated(2, 2)
+    moving, rows, size, _ = *_whole_space(pattern), None
+    forms = Forms(moving)
+    leaf = made_leaf(rows, size, sorted(moving))
+    [one] = found_in(pattern)
+    near = {edge: float(x.mid()) for edge, x in one.motion.items()}
+    w = regular_point(forms, leaf, near)
+    assert w is not None
+    assert all(forms.value(v, w).contains(0) for v in moving)
+    far = {edge: x + 0.01 * (k % 3) for k, (edge, x) in enumerate(near.items())}
+    assert regular_point(forms, leaf, far) is None
+
+
+def _whole_space(pattern: PanelPattern) -> tuple[Mapping[int, Star], Rows, int]:
+    moving = stars(pattern)
+    return (moving, *first_order(moving))
+
+
+def test_a_rank_is_never_said_to_be_larger() -> None:
+    one = arb(1)
+    assert rank_at_least([[one, one], [one, 2 * one]], 2)
+    assert not rank_at_least([[one, one], [one, one]], 2)
+    assert not rank_at_least([[one, one], [one, arb(1, 1e-30)]], 2)
+    assert not rank_at_least([[one, one]], 2)
+
+
+def test_folds_that_a_neighbour_holds_flat_are_named() -> None:
+    # Rows that are not straight let only one of the two columns fold: the mesh is rigid.
+    pattern = grid(3, 3, lambda i, j: (Fraction(4 * i + j % 2), Fraction(3 * j + i * i)))
+    moving = stars(pattern)
+    rows, size = first_order(moving)
+    small, left = reduced(moving, rows, size, 10**6)
+    motions = leaves(moving, rows, size, 10**6)
+    active = {edge for leaf in motions for edge in leaf.rows}
+    assert left <= size
+    assert active <= set(small)
