@@ -87,20 +87,16 @@ class Proposals:
             v: [u for edge in star.folds for u in edge if u != v and u in self._forms]
             for v, star in stars.items()
         }
-        self._attempts = 0
+        self._attempts = self._visits = 0
         self._rng = np.random.default_rng(1)
 
     def __iter__(self) -> Iterator[Proposal]:
         """Proposals, each in no space of another before it."""
         known: list[tuple[FloatArray, FloatArray]] = []
-        most = min(
-            _MOST_NODES,
-            _MOST_VISITS // max(1, len(self._forms)),
-            _MOST_WORK // (len(self._edges) * self._size**2),
-        )
+        most = min(_MOST_NODES, _MOST_WORK // (len(self._edges) * self._size**2))
         waiting: list[tuple[FloatArray, tuple[int, ...]]] = [(self._whole, ())]
         for _ in range(most):
-            if not waiting or len(known) == _MOST_PROPOSALS:
+            if not waiting or len(known) == _MOST_PROPOSALS or self._visits > _MOST_VISITS:
                 break
             basis, steps = waiting.pop()
             basis, more, kinds = self._reduced(basis)
@@ -152,6 +148,7 @@ class Proposals:
 
     def _kinds(self, basis: FloatArray) -> _Kinds:
         found = _Kinds([], {}, [])
+        self._visits += len(self._forms)
         for vertices, folds, forms in self._batches:
             rows = basis[folds]
             lengths, axes = np.linalg.eigh(rows @ rows.transpose(0, 2, 1))
