@@ -1,5 +1,6 @@
 """Components found one by one: real ones, different ones, and none that are not."""
 
+import io
 from collections import Counter
 from collections.abc import Mapping
 from fractions import Fraction
@@ -7,6 +8,7 @@ from fractions import Fraction
 import pytest
 from flint import arb
 from panel_sheets import grid, mesh, miura, shifted_columns, tiling
+from rich.console import Console
 
 from exactfold.modes.decomposition import decompose
 from exactfold.modes.found import FoundComponent, found_components
@@ -21,9 +23,11 @@ from exactfold.modes.regular import (
     regular_point,
     truly_folds,
 )
+from exactfold.modes.result import Decomposition
 from exactfold.modes.stars import Star, stars
 from exactfold.modes.subspaces import Leaf, leaves, made_leaf, reduced
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.report.panels import panels_report
 from exactfold.verdict import REFUTED, UNDECIDED
 
 
@@ -35,6 +39,13 @@ def triangulated(columns: int, rows: int) -> PanelPattern:
         (i * up + j, (i + 1) * up + j + 1) for i in range(columns + 1) for j in range(up - 1)
     ]
     return PanelPattern(plain.vertices, [*plain.edges, *diagonals])
+
+
+def printed(result: Decomposition) -> str:
+    console = Console(file=io.StringIO(), width=1000)
+    console.print(panels_report(result, None, everything=False))
+    text = console.file.getvalue()  # type: ignore[attr-defined]
+    return str(text)
 
 
 def found_in(pattern: PanelPattern) -> list[FoundComponent]:
@@ -68,6 +79,13 @@ def test_a_large_triangulated_mesh_has_a_component_that_truly_folds(size: int) -
     assert result.found == result.found_true == {pattern.D: 1}
     assert result.parts[0].dimension == len(pattern.folds) - 2 * size**2 - len(result.free)
     assert result.rigid is REFUTED
+
+
+def test_the_report_says_what_was_found() -> None:
+    text = printed(decompose(triangulated(4, 4)))
+    assert "found to second order: at least 1 family of ways to start to fold, of dimension" in text
+    assert "known to fold truly: at least 1 family of ways to fold, of dimension" in text
+    assert "first-order motions of 16 vertices" in text
 
 
 @pytest.mark.parametrize("shift", [-3, 1, 2])
