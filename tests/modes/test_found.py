@@ -3,16 +3,15 @@
 import io
 from collections import Counter
 from collections.abc import Mapping
-from fractions import Fraction
 
 import pytest
-from flint import arb
-from panel_sheets import grid, mesh, miura, shifted_columns, tiling
+from flint import arb, fmpq
+from panel_sheets import mesh, miura, shifted_columns, tiling
 from rich.console import Console
 
 from exactfold.modes.decomposition import decompose
 from exactfold.modes.found import FoundComponent, found_components
-from exactfold.modes.kernel import Rows, first_order
+from exactfold.modes.kernel import Rows, first_order, imposed
 from exactfold.modes.regular import (
     Forms,
     in_balls,
@@ -25,7 +24,7 @@ from exactfold.modes.regular import (
 )
 from exactfold.modes.result import Decomposition
 from exactfold.modes.stars import Star, stars
-from exactfold.modes.subspaces import Leaf, leaves, made_leaf, reduced
+from exactfold.modes.subspaces import Leaf, factors, leaves, made_leaf, reduced, squares_of
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.report.panels import panels_report
 from exactfold.verdict import REFUTED, UNDECIDED
@@ -171,13 +170,13 @@ def test_a_rank_is_never_said_to_be_larger() -> None:
     assert not rank_at_least([[one, one]], 2)
 
 
-def test_folds_that_a_neighbour_holds_flat_are_named() -> None:
-    # Rows that are not straight let only one of the two columns fold: the mesh is rigid.
-    pattern = grid(3, 3, lambda i, j: (Fraction(4 * i + j % 2), Fraction(3 * j + i * i)))
-    moving = stars(pattern)
-    rows, size = first_order(moving)
-    small, left = reduced(moving, rows, size, 10**6)
-    motions = leaves(moving, rows, size, 10**6)
-    active = {edge for leaf in motions for edge in leaf.rows}
-    assert left <= size
-    assert active <= set(small)
+def test_a_definite_form_leaves_nothing_and_a_motion_stays() -> None:
+    moving, rows, size = _whole_space(mesh(1, 1, seed=6))
+    assert size == 2
+    line = imposed(rows, size, [fmpq(1), fmpq(7)])
+    assert reduced(moving, *line, 10**6) == ({}, 0)
+    [star] = moving.values()
+    motion, _ = factors([squares_of(star, rows, size)], rows)
+    kept, left = reduced(moving, *imposed(rows, size, motion), 10**6)
+    assert left == 1
+    assert set(kept) == set(star.folds)
