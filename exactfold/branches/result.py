@@ -156,7 +156,10 @@ class BranchCount:
             "theory": "branches",
             "rigid": self.distinct == 0 if self.status is PROVED else None,
             **dict.fromkeys(("components", "modes_count")),
-            **{key: [] for key in ("modes", "flat_folds", "free_folds", "near_misses")},
+            **{
+                key: []
+                for key in ("modes", "flat_folds", "still_folds", "free_folds", "near_misses")
+            },
             "read": None if self.read is None else dict(self.read),
         }
 

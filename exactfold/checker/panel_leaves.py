@@ -137,14 +137,20 @@ def _regular(spaces: Spaces, leaf: Leaf) -> bool:
 
 
 def _independent(spaces: Spaces, part: list[Motion]) -> bool:
-    """Whether the conditions of first order are independent, and all forms at a point of a part."""
+    """Whether the conditions of first order are independent, and all forms at a point of a part.
+
+    Those of first order are two for each vertex, and one for a straight pair, which has no form.
+    """
     folds = {pair(v, u) for v, around in spaces.near.items() for u in around}
-    if len(spaces.first_order) != len(folds) - 2 * len(spaces.near):
+    full = [v for v, around in spaces.near.items() if len(around) > 2]
+    if len(spaces.first_order) != len(folds) - len(spaces.near) - len(full):
+        return False
+    if any(len(spaces.near[v]) < 4 for v in full):
         return False
     point: Motion = {}
     for weight, motion in enumerate(part, 1):
         point = spaces.plus(point, spaces.sheet.tower.number(weight), motion)
-    return _rank(spaces, point) == len(spaces.near)
+    return _rank(spaces, point) == len(full)
 
 
 def _rank(spaces: Spaces, point: Motion) -> int:

@@ -89,7 +89,7 @@ def _pattern(pattern: PanelPattern) -> Document:
 def _spaces(part: Part) -> Document:
     """The leaves of a part by their folds, dimension and cone, and how many of each kind fold."""
     kinds: dict[tuple[tuple[Edge, ...], int, int | None], list[bool]] = {}
-    for leaf, folds in zip(part.spaces, part.folding, strict=True):
+    for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True):
         cone = leaf.vertices[0] if leaf.vertices else None
         kinds.setdefault((leaf.folds, leaf.dimension or 0, cone), []).append(folds)
     leaves = [

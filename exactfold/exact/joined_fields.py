@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from flint import ctx
+from flint import ctx, fmpq
 
 from exactfold.errors import UsageError
 from exactfold.exact.surds import RATIONALS, Coefficients, Number, Surd, ball
@@ -63,7 +63,7 @@ def joined(rows: Sequence[Sequence[Number]]) -> list[list[Number]]:
     return [[tower.number(x) for x in row] for row in rows]
 
 
-def rank_at_least(rows: Sequence[Sequence[Number]], bits: int = 256) -> int:
+def rank_at_least(rows: Sequence[Sequence[Number | fmpq]], bits: int = 256) -> int:
     """A lower bound of the rank of a matrix: pivots of an elimination in balls that are not 0.
 
     >>> root = RATIONALS.adjoined(2).root

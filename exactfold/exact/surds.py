@@ -2,31 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import inf, isqrt, nextafter
+from math import inf, nextafter
 from sys import float_info
 from typing import Final, TypeAlias
 
-from flint import arb, ctx
+from flint import arb, ctx, fmpq
 
 from exactfold.errors import UsageError
+from exactfold.exact.linalg import from_fmpq
 
 Coefficients: TypeAlias = tuple[Fraction, ...]
+Parts: TypeAlias = tuple[fmpq, ...]
+_ZERO: Final = fmpq(0)
 _GUARDED: Final = 60
 """Bits with which a sign is looked for before it is decided exactly."""
 
 
-@dataclass(frozen=True, slots=True)
 class Surd:
     """A real number in a `SurdField`: sums of products of square roots, every test exact.
 
     `coefficients[m]` belongs to the product of the roots r_(i+1) over the bits i of m. Numbers of
     two fields can be combined if one field extends the other; whole numbers and fractions belong to
     every field. Comparisons and `sign` are exact: a ball of Arb decides where it can, and the
-    signs of a + b r and a^2 - b^2 r^2 where it cannot.
+    signs of a + b r and a^2 - b^2 r^2 where it cannot. `parts` are the coefficients as FLINT's
+    rationals, with which everything is computed. A number is never changed.
 
     >>> field = SurdField(()).adjoined(2)
     >>> root = field.root
@@ -34,55 +37,70 @@ class Surd:
     (1, True, 1/2*r1)
     """
 
-    field: SurdField
-    coefficients: Coefficients
+    __slots__ = ("field", "parts")
 
-    def __add__(self, other: Number) -> Surd:
+    field: SurdField
+    parts: Parts
+
+    def __init__(self, field: SurdField, coefficients: Iterable[Fraction | fmpq | int]) -> None:
+        self.field = field
+        self.parts = tuple(to_fmpq(c) for c in coefficients)
+
+    @property
+    def coefficients(self) -> Coefficients:
+        """The coefficients as fractions."""
+        return tuple(from_fmpq(c) for c in self.parts)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Surd, (self.field, self.coefficients)
+
+    def __add__(self, other: Number | fmpq) -> Surd:
         a, b, field = self._paired(other)
-        return Surd(field, tuple(x + y for x, y in zip(a, b, strict=True)))
+        return _made(field, _sum(a, b))
 
     __radd__ = __add__
 
     def __neg__(self) -> Surd:
-        return Surd(self.field, tuple(-x for x in self.coefficients))
+        return _made(self.field, tuple([-x for x in self.parts]))
 
-    def __sub__(self, other: Number) -> Surd:
+    def __sub__(self, other: Number | fmpq) -> Surd:
         a, b, field = self._paired(other)
-        return Surd(field, tuple(x - y for x, y in zip(a, b, strict=True)))
+        return _made(field, tuple([x - y for x, y in zip(a, b, strict=True)]))
 
-    def __rsub__(self, other: Number) -> Surd:
+    def __rsub__(self, other: Number | fmpq) -> Surd:
         return -self + other
 
-    def __mul__(self, other: Number) -> Surd:
+    def __mul__(self, other: Number | fmpq) -> Surd:
         if not isinstance(other, Surd):
-            return Surd(self.field, tuple(x * other for x in self.coefficients))
+            factor = to_fmpq(other)
+            return _made(self.field, tuple([x * factor for x in self.parts]))
         a, b, field = self._paired(other)
-        return Surd(field, field.times(a, b))
+        return _made(field, field.times(a, b))
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Number) -> Surd:
+    def __truediv__(self, other: Number | fmpq) -> Surd:
         if not isinstance(other, Surd):
-            return self * (1 / Fraction(other))
-        return self * Surd(other.field, other.field.inverse(other.coefficients))
+            return self.__mul__(fmpq(1) / to_fmpq(other))
+        return self * _made(other.field, other.field.inverse(other.parts))
 
-    def __rtruediv__(self, other: Fraction | int) -> Surd:
-        return Surd(self.field, self.field.inverse(self.coefficients)) * other
+    def __rtruediv__(self, other: Fraction | fmpq | int) -> Surd:
+        return _made(self.field, self.field.inverse(self.parts)).__mul__(other)
 
     def __bool__(self) -> bool:
-        return any(self.coefficients)
+        return any(self.parts)
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Surd | int | Fraction):
+        if not isinstance(other, Surd | int | Fraction | fmpq):
             return NotImplemented
         a, b, _ = self._paired(other)
         return a == b
 
     def __hash__(self) -> int:
-        a = self.coefficients
+        a = self.parts
         while len(a) > 1 and not any(a[len(a) // 2 :]):
             a = a[: len(a) // 2]
-        return hash(a[0]) if len(a) == 1 else hash((self.field.radicands, a))
+        return hash(from_fmpq(a[0])) if len(a) == 1 else hash((self.field.radicands, a))
 
     def __lt__(self, other: Number) -> bool:
         return (self - other).sign() < 0
@@ -101,7 +119,7 @@ class Surd:
 
     def __repr__(self) -> str:
         terms = []
-        for mask, c in enumerate(self.coefficients):
+        for mask, c in enumerate(self.parts):
             roots = [f"r{i + 1}" for i in range(mask.bit_length()) if mask >> i & 1]
             if c:
                 terms.append("*".join(roots if roots and c == 1 else [str(c), *roots]))
@@ -114,7 +132,7 @@ class Surd:
         ball = self.ball(_GUARDED)
         if not ball.contains(0):
             return 1 if ball > 0 else -1
-        return self.field.sign(self.coefficients)
+        return self.field.sign(self.parts)
 
     def ball(self, bits: int) -> arb:
         """An enclosure of the value, computed with `bits` bits."""
@@ -122,9 +140,9 @@ class Surd:
         ctx.prec = bits
         try:
             total = arb(0)
-            for c, root in zip(self.coefficients, self.field.products(bits), strict=True):
+            for c, root in zip(self.parts, self.field.products(bits), strict=True):
                 if c:
-                    total += root * c.numerator / c.denominator
+                    total += root * c
         finally:
             ctx.prec = before
         return total
@@ -133,21 +151,33 @@ class Surd:
         """The same number in a field that extends its own."""
         if field.radicands[: len(self.field.radicands)] != self.field.radicands:
             raise UsageError("the number is in no subfield of this field")
-        zeros = (Fraction(0),) * (field.dimension - len(self.coefficients))
-        return Surd(field, self.coefficients + zeros)
+        return _made(field, self.parts + (_ZERO,) * (field.dimension - len(self.parts)))
 
-    def _paired(self, other: Number) -> tuple[Coefficients, Coefficients, SurdField]:
+    def _paired(self, other: Number | fmpq) -> tuple[Parts, Parts, SurdField]:
         if not isinstance(other, Surd):
-            rest = (Fraction(0),) * (self.field.dimension - 1)
-            return self.coefficients, (Fraction(other), *rest), self.field
+            rest = (_ZERO,) * (self.field.dimension - 1)
+            return self.parts, (to_fmpq(other), *rest), self.field
         if other.field is self.field or other.field == self.field:
-            return self.coefficients, other.coefficients, self.field
+            return self.parts, other.parts, self.field
         if other.field.dimension > self.field.dimension:
-            return self.in_field(other.field).coefficients, other.coefficients, other.field
-        return self.coefficients, other.in_field(self.field).coefficients, self.field
+            return self.in_field(other.field).parts, other.parts, other.field
+        return self.parts, other.in_field(self.field).parts, self.field
 
 
 Number: TypeAlias = Surd | Fraction | int
+
+
+def to_fmpq(value: Fraction | fmpq | int) -> fmpq:
+    """A rational number as FLINT's."""
+    return value if isinstance(value, fmpq) else fmpq(value.numerator, value.denominator)
+
+
+def _made(field: SurdField, parts: Parts) -> Surd:
+    """A number of these parts, which are FLINT's already."""
+    made = Surd.__new__(Surd)
+    made.field = field
+    made.parts = parts
+    return made
 
 
 @dataclass(frozen=True)
@@ -194,13 +224,13 @@ class SurdField:
         if not self.radicands:
             raise UsageError("no root was adjoined to the rational numbers")
         half = self.dimension // 2
-        return Surd(self, tuple(Fraction(k == half) for k in range(self.dimension)))
+        return _made(self, tuple(fmpq(k == half) for k in range(self.dimension)))
 
-    def number(self, value: Number) -> Surd:
+    def number(self, value: Number | fmpq) -> Surd:
         """The number as an element of this field."""
         if isinstance(value, Surd):
             return value.in_field(self)
-        return Surd(self, (Fraction(value), *(Fraction(0),) * (self.dimension - 1)))
+        return _made(self, (to_fmpq(value), *(_ZERO,) * (self.dimension - 1)))
 
     def adjoined(self, radicand: Number) -> SurdField:
         """The field with the square root of a positive number; itself if that root is in it.
@@ -216,37 +246,40 @@ class SurdField:
 
     def square_root(self, value: Number) -> Surd | None:
         """The root >= 0 of a number, None if it is not in this field."""
-        root = self._square_root(self.number(value).coefficients)
+        root = self._square_root(self.number(value).parts)
         if root is None:
             return None
-        found = Surd(self, root)
+        found = _made(self, root)
         return -found if found.sign() < 0 else found
 
-    def times(self, a: Coefficients, b: Coefficients) -> Coefficients:
+    def times(self, a: Parts, b: Parts) -> Parts:
         """The product of two elements of the same level."""
         if len(a) == 1:
             return (a[0] * b[0],)
+        if len(a) == 2:  # most fields have one root
+            (p, q), (x, y), [[square]] = a, b, self._radicands[:1]
+            return p * x + q * y * square, p * y + q * x
         half = len(a) // 2
         a0, a1, b0, b1 = a[:half], a[half:], b[:half], b[half:]
         low = self.times(a0, b0)
         if any(a1) and any(b1):
-            high = self.times(self.times(a1, b1), self.radicands[half.bit_length() - 1])
+            high = self.times(self.times(a1, b1), self._radicands[half.bit_length() - 1])
             low = _sum(low, high)
         return low + _sum(self.times(a0, b1), self.times(a1, b0))
 
-    def inverse(self, a: Coefficients) -> Coefficients:
+    def inverse(self, a: Parts) -> Parts:
         """1/a; raises `ZeroDivisionError` for zero."""
         if len(a) == 1:
             return (1 / a[0],)
         half = len(a) // 2
         a0, a1 = a[:half], a[half:]
         scale = self.inverse(self._norm(a))
-        return self.times(a0, scale) + tuple(-x for x in self.times(a1, scale))
+        return self.times(a0, scale) + tuple([-x for x in self.times(a1, scale)])
 
-    def sign(self, a: Coefficients) -> int:
+    def sign(self, a: Parts) -> int:
         """The sign of a0 + a1 r from those of a0, a1 and a0^2 - a1^2 r^2, exactly."""
         if len(a) == 1:
-            return (a[0] > 0) - (a[0] < 0)
+            return int(a[0] > 0) - int(a[0] < 0)
         half = len(a) // 2
         first, second = self.sign(a[:half]), self.sign(a[half:])
         if first * second >= 0:
@@ -261,9 +294,8 @@ class SurdField:
             ctx.prec = bits
             try:
                 found = [arb(1)]
-                for radicand in self.radicands:
-                    terms = zip(radicand, found, strict=True)
-                    square = sum((p * c.numerator / c.denominator for c, p in terms), arb(0))
+                for radicand in self._radicands:
+                    square = sum((p * c for c, p in zip(radicand, found, strict=True)), arb(0))
                     root = square.sqrt()
                     found += [p * root for p in found]
             finally:
@@ -272,19 +304,23 @@ class SurdField:
         return known[bits]
 
     @cached_property
+    def _radicands(self) -> tuple[Parts, ...]:
+        return tuple(tuple(to_fmpq(c) for c in radicand) for radicand in self.radicands)
+
+    @cached_property
     def _enclosed(self) -> dict[int, tuple[arb, ...]]:
         return {}
 
     def __reduce__(self) -> tuple[object, ...]:
         return SurdField, (self.radicands,)  # enclosures stay behind
 
-    def _norm(self, a: Coefficients) -> Coefficients:
+    def _norm(self, a: Parts) -> Parts:
         half = len(a) // 2
         a0, a1 = a[:half], a[half:]
-        square = self.times(self.times(a1, a1), self.radicands[half.bit_length() - 1])
-        return tuple(x - y for x, y in zip(self.times(a0, a0), square, strict=True))
+        square = self.times(self.times(a1, a1), self._radicands[half.bit_length() - 1])
+        return tuple([x - y for x, y in zip(self.times(a0, a0), square, strict=True)])
 
-    def _square_root(self, a: Coefficients) -> Coefficients | None:
+    def _square_root(self, a: Parts) -> Parts | None:
         """A root of a = a0 + a1 r: (x + y r)^2 has x^2 + y^2 r^2 = a0 and 2 x y = a1.
 
         With n^2 = a0^2 - a1^2 r^2, x^2 is (a0 + n)/2 or (a0 - n)/2; if a1 = 0 the root is x or y r.
@@ -293,8 +329,8 @@ class SurdField:
             return _rational_root(a[0])
         half = len(a) // 2
         a0, a1 = a[:half], a[half:]
-        radicand = self.radicands[half.bit_length() - 1]
-        zero = (Fraction(0),) * half
+        radicand = self._radicands[half.bit_length() - 1]
+        zero = (_ZERO,) * half
         if not any(a1):
             if (x := self._square_root(a0)) is not None:
                 return x + zero
@@ -314,7 +350,7 @@ RATIONALS: Final = SurdField(())
 """Q, the field without roots."""
 
 
-def sign(value: Number) -> int:
+def sign(value: Number | fmpq) -> int:
     """1, 0 or -1 for a surd, a fraction or an integer, exactly."""
     return value.sign() if isinstance(value, Surd) else (value > 0) - (value < 0)
 
@@ -331,12 +367,12 @@ def simple(value: Number) -> Number:
     >>> simple(root * root)
     Fraction(2, 1)
     """
-    if isinstance(value, Surd) and not any(value.coefficients[1:]):
-        return value.coefficients[0]
+    if isinstance(value, Surd) and not any(value.parts[1:]):
+        return from_fmpq(value.parts[0])
     return value
 
 
-def ball(value: Number, bits: int) -> arb:
+def ball(value: Number | fmpq, bits: int) -> arb:
     """An enclosure of a number, computed with `bits` bits."""
     return (value if isinstance(value, Surd) else RATIONALS.number(value)).ball(bits)
 
@@ -368,7 +404,7 @@ def float_bounds(value: Number) -> tuple[float, float]:
     return nextafter(low, -inf), nextafter(high, inf)
 
 
-def common_field(values: Iterable[Number]) -> SurdField:
+def common_field(values: Iterable[Number | fmpq]) -> SurdField:
     """The largest field among those of the numbers; raises `UsageError` if they are no chain."""
     field = RATIONALS
     for value in values:
@@ -378,7 +414,7 @@ def common_field(values: Iterable[Number]) -> SurdField:
     return field
 
 
-def real_root(value: Number, field: SurdField) -> Number:
+def real_root(value: Number | fmpq, field: SurdField) -> Number:
     """The root >= 0 of a number of the field, in it or with one more root adjoined.
 
     >>> real_root(Fraction(9, 4), RATIONALS), real_root(3, RATIONALS)
@@ -389,14 +425,14 @@ def real_root(value: Number, field: SurdField) -> Number:
     return field.adjoined(number).root if root is None else simple(root)
 
 
-def _sum(a: Sequence[Fraction], b: Sequence[Fraction]) -> Coefficients:
-    return tuple(x + y for x, y in zip(a, b, strict=True))
+def _sum(a: Parts, b: Parts) -> Parts:
+    return tuple([x + y for x, y in zip(a, b, strict=True)])
 
 
-def _rational_root(value: Fraction) -> Coefficients | None:
+def _rational_root(value: fmpq) -> Parts | None:
     if value < 0:
         return None
-    top, bottom = isqrt(value.numerator), isqrt(value.denominator)
-    if top * top != value.numerator or bottom * bottom != value.denominator:
+    top, bottom = value.p.isqrt(), value.q.isqrt()
+    if top * top != value.p or bottom * bottom != value.q:
         return None
-    return (Fraction(top, bottom),)
+    return (fmpq(top, bottom),)

@@ -2,42 +2,76 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from fractions import Fraction
+from collections.abc import Iterable, Mapping
 
 from exactfold.errors import TooManyModesError
-from exactfold.exact.joined_fields import rank_at_least
-from exactfold.exact.surds import Number, exact
 from exactfold.modes.extension import extension
-from exactfold.modes.kernel import Rows, first_order
+from exactfold.modes.found import FoundComponent, found_components
+from exactfold.modes.kernel import Rows, entry, first_order, number
 from exactfold.modes.local import LocalMode
+from exactfold.modes.regular import Forms, in_balls, is_component, point, truly_folds
 from exactfold.modes.result import Part
 from exactfold.modes.stars import Star
-from exactfold.modes.subspaces import Leaf, independent_parts, leaves
+from exactfold.modes.subspaces import Leaf, independent_parts, leaves, reduced
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.verdict import PROVED
 from exactfold.wording import counted
 
 MOST_DIMENSION = 16
 MOST_STEPS = 150_000
+MOST_STEPS_BEYOND = 30_000
+MOST_REDUCTION = 3_000_000
+MOST_FOUND = 20_000_000
 
 
 def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
     """The motions of a part with vertices of any degree: linear spaces, and which of them fold.
 
-    Raises `TooManyModesError` where several forms are left, or the spaces are too many.
+    The dimension of the first-order motions is exact. Where the part is not decomposed, because
+    several forms are left, the spaces are too many or that dimension is too large, the result has
+    the components that were found and the folds that stay flat to second order.
+    """
+    rows, size = first_order(moving)
+    small, left = reduced(moving, rows, size, MOST_REDUCTION)
+    if left == 0:
+        still = tuple(sorted({edge for star in moving.values() for edge in star.folds}))
+        return Part(tuple(moving), "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
+    found: list[FoundComponent] | None = None
+    if size > MOST_DIMENSION:
+        reason = (
+            f"the first-order motions of {counted(len(moving), 'vertex')} round vertex "
+            f"{next(iter(moving))} have dimension {size}; they are decomposed up to "
+            f"{MOST_DIMENSION}"
+        )
+        found, ended = _found(pattern, moving, small, left)
+        if not ended or any(len(one.leaf.vertices) > 1 for one in found):
+            return _partial(moving, size, small, found, reason)
+    try:
+        most = MOST_STEPS if found is None else MOST_STEPS_BEYOND
+        return _complete(pattern, moving, (rows, size), (small, left), most, found)
+    except TooManyModesError as error:
+        if found is None:
+            where = f"the part of {counted(len(moving), 'vertex')} with vertex"
+            reason = f"{where} {next(iter(moving))}: {error}"
+            found, _ = _found(pattern, moving, small, left)
+        return _partial(moving, size, small, found, reason)
+
+
+def _complete(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    first: tuple[Rows, int],
+    smaller: tuple[Rows, int],
+    most: int,
+    found: list[FoundComponent] | None,
+) -> Part:
+    """All components; raises `TooManyModesError` where that is too much, or forms are left.
+
+    `first` are the first-order motions, `smaller` those that semidefinite forms leave.
     """
     vertices = tuple(moving)
-    folds = len({edge for star in moving.values() for edge in star.folds})
-    least = folds - 2 * len(vertices)  # each vertex has two conditions
-    if least > MOST_DIMENSION:
-        return _too_many(vertices, None, f"{least} or more")
-    rows, size = first_order(moving)
-    if size == 0:
-        return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=0)
-    if size > MOST_DIMENSION:
-        return _too_many(vertices, size, str(size))
-    spaces = leaves(moving, rows, size, MOST_STEPS)
+    (rows, size), (small, left) = first, smaller
+    spaces = leaves(moving, small, left, most)
     counts: dict[int, int] = {}
     for leaf in spaces:
         if leaf.dimension is None:
@@ -46,32 +80,60 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
                 f"{', '.join(map(str, leaf.vertices))} are left, and are not solved yet"
             )
         counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
+    still = _still(moving, (edge for leaf in spaces for edge in leaf.rows))
     if not counts:
-        return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size)
+        return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
     ordered = dict(sorted(counts.items()))
     folding = [_extends(pattern, moving, leaf) for leaf in spaces]
     alone = len(moving) == 1 or all(_is_regular(moving, rows, size, leaf) for leaf in spaces)
     known = all(folding) and alone
+    if all(folding):
+        found = []
+    elif found is None:
+        found, _ = _found(pattern, moving, small, left)
     return Part(
         vertices,
         "subspaces",
         ordered,
         ordered if known else None,
         spaces=tuple(spaces),
-        folding=tuple(folding),
+        spaces_fold=tuple(folding),
         dimension=size,
+        found=tuple(found),
+        still=still,
         reason=""
         if known
         else "whether motions of vertices with more than four folds truly fold is not decided",
     )
 
 
-def _too_many(vertices: tuple[int, ...], size: int | None, said: str) -> Part:
-    reason = (
-        f"the first-order motions of {counted(len(vertices), 'vertex')} round vertex "
-        f"{vertices[0]} have dimension {said}; they are decomposed up to {MOST_DIMENSION}"
+def _found(
+    pattern: PanelPattern, moving: Mapping[int, Star], rows: Rows, size: int
+) -> tuple[list[FoundComponent], bool]:
+    return found_components(
+        moving, rows, size, MOST_FOUND, lambda leaf: _extends(pattern, moving, leaf)
     )
-    return Part(vertices, "subspaces", None, None, dimension=size, reason=reason)
+
+
+def _partial(
+    moving: Mapping[int, Star], size: int, rows: Rows, found: list[FoundComponent], reason: str
+) -> Part:
+    """What is proved of a part that is not decomposed."""
+    return Part(
+        tuple(moving),
+        "subspaces",
+        None,
+        None,
+        dimension=size,
+        found=tuple(found),
+        still=_still(moving, rows),
+        reason=reason,
+    )
+
+
+def _still(moving: Mapping[int, Star], active: Iterable[Edge]) -> tuple[Edge, ...]:
+    """The folds that are flat in all motions to second order."""
+    return tuple(sorted({e for star in moving.values() for e in star.folds} - set(active)))
 
 
 def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> bool:
@@ -79,16 +141,16 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
 
     One vertex alone has true motions near the flat state as its motions to second order, by Morse's
     lemma. A part extends if all its conditions are independent at one of its points
-    (`_is_independent`), or if it is a mode that does. Other folds are held flat, so this can prove
+    (`truly_folds`), or if it is a mode that does. Other folds are held flat, so this can prove
     that a space extends and never that it does not: a motion might use them at a higher order.
     """
-    for rows, size in independent_parts(dict(leaf.rows), leaf.size, moving):
+    for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
         active = [star.vertex for star in moving.values() if set(star.folds) & set(rows)]
         if len(active) == 1 and size == len(rows) - 2:
             continue
         if set(active) & set(leaf.vertices):
             return False
-        if _is_independent({v: moving[v].only(rows) for v in active}, rows, size):
+        if truly_folds(moving, point(rows, size)):
             continue
         modes = [_local(star, rows) for star in moving.values() if set(star.folds) & set(rows)]
         if size != 1 or any(len(mode.folds) > 4 for mode in modes):
@@ -108,46 +170,15 @@ def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -
     """
     if leaf.size != 1 or leaf.vertices:
         return False
-    point = {edge: row[0] for edge, row in leaf.rows.items()}
-    return rank_at_least(_derivatives(moving, rows, size, point)) >= size - 1
-
-
-def _is_independent(stars: Mapping[int, Star], space: Rows, size: int) -> bool:
-    """Whether all closing conditions are independent near a point of a space of motions.
-
-    If the first-order conditions of these vertices are independent, and so are the derivatives of
-    the `K_v` at a point of the space, in the first-order motions, then true motions near the flat
-    state are tangent to all points of the space near that one (docs/panels.md, 5).
-    """
-    rows, dimension = first_order(stars)
-    folds = {edge for star in stars.values() for edge in star.folds}
-    if dimension != len(folds) - 2 * len(stars):
-        return False
-    weights = range(1, size + 1)
-    point = {
-        e: sum((w * x for w, x in zip(weights, row, strict=True)), start=Fraction(0))
-        for e, row in space.items()
-    }
-    return rank_at_least(_derivatives(stars, rows, dimension, point)) == len(stars)
-
-
-def _derivatives(
-    stars: Mapping[int, Star], rows: Rows, size: int, point: Mapping[Edge, Number]
-) -> list[list[Number]]:
-    """The derivatives of all `K_v` at a point, on the space of first-order motions."""
-    found: list[list[Number]] = []
-    for star in stars.values():
-        weights = star.derivative([point.get(edge, Fraction(0)) for edge in star.folds])
-        row: list[Number] = [Fraction(0)] * size
-        for weight, edge in zip(weights, star.folds, strict=True):
-            if weight != 0 and edge in rows:
-                row = [x + weight * y for x, y in zip(row, rows[edge], strict=True)]
-        found.append(row)
-    return found
+    return is_component(Forms(moving), in_balls(rows), size, point(leaf.rows, 1), 1)
 
 
 def _local(star: Star, rows: Rows) -> LocalMode:
     """The motion of one vertex on a space with one parameter."""
     folds = tuple(edge for edge in star.folds if edge in rows)
-    scale = exact(rows[folds[0]][0])
-    return LocalMode(star.vertex, 0, folds, tuple(rows[edge][0] / scale for edge in folds))
+    scale = rows[folds[0]][0]
+    return LocalMode(star.vertex, 0, folds, tuple(number(rows[edge][0] / scale) for edge in folds))
+
+
+def _entries(leaf: Leaf) -> Rows:
+    return {edge: [entry(x) for x in row] for edge, row in leaf.rows.items()}

@@ -14,7 +14,7 @@ from exactfold.modes.components import components
 from exactfold.modes.densities import UndecidedDensityError
 from exactfold.modes.elementary import ElementaryMode, ModeSearch, Support
 from exactfold.modes.extension import Extension, Loops, extend_together, extension
-from exactfold.modes.result import Counts, Decomposition, Mode, Part
+from exactfold.modes.result import Decomposition, Mode, Part, product
 from exactfold.modes.stars import Star, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.progress import Progress
@@ -38,7 +38,8 @@ def decompose(
     First the folds that cannot fold in any real motion are found (`stars`), at any size. What is
     left falls into independent parts. Where all vertices have at most four folds the structure
     theorem gives all components (docs/panels.md, 2); elsewhere linear spaces are split vertex by
-    vertex (`leaves`), if the first-order motions have dimension 16 or less. A motion of true
+    vertex (`leaves`), if the first-order motions have dimension 16 or less or the spaces turn out
+    to be few; else components are found one by one (`found_components`). A motion of true
     configurations has its lowest order in the second-order motions, so a sheet without these is
     rigid. `flat` holds folds flat that are in the drawing but are not to fold; up to `listed` modes
     are listed one by one.
@@ -72,8 +73,8 @@ def decompose(
         "subspaces" if any(part.theory == "subspaces" for part in found) else "modes",
         PROVED,
         UNDECIDED,
-        _product((part.second_order for part in found), len(free)),
-        _product((part.true for part in found), len(free)),
+        product((part.second_order for part in found), len(free)),
+        product((part.true for part in found), len(free)),
         rest,
         free,
         modes=tuple(mode for part in found for mode in part.modes),
@@ -81,11 +82,19 @@ def decompose(
         parts=tuple(found),
         near_misses={edge: x for part in found for edge, x in part.near_misses.items()},
         held=tuple(sorted(held)),
+        still=tuple(sorted(edge for part in found for edge in part.still)),
         seconds=time.perf_counter() - start,
     )
     if result.second_order is None:
         reasons = [part.reason for part in found if part.second_order is None]
-        result = replace(result, status=UNDECIDED, reason="; ".join(dict.fromkeys(reasons)))
+        result = replace(
+            result,
+            status=UNDECIDED,
+            reason="; ".join(dict.fromkeys(reasons)),
+            found=product((part.at_least for part in found), len(free)),
+        )
+    if result.true is None and any(part.found for part in found):
+        result = replace(result, found_true=product((part.folding for part in found), len(free)))
     return replace(result, rigid=_rigidity(result))
 
 
@@ -95,7 +104,7 @@ def _rigidity(result: Decomposition) -> Verdict:
         return PROVED
     if result.free or any(mode.extends.verdict is PROVED for mode in result.modes):
         return REFUTED
-    if any(any(part.folding) or set(part.true or {0: 1}) - {0} for part in result.parts):
+    if any(part.folds or set(part.true or {0: 1}) - {0} for part in result.parts):
         return REFUTED
     known = all(part.true is not None and set(part.true) == {0} for part in result.parts)
     return PROVED if known else UNDECIDED
@@ -175,17 +184,3 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
 def _mode(support: Support, mode: ElementaryMode, result: Extension) -> Mode:
     letters = {edge: "V" if s > 0 else "M" for edge, s in mode.signs.items()}
     return Mode(support.vertices, letters, result, mode.choice)
-
-
-def _product(counts: Iterable[Counts | None], free: int) -> Counts | None:
-    """The components of independent parts: dimensions add, numbers multiply."""
-    total: dict[int, int] = {free: 1}
-    for part in counts:
-        if part is None:
-            return None
-        product: dict[int, int] = {}
-        for a, m in total.items():
-            for b, n in part.items():
-                product[a + b] = product.get(a + b, 0) + m * n
-        total = product
-    return dict(sorted(total.items()))

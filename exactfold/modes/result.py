@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from exactfold.modes.elementary import Support
 from exactfold.modes.extension import Extension
+from exactfold.modes.found import FoundComponent
 from exactfold.modes.local import LocalMode
 from exactfold.modes.subspaces import Leaf
 from exactfold.pattern.described import described_panels
@@ -17,6 +19,8 @@ from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 Counts = Mapping[int, int]
 """{dimension: number of components}."""
+
+_COUNTS: Final = ("second_order", "true", "found", "found_true")
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,10 @@ class Decomposition:
     some may not fold; `status` is PROVED if it is known. `rigid` says whether the sheet cannot move
     at all. `flat` are folds that stay flat in every real motion, `free` those with both ends on the
     border; `held` are those that were not to fold. `theory` is "modes" if all vertices have at most
-    four folds, else "subspaces".
+    four folds, else "subspaces". Where `second_order` is None, `found` is {dimension: number} of
+    components that were found and proved, so that there are at least so many. `found_true` is the
+    same for those that are known to fold truly, where `true` is None. `still` are folds that are
+    flat in every motion to second order, beside those in `flat`.
     """
 
     pattern: PanelPattern
@@ -69,6 +76,9 @@ class Decomposition:
     near_misses: Mapping[Edge, float] = field(default_factory=dict)
     held: tuple[Edge, ...] = ()
     read: Mapping[str, Any] | None = None
+    found: Counts | None = None
+    found_true: Counts | None = None
+    still: tuple[Edge, ...] = ()
     seconds: float = field(default=0.0, compare=False)
 
     def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
@@ -76,7 +86,7 @@ class Decomposition:
 
         What belongs to branches of triangulated sheets is null.
         """
-        counts = (self.second_order, self.true)
+        counts = (self.second_order, self.true, self.found, self.found_true)
         rigid = {PROVED: True, REFUTED: False}.get(self.rigid)
         return {
             **headed("count"),
@@ -99,11 +109,12 @@ class Decomposition:
             "rigid": rigid,
             "components": {
                 key: None if value is None else {str(k): n for k, n in value.items()}
-                for key, value in zip(("second_order", "true"), counts, strict=True)
+                for key, value in zip(_COUNTS, counts, strict=True)
             },
             "modes_count": self.modes_count,
             "modes": [mode.to_dict() for mode in self.modes],
             "flat_folds": [f"{i}-{j}" for i, j in self.flat],
+            "still_folds": [f"{i}-{j}" for i, j in self.still],
             "free_folds": [f"{i}-{j}" for i, j in self.free],
             "near_misses": [
                 {"fold": f"{i}-{j}", "quotient": x} for (i, j), x in self.near_misses.items()
@@ -138,9 +149,10 @@ class Decomposition:
 class Part:
     """A part of the sheet that moves independently: vertices joined by folds that may fold.
 
-    `spaces` are the leaves where vertices have more than four folds, `folding` says of each whether
-    it is shown to fold; `dimension` is the number of first-order motions, None where it was not
-    needed.
+    `spaces` are the leaves where vertices have more than four folds, `spaces_fold` says of each
+    whether it is shown to fold; `dimension` is the number of first-order motions, None where it was
+    not needed. `found` are components that were found where not all are known, or not all are known
+    to fold; `still` are the folds that are flat in every motion to second order.
     """
 
     vertices: tuple[int, ...]
@@ -149,8 +161,54 @@ class Part:
     true: Counts | None
     supports: tuple[Support, ...] = ()
     spaces: tuple[Leaf, ...] = ()
-    folding: tuple[bool, ...] = ()
+    spaces_fold: tuple[bool, ...] = ()
     modes: tuple[Mode, ...] = ()
     dimension: int | None = None
     near_misses: Mapping[Edge, float] = field(default_factory=dict)
     reason: str = ""
+    found: tuple[FoundComponent, ...] = ()
+    still: tuple[Edge, ...] = ()
+
+    @property
+    def at_least(self) -> Counts | None:
+        """{dimension: number} of components that are known, all of them if they are; or None."""
+        if self.second_order is not None:
+            return self.second_order
+        return _by_dimension(self.found) or None
+
+    @property
+    def folding(self) -> Counts | None:
+        """The same of components to second order that are known to fold truly."""
+        if self.true is not None:
+            return self.true
+        shown = zip(self.spaces, self.spaces_fold, strict=True)
+        known = _counted(leaf.dimension or 0 for leaf, folds in shown if folds)
+        found = _by_dimension(one for one in self.found if one.folds)
+        return {d: max(known.get(d, 0), found.get(d, 0)) for d in {**known, **found}} or None
+
+    @property
+    def folds(self) -> bool:
+        """Whether something in it is known to fold truly."""
+        return bool(self.folding and set(self.folding) != {0})
+
+
+def _by_dimension(found: Iterable[FoundComponent]) -> dict[int, int]:
+    return _counted(one.dimension for one in found)
+
+
+def _counted(dimensions: Iterable[int]) -> dict[int, int]:
+    return dict(sorted(Counter(dimensions).items()))
+
+
+def product(counts: Iterable[Counts | None], free: int) -> Counts | None:
+    """The components of independent parts: dimensions add, numbers multiply; None if one is."""
+    total: dict[int, int] = {free: 1}
+    for part in counts:
+        if part is None:
+            return None
+        joined: dict[int, int] = {}
+        for a, m in total.items():
+            for b, n in part.items():
+                joined[a + b] = joined.get(a + b, 0) + m * n
+        total = joined
+    return dict(sorted(total.items()))

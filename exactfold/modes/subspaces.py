@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final, TypeAlias
 
 import networkx as nx
+from flint import fmpq
 
 from exactfold.errors import TooManyModesError
 from exactfold.exact.joined_fields import joined
-from exactfold.exact.surds import Number, common_field, exact, real_root, sign
-from exactfold.modes.kernel import Rows, imposed
-from exactfold.modes.stars import Star, bracket
+from exactfold.exact.surds import Number, common_field, real_root, sign
+from exactfold.modes.kernel import Entry, Rows, entry, imposed, number
+from exactfold.modes.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 from exactfold.wording import counted
 
-Vector: TypeAlias = list[Number]
-Squares: TypeAlias = list[tuple[Number, Vector]]
+Vector: TypeAlias = list[Entry]
+Squares: TypeAlias = list[tuple[Entry, Vector]]
 _MOST_ROOTS: Final = 5
 
 
@@ -89,117 +91,134 @@ class _Search:
             raise TooManyModesError("its spaces of motions are too many to be split one by one")
 
     def _split(self, rows: Rows, size: int) -> list[Leaf]:
-        rows, size, products, left = self._reduced(rows, size)
+        rows, size, products, left = self.reduced(rows, size)
         if not products:
-            return [Leaf({e: tuple(row) for e, row in rows.items()}, size, tuple(left))]
+            return [made_leaf(rows, size, left)]
         found: list[Leaf] = []
-        for functional in self._factors(products, rows):
+        for functional in factors(products, rows):
             child, child_size = imposed(rows, size, functional)
             found += self.solved(child, child_size)
         return found
 
-    def _factors(self, products: Sequence[Squares], rows: Rows) -> tuple[Vector, Vector]:
-        """d1 l1^2 + d2 l2^2, signs apart, is d1 (l1 - r l2)(l1 + r l2) with r^2 = -d2 / d1.
-
-        A form that needs no new root is taken first.
-        """
-        field = common_field(x for row in rows.values() for x in row)
-        for squares in products:
-            square = -squares[1][0] / exact(squares[0][0])
-            if field.square_root(field.number(square)) is not None:
-                break
-        else:
-            if len(field.radicands) >= _MOST_ROOTS:
-                raise TooManyModesError(
-                    f"the spaces of motions need more than {_MOST_ROOTS} square roots"
-                )
-        root = real_root(square, field)
-        pairs = list(zip(squares[0][1], squares[1][1], strict=True))
-        return [x - root * y for x, y in pairs], [x + root * y for x, y in pairs]
-
-    def _reduced(self, rows: Rows, size: int) -> tuple[Rows, int, list[Squares], list[int]]:
+    def reduced(self, rows: Rows, size: int) -> tuple[Rows, int, list[Squares], list[int]]:
         """The space after all semidefinite forms; forms that split; vertices with other forms."""
-        products: list[Squares] = []
-        left: list[int] = []
-        weight = common_field(x for row in rows.values() for x in row).dimension ** 2
-        waiting = sorted({v for edge in rows for v in edge if v in self.stars})
-        while waiting:
-            v = waiting.pop(0)
-            self._count(len(self.stars[v].folds) * size * weight)
-            squares = _squares(self.stars[v], rows, size)
-            signs = [sign(d) for d, _ in squares]
-            if not squares:
-                continue
-            if abs(sum(signs)) == len(signs):
-                rows, size = imposed(rows, size, *(functional for _, functional in squares))
-                products, left = [], []
-                waiting = sorted({u for edge in rows for u in edge if u in self.stars})
-            elif len(signs) == 2:
-                products.append(squares)
-            else:
-                left.append(v)
-        return rows, size, products, left
+        while True:
+            products: list[Squares] = []
+            left: list[int] = []
+            before = size
+            weight = common_field(x for row in rows.values() for x in row).dimension ** 2
+            for v in sorted({v for edge in rows for v in edge if v in self.stars}):
+                self._count(len(self.stars[v].folds) * size * weight)
+                squares = squares_of(self.stars[v], rows, size)
+                if is_semidefinite(squares):
+                    rows, size = imposed(rows, size, *(functional for _, functional in squares))
+                elif len(squares) == 2:
+                    products.append(squares)
+                elif squares:
+                    left.append(v)
+            if size == before:
+                return rows, size, products, left
 
 
-def _squares(star: Star, rows: Rows, size: int) -> Squares:
+def reduced(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> tuple[Rows, int]:
+    """The space without what semidefinite forms forbid; as it is if that takes `most` steps."""
+    with suppress(TooManyModesError):
+        rows, size, _, _ = _Search(stars, most).reduced(rows, size)
+    return rows, size
+
+
+def is_semidefinite(squares: Squares) -> bool:
+    """Whether a form that is not zero has one sign only."""
+    signs = {sign(d) for d, _ in squares}
+    return len(signs) == 1
+
+
+def factors(products: Sequence[Squares], rows: Rows) -> tuple[Vector, Vector]:
+    """d1 l1^2 + d2 l2^2, signs apart, is d1 (l1 - r l2)(l1 + r l2) with r^2 = -d2 / d1.
+
+    Of several forms one that needs no new root is taken. Raises `TooManyModesError` if there are
+    too many roots already.
+    """
+    field = common_field(x for row in rows.values() for x in row)
+    for squares in products:
+        square = -squares[1][0] / squares[0][0]
+        if field.square_root(field.number(square)) is not None:
+            break
+    else:
+        if len(field.radicands) >= _MOST_ROOTS:
+            raise TooManyModesError(
+                f"the spaces of motions need more than {_MOST_ROOTS} square roots"
+            )
+    root = entry(real_root(square, field))
+    pairs = list(zip(squares[0][1], squares[1][1], strict=True))
+    return [x - root * y for x, y in pairs], [x + root * y for x, y in pairs]
+
+
+def made_leaf(rows: Rows, size: int, left: Iterable[int]) -> Leaf:
+    """A leaf of these rows, with the vertices whose forms are left."""
+    numbers = {edge: tuple(number(x) for x in row) for edge, row in rows.items()}
+    return Leaf(numbers, size, tuple(left))
+
+
+def squares_of(star: Star, rows: Rows, size: int) -> Squares:
     """The form of a vertex on the space as sum d_i l_i^2, with independent l_i."""
     local = [(d, rows[e]) for e, d in zip(star.folds, star.directions, strict=True) if e in rows]
-    directions = [d for d, _ in local]
+    directions = [(entry(x), entry(y)) for (x, y), _ in local]
     basis, coordinates = _row_space([row for _, row in local], size)
     count = len(basis)
     # The density of fold k is sum_a coordinates[k][a] basis[a].
-    form: list[Vector] = [[Fraction(0)] * count for _ in range(count)]
+    form: list[Vector] = [[fmpq(0)] * count for _ in range(count)]
     for j, dj in enumerate(directions):
         for k, dk in enumerate(directions[:j]):
-            c = bracket(dk, dj)
-            if c == 0:
+            c = dk[0] * dj[1] - dk[1] * dj[0]
+            if not c:
                 continue
             for a in range(count):
-                if (left := coordinates[k][a]) == 0:
+                if not (left := coordinates[k][a]):
                     continue
                 for b in range(count):
-                    if coordinates[j][b] != 0:
+                    if coordinates[j][b]:
                         term = c * left * coordinates[j][b]
                         form[a][b] = form[a][b] + term
                         form[b][a] = form[b][a] + term
     return [(d, _combined(functional, basis, size)) for d, functional in _diagonalised(form)]
 
 
-def _row_space(rows: Sequence[Sequence[Number]], size: int) -> tuple[list[Vector], list[Vector]]:
+def _row_space(rows: Sequence[Sequence[Entry]], size: int) -> tuple[list[Vector], list[Vector]]:
     """A basis of the span of the rows taken from them, and every row in that basis."""
     basis: list[Vector] = []
     reduced: list[tuple[int, Vector, Vector]] = []  # pivot, reduced row, in terms of the basis
     coordinates: list[Vector] = []
     for row in rows:
         work: Vector = list(row)
-        terms: Vector = [Fraction(0)] * len(rows)
+        terms: Vector = [fmpq(0)] * len(rows)
         for pivot, other, expressed in reduced:
-            if work[pivot] != 0:
-                factor = work[pivot]
-                work = [x - factor * y for x, y in zip(work, other, strict=True)]
+            if factor := work[pivot]:
+                pairs = zip(work, other, strict=True)
+                work = [x - factor * y if y else x for x, y in pairs]
                 terms = [x + factor * y for x, y in zip(terms, expressed, strict=True)]
-        first = next((k for k, x in enumerate(work) if x != 0), None)
+        first = next((k for k, x in enumerate(work) if x), None)
         if first is not None:
             here = len(basis)
             basis.append(list(row))
-            scale = exact(work[first])
+            scale = work[first]
             expressed = [-x / scale for x in terms]
             expressed[here] = expressed[here] + 1 / scale
             reduced.append((first, [x / scale for x in work], expressed))
-            terms = [Fraction(int(k == here)) for k in range(len(rows))]
+            terms = [fmpq(k == here) for k in range(len(rows))]
         coordinates.append(terms)
     return basis, [terms[: len(basis)] for terms in coordinates]
 
 
-def _diagonalised(form: Sequence[Sequence[Number]]) -> list[tuple[Number, Vector]]:
+def _diagonalised(form: Sequence[Sequence[Entry]]) -> list[tuple[Entry, Vector]]:
     """sum d_i l_i^2 of a symmetric matrix, d_i not 0, by completing squares."""
     size = len(form)
     work = [list(row) for row in form]
-    found: list[tuple[Number, Vector]] = []
+    found: list[tuple[Entry, Vector]] = []
     while True:
-        pivot = next((k for k in range(size) if work[k][k] != 0), None)
+        pivot = next((k for k in range(size) if work[k][k]), None)
         if pivot is None:
-            pair = next(((i, j) for i in range(size) for j in range(i) if work[i][j] != 0), None)
+            pair = next(((i, j) for i in range(size) for j in range(i) if work[i][j]), None)
             if pair is None:
                 return found
             i, j = pair  # 2 m x y = m ((x + y)^2 - (x - y)^2) / 2, other terms included
@@ -207,19 +226,20 @@ def _diagonalised(form: Sequence[Sequence[Number]]) -> list[tuple[Number, Vector
             value = 2 * work[i][j]
         else:
             functional, value = list(work[pivot]), work[pivot][pivot]
-        weight = 1 / exact(value)
+        weight = 1 / value
         found.append((weight, functional))
         for a in range(size):
             for b in range(size):
-                if functional[a] != 0 and functional[b] != 0:
+                if functional[a] and functional[b]:
                     work[a][b] = work[a][b] - weight * functional[a] * functional[b]
 
 
-def _combined(weights: Sequence[Number], vectors: Sequence[Vector], size: int) -> Vector:
-    total: Vector = [Fraction(0)] * size
+def _combined(weights: Sequence[Entry], vectors: Sequence[Vector], size: int) -> Vector:
+    total: Vector = [fmpq(0)] * size
     for weight, vector in zip(weights, vectors, strict=True):
-        if weight != 0:
-            total = [x + weight * y for x, y in zip(total, vector, strict=True)]
+        if weight:
+            pairs = zip(total, vector, strict=True)
+            total = [x + weight * y if y else x for x, y in pairs]
     return total
 
 
@@ -227,7 +247,7 @@ def independent_parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[
     """The space as a direct sum over the parts of the sheet that are connected by active folds."""
     graph = nx.Graph()
     for edge, row in rows.items():
-        if any(x != 0 for x in row):
+        if any(row):
             ends = [v for v in edge if v in stars]
             graph.add_edges_from((edge, ("vertex", v)) for v in ends)
             graph.add_node(edge)
@@ -271,10 +291,10 @@ def _inside(leaf: Leaf, other: Leaf) -> bool:
     folds = list(other.rows)
     zero = (Fraction(0),) * leaf.size
     columns = [[*other.rows[edge], *leaf.rows.get(edge, zero)] for edge in folds]
-    columns = joined(columns)
-    both, _ = _row_space(_transposed(columns), len(folds))
+    entries = [[entry(x) for x in row] for row in joined(columns)]
+    both, _ = _row_space(_transposed(entries), len(folds))
     return len(both) == other.size
 
 
-def _transposed(rows: Sequence[Sequence[Number]]) -> list[Vector]:
+def _transposed(rows: Sequence[Sequence[Entry]]) -> list[Vector]:
     return [list(column) for column in zip(*rows, strict=True)]

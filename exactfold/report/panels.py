@@ -13,9 +13,10 @@ from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import agreeing, counted
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from exactfold.modes.result import Decomposition
+    from exactfold.pattern.panel_pattern import Edge
 
 NAMED = 12
 """Most folds that are named in a line."""
@@ -104,19 +105,31 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
             f"to second order there are more, which do not all truly fold: "
             f"{_ways(result.second_order or {})}"
         )
-    if result.flat and result.rigid is not PROVED:
-        limit = len(result.flat) if everything else NAMED
-        named = ", ".join(f"{i}-{j}" for i, j in result.flat[:limit])
-        more = f" and {len(result.flat) - limit} more" if len(result.flat) > limit else ""
+    if result.found is not None:
+        ways = _ways(result.found).replace(" to fold", " to start to fold")
         notes.append(
-            f"{counted(len(result.flat), 'crease')} {agreeing(len(result.flat), 'stays')} flat "
-            f"whatever the sheet does: {named}{more}"
+            f"found to second order: at least {ways}; each is proved to be a component, and there "
+            "may be more"
         )
+    if result.found_true is not None:
+        notes.append(f"known to fold truly: at least {_ways(result.found_true)}")
+    if result.flat and result.rigid is not PROVED:
+        notes.append(_flat(result.flat, "whatever the sheet does", everything))
+    if result.still and result.rigid is not PROVED:
+        notes.append(_flat(result.still, "in every motion to second order", everything))
     if result.free:
         notes.append(f"{counted(len(result.free), 'fold')} from border to border, each free")
     if result.warning is not None:
         notes.append(f"warning: {result.warning}")
     return notes
+
+
+def _flat(folds: Sequence[Edge], when: str, everything: bool) -> str:
+    limit = len(folds) if everything else NAMED
+    named = ", ".join(f"{i}-{j}" for i, j in folds[:limit])
+    more = f" and {len(folds) - limit} more" if len(folds) > limit else ""
+    stay = agreeing(len(folds), "stays")
+    return f"{counted(len(folds), 'crease')} {stay} flat {when}: {named}{more}"
 
 
 def _table(result: Decomposition, everything: bool) -> Table:

@@ -28,7 +28,7 @@ COUNT_KEYS = {
 }
 PANEL_KEYS = {
     *("theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"),
-    *("near_misses", "read"),
+    *("near_misses", "read", "still_folds"),
 }
 EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree"}
 BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
@@ -178,7 +178,8 @@ def test_undecided_exits_4(tmp_path):
     assert data["distinct"] is None
     assert data["certificate"] is None
     assert data["theory"] == "subspaces"
-    assert data["components"] == {"second_order": None, "true": None}
+    found = {"found": {"3": 1}, "found_true": {"3": 1}}
+    assert data["components"] == {"second_order": None, "true": None, **found}
     assert data["reason"].startswith("the part of 2 vertices with vertex 6: ")
     assert "no certificate was written" in result.stderr
     assert not out.exists()
