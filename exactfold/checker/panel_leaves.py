@@ -10,7 +10,7 @@ from .panel_loops import Loops
 from .panel_modes import Modes, Support
 from .panel_reduction import BITS, enclosed, reduced
 from .panel_sheet import Edge, PanelSheet, pair
-from .panel_spaces import Leaf, Motion, Spaces, folds_of
+from .panel_spaces import Leaf, Motion, Spaces, folds_of, tower_of
 from .reading import integer, items, keys, natural, require
 
 Kind = tuple[tuple[Edge, ...], int, int | None]
@@ -91,10 +91,12 @@ def _folds(spaces: Spaces, part: list[Motion], cone: int | None) -> bool:
     near = {v: around for v, around in near.items() if around}
     if len(near) == 1 and len(part) == len(folds) - 2:
         return True
+    inner = Spaces(spaces.sheet, near)
+    point = _point(inner, part, cone if cone in near else None)
+    if point is not None and _independent(inner, point):
+        return True
     if cone in near:
         return False
-    if _independent(Spaces(spaces.sheet, near), part):
-        return True
     if len(part) != 1 or any(len(around) > 4 for around in near.values()):
         return False
     return _closes(spaces.sheet, near, part[0])
@@ -136,8 +138,25 @@ def _regular(spaces: Spaces, leaf: Leaf) -> bool:
     return _rank(spaces, leaf.basis[0]) >= len(spaces.first_order) - 1
 
 
-def _independent(spaces: Spaces, part: list[Motion]) -> bool:
-    """Whether the conditions of first order are independent, and all forms at a point of a part.
+def _point(spaces: Spaces, part: list[Motion], cone: int | None) -> Motion | None:
+    """A motion of a part; for a cone one with K = 0 on a line through it that K changes sign on."""
+    start: Motion = {}
+    for weight, motion in enumerate(part, 1):
+        start = spaces.plus(start, spaces.sheet.tower.number(weight), motion)
+    if cone is None:
+        return start
+    first = spaces.form(cone, start, start)
+    for motion in part:
+        last = spaces.form(cone, motion, motion)
+        if first.sign() * last.sign() < 0:
+            middle = spaces.form(cone, start, motion)
+            _, root = tower_of(part).adjoined(middle * middle - first * last)
+            return spaces.plus(start, (root - middle) / last, motion)
+    return None
+
+
+def _independent(spaces: Spaces, point: Motion) -> bool:
+    """Whether the conditions of first order are independent, and all forms at a motion.
 
     Those of first order are two for each vertex, and one for a straight pair, which has no form.
     """
@@ -147,9 +166,6 @@ def _independent(spaces: Spaces, part: list[Motion]) -> bool:
         return False
     if any(len(spaces.near[v]) < 4 for v in full):
         return False
-    point: Motion = {}
-    for weight, motion in enumerate(part, 1):
-        point = spaces.plus(point, spaces.sheet.tower.number(weight), motion)
     return _rank(spaces, point) == len(full)
 
 

@@ -15,7 +15,7 @@ from typing import Any
 from .panel_reduction import Vector, inside, reduced, zero
 from .panel_sheet import Edge, PanelSheet, cross, pair
 from .reading import require
-from .towers import Number
+from .towers import Number, Tower
 
 MOST_STEPS = 1 << 22  # products of densities in one search
 MOST_LEAVES = 1 << 12
@@ -47,6 +47,12 @@ class Leaf:
 def folds_of(basis: Space) -> tuple[Edge, ...]:
     """The folds that are not flat in all motions."""
     return tuple(sorted({fold for motion in basis for fold in motion}))
+
+
+def tower_of(basis: Space) -> Tower:
+    """The field of all densities."""
+    towers = (value.tower for motion in basis for value in motion.values())
+    return max(towers, key=lambda tower: tower.size)
 
 
 class Spaces:
@@ -219,6 +225,10 @@ class Spaces:
                     found[fold] = found[fold] + term if fold in found else term
         return found
 
+    def form(self, v: int, a: Motion, b: Motion) -> Number:
+        """The bilinear form whose square is twice sum_{k<j} w_k w_j [d_k, d_j]."""
+        return self._value(self.gradient(v, a, lambda x: x), b)
+
     def _brackets(self, v: int) -> list[tuple[Edge, Edge, Number]]:
         if v not in self._known:
             spokes = [(pair(v, u), self.sheet.vector(v, u)) for u in self.near[v]]
@@ -232,8 +242,7 @@ class Spaces:
         The root is adjoined to a field that holds the whole space, as numbers of the space and the
         root are multiplied later; a form whose root is there is taken first.
         """
-        towers = (value.tower for motion in space for value in motion.values())
-        tower = max(towers, key=lambda tower: tower.size)
+        tower = tower_of(space)
         best, fewest = None, None
         for (d, first), (e, second) in products:
             above, root = tower.adjoined(-(e / d))

@@ -9,7 +9,14 @@ from exactfold.modes.extension import extension
 from exactfold.modes.found import FoundComponent, found_components
 from exactfold.modes.kernel import Rows, entry, first_order, number
 from exactfold.modes.local import LocalMode
-from exactfold.modes.regular import Forms, in_balls, is_component, point, truly_folds
+from exactfold.modes.regular import (
+    Forms,
+    cone_point,
+    in_balls,
+    is_component,
+    point,
+    truly_folds,
+)
 from exactfold.modes.result import Part
 from exactfold.modes.stars import Star
 from exactfold.modes.subspaces import Leaf, independent_parts, leaves, reduced
@@ -140,18 +147,23 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
     """Whether a space of motions is tangent to true ones: modes that fold apart from each other.
 
     One vertex alone has true motions near the flat state as its motions to second order, by Morse's
-    lemma. A part extends if all its conditions are independent at one of its points
-    (`truly_folds`), or if it is a mode that does. Other folds are held flat, so this can prove
-    that a space extends and never that it does not: a motion might use them at a higher order.
+    lemma. A part extends if all its conditions are independent at one of its points (`truly_folds`;
+    for a cone at a point where its form vanishes), or if it is a mode that does. Other folds are
+    held flat, so this can prove that a space extends and never that it does not: a motion might use
+    them at a higher order.
     """
     for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
         active = [star.vertex for star in moving.values() if set(star.folds) & set(rows)]
         if len(active) == 1 and size == len(rows) - 2:
             continue
-        if set(active) & set(leaf.vertices):
+        cones = [v for v in active if v in leaf.vertices]
+        if len(cones) > 1:
             return False
-        if truly_folds(moving, point(rows, size)):
+        w = cone_point(moving[cones[0]], rows, size) if cones else point(rows, size)
+        if w is not None and truly_folds(moving, w):
             continue
+        if cones:
+            return False
         modes = [_local(star, rows) for star in moving.values() if set(star.folds) & set(rows)]
         if size != 1 or any(len(mode.folds) > 4 for mode in modes):
             return False

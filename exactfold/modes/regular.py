@@ -89,6 +89,32 @@ def point(rows: Mapping[Edge, Sequence[Any]], size: int) -> Balls:
         ctx.prec = before
 
 
+def cone_point(star: Star, rows: Mapping[Edge, Sequence[Any]], size: int) -> Balls | None:
+    """A motion of a space where the form of a vertex vanishes, enclosed; None if none is seen.
+
+    It is taken on a line from the motion with the parameters 1, 2, 3, ... along one parameter, if
+    the form has one sign there and the other in the direction of the line.
+    """
+    before = ctx.prec
+    ctx.prec = _BITS
+    try:
+        forms, inner = Forms({star.vertex: star}), in_balls(rows)
+        start = _motion(inner, [arb(k + 1) for k in range(size)])
+        gradient = forms.gradient(star.vertex, start)
+        first = forms.value(star.vertex, start)
+        for chosen in range(size):
+            along = _motion(inner, [arb(int(k == chosen)) for k in range(size)])
+            last = forms.value(star.vertex, along)
+            if not first * last < 0:
+                continue
+            middle = sum((x * along[e] for e, x in gradient.items() if e in along), arb(0)) / 2
+            step = ((middle * middle - first * last).sqrt() - middle) / last
+            return {e: x + step * along.get(e, arb(0)) for e, x in start.items()}
+    finally:
+        ctx.prec = before
+    return None
+
+
 def parameter_folds(rows: Mapping[Edge, Sequence[Any]], size: int) -> list[Edge]:
     """For each parameter of a space a fold whose density it is."""
     found: dict[int, Edge] = {}
