@@ -13,12 +13,13 @@ from panel_sheets import grid
 
 from exactfold import checker
 from exactfold.checker import panel_components, panel_loops, panel_modes, panel_sheet, panels
-from exactfold.checker.towers import Number
+from exactfold.checker.intervals import Interval
 from exactfold.errors import NotApplicableError
 from exactfold.evidence.panels import certificate_of_panels
 from exactfold.modes.decomposition import decompose
 from exactfold.pattern.panel_pattern import PanelPattern
 
+BITS = 400
 KNOWN = {
     "miura": {"1": 8},
     "two rows": {"1": 3, "2": 1},
@@ -425,7 +426,7 @@ def test_transmissions_close_the_vertices(name: str) -> None:
     sheet, _ = panel_sheet.read_panels(certified(name)["pattern"])
     modes = panel_modes.Modes(sheet, sheet.live([]))
     loops = panel_loops.Loops(modes)
-    zero, one = sheet.tower.number(0), sheet.tower.number(1)
+    zero, one = (Interval.of(Fraction(n), BITS) for n in (0, 1))
     bent = 0
     for v, near in modes.near.items():
         for line, found in enumerate(modes.lines[v]):
@@ -438,22 +439,21 @@ def test_transmissions_close_the_vertices(name: str) -> None:
                         series = (
                             [one]
                             if step is None
-                            else panel_loops.composed([step], 33, lambda _, value: value, zero, one)
+                            else panel_loops.composed(
+                                [step], 33, lambda _, value: value.enclosed(BITS), zero, one
+                            )
                         )
                         bent += step is not None and step.quadratic is not None
-                        tau = sum(
-                            approximate(c) * 0.004 ** (2 * n + 1) for n, c in enumerate(series)
-                        )
-                    x, y = (tau * approximate(c) for c in sheet.vector(v, u))
+                        tau = sum(middle(c) * 0.004 ** (2 * n + 1) for n, c in enumerate(series))
+                    x, y = (tau * middle(c.enclosed(BITS)) for c in sheet.vector(v, u))
                     product = times(product, (1.0, x, y, 0.0))
                 assert max(map(abs, product[1:])) < 1e-13
     assert bent > 10
 
 
-def approximate(number: Number) -> float:
-    """The number in floating point."""
-    found = number.enclosed(200)
-    return float(Fraction(found.low + found.high, 2 << 200))
+def middle(found: Interval) -> float:
+    """The middle of an interval, in floating point."""
+    return float(Fraction(found.low + found.high, 2 << BITS))
 
 
 def times(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, float, float, float]:
