@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 import pytest
@@ -173,8 +174,22 @@ def test_a_straight_corner_is_no_notch() -> None:
         refused(forged, "the saddle is not positive")
 
 
+def thin(bits: int) -> tuple[list[Corner], list[list[int]]]:
+    """Two inner vertices, with an angle of some 2^-bits at the first: to the second and far off."""
+    far = 1 << bits
+    points = [(0, 0), (1, 2), (2 * far, 0), (far, 2 * far + 1), (-9, 9), (-9, -9)]
+    return points, [[0, 1, 3], [1, 0, 2], [1, 2, 3], [0, 3, 4], [0, 4, 5], [0, 5, 2]]
+
+
 def test_a_thin_star_needs_a_finer_cone() -> None:
-    points = [(0, 0), (1, 2), (1 << 25, 0), (1 << 24, (1 << 25) + 1), (-9, 9), (-9, -9)]
-    faces = [[0, 1, 3], [1, 0, 2], [1, 2, 3], [0, 3, 4], [0, 4, 5], [0, 5, 2]]
-    made = certificate(points, faces, "rim", [0] * 6, 1)
+    made = certificate(*thin(24), "rim", [0] * 6, 1)
     verified(told(made, [0, 0], "F" * 7))
+
+
+def test_a_thin_star_of_a_listing_needs_a_finer_cone() -> None:
+    """The functional of a vertex is positive on the cone -|p|, so that it points up."""
+    points, faces = thin(50)
+    exact = {v: (Fraction(x), Fraction(y)) for v, (x, y) in enumerate(points)}
+    row = Sheet(exact, [tuple(face) for face in faces]).sign_of_vertex(0)
+    cone = [-math.isqrt((x * x + y * y) << 400) for x, y in points]
+    assert sum(w * cone[v] for v, w in row.items()) > 0
