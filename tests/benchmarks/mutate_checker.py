@@ -342,7 +342,7 @@ class Bench:
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
             for item, following in zip(chosen, [*chosen[1:], None], strict=True):
                 note.write_text(item.nodeid)
-                signal.alarm(20 + int(20 * self.seconds[item.nodeid]))
+                signal.alarm(10 + int(5 * self.seconds[item.nodeid]))
                 item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
                 if self.failed:
                     os._exit(1)
