@@ -1,7 +1,7 @@
 """Mutants of the checker: whether its tests notice a line that is weakened.
 
-    python tests/benchmarks/mutate_checker.py refusals [MODULE ...]
-    python tests/benchmarks/mutate_checker.py mutmut [--every] [MODULE ...]
+    python tests/benchmarks/mutate_checker.py refusals [--left] [MODULE ...]
+    python tests/benchmarks/mutate_checker.py mutmut [--every] [--left] [MODULE ...]
     python tests/benchmarks/mutate_checker.py survivors
 
 `refusals` takes out, one at a time, each line of `exactfold/checker` that refuses something;
@@ -22,6 +22,7 @@ import ast
 import contextlib
 import difflib
 import functools
+import hashlib
 import inspect
 import json
 import os
@@ -61,6 +62,11 @@ class Mutant(NamedTuple):
     before: str
     after: str
     lines: range
+
+    @property
+    def digest(self) -> str:
+        """What tells it from others."""
+        return hashlib.sha256(f"{self.module} {self.definition}".encode()).hexdigest()
 
     @property
     def text(self) -> str:
@@ -250,8 +256,6 @@ class Bench:
             return True
         total = sum(self.seconds.values())
         print(f"{len(session.items)} tests in {total:.0f} s, {len(self.todo)} mutants", file=said)
-        for module in {mutant.module for mutant in self.todo}:
-            self._result(module).write_text("")
         jobs = [
             functools.partial(self._share, job, session.items, functions, said)
             for job in range(self.jobs)
@@ -319,8 +323,8 @@ class Bench:
             test = self._first_to_fail(functions[key], mutant.definition, chosen, job)
             if test:
                 seen[test] += 1
-            entry = mutant._asdict() | {"noticed by": test, "lines": mutant.lines.start}
-            del entry["definition"]
+            entry = {k: getattr(mutant, k) for k in ("function", "before", "after", "digest")}
+            entry["noticed by"] = test
             with open(self._result(mutant.module), "a") as stream:
                 stream.write(json.dumps(entry) + "\n")
             state = "killed" if test else "SURVIVED"
@@ -364,8 +368,8 @@ def forked(run: Callable[[], None]) -> int:
         os._exit(code)
 
 
-def run(what: str, folder: Path, chosen: list[str], jobs: int, every: bool) -> None:
-    """Run the tests on all mutants of a kind; the results go to `folder`."""
+def run(what: str, folder: Path, chosen: list[str], jobs: int, every: bool, left: bool) -> None:
+    """Run the tests on all mutants of a kind, or those left before; the results go to `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
     todo = [
         mutant
@@ -373,6 +377,16 @@ def run(what: str, folder: Path, chosen: list[str], jobs: int, every: bool) -> N
         for mutant in (refusals(module) if what == "refusals" else mutants(module))
         if what == "refusals" or worth_running(mutant.before, mutant.after, every)
     ]
+    known = {mutant.digest for mutant in todo}
+    noticed: set[str] = set()
+    for module in modules(chosen):
+        path = folder / f"{what}-{module}.jsonl"
+        rows = path.read_text().splitlines(keepends=True) if left else []
+        kept = {row: json.loads(row) for row in rows}
+        kept = {r: e for r, e in kept.items() if e["noticed by"] and e["digest"] in known}
+        noticed |= {entry["digest"] for entry in kept.values()}
+        path.write_text("".join(kept))
+    todo = [mutant for mutant in todo if mutant.digest not in noticed]
     sys.path[:0] = [str(ROOT)]
     sys.dont_write_bytecode = True
     os.chdir(ROOT)
@@ -403,12 +417,13 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "mutants")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--every", action="store_true", help="mutants that end in an error, too")
+    parser.add_argument("--left", action="store_true", help="only what the last run has left")
     given = parser.parse_args()
     folder = given.folder.resolve()
     if given.what == "survivors":
         survivors(folder)
     else:
-        run(given.what, folder, given.modules, given.jobs, given.every)
+        run(given.what, folder, given.modules, given.jobs, given.every, given.left)
 
 
 if __name__ == "__main__":

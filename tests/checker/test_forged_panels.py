@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from forge import refused
+from forge import refused, verified
 from forge_panels import Document, certified, drawn, matched, stopped
 
+from exactfold.checker import panels
 from exactfold.checker.panel_sheet import PanelSheet
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
@@ -40,6 +41,15 @@ def test_edges_that_cross(
         patch.setattr(PanelSheet, "_check_apart", lambda _: None)
         forged = matched(drawn([*SQUARE, *points], edges))
     refused(forged, message)
+
+
+@pytest.mark.parametrize("count", [5, 6])
+def test_vertices_with_more_than_four_folds(count: int) -> None:
+    """Nothing says how many lines of motions there are."""
+    star = [(4, 0), (2, 3), (-2, 3), (-4, 0), (-2, -3), (2, -3)][6 - count :]
+    rim = [(k, (k + 1) % count) for k in range(count)]
+    made = drawn([*star, (0, 0)], [*map(sorted, rim), *((k, count) for k in range(count))])
+    refused(made, f"vertex {count} has {count} folds that may fold")
 
 
 def test_more_keys() -> None:
@@ -120,3 +130,29 @@ def test_no_loops() -> None:
         refused(made, f"{shown} is no loop of {TILING}")
     modes[0]["loop"] = []
     refused(made, f"the loop  of {TILING} is not seen to fail at order 3")
+
+
+def test_what_is_not_decided_does_not_refute_rigidity() -> None:
+    made, support, modes = tiling()
+    support["extending"] = made["claims"]["true"] = None
+    for mode in modes:
+        mode["extends"] = "undecided"
+    for support["modes"] in (modes, None):
+        for said in ("refuted", "proved"):
+            made["claims"]["rigid"] = said
+            stopped(made, f"claim rigid = {said!a}, but it is 'undecided'")
+        made["claims"]["rigid"] = "undecided"
+        verified(made)
+
+
+def test_rigidity() -> None:
+    """By the components to second order, by those that truly fold, by any motion."""
+    for second, true, moves, verdict in (
+        ({"0": 1}, {"0": 1}, 0, "proved"),
+        ({"0": 1}, None, 0, "proved"),
+        ({"1": 1}, {"0": 1}, 0, "proved"),
+        ({"1": 2}, None, 0, "undecided"),
+        ({"1": 2}, None, 1, "refuted"),
+        ({"1": 2}, {"1": 1}, 1, "refuted"),
+    ):
+        assert panels._rigid(second, true, moves) == verdict
