@@ -46,7 +46,7 @@ PACKAGE = ROOT / "exactfold" / "checker"
 SLOW = (
     "against_the_package branch_checker check_command compact_checker evidence_refused standalone"
 )
-SLOW_TESTS = {f"test_{name}.py" for name in (SLOW + " tampering").split()}
+SLOW_TESTS = {f"test_{name}" for name in (SLOW + " tampering").split()}
 """Files that start processes, or count: all other tests in `tests/checker` are run."""
 
 MEMORY = 4 << 30  # bytes that a mutant may ask for
@@ -368,7 +368,9 @@ def forked(run: Callable[[], None]) -> int:
         os._exit(code)
 
 
-def run(what: str, folder: Path, chosen: list[str], jobs: int, every: bool, left: bool) -> None:
+def run(
+    what: str, folder: Path, chosen: list[str], jobs: int, every: bool, left: bool, tests: list[str]
+) -> None:
     """Run the tests on all mutants of a kind, or those left before; the results go to `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
     todo = [
@@ -390,13 +392,13 @@ def run(what: str, folder: Path, chosen: list[str], jobs: int, every: bool, left
     sys.path[:0] = [str(ROOT)]
     sys.dont_write_bytecode = True
     os.chdir(ROOT)
-    quick = sorted(
-        str(path)
-        for path in Path("tests", "checker").glob("test_*.py")
-        if path.name not in SLOW_TESTS
-    )
+    found = [path.stem for path in Path("tests", "checker").glob("test_*.py")]
+    quick = sorted(tests or set(found) - SLOW_TESTS)
     options = ["-x", "-s", "-p", "no:cacheprovider", "-p", "no:terminal"]
-    pytest.main([*options, *quick], [Bench(todo, what, folder, jobs)])
+    pytest.main(
+        [*options, *(f"tests/checker/{name}.py" for name in quick)],
+        [Bench(todo, what, folder, jobs)],
+    )
 
 
 def survivors(folder: Path) -> None:
@@ -418,12 +420,13 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--every", action="store_true", help="mutants that end in an error, too")
     parser.add_argument("--left", action="store_true", help="only what the last run has left")
+    parser.add_argument("--tests", nargs="*", default=[], help="only these files, as test_boxes")
     given = parser.parse_args()
     folder = given.folder.resolve()
     if given.what == "survivors":
         survivors(folder)
     else:
-        run(given.what, folder, given.modules, given.jobs, given.every, given.left)
+        run(given.what, folder, given.modules, given.jobs, given.every, given.left, given.tests)
 
 
 if __name__ == "__main__":
