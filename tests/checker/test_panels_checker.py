@@ -61,6 +61,7 @@ def test_folds_held_flat() -> None:
     assert claims["second_order"] == claims["true"] == {"0": 1}
     assert claims["held"] == claims["flat"] == [[4, 5]]
     assert ", 1 folds held flat have" in checker.summary(claims)
+    assert "of dimension 0 to second order, truly the same; sha256" in checker.summary(claims)
     inner = certified("crossing", [(5, 6)])
     assert verified(inner)["second_order"] != KNOWN["crossing"]
 
@@ -283,6 +284,9 @@ def refutation(made: Document) -> tuple[Document, Document, str]:
 def test_a_mode_that_does_not_extend() -> None:
     made = certified("bent")
     support, mode, where = refutation(made)
+    for order in (5, panel_loops.MOST_ORDER):
+        mode["order"] = order
+        verified(made)
     mode.update(extends="proved", loop=None, order=None)
     support["extending"] = 1
     message = f"a mode of the support of vertices {where} is refuted, not 'proved'"
