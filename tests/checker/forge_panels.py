@@ -54,6 +54,14 @@ def bent() -> PanelPattern:
     return grid(3, 3, place)
 
 
+def split() -> PanelPattern:
+    """The bent zigzags with a vertex on a fold, a third of the way along it."""
+    points, edges = list(bent().vertices), set(bent().edges) - {(5, 9)}
+    (ax, ay), (bx, by) = points[5], points[9]
+    points.append((ax + (bx - ax) / 3, ay + (by - ay) / 3))
+    return PanelPattern(points, sorted(edges | {(5, 16), (9, 16)}))
+
+
 def square() -> PanelPattern:
     """A fold from border to border."""
     return PanelPattern(
@@ -76,6 +84,7 @@ SHEETS = {
     "crossing": lambda: grid(3, 3, lambda i, j: (i, j)),
     "square": square,
     "bent": bent,
+    "split": split,
     "surds": lambda: grid(
         3, 2, lambda i, j: (4 * i + j % 2 * _ROOT / 2, 3 * j + i % 2 * (_ROOT - 1))
     ),

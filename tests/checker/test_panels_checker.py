@@ -32,6 +32,7 @@ KNOWN = {
     "crossing": {"2": 2},
     "square": {"1": 1},
     "bent": {"1": 3, "2": 1},
+    "split": {"1": 3, "2": 1},
     "surds": {"1": 4},
     "nested": {"1": 2},
 }
@@ -41,7 +42,7 @@ KNOWN = {
 def test_valid(name: str) -> None:
     claims = verified(certified(name))
     assert claims["second_order"] == KNOWN[name]
-    assert claims["true"] == ({"1": 2, "2": 1} if name == "bent" else KNOWN[name])
+    assert claims["true"] == ({"1": 2, "2": 1} if name in ("bent", "split") else KNOWN[name])
     assert claims["rigid"] == ("proved" if name == "rigid" else "refuted")
 
 
