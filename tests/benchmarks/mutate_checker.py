@@ -383,7 +383,7 @@ def run(
     noticed: set[str] = set()
     for module in modules(chosen):
         path = folder / f"{what}-{module}.jsonl"
-        rows = path.read_text().splitlines(keepends=True) if left else []
+        rows = path.read_text().splitlines(keepends=True) if left and path.exists() else []
         kept = {row: json.loads(row) for row in rows}
         kept = {r: e for r, e in kept.items() if e["noticed by"] and e["digest"] in known}
         noticed |= {entry["digest"] for entry in kept.values()}
