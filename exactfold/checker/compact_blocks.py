@@ -67,7 +67,6 @@ class CompactSheet:
         self.sheet, self.sha256 = read_sheet(header["pattern"])
         require(len(self.sheet.boundary) == 4, "the sheet has not D = 1")
         self.emptied = check_triangles(self.sheet, evidence["triangles"])
-        self.removed = len(self.sheet.interior) - len(self.emptied.interior)
         self.system = BranchSystem(self.emptied, read_chart(evidence["chart"]))
         self.size = self.system.size
         require(0 < self.size <= MOST_UNKNOWNS, "the number of unknowns is out of range")

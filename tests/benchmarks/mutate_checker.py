@@ -1,86 +1,99 @@
 """Mutants of the checker: whether its tests notice a line that is weakened.
 
-    python tests/benchmarks/mutate_checker.py refusals [MODULE ...]
-    python tests/benchmarks/mutate_checker.py mutmut [--every] [MODULE ...]
+    python tests/benchmarks/mutate_checker.py refusals [--left] [MODULE ...]
+    python tests/benchmarks/mutate_checker.py mutmut [--every] [--left] [MODULE ...]
     python tests/benchmarks/mutate_checker.py survivors
 
-`refusals` takes out, one at a time, each line of `exactfold/checker` that refuses something, and
-runs the tests of its module, then all quick tests of the checker. `mutmut` makes the mutants of
-mutmut (3.8, to be installed by hand) and runs those that `worth_running` leaves; `survivors` prints
-what both have left. Everything happens in a copy of the project (`--folder`). What was found is
-explained in docs/mutation.md.
+`refusals` takes out, one at a time, each line of `exactfold/checker` that refuses something;
+`mutmut` makes the mutants of mutmut (3.8, to be installed by hand) that `worth_running` leaves;
+`survivors` prints what both have left. What was found is explained in docs/mutation.md.
+
+Everything is loaded once: the quick tests of the checker are collected and run as they are, and it
+is noted how long each takes and which functions of the modules it calls. Then a process is forked
+for each mutant, in which the function has the code of the mutant, and the tests that call it are
+run until one fails: those that have noticed mutants of that function before, then the quickest.
 """
 
 from __future__ import annotations
+import __future__
 
 import argparse
 import ast
+import contextlib
 import difflib
+import functools
+import hashlib
+import inspect
 import json
 import os
 import re
-import shutil
+import resource
 import signal
-import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Iterator
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator
+from importlib import import_module
 from pathlib import Path
-from types import FrameType
+from types import FrameType, FunctionType
+from typing import Any, NamedTuple
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGE = Path("exactfold", "checker")
-TESTS = {
-    "arithmetic": "linear polynomials reading flat_folds",
-    "checker_krawczyk": "krawczyk boxes",
-    "sheets_refused": "sheet",
-    "forged_listings": "listing reading",
-    "forged_boxes": "boxes equations",
-    "forged_triangles": "stress",
-    "forged_classes": "algebraic classes flat_sheets",
-    "forged_intervals": "algebraic classes",
-    "forged_compact": "compact compact_lines command",
-    "forged_blocks": "compact_blocks",
-    "forged_branches": "branch branch_proof command",
-    "panels_checker": "panels panel_components panel_lines panel_loops panel_modes panel_sheet "
-    "towers intervals",
-    "forged_spaces": "panel_leaves panel_reduction panel_spaces panels towers",
-    "recognised": "command",
-    "fixtures": "",
-}
-"""Quick tests, which need no other process, and the modules for which each is the first to run."""
+PACKAGE = ROOT / "exactfold" / "checker"
+SLOW = (
+    "against_the_package branch_checker check_command compact_checker evidence_refused standalone"
+)
+SLOW_TESTS = {f"test_{name}" for name in (SLOW + " tampering").split()}
+"""Files that start processes, or count: all other tests in `tests/checker` are run."""
 
-CONFIG = """[mutmut]
-source_paths=exactfold
-only_mutate=exactfold/checker/*.py
-do_not_mutate=exactfold/checker/__main__.py
-pytest_add_cli_args_test_selection=tests/checker/test_recognised.py
-track_dependencies=false
-use_git_change_detection=false
-"""
+MEMORY = 4 << 30  # bytes that a mutant may ask for
+Functions = dict[str, Any]
 
 
-def files_of(module: str) -> list[str]:
-    """The files of the quick tests, those of a module first."""
-    first = sorted(TESTS, key=lambda name: module not in TESTS[name].split())
-    return [f"tests/checker/test_{name}.py" for name in first]
+class Mutant(NamedTuple):
+    """A function of a module with another definition."""
+
+    module: str
+    function: str
+    definition: str
+    before: str
+    after: str
+    lines: range
+
+    @property
+    def digest(self) -> str:
+        """What tells it from others."""
+        return hashlib.sha256(f"{self.module} {self.definition}".encode()).hexdigest()
+
+    @property
+    def text(self) -> str:
+        """In words."""
+        return f"{self.module} {self.function}: {self.before} -> {self.after or 'taken out'}"
 
 
 def modules(chosen: list[str]) -> list[str]:
     """The modules asked for, or all."""
-    found = sorted(path.stem for path in (ROOT / PACKAGE).glob("*.py"))
+    found = sorted(path.stem for path in PACKAGE.glob("*.py"))
     return chosen or [name for name in found if not name.startswith(("_", "exactfold"))]
 
 
-def copy(folder: Path) -> None:
-    """The project in a folder of its own."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in ("exactfold", "tests"):
-        shutil.rmtree(folder / name, ignore_errors=True)
-        ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(ROOT / name, folder / name, ignore=ignored)
+def definitions(tree: ast.Module) -> Iterator[tuple[str, ast.FunctionDef]]:
+    """Functions and methods, by name."""
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef):
+            yield node.name, node
+        elif isinstance(node, ast.ClassDef):
+            for inner in node.body:
+                if isinstance(inner, ast.FunctionDef):
+                    yield f"{node.name}.{inner.name}", inner
+
+
+def source_of(module: str) -> str:
+    """The text of a module."""
+    return (PACKAGE / f"{module}.py").read_text()
 
 
 # --- refusals taken out --------------------------------------------------------------------------
@@ -91,7 +104,7 @@ _METHODS = (".check", ".check_root")
 
 
 class Refusal(ast.NodeTransformer):
-    """Takes out refusal number `chosen` of a module: a `require` or a `raise` that says why."""
+    """Takes out refusal number `chosen` of a function: a `require` or a `raise` that says why."""
 
     def __init__(self, chosen: int) -> None:
         self.chosen, self.seen, self.text, self.lines = chosen, -1, "", range(0)
@@ -100,7 +113,7 @@ class Refusal(ast.NodeTransformer):
         self.seen += 1
         if self.seen != self.chosen:
             return node
-        self.text = f"line {node.lineno}: {ast.unparse(node)}"
+        self.text = ast.unparse(node)
         self.lines = range(node.lineno, (node.end_lineno or node.lineno) + 1)
         return ast.copy_location(ast.Pass(), node)
 
@@ -115,109 +128,36 @@ class Refusal(ast.NodeTransformer):
         return self._taken(node)
 
 
-def refusals(module: str) -> Iterator[tuple[str, range, str]]:
-    """What is taken out, its lines, and the module without it."""
-    source = (ROOT / PACKAGE / f"{module}.py").read_text()
-    for number in range(1000):
-        change = Refusal(number)
-        changed = ast.fix_missing_locations(change.visit(ast.parse(source)))
-        if not change.text:
-            return
-        yield change.text, change.lines, ast.unparse(changed)
-
-
-class Witness:
-    """A plugin of pytest: which tests make which lines of the checker refuse something."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder, self.test = folder, ""
-        self.seen: dict[str, list[str]] = {}
-        self.seconds: dict[str, float] = {}
-
-    def pytest_runtest_setup(self, item: pytest.Item) -> None:
-        self.test = item.nodeid
-        from exactfold.checker import reading
-
-        for error in (reading.CertificateError, reading.FormatError):
-            if "__init__" not in vars(error):
-                error.__init__ = self._told  # type: ignore[assignment]
-
-    def _told(self, *arguments: object) -> None:
-        frame: FrameType | None = sys._getframe()
-        while frame is not None:
-            path = Path(frame.f_code.co_filename)
-            if path.parts[-3:-1] == PACKAGE.parts:
-                tests = self.seen.setdefault(f"{path.stem}:{frame.f_lineno}", [])
-                if self.test not in tests:
-                    tests.append(self.test)
-            frame = frame.f_back
-
-    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        if report.when == "call":
-            self.seconds[report.nodeid] = report.duration
-
-    def of(self, module: str, lines: range) -> list[str]:
-        """The quickest tests that see one of these lines refuse."""
-        found = {test for line in lines for test in self.seen.get(f"{module}:{line}", ())}
-        return sorted(found, key=lambda test: self.seconds.get(test, 0.0))[:8]
-
-
-def forked(place: Path, arguments: list[str], plugins: list[object], seconds: int = 900) -> int:
-    """The exit code of pytest in a process of its own that has everything loaded but exactfold."""
-    child = os.fork()
-    if child:
-        return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-    signal.alarm(seconds)
-    os.chdir(place)
-    sys.path[:0] = [str(place)]
-    sys.dont_write_bytecode = True
-    with open(os.devnull, "w") as nothing:
-        os.dup2(nothing.fileno(), 1)
-        os.dup2(nothing.fileno(), 2)
-        code = int(pytest.main(["-q", "-x", "-p", "no:cacheprovider", *arguments], plugins))
-        for plugin in plugins:
-            if isinstance(plugin, Witness):
-                found = [plugin.seen, plugin.seconds]
-                (plugin.folder / "witnesses.json").write_text(json.dumps(found))
-    os._exit(code)
-
-
-def run_refusals(folder: Path, chosen: list[str]) -> None:
-    """Take out every refusal; the survivors go to refusals.json."""
-    copy(folder / "refusals")
-    place, witness = folder / "refusals", Witness(folder)
-    if forked(place, files_of(""), [witness]):
-        raise SystemExit("the tests fail as they are")
-    witness.seen, witness.seconds = json.loads((folder / "witnesses.json").read_text())
-    todo = [(m, *entry) for m in modules(chosen) for entry in refusals(m)]
-    left = []
-    for number, (module, text, lines, changed) in enumerate(todo, 1):
-        path = place / PACKAGE / f"{module}.py"
-        before = path.read_text()
-        path.write_text(changed)
-        start = time.monotonic()
-        quick = witness.of(module, lines)
-        killed = bool(quick and forked(place, quick, [])) or forked(place, files_of(module), [])
-        path.write_text(before)
-        if not killed:
-            left.append(f"{module} {text}")
-        state = "killed" if killed else "SURVIVED"
-        seconds = time.monotonic() - start
-        print(f"{number}/{len(todo)} {seconds:.0f} s {state}: {module} {text}", flush=True)
-    result = {"taken out": len(todo), "modules": modules(chosen), "left": sorted(left)}
-    (folder / "refusals.json").write_text(json.dumps(result, indent=1))
-    print(f"{len(todo)} refusals taken out, {len(left)} not noticed")
+def refusals(module: str) -> Iterator[Mutant]:
+    """The functions of a module without one of their refusals."""
+    for name, _ in definitions(ast.parse(source_of(module))):
+        for number in range(1000):
+            change = Refusal(number)
+            node = dict(definitions(ast.parse(source_of(module))))[name]
+            changed = ast.unparse(change.visit(node))
+            if not change.text:
+                break
+            yield Mutant(module, name, changed, change.text, "", change.lines)
 
 
 # --- mutmut --------------------------------------------------------------------------------------
 
 
-def mutants(folder: Path, module: str) -> Iterator[tuple[str, str, str]]:
-    """Name, line before and line after of the mutants that mutmut has written."""
-    path = folder / "mutants" / PACKAGE / f"{module}.py"
+@functools.cache
+def mutmut() -> Any:
+    """What makes the mutants of a file; mutmut wants a configuration where it is."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        Path("setup.cfg").write_text("[mutmut]\nsource_paths=exactfold\n")
+        import_module("mutmut.configuration").config()
+    return import_module("mutmut.mutation.file_mutation").mutate_file_contents
+
+
+def mutants(module: str) -> Iterator[Mutant]:
+    """The mutants that mutmut makes of a module."""
+    made = mutmut()(f"exactfold/checker/{module}.py", source_of(module)).code
     bodies: dict[str, str] = {}
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.FunctionDef) and "__mutmut_" in node.name:
+    for _, node in definitions(ast.parse(made)):
+        if "__mutmut_" in node.name:
             name, node.name = node.name, "f"
             bodies[name] = ast.unparse(node)
     for name, body in bodies.items():
@@ -228,7 +168,8 @@ def mutants(folder: Path, module: str) -> Iterator[tuple[str, str, str]]:
         changed = [d for d in difflib.ndiff(before, after) if d[0] in "+-"]
         old = " ".join(d[2:].strip() for d in changed if d[0] == "-")
         new = " ".join(d[2:].strip() for d in changed if d[0] == "+")
-        yield f"exactfold.checker.{module}.{name}", old, new
+        function = ".".join(stem.split("\u01c1")[1:]) if "\u01c1" in stem else stem[2:]
+        yield Mutant(module, function, body, old, new, range(0))
 
 
 _STRICT = re.compile(r",? ?strict=(?:True|False|None)\b")
@@ -258,62 +199,216 @@ def worth_running(before: str, after: str, every: bool = False) -> bool:
     )
 
 
-def run_mutmut(folder: Path, chosen: list[str], jobs: int, every: bool) -> None:
-    """Make all mutants, and run those of the modules that are worth it; survivors are noted."""
-    copy(folder)
-    (folder / "setup.cfg").write_text(CONFIG)
-    env = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
-    none = [sys.executable, "-m", "mutmut", "run", "exactfold.checker.formats*"]  # makes all
-    subprocess.run(none, cwd=folder, env=env, check=False, capture_output=True)
+# --- running -------------------------------------------------------------------------------------
+
+
+def functions_of(names: list[str]) -> Functions:
+    """The functions and methods of modules, by `module:name`."""
+    found = {}
+    for module in names:
+        loaded = import_module(f"exactfold.checker.{module}")
+        for name, _ in definitions(ast.parse(source_of(module))):
+            owner, _, last = name.rpartition(".")
+            value = inspect.getattr_static(getattr(loaded, owner) if owner else loaded, last)
+            for inner in ("__func__", "fget", "func", "__wrapped__"):
+                value = getattr(value, inner, value)
+            found[f"{module}:{name}"] = value
+    return found
+
+
+def give(function: Any, definition: str) -> None:
+    """Let a function, wherever it has been imported to, do what another definition says."""
+    node = ast.parse(definition).body[0]
+    if isinstance(node, ast.FunctionDef):
+        node.decorator_list = []
+    flags = __future__.annotations.compiler_flag
+    made: dict[str, Any] = {}
+    exec(compile(ast.Module([node], []), "mutant", "exec", flags), function.__globals__, made)
+    [other] = made.values()
+    function.__code__, function.__defaults__ = other.__code__, other.__defaults__
+    function.__kwdefaults__ = other.__kwdefaults__
+
+
+class Bench:
+    """A plugin of pytest that runs the collected tests on every mutant."""
+
+    def __init__(self, todo: list[Mutant], what: str, folder: Path, jobs: int) -> None:
+        self.todo, self.what, self.folder, self.jobs = todo, what, folder, jobs
+        self.failed = False
+        self.test = ""
+        self.calls: dict[str, set[str]] = defaultdict(set)  # tests, by function
+        self.refusing: dict[str, set[str]] = defaultdict(set)  # tests, by line that refuses
+        self.seconds: dict[str, float] = {}
+        self.noticed: dict[str, Counter[str]] = defaultdict(Counter)
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        self.failed |= report.failed
+        self.seconds[report.nodeid] = self.seconds.get(report.nodeid, 0.0) + report.duration
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        said = os.fdopen(os.dup(1), "w", buffering=1)
+        with open(os.devnull, "w") as nothing:
+            os.dup2(nothing.fileno(), 1)
+        functions = functions_of(sorted({mutant.module for mutant in self.todo}))
+        self._measure(session.items, functions)
+        if self.failed:
+            print("the tests fail as they are:", self.test, file=said)
+            return True
+        total = sum(self.seconds.values())
+        print(f"{len(session.items)} tests in {total:.0f} s, {len(self.todo)} mutants", file=said)
+        jobs = [
+            functools.partial(self._share, job, session.items, functions, said)
+            for job in range(self.jobs)
+        ]
+        for child in [forked(job) for job in jobs]:
+            os.waitpid(child, 0)
+        return True
+
+    def _measure(self, items: list[pytest.Item], functions: Functions) -> None:
+        """Run all tests as they are, and note what each calls and refuses."""
+        before = {}
+        for key, function in functions.items():
+            name = key.replace(":", "_").replace(".", "_")
+            copy = FunctionType(function.__code__, function.__globals__)
+            copy.__defaults__, copy.__kwdefaults__ = function.__defaults__, function.__kwdefaults__
+            before[key] = copy
+            function.__globals__.update({f"_bench_{name}": copy, "_bench_called": self._called})
+            give(
+                function,
+                f"def f(*args, **kwargs):\n    _bench_called({key!r})\n"
+                f"    return _bench_{name}(*args, **kwargs)",
+            )
+        reading: Any = import_module("exactfold.checker.reading")
+        errors = (reading.CertificateError, reading.FormatError)
+        for error in errors:
+            error.__init__ = self._told
+        for item, following in zip(items, [*items[1:], None], strict=True):
+            self.test = item.nodeid
+            item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
+            if self.failed:
+                return
+        for error in errors:
+            del error.__init__
+        for key, function in functions.items():
+            copy = before[key]
+            function.__code__, function.__defaults__ = copy.__code__, copy.__defaults__
+            function.__kwdefaults__ = copy.__kwdefaults__
+
+    def _called(self, key: str) -> None:
+        self.calls[key].add(self.test)
+
+    def _told(self, *_: object) -> None:
+        frame: FrameType | None = sys._getframe()
+        while frame is not None:
+            path = Path(frame.f_code.co_filename)
+            if path.parent == PACKAGE:
+                self.refusing[f"{path.stem}:{frame.f_lineno}"].add(self.test)
+            frame = frame.f_back
+
+    def _share(self, job: int, items: list[pytest.Item], functions: Functions, said: Any) -> None:
+        todo = self.todo[job :: self.jobs]
+        for number, mutant in enumerate(todo, 1):
+            start = time.monotonic()
+            key = f"{mutant.module}:{mutant.function}"
+            seen = self.noticed[key]
+            first = set().union(*(self.refusing[f"{mutant.module}:{k}"] for k in mutant.lines))
+            chosen = sorted(
+                (item for item in items if item.nodeid in self.calls[key]),
+                key=lambda item: (
+                    item.nodeid not in first,
+                    -seen[item.nodeid],
+                    self.seconds[item.nodeid],
+                ),
+            )
+            test = self._first_to_fail(functions[key], mutant.definition, chosen, job)
+            if test:
+                seen[test] += 1
+            entry = {k: getattr(mutant, k) for k in ("function", "before", "after", "digest")}
+            entry["noticed by"] = test
+            with open(self._result(mutant.module), "a") as stream:
+                stream.write(json.dumps(entry) + "\n")
+            state = "killed" if test else "SURVIVED"
+            took = time.monotonic() - start
+            print(f"{number}/{len(todo)} {took:.1f} s {state} {mutant.text}", file=said)
+
+    def _result(self, module: str) -> Path:
+        return self.folder / f"{self.what}-{module}.jsonl"
+
+    def _first_to_fail(
+        self, function: Any, definition: str, chosen: list[pytest.Item], job: int
+    ) -> str:
+        """The test that notices a definition, or that it stops, and "" if none does."""
+        note = self.folder / f"test-{job}"
+        note.write_text("")
+
+        def run() -> None:
+            give(function, definition)
+            resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+            for item, following in zip(chosen, [*chosen[1:], None], strict=True):
+                note.write_text(item.nodeid)
+                signal.alarm(10 + int(5 * self.seconds[item.nodeid]))
+                item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
+                if self.failed:
+                    os._exit(1)
+
+        code = os.waitstatus_to_exitcode(os.waitpid(forked(run), 0)[1])
+        return note.read_text() if code else ""
+
+
+def forked(run: Callable[[], None]) -> int:
+    """The number of a new process that runs something and ends."""
+    child = os.fork()
+    if child:
+        return child
+    code = 1
+    try:
+        run()
+        code = 0
+    finally:
+        os._exit(code)
+
+
+def run(
+    what: str, folder: Path, chosen: list[str], jobs: int, every: bool, left: bool, tests: list[str]
+) -> None:
+    """Run the tests on all mutants of a kind, or those left before; the results go to `folder`."""
+    folder.mkdir(parents=True, exist_ok=True)
     todo = [
-        (module, *mutant)
+        mutant
         for module in modules(chosen)
-        for mutant in mutants(folder, module)
-        if worth_running(*mutant[1:], every)
+        for mutant in (refusals(module) if what == "refusals" else mutants(module))
+        if what == "refusals" or worth_running(mutant.before, mutant.after, every)
     ]
-    shutil.copytree(folder / "tests", folder / "mutants" / "tests", dirs_exist_ok=True)
-    print(f"{len(todo)} mutants", flush=True)
-    children = []
-    for job in range(jobs):
-        child = os.fork()
-        if not child:
-            _run_share(folder, todo[job::jobs], folder / f"mutants-{job}.jsonl")
-            os._exit(0)
-        children.append(child)
-    for child in children:
-        os.waitpid(child, 0)
-
-
-def _run_share(folder: Path, todo: list[tuple[str, str, str, str]], result: Path) -> None:
-    place = folder / "mutants"
-    with open(result, "w") as stream:
-        for number, (module, name, before, after) in enumerate(todo, 1):
-            os.environ["MUTANT_UNDER_TEST"] = name
-            own = [path for path in files_of(module) if module in TESTS[path[19:-3]].split()]
-            code = forked(place, own, [], 300) if own else 0
-            if code in (0, 5):
-                code = forked(place, [path for path in files_of(module) if path not in own], [])
-            entry = {"module": module, "name": name, "before": before, "after": after}
-            print(json.dumps({**entry, "killed": code != 0}), file=stream, flush=True)
-            state = "killed" if code else "SURVIVED"
-            print(f"{number}/{len(todo)} {state} {name}: {before} -> {after}", flush=True)
+    known = {mutant.digest for mutant in todo}
+    noticed: set[str] = set()
+    for module in modules(chosen):
+        path = folder / f"{what}-{module}.jsonl"
+        rows = path.read_text().splitlines(keepends=True) if left and path.exists() else []
+        kept = {row: json.loads(row) for row in rows}
+        kept = {r: e for r, e in kept.items() if e["noticed by"] and e["digest"] in known}
+        noticed |= {entry["digest"] for entry in kept.values()}
+        path.write_text("".join(kept))
+    todo = [mutant for mutant in todo if mutant.digest not in noticed]
+    sys.path[:0] = [str(ROOT)]
+    sys.dont_write_bytecode = True
+    os.chdir(ROOT)
+    found = [path.stem for path in Path("tests", "checker").glob("test_*.py")]
+    quick = sorted(tests or set(found) - SLOW_TESTS)
+    options = ["-x", "-s", "-p", "no:cacheprovider", "-p", "no:terminal"]
+    pytest.main(
+        [*options, *(f"tests/checker/{name}.py" for name in quick)],
+        [Bench(todo, what, folder, jobs)],
+    )
 
 
 def survivors(folder: Path) -> None:
     """Print what was run and what is left."""
-    if (folder / "refusals.json").exists():
-        print((folder / "refusals.json").read_text())
-    rows = [
-        json.loads(line)
-        for path in sorted(folder.glob("mutants-*.jsonl"))
-        for line in path.read_text().splitlines()
-    ]
-    for module in modules([]):
-        here = [row for row in rows if row["module"] == module]
-        left = [row for row in here if not row["killed"]]
-        print(f"{module}: {len(here)} mutants run, {len(left)} left")
+    for path in sorted(folder.glob("*-*.jsonl")):
+        rows = [json.loads(line) for line in path.read_text().splitlines()]
+        left = [row for row in rows if not row["noticed by"]]
+        print(f"{path.stem}: {len(rows)} run, {len(left)} left")
         for row in left:
-            print(f"  - {row['before']}\n  + {row['after']}")
+            print(f"  {row['function']}\n    - {row['before']}\n    + {row['after']}")
 
 
 def main() -> None:
@@ -324,13 +419,14 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "mutants")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--every", action="store_true", help="mutants that end in an error, too")
+    parser.add_argument("--left", action="store_true", help="only what the last run has left")
+    parser.add_argument("--tests", nargs="*", default=[], help="only these files, as test_boxes")
     given = parser.parse_args()
-    if given.what == "refusals":
-        run_refusals(given.folder, given.modules)
-    elif given.what == "mutmut":
-        run_mutmut(given.folder, given.modules, given.jobs, given.every)
+    folder = given.folder.resolve()
+    if given.what == "survivors":
+        survivors(folder)
     else:
-        survivors(given.folder)
+        run(given.what, folder, given.modules, given.jobs, given.every, given.left, given.tests)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,10 @@ from typing import Any
 from forge import refused, verified, without
 from panel_sheets import grid, mesh, miura, tiling
 
+from exactfold.checker.panel_loops import Loops
+from exactfold.checker.panel_modes import Modes
+from exactfold.checker.panel_sheet import read_panels
+from exactfold.checker.panels import kind_of
 from exactfold.checker.reading import CertificateError
 from exactfold.evidence.panels import certificate_of_panels
 from exactfold.exact.surds import RATIONALS
@@ -50,6 +54,14 @@ def bent() -> PanelPattern:
     return grid(3, 3, place)
 
 
+def split() -> PanelPattern:
+    """The bent zigzags with a vertex on a fold, a third of the way along it."""
+    points, edges = list(bent().vertices), set(bent().edges) - {(5, 9)}
+    (ax, ay), (bx, by) = points[5], points[9]
+    points.append((ax + (bx - ax) / 3, ay + (by - ay) / 3))
+    return PanelPattern(points, sorted(edges | {(5, 16), (9, 16)}))
+
+
 def square() -> PanelPattern:
     """A fold from border to border."""
     return PanelPattern(
@@ -72,6 +84,7 @@ SHEETS = {
     "crossing": lambda: grid(3, 3, lambda i, j: (i, j)),
     "square": square,
     "bent": bent,
+    "split": split,
     "surds": lambda: grid(
         3, 2, lambda i, j: (4 * i + j % 2 * _ROOT / 2, 3 * j + i % 2 * (_ROOT - 1))
     ),
@@ -91,14 +104,29 @@ def certified(name: str, held: Iterable[Edge] = ()) -> Document:
 
 
 def drawn(points: Iterable[tuple[int, int]], edges: Iterable[tuple[int, int]]) -> Document:
-    """A certificate of a drawing that no reader would take, with no supports."""
+    """A certificate of a drawing that no reader would take; its supports are to be found."""
     made = certified("square")
     made["pattern"] = {
         "radicands": [],
         "vertices": [[[str(x)], [str(y)]] for x, y in points],
         "edges": sorted([i, j] for i, j in edges),
     }
+    made["claims"]["supports"] = None
     return made
+
+
+def supports(document: Document) -> list[Document]:
+    """What the checker itself finds in the pattern, all of it said to fold if that is decided."""
+    sheet, _ = read_panels(document["pattern"])
+    modes = Modes(sheet, sheet.live([]))
+    loops = Loops(modes)
+    found = []
+    for support in modes.supports():
+        kind = kind_of(loops, support)
+        entry = {"vertices": list(support.vertices), "folds": [list(e) for e in support.folds]}
+        entry |= {"count": support.count, "by": kind, "modes": None}
+        found.append(entry | {"extending": None if kind == "loops" else support.count})
+    return found
 
 
 _CLAIM = re.compile(r"claim (\w+) = .*, but it is (.*)")
@@ -107,6 +135,8 @@ _CLAIM = re.compile(r"claim (\w+) = .*, but it is (.*)")
 def matched(document: Document) -> Document:
     """The certificate with the facts that its pattern and supports seem to show."""
     made: Document = json.loads(json.dumps(document))
+    if made["claims"]["supports"] is None:
+        made["claims"]["supports"] = supports(made)
     while True:
         try:
             verified(made)

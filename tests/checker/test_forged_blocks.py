@@ -9,6 +9,7 @@ import pytest
 from forge import (
     Document,
     Lines,
+    given,
     given_lines,
     put,
     raw,
@@ -17,6 +18,7 @@ from forge import (
 )
 from forge_compact import EXACT, FOUR, SIZE, moved
 
+from exactfold.checker.boxes import Box
 from exactfold.checker.compact_blocks import CompactSheet
 from exactfold.checker.reading import CertificateError
 
@@ -109,6 +111,43 @@ def test_radii() -> None:
     radii[0] = 0
     put(parts[1], "radii", radii)
     refused_lines(parts, "root 0 is given twice or not at all")
+
+
+def accepted(check: Callable[[], None]) -> bool:
+    try:
+        check()
+    except CertificateError:
+        return False
+    return True
+
+
+def test_radii_are_powers_of_two() -> None:
+    """The box of a root is just the one that its byte says, and only that root is looked at."""
+    parts = given_lines(FOUR)
+    sheet = CompactSheet(parts[0])
+    block = sheet.decode(json.dumps(parts[1]), 0)
+    center, letters = block.center(0, sheet.size), sheet.letters(block, 0)
+    others = [False, True, True, True]
+    found = set()
+    for byte in range(20, 53):
+        box = Box(center, 1 << byte, block.bits)
+        changed = block._replace(radii=bytes([byte, 254, 254, 254]))
+        right = accepted(lambda box=box: sheet.check_root(box, 0, letters))
+        assert accepted(lambda changed=changed: sheet.check_block(changed, others)) == right
+        found.add(right)
+    assert found == {False, True}
+    assert accepted(lambda: sheet.check_block(block))
+    assert not accepted(lambda: sheet.check_block(changed, [True, False, True, True]))
+
+
+def test_letters_may_fill_their_bytes() -> None:
+    """16 folds take two bytes."""
+    header = given_lines(FOUR)[0]
+    header["pattern"] = given("algebraic-ring")["pattern"]
+    header["evidence"] |= {"block": 1}
+    sheet = CompactSheet(header)
+    assert len(sheet.sheet.folds) == 16
+    assert sheet.letter_bytes == 2
 
 
 @pytest.mark.parametrize(

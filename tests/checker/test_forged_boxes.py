@@ -190,3 +190,15 @@ def test_a_chart_needs_a_reflex_corner() -> None:
         forged = given(name)
         forged["evidence"]["chart"] = {"0": "1"}
         refused(forged, "a chart other than the saddle's needs a reflex corner")
+
+
+def test_a_chart_in_other_units() -> None:
+    """Where the functional is twice as large, the zeros are half as high."""
+    made = given("listing-reflex-either-side")
+    evidence = made["evidence"]
+    evidence["chart"] = {v: str(2 * Fraction(c)) for v, c in evidence["chart"].items()}
+    with pytest.raises(CertificateError, match="Krawczyk's test fails"):
+        verified(made)
+    for root in evidence["roots"]:
+        root["bits"] += 1
+    verified(made)

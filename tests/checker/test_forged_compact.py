@@ -41,6 +41,8 @@ def test_lines_are_chained_by_digests() -> None:
     assert verified_lines(data)["distinct"] == 16
     rows = data.splitlines(keepends=True)
     assert digest("", "a") == "ca978112ca1bbdcafac231b39a23dc4da786eff8147c4e72b9807785afee48bb"
+    text = rows[0].partition(b"\t")[0] + b"\t"  # which is JSON, with a space at its end
+    spaced = text + b"\t" + digest("", text.decode()).encode() + b"\n"
     for number, changed in (
         (1, data.replace(b'"version":1', b'"version":2', 1)),
         (1, data.replace(b"nappes", b"napp\xe9s")),
@@ -52,6 +54,7 @@ def test_lines_are_chained_by_digests() -> None:
         (1, b"[" * 99 + b"\n"),
         (1, b"{}\n"),
         (7, data + b"more\n"),
+        (1, spaced),
     ):
         number = 7 if changed == data + b"\n" else number
         message = f"line {number} is cut off or was altered"

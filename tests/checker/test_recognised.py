@@ -47,6 +47,19 @@ BRANCH = (
 )
 def test_strangers(data: Any, message: str) -> None:
     unreadable(json.dumps(data), message)
+    if isinstance(data, dict):
+        unreadable(f"\n {json.dumps(data)} \n", message)
+
+
+def test_several_results() -> None:
+    """As `count --jsonl` writes them, be it only one."""
+    several = (
+        "this is a file of results, as count --jsonl writes it, which is no evidence; "
+        "count one pattern with --certificate or --stream"
+    )
+    line = json.dumps({"format": "exactfold batch-line result"})
+    unreadable(line, several)
+    unreadable(f"\n{line}\n{line}\n", several)
 
 
 def test_strangers_that_cannot_be_read() -> None:

@@ -174,7 +174,7 @@ def crossing(a, b, c, d):
 
 def test_sides_meet_where_they_have_a_point_in_common():
     """All pairs of sides without a common end on a grid, and those with one that overlap."""
-    grid = [(Fraction(x), Fraction(y)) for x in range(4) for y in range(3)]
+    grid = [(Fraction(x, 9), Fraction(y, 9)) for x in range(4) for y in range(3)]
     sheet = Sheet.__new__(Sheet)
     sheet.points = dict(enumerate(grid))
     seen = set()
