@@ -93,7 +93,7 @@ def decompose(
             reason="; ".join(dict.fromkeys(reasons)),
             found=product((part.at_least for part in found), len(free)),
         )
-    if result.true is None and any(part.found for part in found):
+    if result.true is None and any(part.spaces or part.found for part in found):
         result = replace(result, found_true=product((part.folding for part in found), len(free)))
     return replace(result, rigid=_rigidity(result))
 

@@ -64,6 +64,14 @@ def panels_answer(result: Decomposition) -> Text:
         )
     if result.true is not None:
         return Text.assemble(_ways(result.true), " - ", status_text(PROVED), took, _each(result))
+    if result.second_order is not None and result.second_order == result.found_true:
+        one = sum(result.second_order.values()) == 1
+        return Text.assemble(
+            f"{_ways(result.second_order)} - ",
+            status_text(PROVED),
+            f"{took}; {'it' if one else 'each'} truly folds, and that there are no others is "
+            "proved to second order only",
+        )
     if result.second_order is not None:
         ways = _ways(result.second_order).replace(" to fold", " to start to fold")
         return Text.assemble(
@@ -111,8 +119,8 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
             f"found to second order: at least {ways}; each is proved to be a component, and there "
             "may be more"
         )
-    if result.found_true is not None:
-        notes.append(f"known to fold truly: at least {_ways(result.found_true)}")
+    if result.found_true not in (None, result.second_order):
+        notes.append(f"known to fold truly: at least {_ways(result.found_true or {})}")
     if result.flat and result.rigid is not PROVED:
         notes.append(_flat(result.flat, "whatever the sheet does", everything))
     if result.still and result.rigid is not PROVED:

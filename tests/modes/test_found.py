@@ -3,10 +3,12 @@
 import io
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 from flint import arb, fmpq
-from panel_sheets import mesh, miura, shifted_columns, tiling
+from panel_sheets import mesh, miura, outlined, shifted_columns, tiling
 from rich.console import Console
 
 from exactfold.modes.decomposition import decompose
@@ -26,7 +28,7 @@ from exactfold.modes.result import Decomposition
 from exactfold.modes.stars import Star, stars
 from exactfold.modes.subspaces import Leaf, factors, leaves, made_leaf, reduced, squares_of
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
-from exactfold.report.panels import panels_report
+from exactfold.report.panels import panels_answer, panels_report
 from exactfold.verdict import REFUTED, UNDECIDED
 
 
@@ -180,3 +182,20 @@ def test_a_definite_form_leaves_nothing_and_a_motion_stays() -> None:
     kept, left = reduced(moving, *imposed(rows, size, motion), 10**6)
     assert left == 1
     assert set(kept) == set(star.folds)
+
+
+def test_all_fold_and_others_are_excluded_to_second_order_only() -> None:
+    """Six lines fold, two of which are double: a second true curve might be tangent to these."""
+    points = [(0, 0), (8, 0), (3, 7), (-5, 2), (-6, -3), (-1, -6), (8, -7), (15, 0), (5, 8)]
+    points.append((-2, 14))
+    folds = [(0, 1), (1, 2), (0, 2), (0, 3), (0, 4), (0, 5), (1, 6), (1, 7), (2, 8), (2, 9)]
+    sheet = outlined([(Fraction(x), Fraction(y)) for x, y in points], folds, 3)
+    result = decompose(sheet)
+    assert (result.second_order, result.true) == ({1: 6}, None)
+    assert result.found_true == {1: 6}
+    assert result.parts[0].spaces_fold == (True,) * 6
+    said = str(panels_answer(replace(result, seconds=0.01)))
+    assert said == (
+        "6 ways to fold - PROVED (0.01 s); each truly folds, and that there are no others is "
+        "proved to second order only"
+    )
