@@ -91,7 +91,7 @@ def _folds(spaces: Spaces, part: list[Motion], cone: int | None) -> bool:
     near = {v: around for v, around in near.items() if around}
     if len(near) == 1 and len(part) == len(folds) - 2:
         return True
-    inner = Spaces(spaces.sheet, near)
+    inner = Spaces(spaces.sheet, near, spaces.work)
     point = _point(inner, part, cone if cone in near else None)
     if point is not None and _independent(inner, point):
         return True

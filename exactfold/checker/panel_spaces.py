@@ -55,11 +55,26 @@ def tower_of(basis: Space) -> Tower:
     return max(towers, key=lambda tower: tower.size)
 
 
+class Work:
+    """The products of densities made so far; one of numbers with n coefficients counts n^2."""
+
+    def __init__(self) -> None:
+        self.steps = 0
+
+    def count(self, products: int, value: Any) -> None:
+        """Add products with this number, or interval; too many are refused."""
+        size = value.tower.size if isinstance(value, Number) else 1
+        self.steps += products * size * size
+        require(self.steps <= MOST_STEPS, f"the spaces of motions take over {MOST_STEPS} steps")
+
+
 class Spaces:
     """The spaces of motions of a part: vertices with the neighbours over folds that may fold."""
 
-    def __init__(self, sheet: PanelSheet, near: Mapping[int, list[int]]) -> None:
-        self.sheet, self.near, self.steps = sheet, near, 0
+    def __init__(
+        self, sheet: PanelSheet, near: Mapping[int, list[int]], work: Work | None = None
+    ) -> None:
+        self.sheet, self.near, self.work = sheet, near, work or Work()
         self._known: dict[int, list[tuple[Edge, Edge, Number]]] = {}
         self.first_order = self._first_order()
 
@@ -81,6 +96,7 @@ class Spaces:
     def _value(self, weights: Mapping[Edge, Number], motion: Motion) -> Number:
         total = self.sheet.tower.number(0)
         for fold in weights.keys() & motion.keys():
+            self.work.count(1, motion[fold])
             total = total + weights[fold] * motion[fold]
         return total
 
@@ -107,7 +123,7 @@ class Spaces:
     def plus(self, motion: Motion, weight: Number, other: Motion) -> Motion:
         """The sum of a motion and a multiple of another."""
         found = dict(motion)
-        self._count(len(other))
+        self.work.count(len(other), weight)
         for fold, value in other.items():
             total = weight * value
             if fold in found:
@@ -117,10 +133,6 @@ class Spaces:
             else:
                 found[fold] = total
         return found
-
-    def _count(self, steps: int) -> None:
-        self.steps += steps
-        require(self.steps <= MOST_STEPS, f"the spaces of motions take over {MOST_STEPS} steps")
 
     def _leaves(self, space: Space) -> list[Leaf]:
         """The leaves of a space: sums of those of its parts that share no fold."""
@@ -188,6 +200,9 @@ class Spaces:
         found = []
         for values in self._factors(products, space):
             found += self._leaves(self._vanishing(space, [values]))
+            require(
+                len(found) <= MOST_LEAVES, f"there are more than {MOST_LEAVES} spaces of motions"
+            )
         return found
 
     def _squares(self, v: int, space: Space) -> Squares:
@@ -208,7 +223,7 @@ class Spaces:
                 values = [x + y for x, y in zip(work[i], work[j], strict=True)]
                 value = work[i][j] + work[i][j]
             found.append((self.sheet.tower.number(1) / value, values))
-            self._count(len(work) ** 2)
+            self.work.count(len(work) ** 2, value)
             work = [
                 [x - a * b / value for x, b in zip(row, values, strict=True)]
                 for row, a in zip(work, values, strict=True)
@@ -220,7 +235,7 @@ class Spaces:
         for start, end, bracket in self._brackets(v):
             for fold, other in ((start, end), (end, start)):
                 if other in motion:
-                    self._count(1)
+                    self.work.count(1, motion[other])
                     term = of(bracket) * motion[other]
                     found[fold] = found[fold] + term if fold in found else term
         return found

@@ -28,7 +28,13 @@ class Tower:
 
     def number(self, value: Fraction | int | Number) -> Number:
         """A rational number, or a number of a lower level, here."""
-        parts = value.parts if isinstance(value, Number) else (Fraction(value),)
+        parts: Parts
+        if isinstance(value, Number):
+            parts, below = value.parts, value.tower.radicands
+            same = self.radicands[: len(below)] == below
+            require(same, "two numbers of fields of which none extends the other")
+        else:
+            parts = (Fraction(value),)
         return Number(self, parts + (Fraction(0),) * (self.size - len(parts)))
 
     def adjoined(self, radicand: Number) -> tuple[Tower, Number]:
@@ -134,9 +140,7 @@ class Number:
     def _both(self, other: Number) -> tuple[Tower, Parts, Parts]:
         if self.tower is other.tower:
             return self.tower, self.parts, other.parts
-        low, tower = sorted((self.tower, other.tower), key=lambda tower: tower.size)
-        same = tower.radicands[: len(low.radicands)] == low.radicands
-        require(same, "two numbers of fields of which none extends the other")
+        tower = max(self.tower, other.tower, key=lambda tower: tower.size)
         return tower, tower.number(self).parts, tower.number(other).parts
 
     def __add__(self, other: Number) -> Number:

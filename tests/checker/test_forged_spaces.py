@@ -306,3 +306,26 @@ def test_numbers_of_fields_apart_do_not_go_together() -> None:
     roots = [rational.adjoined(rational.number(k))[1] for k in (2, 3)]
     with pytest.raises(CertificateError, match="two numbers of fields of which none extends"):
         Number.__add__(*roots)
+
+
+def test_products_in_larger_fields_are_more_work() -> None:
+    rational = Tower()
+    two, _ = rational.adjoined(rational.number(2))
+    above, root = two.adjoined(two.number(3))
+    work = panel_spaces.Work()
+    work.count(2, rational.number(1))
+    work.count(3, root)
+    work.count(5, root.enclosed(64))
+    assert (above.size, work.steps) == (4, 2 + 3 * 16 + 5)
+
+
+def test_numbers_are_not_taken_for_those_of_another_field() -> None:
+    rational = Tower()
+    two, root = rational.adjoined(rational.number(2))
+    three, _ = rational.adjoined(rational.number(3))
+    for other in (rational, three):
+        with pytest.raises(CertificateError, match="two numbers of fields of which none extends"):
+            other.number(root)
+        with pytest.raises(CertificateError, match="two numbers of fields of which none extends"):
+            other.adjoined(root)
+    assert two.number(root).parts == root.parts
