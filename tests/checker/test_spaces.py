@@ -1,0 +1,193 @@
+"""The arithmetic of spaces of motions in the checker, against sheets and numbers that are known."""
+
+from __future__ import annotations
+
+import json
+import random
+from fractions import Fraction
+
+import pytest
+from test_forged_spaces import cone, leaves_of, sheet, spaces_of, triangle
+
+from exactfold.checker import check, load, panel_reduction, panel_spaces
+from exactfold.checker.panel_leaves import _folds, _independent, _point, _rank, extends
+from exactfold.checker.panel_reduction import Joined, enclosed, inside, reduced, rest_of
+from exactfold.checker.panel_spaces import Motion, Spaces
+from exactfold.checker.reading import CertificateError
+from exactfold.checker.towers import Number, Tower
+from exactfold.evidence.panels import _pattern, certificate_of_panels
+from exactfold.modes.decomposition import decompose
+from exactfold.pattern.panel_pattern import PanelPattern
+
+RATIONAL = Tower()
+
+
+def number(value: int | Fraction) -> Number:
+    return RATIONAL.number(Fraction(value))
+
+
+def spaces(pattern: PanelPattern) -> Spaces:
+    [found] = spaces_of(_pattern(pattern))
+    return found
+
+
+def rigid() -> PanelPattern:
+    """A hub with five folds in a ring of vertices with four: more conditions than folds."""
+    hub_and_ring = [(0, 0), (4, 0), (1, 4), (-3, 2), (-3, -3), (2, -4)]
+    outer = [(11, 1), (2, 12), (-10, 7), (-9, -8), (5, -11)]
+    ring = [(k, k % 5 + 1) for k in range(1, 6)]
+    folds = [(0, k) for k in range(1, 6)] + [(k, k + 5) for k in range(1, 6)]
+    return sheet([*hub_and_ring, *outer], [*folds, *((min(e), max(e)) for e in ring)], 6)
+
+
+def half_crossed() -> PanelPattern:
+    """Two straight creases that cross; one ends in a vertex with six folds, one at the border."""
+    points = [(0, 0), (6, 0), (2, -5), (6, -5), (12, 0), (6, 5), (2, 5), (-3, 4), (-5, 0), (-3, -4)]
+    folds = [(0, 1), (1, 4), (1, 3), (1, 5), (0, 2), (0, 6), (0, 7), (0, 8), (0, 9)]
+    return sheet(points, folds, 2)
+
+
+# --- linear algebra ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_left_where_functions_vanish(seed: int) -> None:
+    """Five parameters, functions of which some depend on those before or are 0."""
+    rng = random.Random(seed)
+    found = spaces(cone())
+    basis: list[Motion] = [{(0, k): number(1)} for k in range(1, 6)]
+    rows = [[number(rng.randint(-2, 2)) for _ in basis] for _ in range(3)]
+    twice = [a + a + b for a, b in zip(rows[0], rows[1], strict=True)]
+    todo = [rows[0], [number(0)] * 5, rows[1], twice, rows[2]]
+    left = found._vanishing(basis, todo)
+    for motion in left:
+        for row in todo:
+            terms = (row[k - 1] * x for (_, k), x in motion.items())
+            assert sum(terms, start=number(0)).sign() == 0
+    independent = reduced([dict(enumerate(row)) for row in rows])  # type: ignore[arg-type]
+    assert len(reduced(left)) == len(left) == 5 - len(independent)
+
+
+def test_groups_of_folds_meet_at_inner_vertices_only() -> None:
+    found = spaces(half_crossed())
+    one = number(1)
+    at_border: list[Motion] = [{(0, 2): one}, {(1, 3): one}]
+    assert len(found.parts(at_border)) == 2
+    assert len(found.parts([{(0, 1): one, (0, 2): one}, {(1, 4): one}])) == 1
+    assert found.parts([]) == []
+    three: list[Motion] = [{(0, 2): one, (1, 3): one}, {(1, 3): one}]
+    assert sorted(map(len, found.parts(three))) == [1, 1]
+
+
+def test_numbers_of_towers_taken_to_one() -> None:
+    two, root = RATIONAL.adjoined(number(2))
+    first, nested = two.adjoined(two.number(2) + root)
+    _, other = two.adjoined(two.number(5) - root - root)
+    third, seven = first.adjoined(first.number(7))
+    joined = Joined()
+    values = [root, nested * root + nested, other, seven * nested - seven, number(3)]
+    for value in values:
+        taken = joined.of(value)
+        assert (taken.enclosed(200) - value.enclosed(200)).sign() == 0
+        assert taken.enclosed(200).high - taken.enclosed(200).low < 1 << 30
+    assert third.size == 8
+    assert joined.tower.size == 16
+
+
+def test_rests_of_intervals_and_of_numbers() -> None:
+    vectors: list[Motion] = [{(0, 1): number(2), (0, 2): number(3)}, {(0, 2): number(5)}]
+    rows = reduced(vectors)
+    assert rest_of({(0, 1): number(4), (0, 2): number(1)}, rows) == {}
+    rest = rest_of(
+        enclosed({(0, 1): number(4), (0, 3): number(1)}), reduced(map(enclosed, vectors))
+    )
+    assert {fold for fold, value in rest.items() if value.sign()} == {(0, 3)}
+    assert reduced([{}, vectors[0], vectors[0]]) == rows[:1]
+    assert inside([], vectors)
+
+
+# --- sheets --------------------------------------------------------------------------------------
+
+
+def test_the_point_of_a_cone_is_on_it() -> None:
+    for pattern, at in ((cone(), 4), (half_crossed(), 0)):
+        found = spaces(pattern)
+        for leaf in found.leaves():
+            [part] = [part for part in found.parts(leaf.basis) if len(part) > 1]
+            plain, point = _point(found, part, None), _point(found, part, at)
+            assert plain is not None
+            assert point is not None
+            assert found.form(at, plain, plain).sign() != 0
+            assert found.form(at, point, point).sign() == 0
+            assert inside([point], part)
+            positive = [motion for motion in part if found.form(at, motion, motion).sign() > 0]
+            assert _point(found, positive[:1], at) is None
+            weights = [found.form(at, point, motion).sign() for motion in part]
+            assert any(weights)
+
+
+def test_a_cone_beside_a_line() -> None:
+    result = decompose(half_crossed())
+    document = certificate_of_panels(result)
+    claims = check(load(json.dumps(document)))
+    assert claims["second_order"] == {"3": 2}
+    kinds = [(leaf["dimension"], leaf["cone"], len(leaf["folds"])) for leaf in leaves_of(document)]
+    assert sorted(kinds) == [(3, 0, 7), (3, 0, 7)]
+
+
+def test_rigid_parts_have_no_leaves() -> None:
+    result = decompose(rigid())
+    assert result.second_order == {0: 1}
+    document = certificate_of_panels(result)
+    assert leaves_of(document) == []
+    claims = check(load(json.dumps(document)))
+    assert (claims["second_order"], claims["rigid"]) == ({"0": 1}, "proved")
+
+
+def test_bounds_are_kept_at_their_last_value(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = spaces(triangle())
+    assert len(found.leaves()) == 8
+    used = found.work.steps
+    monkeypatch.setattr(panel_spaces, "MOST_LEAVES", 8)
+    monkeypatch.setattr(panel_spaces, "MOST_STEPS", used)
+    assert len(spaces(triangle()).leaves()) == 8
+    monkeypatch.setattr(panel_spaces, "MOST_STEPS", used - 1)
+    with pytest.raises(CertificateError, match=f"the spaces of motions take over {used - 1} steps"):
+        spaces(triangle()).leaves()
+    monkeypatch.setattr(panel_spaces, "MOST_STEPS", used)
+    monkeypatch.setattr(panel_spaces, "MOST_LEAVES", 7)
+    with pytest.raises(CertificateError, match="there are more than 7 spaces of motions"):
+        spaces(triangle()).leaves()
+    monkeypatch.setattr(panel_reduction, "MOST_ROOTS", 1)
+    two, root = RATIONAL.adjoined(number(2))
+    assert Joined().of(root).tower.size == 2
+    with pytest.raises(CertificateError, match="two spaces need too many square roots"):
+        Joined().of(two.adjoined(two.number(3))[1])
+
+
+# --- what truly folds ----------------------------------------------------------------------------
+
+
+def test_conditions_that_depend_on_each_other_prove_nothing() -> None:
+    """Six lines: at two of them the forms have dependent derivatives, but as modes they fold."""
+    found = spaces(triangle((15, 0)))
+    shown = []
+    for leaf in found.leaves():
+        [motion] = leaf.basis
+        near = {
+            v: [u for u in around if (min(u, v), max(u, v)) in motion]
+            for v, around in found.near.items()
+        }
+        inner = Spaces(found.sheet, {v: around for v, around in near.items() if around})
+        shown.append((_rank(found, motion), _independent(inner, motion), extends(found, leaf)))
+    assert sorted(shown)[0][0] < 3 == sorted(shown)[-1][0]
+    assert all(folds for *_, folds in shown)
+
+
+def test_what_is_not_shown_to_fold() -> None:
+    """A cone whose form is not that of the vertex named."""
+    found = spaces(cone())
+    [leaf] = found.leaves()
+    [part] = found.parts(leaf.basis)
+    assert _folds(found, part, leaf.cone)
+    assert not _folds(found, part, 0 if leaf.cone != 0 else 4)  # its form does not vanish
