@@ -1,0 +1,50 @@
+"""Maximal sets of modes without a common vertex, counted by trying all sets."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from itertools import combinations
+from math import prod
+
+import pytest
+
+from exactfold.checker.panel_components import components, times
+from exactfold.checker.panel_sheet import connected
+
+Weighted = list[tuple[tuple[int, ...], int]]
+
+
+def by_trying(supports: Weighted, free: int) -> dict[str, int]:
+    apart = [
+        chosen
+        for size in range(len(supports) + 1)
+        for chosen in combinations(range(len(supports)), size)
+        if all(not set(supports[i][0]) & set(supports[j][0]) for i, j in combinations(chosen, 2))
+    ]
+    found = Counter[int]()
+    for chosen in apart:
+        if not any(set(chosen) < set(other) for other in apart):
+            found[len(chosen) + free] += prod(supports[k][1] for k in chosen)
+    return {str(dimension): found[dimension] for dimension in sorted(found)}
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_components(seed: int) -> None:
+    rng = random.Random(seed)
+    supports: Weighted = []
+    for _ in range(rng.randint(0, 7)):
+        vertices = rng.sample(range(9), rng.randint(1, 4))
+        supports.append((tuple(sorted(vertices)), rng.randint(1, 4)))
+    free = rng.randint(0, 2)
+    assert components(supports, free) == by_trying(supports, free)
+
+
+def test_products() -> None:
+    assert times({"1": 2, "3": 1}, [{0: 1}, {1: 3, 2: 5}]) == {"2": 6, "3": 10, "4": 3, "5": 5}
+    assert times({"10": 1, "9": 2}, []) == {"9": 2, "10": 1}
+
+
+def test_parts_of_a_graph() -> None:
+    near = {5: [2, 9], 2: [5], 7: [9], 1: [8], 8: [1, 3], 3: [8]}
+    assert connected(near) == [{1: [8], 3: [8], 8: [1, 3]}, {2: [5], 5: [2, 9]}, {7: [9]}]
