@@ -7,7 +7,8 @@ import random
 from fractions import Fraction
 
 import pytest
-from test_forged_spaces import cone, leaves_of, sheet, spaces_of, triangle
+from panel_sheets import shifted_columns, tiling
+from test_forged_spaces import certified, cone, leaves_of, sheet, spaces_of, triangle
 
 from exactfold.checker import check, load, panel_reduction, panel_spaces
 from exactfold.checker.panel_leaves import _folds, _independent, _point, _rank, extends
@@ -191,3 +192,32 @@ def test_what_is_not_shown_to_fold() -> None:
     [part] = found.parts(leaf.basis)
     assert _folds(found, part, leaf.cone)
     assert not _folds(found, part, 0 if leaf.cone != 0 else 4)  # its form does not vanish
+
+
+def test_conditions_of_first_order_that_depend_on_each_other() -> None:
+    """A ring round a hub can turn if its outer creases go on along the spokes."""
+    ring = [(4, 0), (1, 4), (-3, 2), (-3, -3), (2, -4)]
+    points = [(0, 0), *ring, *((3 * x, 3 * y) for x, y in ring)]
+    folds = [(0, k) for k in range(1, 6)] + [(k, k + 5) for k in range(1, 6)]
+    folds += [(1, 2), (2, 3), (3, 4), (4, 5), (1, 5)]
+    found = spaces(sheet(points, folds, 6))
+    assert len(found.first_order) == 15 - 2 * 6 + 1
+    assert not _independent(found, found.first_order[0])
+    # Three folds that are no straight pair have no motions, and are not counted on.
+    [star] = spaces_of(certified("star")["pattern"])
+    three = Spaces(star.sheet, {6: star.near[6][::2]})
+    assert len(three.first_order) == 1
+    assert not _independent(three, three.first_order[0])
+
+
+@pytest.mark.parametrize(("pattern", "folds"), [(tiling(2, 2), True), (shifted_columns(1), False)])
+def test_a_part_with_two_parameters_is_no_mode(pattern: PanelPattern, folds: bool) -> None:
+    """Modes of four vertices with dependent forms: those that fold do so as modes alone."""
+    found = spaces(pattern)
+    whole = [leaf.basis for leaf in found.leaves() if len(leaf.folds) == 12]
+    assert whole
+    for [motion] in whole:
+        twice = {fold: x + x for fold, x in motion.items()}
+        assert not _independent(found, motion)
+        assert not _folds(found, [motion, twice], None)
+        assert _folds(found, [motion], None) is folds
