@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import inf, nextafter
+from numbers import Rational
 from sys import float_info
 from typing import Final, TypeAlias
 
@@ -168,8 +169,12 @@ Number: TypeAlias = Surd | Fraction | int
 
 
 def to_fmpq(value: Fraction | fmpq | int) -> fmpq:
-    """A rational number as FLINT's."""
-    return value if isinstance(value, fmpq) else fmpq(value.numerator, value.denominator)
+    """A rational number as FLINT's; a float is none, as its value is rarely what was meant."""
+    if isinstance(value, fmpq):
+        return value
+    if not isinstance(value, Rational):
+        raise TypeError(f"{value!r} is no exact number")
+    return fmpq(int(value.numerator), int(value.denominator))
 
 
 def _made(field: SurdField, parts: Parts) -> Surd:

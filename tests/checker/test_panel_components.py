@@ -9,8 +9,10 @@ from math import prod
 
 import pytest
 
+from exactfold.checker import panel_components
 from exactfold.checker.panel_components import components, times
 from exactfold.checker.panel_sheet import connected
+from exactfold.checker.reading import CertificateError
 
 Weighted = list[tuple[tuple[int, ...], int]]
 
@@ -29,15 +31,27 @@ def by_trying(supports: Weighted, free: int) -> dict[str, int]:
     return {str(dimension): found[dimension] for dimension in sorted(found)}
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(40))
 def test_components(seed: int) -> None:
+    """Few large supports, or a path of pairs with some more, where many go together."""
     rng = random.Random(seed)
     supports: Weighted = []
-    for _ in range(rng.randint(0, 7)):
-        vertices = rng.sample(range(9), rng.randint(1, 4))
+    if seed % 2:
+        supports = [((k, k + 1), rng.randint(1, 4)) for k in range(5)]
+    for _ in range(rng.randint(0, 7 if seed % 2 == 0 else 4)):
+        vertices = rng.sample(range(9), rng.randint(1, 2 if seed % 2 else 4))
         supports.append((tuple(sorted(vertices)), rng.randint(1, 4)))
+    rng.shuffle(supports)
     free = rng.randint(0, 2)
     assert components(supports, free) == by_trying(supports, free)
+
+
+def test_the_bound_of_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(panel_components, "MOST_SETS", 2)
+    assert components([((1, 2), 3)], 0) == {"1": 3}
+    monkeypatch.setattr(panel_components, "MOST_SETS", 1)
+    with pytest.raises(CertificateError, match="the components take more than 1 steps"):
+        components([((1, 2), 3)], 0)
 
 
 def test_products() -> None:

@@ -34,9 +34,12 @@ def test_certificates_of_panels(tmp_path):
     data = json.loads(run("check", out, "--json").stdout)
     assert data["valid"] is True
     assert data["claims"]["second_order"] == data["claims"]["true"] == {"1": 2}
-    more = {"vertices_coords": points}
-    more["edges_vertices"] = [*rim, *folds, *([4, k] for k in (0, 1))]
-    more["edges_assignment"] = letters + ["U"] * 2
+    points = [[0, 0], [9, 0], [3, -5], [6, -5], [12, -4], [14, 0], [12, 4], [6, 5], [3, 5], [-3, 4]]
+    points += [[-5, 0], [-3, -4]]
+    rim = [[k, k + 1] for k in range(2, 11)] + [[2, 11]]
+    folds = [[0, 1], [0, 2], *([0, k] for k in range(8, 12)), *([1, k] for k in range(3, 8))]
+    letters = ["B"] * 10 + ["U"] * 11
+    more = dict(zip(keys, (points, rim + folds, letters), strict=True))
     drawing.write_text(json.dumps(more))
     out.unlink()
     counted = run("count", drawing, "--json", "--certificate", out)

@@ -66,7 +66,7 @@ def test_rational_coordinates_are_fractions_and_irrational_ones_surds_of_one_fie
 
 def test_pixels_become_units_of_the_width():
     points = [*SQUARE, (TWO - 1, 0), (0, TWO / 2), (1 - TWO / 2, 1)]
-    found = exact_coordinates(drawn(points, 9, scale=737, shift=(41.5, -13)))
+    found = exact_coordinates(drawn(points, 9, scale=737, shift=(Fraction("41.5"), -13)))
     assert list(found.points) == points
     assert (found.unit, found.origin) == (737, (Fraction("41.5"), -13))
     assert "in units of 737 from (41.5, -13)" in found.text
