@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
+from .intervals import Interval
 from .panel_loops import Loops
 from .panel_modes import Modes, Support
 from .panel_reduction import BITS, enclosed, reduced
@@ -178,8 +180,7 @@ def _rank(spaces: Spaces, point: Motion) -> int:
         weights = spaces.gradient(v, place, lambda x: x.enclosed(BITS))
         row = {}
         for k, motion in enumerate(basis):
-            terms = [weights[fold] * motion[fold] for fold in weights.keys() & motion.keys()]
-            if terms:
-                row[k, k] = sum(terms[1:], start=terms[0])
+            terms = (weights[fold] * motion[fold] for fold in weights.keys() & motion.keys())
+            row[k, k] = sum(terms, start=Interval.of(Fraction(0), BITS))
         rows.append(row)
     return len(reduced(rows))

@@ -25,7 +25,7 @@ from exactfold.verdict import PROVED
 from exactfold.wording import counted
 
 MOST_DIMENSION = 16
-MOST_STEPS = 150_000
+MOST_STEPS = 600_000
 MOST_STEPS_BEYOND = 30_000
 MOST_REDUCTION = 3_000_000
 MOST_FOUND = 20_000_000

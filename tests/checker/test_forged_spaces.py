@@ -115,11 +115,14 @@ def test_valid(name: str, second: dict[str, int], true: bool) -> None:
     assert claims["second_order"] == second
     assert claims["true"] == (second if true else None)
     assert claims["rigid"] == "refuted"
+    claims = made["claims"]
     for part in claims["spaces"]:
         part["complete"] = False
         for leaf in part["leaves"]:
             leaf["extending"] = 0
-    claims.update(true=None, rigid="undecided")
+    claims["true"] = None
+    refused(made, "claim rigid = 'refuted', but it is 'undecided'")
+    claims["rigid"] = "undecided"
     verified(made)  # less is claimed
 
 
