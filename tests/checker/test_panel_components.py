@@ -46,6 +46,12 @@ def test_components(seed: int) -> None:
     assert components(supports, free) == by_trying(supports, free)
 
 
+def test_sets_that_are_not_maximal_are_told_deep_in_the_search() -> None:
+    vertices = [(5, 8, 10), (0, 2), (7, 10), (0, 7, 8), (4, 5, 7), (0, 3), (2,), (6, 10, 15), (0,)]
+    supports: Weighted = [(chosen, 1) for chosen in [*vertices, (1, 6, 7)]]
+    assert components(supports, 0) == by_trying(supports, 0) == {"2": 1, "3": 5, "4": 4}
+
+
 def test_the_bound_of_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(panel_components, "MOST_SETS", 2)
     assert components([((1, 2), 3)], 0) == {"1": 3}
