@@ -284,6 +284,9 @@ def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
     shown = ", ".join(f"{n} of dimension {d}" for d, n in claims["second_order"].items())
     true = "not decided" if claims["true"] is None else "the same"
+    leaves = [leaf for part in claims.get("spaces", ()) for leaf in part["leaves"]]
+    if claims["true"] is None and leaves:
+        true += f" ({sum(leaf['extending'] for leaf in leaves)} leaves of spaces fold)"
     if claims["true"] not in (None, claims["second_order"]):
         true = ", ".join(f"{n} of dimension {d}" for d, n in claims["true"].items())
     held = f", {len(claims['held'])} folds held flat" if claims["held"] else ""

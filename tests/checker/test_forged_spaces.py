@@ -14,6 +14,7 @@ from forge_panels import Document, stopped
 from panel_sheets import miura, outlined, regular_twist, shifted_columns, tiling
 
 from exactfold.checker import panel_reduction, panel_spaces
+from exactfold.checker import panels as panels_of_checker
 from exactfold.checker.panel_leaves import complete, extends
 from exactfold.checker.panel_reduction import Joined, inside
 from exactfold.checker.panel_sheet import connected, read_panels
@@ -149,6 +150,14 @@ def test_more_lines_may_be_tangent_where_the_derivatives_leave_more() -> None:
     [other] = spaces_of(certified("six lines")["pattern"])
     assert complete(regular, regular.leaves())
     assert not complete(other, other.leaves())
+
+
+def test_summary() -> None:
+    said = panels_of_checker.summary(verified(certified("six lines")))
+    assert said.startswith(
+        "VALID: the motions of the sheet of 10 folds and 3 interior vertices have the components "
+        "6 of dimension 1 to second order, truly not decided (6 leaves of spaces fold); sha256"
+    )
 
 
 # --- what is claimed of leaves -------------------------------------------------------------------
