@@ -93,7 +93,7 @@ def test_the_first_commands_of_the_readme_leave_exactfold_where_a_shell_finds_it
     )
     assert len(first) == 2
     assert all(". .venv/bin/activate && pip install" in line for line in first)
-    assert first[0].endswith("&& exactfold count random-8")
+    assert first[0].endswith("&& exactfold count zigzags")
 
 
 def contributing() -> str:
