@@ -221,3 +221,12 @@ def test_a_part_with_two_parameters_is_no_mode(pattern: PanelPattern, folds: boo
         assert not _independent(found, motion)
         assert not _folds(found, [motion, twice], None)
         assert _folds(found, [motion], None) is folds
+
+
+def test_two_cones_and_spaces_that_are_no_sums_are_refused() -> None:
+    found = spaces(half_crossed())
+    one = number(1)
+    with pytest.raises(CertificateError, match="^the forms of vertices 0, 1 stay$"):
+        found._sum(Leaf([{(0, 2): one}], 0), Leaf([{(1, 3): one}], 1))
+    with pytest.raises(CertificateError, match="^the parts of a space do not add up to it$"):
+        found.parts([{(0, 2): one, (1, 3): one}])
