@@ -13,7 +13,7 @@ from test_forged_spaces import certified, cone, leaves_of, sheet, spaces_of, tri
 from exactfold.checker import check, load, panel_reduction, panel_spaces
 from exactfold.checker.panel_leaves import _folds, _independent, _point, _rank, extends
 from exactfold.checker.panel_reduction import Joined, enclosed, inside, reduced, rest_of
-from exactfold.checker.panel_spaces import Motion, Spaces
+from exactfold.checker.panel_spaces import Leaf, Motion, Spaces
 from exactfold.checker.reading import CertificateError
 from exactfold.checker.towers import Number, Tower
 from exactfold.evidence.panels import _pattern, certificate_of_panels
@@ -226,7 +226,7 @@ def test_a_part_with_two_parameters_is_no_mode(pattern: PanelPattern, folds: boo
 def test_two_cones_and_spaces_that_are_no_sums_are_refused() -> None:
     found = spaces(half_crossed())
     one = number(1)
-    with pytest.raises(CertificateError, match="^the forms of vertices 0, 1 stay$"):
+    with pytest.raises(CertificateError, match="the forms of vertices 0, 1 stay"):
         found._sum(Leaf([{(0, 2): one}], 0), Leaf([{(1, 3): one}], 1))
-    with pytest.raises(CertificateError, match="^the parts of a space do not add up to it$"):
+    with pytest.raises(CertificateError, match="the parts of a space do not add up"):
         found.parts([{(0, 2): one, (1, 3): one}])
