@@ -21,7 +21,7 @@ from .boxes import Root, check_isolated
 from .equations import BranchSystem, read_chart
 from .flat_folds import close_flat
 from .formats import COUNTS, FACTS, LISTING, LISTING_VERSION
-from .reading import MALFORMED, CertificateError, document, items, keys, require, text_of
+from .reading import MALFORMED, CertificateError, counted, document, items, keys, require, text_of
 from .sheet import Sheet, facts_of, read_sheet
 from .stress import check_lorentzian, check_triangles
 
@@ -171,8 +171,9 @@ def digit(sign: int | None) -> int:
 
 def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
+    branches = counted(claims["distinct"], "branch", "branches")
     return (
-        f"VALID: {claims['distinct']} branches ({claims['with_multiplicity']} with "
+        f"VALID: {branches} ({claims['with_multiplicity']} with "
         f"multiplicity, {claims['real']} real) of the sheet with {claims['interior']} interior "
         f"and {claims['boundary']} boundary vertices, sha256 {claims['sha256']}"
     )

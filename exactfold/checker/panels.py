@@ -22,6 +22,7 @@ from .reading import (
     MALFORMED,
     CertificateError,
     FormatError,
+    counted,
     document,
     items,
     keys,
@@ -285,13 +286,15 @@ def summary(claims: dict[str, Any]) -> str:
     shown = ", ".join(f"{n} of dimension {d}" for d, n in claims["second_order"].items())
     true = "not decided" if claims["true"] is None else "the same"
     leaves = [leaf for part in claims.get("spaces", ()) for leaf in part["leaves"]]
-    if claims["true"] is None and leaves:
-        true += f" ({sum(leaf['extending'] for leaf in leaves)} leaves of spaces fold)"
+    folding = sum(leaf["extending"] for leaf in leaves)
+    if claims["true"] is None and folding:
+        true += f" (of the components of its parts at least {folding} truly fold)"
     if claims["true"] not in (None, claims["second_order"]):
         true = ", ".join(f"{n} of dimension {d}" for d, n in claims["true"].items())
-    held = f", {len(claims['held'])} folds held flat" if claims["held"] else ""
+    held = f", {counted(len(claims['held']), 'fold', 'folds')} held flat" if claims["held"] else ""
+    size = counted(claims["folds"], "fold", "folds")
+    inner = counted(claims["interior"], "interior vertex", "interior vertices")
     return (
-        f"VALID: the motions of the sheet of {claims['folds']} folds and {claims['interior']} "
-        f"interior vertices{held} have the components {shown} to second order, truly {true}; "
-        f"sha256 {claims['sha256']}"
+        f"VALID: the motions of the sheet of {size} and {inner}{held} have the components "
+        f"{shown} to second order, truly {true}; sha256 {claims['sha256']}"
     )

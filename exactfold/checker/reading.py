@@ -29,6 +29,11 @@ def plain(error: object) -> str:
     return "".join(c if " " <= c <= "~" else ascii(c)[1:-1] for c in str(error)[:1000])[:1000]
 
 
+def counted(number: int, one: str, many: str) -> str:
+    """A number with its noun, in the singular or the plural."""
+    return f"{number} {one if number == 1 else many}"
+
+
 def parse_integer(text: str) -> int:
     """Exact integer of any length from decimal digits."""
     sign, digits = (-1, text[1:]) if text[:1] == "-" else (1, text)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from flint import ctx, fmpq
-
 from exactfold.errors import UsageError
-from exactfold.exact.surds import RATIONALS, Coefficients, Number, Surd, ball
+from exactfold.exact.surds import RATIONALS, Coefficients, Number, Surd
 
 
 class JoinedField:
@@ -61,31 +59,3 @@ def joined(rows: Sequence[Sequence[Number]]) -> list[list[Number]]:
         return [list(row) for row in rows]
     tower = JoinedField(x for row in rows for x in row)
     return [[tower.number(x) for x in row] for row in rows]
-
-
-def rank_at_least(rows: Sequence[Sequence[Number | fmpq]], bits: int = 256) -> int:
-    """A lower bound of the rank of a matrix: pivots of an elimination in balls that are not 0.
-
-    >>> root = RATIONALS.adjoined(2).root
-    >>> rank_at_least([[root, 2], [1, root], [1, 1]])
-    2
-    """
-    before = ctx.prec
-    ctx.prec = bits
-    try:
-        left = [[ball(x, bits) for x in row] for row in rows]
-        found = 0
-        for column in range(len(left[0]) if left else 0):
-            sure = [row for row in left if not row[column].contains(0)]
-            if not sure:
-                continue
-            pivot = max(sure, key=lambda row: float(abs(row[column].mid())))
-            found += 1
-            left = [
-                [x - row[column] / pivot[column] * y for x, y in zip(row, pivot, strict=True)]
-                for row in left
-                if row is not pivot
-            ]
-    finally:
-        ctx.prec = before
-    return found

@@ -108,10 +108,17 @@ def _complete(
         dimension=size,
         found=tuple(found),
         still=still,
-        reason=""
-        if known
-        else "whether motions of vertices with more than four folds truly fold is not decided",
+        reason=_open(known, all(folding)),
     )
+
+
+def _open(known: bool, fold: bool) -> str:
+    """What is not decided of a part whose motions are known to second order."""
+    if known:
+        return ""
+    if fold:
+        return "that there are no other true motions is proved to second order only"
+    return "whether motions of vertices with more than four folds truly fold is not decided"
 
 
 def _found(

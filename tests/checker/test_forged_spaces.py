@@ -156,7 +156,8 @@ def test_summary() -> None:
     said = panels_of_checker.summary(verified(certified("six lines")))
     assert said.startswith(
         "VALID: the motions of the sheet of 10 folds and 3 interior vertices have the components "
-        "6 of dimension 1 to second order, truly not decided (6 leaves of spaces fold); sha256"
+        "6 of dimension 1 to second order, truly not decided (of the components of its parts "
+        "at least 6 truly fold); sha256"
     )
 
 

@@ -60,7 +60,7 @@ def test_folds_held_flat() -> None:
     claims = verified(certified("square", [(4, 5)]))
     assert claims["second_order"] == claims["true"] == {"0": 1}
     assert claims["held"] == claims["flat"] == [[4, 5]]
-    assert ", 1 folds held flat have" in checker.summary(claims)
+    assert ", 1 fold held flat have" in checker.summary(claims)
     assert "of dimension 0 to second order, truly the same; sha256" in checker.summary(claims)
     for fold in ((5, 6), (5, 9)):  # so that a straight pair along x, along y is left
         inner = certified("crossing", [fold])

@@ -22,7 +22,7 @@ KINDS = {
     "listing-isolated.json": "VALID: 8 branches (8 with multiplicity, 8 real) of the sheet with 3",
     "algebraic-grid.json": "VALID: 11 branches (16 with multiplicity, 11 real) of the sheet with 4",
     "rigid-nested.json": "VALID: 0 branches (0 with multiplicity, 0 real) of the sheet with 3",
-    "single-vertex-nine-folds.json": "VALID: 1 branches (1 with multiplicity, 1 real) of the sheet",
+    "single-vertex-nine-folds.json": "VALID: 1 branch (1 with multiplicity, 1 real) of the sheet",
     "compact-blocks-of-4.txt": "VALID: 16 branches (16 with multiplicity, 16 real) of the sheet",
     "panels-bent.json": "VALID: the motions of the sheet of 12 folds and 4 interior vertices have",
     "branch-reflex.json": "VALID: exactly one branch has the vertex signs +0- (3); 10 of 10",
