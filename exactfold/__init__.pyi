@@ -10,6 +10,7 @@ from exactfold import errors as errors
 from exactfold import evidence as evidence
 from exactfold import exact as exact
 from exactfold import modes as modes
+from exactfold import motion as motion
 from exactfold import pattern as pattern
 from exactfold import problem as problem
 from exactfold import rigidity as rigidity

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from scipy.sparse import bmat, coo_array, csc_array, identity
-from scipy.sparse.linalg import splu
+from scipy.sparse import coo_array, csc_array
 
 from exactfold.arrays import FloatArray, IndexArray
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.solve.least_squares import least_squares
 
 
 @dataclass(frozen=True)
@@ -104,14 +104,9 @@ def _in_plane(pattern: CreasePattern, shape: FloatArray, height: FloatArray) -> 
     held = {2 * a, 2 * a + 1, 2 * b + int(along[0] >= along[1])}
     free = np.array([k for k in range(2 * count) if k not in held])
     rigid = matrix[:, free]
-    # The normal equations would square the condition; their augmented form does not.
-    augmented = csc_array(bmat([[identity(len(i)), rigid], [rigid.T, None]]))
-    factors = splu(augmented)
-    right = np.concatenate([strain, np.zeros(len(free))])
-    solution = factors.solve(right)
-    solution += factors.solve(right - augmented @ solution)
+    solution = least_squares(csc_array(rigid), strain)
     moves = np.zeros(2 * count)
-    moves[free] = solution[len(i) :]
+    moves[free] = solution
     return _without_motion(shape, moves.reshape(-1, 2))
 
 

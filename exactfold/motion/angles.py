@@ -1,0 +1,44 @@
+"""Fold angles of configurations in space."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exactfold.arrays import FloatArray, IndexArray
+
+
+def hinge_vectors(positions: FloatArray, hinges: IndexArray) -> tuple[FloatArray, ...]:
+    """The unit vector along each fold, and in each of its two faces the vector across the fold.
+
+    `positions`: shape (..., V, 3). `hinges`: rows (i, j, left, right). The vectors across are
+    orthogonal to the fold, and point away from it.
+    """
+    i, j, left, right = hinges.T
+    axis = positions[..., j, :] - positions[..., i, :]
+    axis = axis / np.linalg.norm(axis, axis=-1, keepdims=True)
+    a = positions[..., left, :] - positions[..., i, :]
+    b = positions[..., right, :] - positions[..., i, :]
+    a = a - (a * axis).sum(-1, keepdims=True) * axis
+    b = b - (b * axis).sum(-1, keepdims=True) * axis
+    return axis, a, b
+
+
+def fold_angles_of(positions: FloatArray, hinges: IndexArray) -> FloatArray:
+    """The fold angle of every hinge in radians, in (-pi, pi], shape (..., folds).
+
+    0 is flat, positive a valley, negative a mountain, seen from the side that is +z in the flat
+    sheet; the size pi is a fold that is closed.
+
+    >>> tent = np.array([[0, 0, 0], [0, 1, 0], [-1, 0, 0.5], [1, 0, 0.5]])
+    >>> float(fold_angles_of(tent, np.array([[0, 1, 2, 3]]))[0]) > 0
+    True
+    """
+    axis, a, b = hinge_vectors(positions, hinges)
+    # The left face turned by the fold angle about the axis continues the right one.
+    sine = (np.cross(b, -a) * axis).sum(-1)
+    return np.asarray(np.arctan2(sine, -(a * b).sum(-1)))
+
+
+def unwrapped(angles: FloatArray) -> FloatArray:
+    """Angles along a motion, shape (times, folds), each continued past +-pi without jumps."""
+    return np.asarray(np.unwrap(angles, axis=0))

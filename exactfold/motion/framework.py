@@ -1,0 +1,169 @@
+"""The length equations of a sheet in space, with one triangle held in the plane z = 0."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from exactfold.arrays import FloatArray, IndexArray
+from exactfold.pattern.crease_pattern import CreasePattern, Triangle
+
+Points = tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True, repr=False)
+class Framework:
+    """The edges of a sheet as bars; one triangle, `pinned`, does not move.
+
+    A configuration is X = U + d, with U the flat sheet and d the displacement, shape (V, 3), zero
+    at the corners of `pinned`. Edge e keeps its length where
+
+        g_e(d) = U_e . d_e + |d_e|^2 / 2 = 0,      a_e = a_i - a_j for e = (i, j):
+
+    half the change of the squared length, without the cancellation of lengths near the flat state.
+    The unknowns are the 3V - 9 coordinates of the `free` vertices, x, y, z of each in turn, and
+    `edges` the edges with a free end. With four boundary vertices there are 3V - 10 of them, so
+    that regular configurations form curves.
+
+    The flat coordinates are `points` / 2^`bits`, exact integers from the first pinned corner;
+    `flat` are the nearest floats, and `unit` is the length 1 of these in the unit of `sheet`.
+    """
+
+    sheet: CreasePattern
+    pinned: Triangle
+    points: Points
+    bits: int
+
+    @classmethod
+    def of(cls, sheet: CreasePattern, pinned: Triangle | None = None) -> Framework:
+        """The framework of a sheet, by default with its largest triangle pinned, the first such.
+
+        >>> from exactfold.pattern.families import two_vertex
+        >>> framework = Framework.of(two_vertex())
+        >>> framework.pinned, framework.size, len(framework.edges)
+        ((2, 3, 5), 9, 8)
+        """
+        whole, _ = sheet.integer_vertices
+        if pinned is None:
+            pinned = max(sheet.triangles, key=lambda t: _twice_area(whole, t))
+        x, y = whole[pinned[0]]
+        points = tuple((a - x, b - y) for a, b in whole)
+        largest = max(max(abs(a), abs(b)) for a, b in points)
+        return cls(sheet, pinned, points, largest.bit_length())
+
+    @cached_property
+    def unit(self) -> Fraction:
+        """The length 1 of `flat` in the length unit of the sheet."""
+        return Fraction(1 << self.bits, self.sheet.integer_vertices[1])
+
+    @cached_property
+    def flat(self) -> FloatArray:
+        """U in floats, shape (V, 2): exact if the integers have at most 53 bits."""
+        scale = 1 << self.bits
+        return np.array([[x / scale, y / scale] for x, y in self.points])
+
+    @cached_property
+    def free(self) -> IndexArray:
+        """The vertices that move, in order."""
+        return np.array([v for v in range(len(self.points)) if v not in self.pinned], dtype=np.intp)
+
+    @cached_property
+    def edges(self) -> IndexArray:
+        """The edges with a free end, shape (3V - 10, 2) for four boundary vertices."""
+        held = set(self.pinned)
+        return np.array([e for e in self.sheet.edges if not held.issuperset(e)], dtype=np.intp)
+
+    @property
+    def size(self) -> int:
+        """The number of unknowns."""
+        return 3 * len(self.free)
+
+    @cached_property
+    def flat_edges(self) -> FloatArray:
+        """U_e, shape (edges, 3), with a third component of 0."""
+        i, j = self.edges.T
+        return np.column_stack([self.flat[i] - self.flat[j], np.zeros(len(i))])
+
+    # --- displacements ---------------------------------------------------------------------------
+
+    def displacement(self, unknowns: FloatArray) -> FloatArray:
+        """d of shape (V, 3) from the unknowns; leading axes are kept."""
+        d = np.zeros((*unknowns.shape[:-1], len(self.points), 3))
+        d[..., self.free, :] = unknowns.reshape(*unknowns.shape[:-1], -1, 3)
+        return d
+
+    def unknowns(self, d: FloatArray) -> FloatArray:
+        """The unknowns of a displacement that is zero on `pinned`."""
+        return np.asarray(d[..., self.free, :].reshape(*d.shape[:-2], -1))
+
+    def along(self, unknowns: FloatArray) -> FloatArray:
+        """d_e, shape (..., edges, 3)."""
+        d = self.displacement(unknowns)
+        return np.asarray(d[..., self.edges[:, 0], :] - d[..., self.edges[:, 1], :])
+
+    def stretch(self, unknowns: FloatArray) -> FloatArray:
+        """g_e, shape (edges,): 0 where the edge has its length."""
+        d = self.along(unknowns)
+        return np.asarray(((self.flat_edges + 0.5 * d) * d).sum(axis=-1))
+
+    def length_error(self, unknowns: FloatArray) -> float:
+        """The largest relative change of the length of an edge, to first order."""
+        squares = (self.flat_edges**2).sum(axis=1)
+        return float(np.max(np.abs(self.stretch(unknowns) / squares), initial=0.0))
+
+    def jacobian(self, unknowns: FloatArray) -> csc_array:
+        """The derivative of `stretch`, shape (edges, unknowns), sparse."""
+        return self.matrix(self.flat_edges + self.along(unknowns))
+
+    def matrix(self, rows: FloatArray) -> csc_array:
+        """The matrix that takes d to rows_e . d_e, sparse; `rows` has the shape (edges, 3)."""
+        row, column, source, sign = self._structure
+        data = sign * rows.reshape(-1)[source]
+        return csc_array((data, (row, column)), shape=(len(self.edges), self.size))
+
+    @cached_property
+    def _structure(self) -> tuple[IndexArray, IndexArray, IndexArray, FloatArray]:
+        """Row, column, place in the rows (edges, 3) and sign of every entry."""
+        place = np.full(len(self.points), -1, dtype=np.intp)
+        place[self.free] = np.arange(len(self.free))
+        parts = []
+        for end, sign in ((0, 1.0), (1, -1.0)):
+            at = place[self.edges[:, end]]
+            e = np.flatnonzero(at >= 0)
+            for axis in range(3):
+                parts.append((e, 3 * at[e] + axis, 3 * e + axis, np.full(len(e), sign)))
+        row, column, source, signs = (np.concatenate(part) for part in zip(*parts, strict=True))
+        return row, column, source, signs
+
+    # --- faces in space --------------------------------------------------------------------------
+
+    def positions(self, unknowns: FloatArray) -> FloatArray:
+        """X, shape (..., V, 3), in units of `unit` from the first pinned corner."""
+        d = self.displacement(unknowns)
+        d[..., :2] += self.flat
+        return d
+
+    @cached_property
+    def triangles(self) -> IndexArray:
+        """The faces, shape (F, 3), counter-clockwise in the flat sheet."""
+        return np.array(self.sheet.triangles, dtype=np.intp)
+
+    @cached_property
+    def hinges(self) -> IndexArray:
+        """Each fold as (i, j, left, right), in the order of `sheet.folds`."""
+        folds: Sequence[tuple[int, int]] = self.sheet.folds
+        rows = [(i, j, *self.sheet.opposite((i, j))) for i, j in folds]
+        return np.array(rows, dtype=np.intp).reshape(-1, 4)
+
+    def __repr__(self) -> str:
+        return f"<Framework: {len(self.edges)} edges, {self.size} unknowns, {self.pinned} pinned>"
+
+
+def _twice_area(points: Points, triangle: Triangle) -> int:
+    (ax, ay), (bx, by), (cx, cy) = (points[v] for v in triangle)
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
