@@ -35,6 +35,8 @@ from exactfold.evidence import certificate as certificate
 from exactfold.evidence import read_branches as read_branches
 from exactfold.evidence import write_certificate as write_certificate
 from exactfold.modes import decompose as decompose
+from exactfold.motion import Motion as Motion
+from exactfold.motion import follow as follow
 from exactfold.pattern import CreasePattern as CreasePattern
 from exactfold.pattern import PanelPattern as PanelPattern
 from exactfold.pattern import delaunay as delaunay

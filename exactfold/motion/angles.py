@@ -5,6 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from exactfold.arrays import FloatArray, IndexArray
+from exactfold.pattern.crease_pattern import CreasePattern
+
+
+def hinges_of(pattern: CreasePattern) -> IndexArray:
+    """Each fold as (i, j, left, right), shape (folds, 4), in the order of `pattern.folds`."""
+    rows = [(*fold, *pattern.opposite(fold)) for fold in pattern.folds]
+    return np.array(rows, dtype=np.intp).reshape(-1, 4)
 
 
 def hinge_vectors(positions: FloatArray, hinges: IndexArray) -> tuple[FloatArray, ...]:
@@ -39,6 +46,25 @@ def fold_angles_of(positions: FloatArray, hinges: IndexArray) -> FloatArray:
     return np.asarray(np.arctan2(sine, -(a * b).sum(-1)))
 
 
-def unwrapped(angles: FloatArray) -> FloatArray:
-    """Angles along a motion, shape (times, folds), each continued past +-pi without jumps."""
-    return np.asarray(np.unwrap(angles, axis=0))
+def angle_rates(positions: FloatArray, velocities: FloatArray, hinges: IndexArray) -> FloatArray:
+    """How fast every fold angle changes, in radians by the unit of the parameter.
+
+    Each corner of the two faces moves its face by its speed along the normal, over its distance
+    from the fold. Shapes as in `fold_angles_of`.
+    """
+    i, j, left, right = hinges.T
+    p, v = positions, velocities
+    axis = p[..., j, :] - p[..., i, :]
+    squared = (axis * axis).sum(-1)
+    total = np.zeros(squared.shape)
+    for off, sign in ((left, 1.0), (right, -1.0)):
+        arm = p[..., off, :] - p[..., i, :]
+        normal = sign * np.cross(axis, arm)
+        # |normal| is the distance from the fold times its length; 1 / |normal|^2 makes both unit.
+        weight = np.sqrt(squared) / (normal * normal).sum(-1)
+        along = (arm * axis).sum(-1) / squared
+        moved = (
+            v[..., off, :] - (1 - along)[..., None] * v[..., i, :] - along[..., None] * v[..., j, :]
+        )
+        total += weight * (normal * moved).sum(-1)
+    return total

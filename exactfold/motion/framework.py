@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -11,6 +10,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from exactfold.arrays import FloatArray, IndexArray
+from exactfold.motion.angles import hinges_of
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 
 Points = tuple[tuple[int, int], ...]
@@ -156,9 +156,7 @@ class Framework:
     @cached_property
     def hinges(self) -> IndexArray:
         """Each fold as (i, j, left, right), in the order of `sheet.folds`."""
-        folds: Sequence[tuple[int, int]] = self.sheet.folds
-        rows = [(i, j, *self.sheet.opposite((i, j))) for i, j in folds]
-        return np.array(rows, dtype=np.intp).reshape(-1, 4)
+        return hinges_of(self.sheet)
 
     def __repr__(self) -> str:
         return f"<Framework: {len(self.edges)} edges, {self.size} unknowns, {self.pinned} pinned>"

@@ -92,7 +92,7 @@ class Problem:
     def all_heights(self, known: Mapping[int, Fraction]) -> dict[int, Fraction]:
         """Heights of all vertices of the pattern, from those of the vertices of the sheet."""
         heights = {self.labels[v]: height for v, height in known.items()}
-        for vertex, cycle, weights in self._flat_inside:
+        for vertex, cycle, weights in self.flat_inside:
             heights[vertex] = sum(
                 (w * heights[c] for w, c in zip(weights, cycle, strict=True)), Fraction(0)
             )
@@ -108,7 +108,7 @@ class Problem:
         if chart.branch_system.pinned != pinned:
             corners = tuple(self.labels[v] for v in pinned)
             rows = {v: self._above(corners, v, rows) for v in rows}
-        for vertex, cycle, weights in self._flat_inside:
+        for vertex, cycle, weights in self.flat_inside:
             rows[vertex] = tuple(
                 sum((w * x for w, x in zip(weights, column, strict=True)), Fraction(0))
                 for column in zip(*(rows[c] for c in cycle), strict=True)
@@ -129,7 +129,7 @@ class Problem:
         )
 
     @cached_property
-    def _flat_inside(self) -> list[tuple[int, tuple[int, ...], tuple[Fraction, ...]]]:
+    def flat_inside(self) -> list[tuple[int, tuple[int, ...], tuple[Fraction, ...]]]:
         """Rigid vertices with their 3-cycle and their barycentric coordinates in it."""
         return [
             (v, cycle, barycentric(self.pattern, cycle, v))

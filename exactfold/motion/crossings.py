@@ -1,0 +1,134 @@
+"""Which faces of a sheet in space run into each other, in floats."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from exactfold.arrays import BoolArray, FloatArray, IndexArray
+from exactfold.motion.framework import Framework
+
+_ALL_PAIRS = 40_000
+_NOISE = 1e-13
+"""Of a volume, in cubic units of the sheet: below it the side of a plane is not known."""
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """An edge (i, j) that runs through a face, a triple of vertices it has no corner in."""
+
+    edge: tuple[int, int]
+    face: tuple[int, int, int]
+
+
+@dataclass(frozen=True, repr=False)
+class Crossings:
+    """Finds edges that run through faces: two faces meet beyond what they share iff one does.
+
+    Faces that share a fold are not looked at: they meet only where the fold is closed.
+    """
+
+    framework: Framework
+
+    @cached_property
+    def edges(self) -> IndexArray:
+        """All edges, shape (E, 2)."""
+        return np.array(self.framework.sheet.edges, dtype=np.intp)
+
+    @cached_property
+    def _pairs(self) -> IndexArray | None:
+        """All pairs (edge, face) without a common corner, None if they are too many."""
+        e, f = self.edges, self.framework.triangles
+        if len(e) * len(f) > _ALL_PAIRS:
+            return None
+        pairs = np.stack(np.meshgrid(np.arange(len(e)), np.arange(len(f)), indexing="ij"), -1)
+        return self._apart(pairs.reshape(-1, 2))
+
+    def _apart(self, pairs: IndexArray) -> IndexArray:
+        ends, corners = self.edges[pairs[:, 0]], self.framework.triangles[pairs[:, 1]]
+        shared = (ends[:, :, None] == corners[:, None, :]).any(axis=(1, 2))
+        return np.asarray(pairs[~shared])
+
+    def _near(self, positions: FloatArray) -> IndexArray:
+        """The pairs whose bounding boxes meet, at one configuration (V, 3)."""
+        if self._pairs is not None:
+            return self._pairs
+        ends, corners = positions[self.edges], positions[self.framework.triangles]
+        low, high = (ends.min(axis=1), ends.max(axis=1))
+        least, most = (corners.min(axis=1), corners.max(axis=1))
+        axis = int(np.argmax(np.ptp(positions, axis=0)))
+        # Two intervals meet exactly if one of them starts inside the other.
+        pairs = np.concatenate(
+            [
+                _starting_inside(low[:, axis], high[:, axis], least[:, axis]),
+                _starting_inside(least[:, axis], most[:, axis], low[:, axis], strict=True)[:, ::-1],
+            ]
+        )
+        for k in range(3):
+            e, f = pairs.T
+            pairs = pairs[(low[e, k] <= most[f, k]) & (least[f, k] <= high[e, k])]
+        return self._apart(pairs)
+
+    def found(self, positions: FloatArray) -> list[Crossing]:
+        """All crossings at one configuration, shape (V, 3)."""
+        pairs = self._near(positions)
+        hits = self._cross(positions[None], pairs)[0]
+        return [self._named(pair) for pair in pairs[hits]]
+
+    def any_of(self, positions: FloatArray) -> BoolArray:
+        """Whether there is a crossing at each of many configurations, shape (times, V, 3)."""
+        if self._pairs is not None:
+            return np.asarray(self._cross(positions, self._pairs).any(axis=1))
+        return np.array([self._cross(x[None], self._near(x)).any() for x in positions])
+
+    def _named(self, pair: IndexArray) -> Crossing:
+        (i, j), (a, b, c) = self.edges[pair[0]], self.framework.triangles[pair[1]]
+        return Crossing((int(i), int(j)), (int(a), int(b), int(c)))
+
+    def _cross(self, positions: FloatArray, pairs: IndexArray) -> BoolArray:
+        """Which edges run through which faces, shape (times, pairs)."""
+        p, q = (positions[:, v] for v in self.edges[pairs[:, 0]].T)
+        a, b, c = (positions[:, v] for v in self.framework.triangles[pairs[:, 1]].T)
+        normal = np.cross(b - a, c - a)
+        above, below = (normal * (p - a)).sum(-1), (normal * (q - a)).sum(-1)
+        result = (np.minimum(above, below) < -_NOISE) & (np.maximum(above, below) > _NOISE)
+        time, pair = np.nonzero(result)
+        if len(time):
+            p, q, a, b, c = (x[time, pair] for x in (p, q, a, b, c))
+            sides = [_volume(p, q, u, v) for u, v in ((a, b), (b, c), (c, a))]
+            inside = (np.minimum.reduce(sides) > _NOISE) | (np.maximum.reduce(sides) < -_NOISE)
+            result[time, pair] = inside
+        return np.asarray(result)
+
+    def kind(self, crossing: Crossing, positions: FloatArray) -> str:
+        """ "vertex on face" or "edge on edge": how a crossing that just began came to be."""
+        p, q = (positions[v] for v in crossing.edge)
+        a, b, c = (positions[v] for v in crossing.face)
+        normal = np.cross(b - a, c - a)
+        at, other = normal @ (p - a), normal @ (q - a)
+        near_end = min(abs(at), abs(other)) / max(abs(at - other), 1e-300)
+        x = p + at / (at - other) * (q - p)
+        whole = float(normal @ normal)
+        near_side = min(
+            float(np.cross(v - u, x - u) @ normal) / whole for u, v in ((a, b), (b, c), (c, a))
+        )
+        return "vertex on face" if near_end < near_side else "edge on edge"
+
+
+def _volume(p: FloatArray, q: FloatArray, u: FloatArray, v: FloatArray) -> FloatArray:
+    return np.asarray((np.cross(q - p, u - p) * (v - p)).sum(-1))
+
+
+def _starting_inside(
+    low: FloatArray, high: FloatArray, starts: FloatArray, *, strict: bool = False
+) -> IndexArray:
+    """All (k, m) with low_k <= starts_m <= high_k, or low_k < starts_m if `strict`."""
+    order = np.argsort(starts, kind="stable")
+    ordered = starts[order]
+    first = np.searchsorted(ordered, low, side="right" if strict else "left")
+    count = np.maximum(np.searchsorted(ordered, high, side="right") - first, 0)
+    owner = np.repeat(np.arange(len(low)), count)
+    offset = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+    return np.column_stack([owner, order[np.repeat(first, count) + offset]])

@@ -1,0 +1,238 @@
+"""What happens along a motion: contacts, closed folds, creases that turn back, nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from exactfold.arrays import FloatArray
+from exactfold.motion.angles import angle_rates, fold_angles_of
+from exactfold.motion.crossings import Crossings
+from exactfold.motion.curve import Piece, orientation_at
+from exactfold.motion.framework import Framework
+from exactfold.pattern.crease_pattern import Edge, Triangle
+
+CONTACT, FLAT_FOLD, TURNING = "contact", "flat-fold", "turning"
+NODE, SINGULAR, RETURN = "node", "singular", "return"
+ANGLE, LENGTH = "angle", "length"
+
+_SAMPLES = 8
+_NEAR_FLAT = 0.3
+_FLAT, _FLAT_STAR = 1e-5, 1e-4
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happens between two times of a motion.
+
+    `kind`: "contact", two `faces` meet; "flat-fold", a fold reaches 180 degrees; "turning", a fold
+    angle has a critical point, so that the crease turns back; "node", another curve of
+    configurations crosses, often where the stars of `vertices` are flat; "singular", the curve
+    could not be followed further; "return", the sheet is flat again; "angle", the angle that was
+    asked for is reached. `time`: arclength, lower and upper bound. `detail` says more in words.
+    """
+
+    kind: str
+    time: tuple[float, float]
+    faces: tuple[Triangle, ...] = ()
+    folds: tuple[Edge, ...] = ()
+    vertices: tuple[int, ...] = ()
+    detail: str = ""
+
+    def to_dict(self) -> dict[str, object]:
+        """The event as `exactfold fold --json` prints it."""
+        return {
+            "kind": self.kind,
+            "time": list(self.time),
+            "faces": [list(face) for face in self.faces],
+            "folds": [f"{i}-{j}" for i, j in self.folds],
+            "vertices": list(self.vertices),
+            "detail": self.detail,
+        }
+
+
+@dataclass(repr=False)
+class Watch:
+    """Looks for events on one piece of a curve after the other.
+
+    Vertices are those of the framework; times are its arclength. `angles` are the fold angles at
+    the end of the last piece, continued past +-pi.
+    """
+
+    framework: Framework
+    largest_angle: float | None = None
+    look_for_contacts: bool = True
+    angles: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.angles = np.zeros(len(self.framework.hinges))
+        self._crossings = Crossings(self.framework)
+        self._before: Piece | None = None
+
+    def events(self, piece: Piece) -> list[tuple[float, Event]]:
+        """The events of a piece with their parameters, in order."""
+        grid = np.linspace(0.0, piece.reach, _SAMPLES + 1)
+        positions = self.framework.positions(piece.at(grid))
+        raw = fold_angles_of(positions, self.framework.hinges)
+        angles = np.unwrap(np.vstack([self.angles, raw]), axis=0)[1:]
+        found = [
+            *self._node(piece),
+            *self._angle_events(piece, grid, angles),
+            *self._turnings(piece, grid, positions),
+            *self._returns(piece, grid, raw),
+        ]
+        if self.look_for_contacts:
+            found += self._contacts(piece, grid, positions)
+        self.angles = angles[-1]
+        return sorted(found, key=lambda item: item[0])
+
+    def _event(
+        self, piece: Piece, kind: str, low: float, high: float, **more: object
+    ) -> tuple[float, Event]:
+        times = piece.time + piece.length_to(low), piece.time + piece.length_to(high)
+        return high, Event(kind, times, **more)  # type: ignore[arg-type]
+
+    def _node(self, piece: Piece) -> list[tuple[float, Event]]:
+        """A change of orientation since the start of the piece before, found by bisection."""
+        before, self._before = self._before, piece
+        if before is None or before.orientation * piece.orientation >= 0:
+            return []
+        low, high = 0.0, before.reach
+        for _ in range(50):
+            middle = 0.5 * (low + high)
+            sign = orientation_at(self.framework, before.at(middle), before.speed(middle))
+            if sign == before.orientation:
+                low = middle
+            else:
+                high = middle
+        times = tuple(before.time + before.length_to(s) for s in (low, high))
+        flat = self._flat_stars(before.at(high))
+        return [(0.0, Event(NODE, (times[0], times[1]), vertices=flat))]
+
+    def _flat_stars(self, unknowns: FloatArray) -> tuple[int, ...]:
+        """The interior vertices at which all folds are flat, or nearly."""
+        positions = self.framework.positions(unknowns)
+        angles = np.abs(fold_angles_of(positions, self.framework.hinges))
+        ends = self.framework.hinges[:, :2]
+        return tuple(
+            v
+            for v in self.framework.sheet.interior
+            if angles[(ends == v).any(axis=1)].max(initial=0.0) < _FLAT_STAR
+        )
+
+    def _angle_events(
+        self, piece: Piece, grid: FloatArray, angles: FloatArray
+    ) -> list[tuple[float, Event]]:
+        found = []
+        goals = [(np.pi, FLAT_FOLD)]
+        if self.largest_angle is not None and self.largest_angle < np.pi:
+            goals.append((self.largest_angle, ANGLE))
+        for goal, kind in goals:
+            beyond = np.abs(angles) >= goal
+            for k, e in np.argwhere(beyond[1:] & ~beyond[:-1]):
+                fold = self.framework.hinges[e]
+
+                def excess(
+                    s: float, e: int = e, near: float = angles[k + 1, e], goal: float = goal
+                ) -> float:
+                    raw = self._angle(piece, s, e)
+                    return abs(raw + 2 * np.pi * round((near - raw) / (2 * np.pi))) - goal
+
+                low, high = _bracket(excess, grid[k], grid[k + 1])
+                i, j, left, right = (int(v) for v in fold)
+                faces = ((i, j, left), (i, right, j)) if kind == FLAT_FOLD else ()
+                found.append(self._event(piece, kind, low, high, faces=faces, folds=((i, j),)))
+        return found
+
+    def _angle(self, piece: Piece, s: float, e: int) -> float:
+        positions = self.framework.positions(piece.at(s))
+        return float(fold_angles_of(positions, self.framework.hinges[e : e + 1])[0])
+
+    def _turnings(
+        self, piece: Piece, grid: FloatArray, positions: FloatArray
+    ) -> list[tuple[float, Event]]:
+        framework = self.framework
+        rates = angle_rates(positions, framework.displacement(piece.speed(grid)), framework.hinges)
+        found = []
+        for k, e in np.argwhere(rates[1:] * rates[:-1] < 0):
+
+            def rate(s: float, e: int = e) -> float:
+                return float(
+                    angle_rates(
+                        framework.positions(piece.at(s)),
+                        framework.displacement(piece.speed(s)),
+                        framework.hinges[e : e + 1],
+                    )[0]
+                )
+
+            low, high = _bracket(rate, grid[k], grid[k + 1])
+            i, j = (int(v) for v in framework.hinges[e, :2])
+            found.append(self._event(piece, TURNING, low, high, folds=((i, j),)))
+        return found
+
+    def _returns(
+        self, piece: Piece, grid: FloatArray, raw: FloatArray
+    ) -> list[tuple[float, Event]]:
+        """The flat sheet again, where all fold angles have a common zero."""
+        if piece.time == 0.0:
+            return []
+        sizes = np.max(np.abs(raw), axis=1, initial=0.0)
+        k = int(np.argmin(sizes))
+        if sizes[k] > _NEAR_FLAT:
+            return []
+
+        def bend(s: float) -> float:
+            positions = self.framework.positions(piece.at(s))
+            return float(np.abs(fold_angles_of(positions, self.framework.hinges)).max(initial=0.0))
+
+        # The polynomial is good a little beyond its piece: near the flat sheet pieces are short.
+        ends = grid[max(k - 1, 0)], grid[k + 1] if k < _SAMPLES else 2.5 * piece.reach
+        least = minimize_scalar(bend, bounds=ends, method="bounded", options={"xatol": 1e-13})
+        if least.fun > _FLAT:
+            return []
+        s = float(least.x)
+        return [self._event(piece, RETURN, s, s)]
+
+    def _contacts(
+        self, piece: Piece, grid: FloatArray, positions: FloatArray
+    ) -> list[tuple[float, Event]]:
+        """The first parameter at which an edge runs through a face, by bisection."""
+        hits = self._crossings.any_of(positions)
+        if not hits.any() or hits[0]:
+            return []
+        k = int(np.argmax(hits))
+        low, high = grid[k - 1], grid[k]
+        while high - low > 1e-13 * max(piece.reach, 1e-300):
+            middle = 0.5 * (low + high)
+            if not low < middle < high:
+                break
+            if self._crossings.found(self.framework.positions(piece.at(middle))):
+                high = middle
+            else:
+                low = middle
+        there = self.framework.positions(piece.at(high))
+        crossing = self._crossings.found(there)[0]
+        faces = (self._face_at(crossing.edge, crossing.face), crossing.face)
+        detail = self._crossings.kind(crossing, there)
+        return [self._event(piece, CONTACT, low, high, faces=faces, detail=detail)]
+
+    def _face_at(self, edge: Edge, other: Triangle) -> Triangle:
+        """A face with the edge, if possible one that shares no corner with the other face."""
+        faces = [t for t in self.framework.sheet.triangles if set(edge) <= set(t)]
+        return min(faces, key=lambda t: len(set(t) & set(other)))
+
+
+def _bracket(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
+    """Two close parameters between which a function changes its sign, from two farther ones."""
+    at_low, at_high = function(low), function(high)
+    if at_low * at_high > 0:
+        return low, high
+    if at_low == 0 or at_high == 0:
+        s = low if at_low == 0 else high
+        return s, s
+    s = float(brentq(function, low, high, xtol=1e-15, rtol=1e-14))
+    gap = 1e-12 * (high - low)
+    return max(low, s - gap), min(high, s + gap)

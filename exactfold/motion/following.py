@@ -1,0 +1,259 @@
+"""`follow`: the motion that continues a branch, as the sheet folds for real."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import islice
+from math import isfinite, radians
+
+import numpy as np
+from scipy.optimize import brentq
+
+from exactfold.arrays import FloatArray
+from exactfold.branches.branch import Branch
+from exactfold.errors import NotApplicableError, UsageError
+from exactfold.motion.curve import Curve, LostCurveError, Piece, continued, leaving_piece
+from exactfold.motion.events import (
+    ANGLE,
+    CONTACT,
+    FLAT_FOLD,
+    LENGTH,
+    NODE,
+    RETURN,
+    SINGULAR,
+    Event,
+    Watch,
+)
+from exactfold.motion.framework import Framework
+from exactfold.motion.motion import Motion, angles_at, in_space
+from exactfold.motion.start import Start
+from exactfold.pattern.crease_pattern import Edge, Triangle
+from exactfold.problem.problem import Problem
+from exactfold.progress import Progress
+
+_MOST_PIECES = 20_000
+
+
+def follow(
+    branch: Branch,
+    *,
+    side: int = 1,
+    until: str | float = CONTACT,
+    frames: int = 60,
+    by: Edge | None = None,
+    through_nodes: bool = False,
+    progress: Progress | None = None,
+) -> Motion:
+    """The motion that continues a simple branch, from the flat sheet until something happens.
+
+    A simple branch is tangent to exactly one curve of true configurations (docs/motion.md). It is
+    followed in floats: the Taylor series at the flat sheet, then arclength continuation in the
+    length equations. `until`: "contact", the first contact of two faces or fold that closes;
+    "return", the flat sheet again; "90deg", the first fold angle of that size; or a number, the
+    time at which to stop. Where another curve crosses (an event "node") the motion stops, unless
+    `through_nodes`. `frames`: their number, at equal steps of time, or of the angle of the fold
+    `by`. `side`: 1 for the ray that `branch` shows, -1 for its mirror image.
+
+    Raises `UsageError` for options that make no sense, `NotApplicableError` for a branch that is
+    not simple or has no heights. A motion that ends "singular" could not be followed further, which
+    does not mean that it ends there.
+
+    >>> from exactfold.count.find import find_branch
+    >>> follow(find_branch("two-vertex", "+-"), until="90deg", frames=5)
+    <Motion: branch +-, 5 frames to angle at 1.37421>
+    """
+    goal = Goal.of(until, through_nodes)
+    if frames < 2:
+        raise UsageError(f"{frames} frames: a motion has at least 2")
+    if side not in (1, -1):
+        raise UsageError(f"side {side}: give 1 or -1")
+    problem = Problem.of(branch.pattern)
+    if by is not None and by not in branch.pattern.folds:
+        raise UsageError(f"there is no fold {by[0]}-{by[1]} to make equal steps of")
+    framework = Framework.of(problem.sheet)
+    curve, events, end = _followed(framework, _start(framework, problem, branch), goal, progress)
+    unit = float(framework.unit)
+    times = np.linspace(0.0, curve.duration * unit, frames)
+    if by is not None:
+        times = _at_equal_angles(problem, curve, by, frames)
+    unknowns = np.array([curve.at(time / unit) for time in times])
+    coords = in_space(problem, curve, unknowns, side)
+    return Motion(
+        branch,
+        side,
+        curve,
+        times,
+        coords,
+        angles_at(problem, curve, times, coords, side),
+        tuple(_named(event, problem, unit) for event in sorted(events, key=lambda e: e.time)),
+        end,
+    )
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Where a motion stops: the events that end it, an angle in radians, or a time."""
+
+    kinds: frozenset[str]
+    angle: float | None = None
+    time: float | None = None
+
+    @classmethod
+    def of(cls, until: str | float, through_nodes: bool = False) -> Goal:
+        """The goal from what a user gives; raises `UsageError`.
+
+        >>> Goal.of("90deg").angle == radians(90)
+        True
+        """
+        always = {SINGULAR, RETURN} if through_nodes else {SINGULAR, RETURN, NODE}
+        if until == CONTACT:
+            return cls(frozenset(always | {CONTACT, FLAT_FOLD}))
+        if until == RETURN:
+            return cls(frozenset(always | {RETURN}))
+        text = str(until)
+        try:
+            number = float(text.removesuffix("deg"))
+        except ValueError:
+            number = -1.0
+        if not (isfinite(number) and number > 0) or (text.endswith("deg") and number > 180):
+            raise UsageError(
+                f"until {text!r}: give contact, return, an angle such as 90deg (up to 180deg), or "
+                "a positive length"
+            )
+        if not text.endswith("deg"):
+            return cls(frozenset(always | {LENGTH}), time=number)
+        kind = FLAT_FOLD if number == 180 else ANGLE
+        return cls(frozenset(always | {kind}), angle=radians(number))
+
+
+def _start(framework: Framework, problem: Problem, branch: Branch) -> Start:
+    heights = branch.approx_heights
+    if not heights:
+        raise NotApplicableError("nothing is proved of the branch: there is nothing to follow")
+    for vertex, sign in branch.vertex_signs.items():
+        if not sign and vertex in problem.foldable:
+            raise NotApplicableError(
+                f"vertex {vertex} is flat on this branch: several curves may be tangent to it, and "
+                "none is followed"
+            )
+    return Start.of(framework, np.array([heights[v] for v in problem.labels]))
+
+
+def _followed(
+    framework: Framework, start: Start, goal: Goal, progress: Progress | None
+) -> tuple[Curve, list[Event], str]:
+    """The curve up to the goal, the events on it, and what ended it."""
+    watch = Watch(framework, goal.angle)
+    limit = None if goal.time is None else goal.time / float(framework.unit)
+    pieces: list[Piece] = []
+    events: list[Event] = []
+    try:
+        for piece in islice(continued(framework, leaving_piece(start)), _MOST_PIECES):
+            if progress is not None:
+                progress("following", len(pieces), 0)
+            stop: tuple[float, str] | None = None
+            if limit is not None and piece.time + piece.length >= limit:
+                stop = piece.parameter(limit - piece.time), LENGTH
+            for parameter, event in watch.events(piece):
+                if stop is not None and stop[1] == LENGTH and parameter > stop[0]:
+                    break
+                events.append(event)
+                if event.kind in goal.kinds:
+                    stop = parameter, event.kind
+                    break
+            if stop is not None and stop[1] == RETURN:
+                last = landing(framework, piece)
+                if last is None:  # the flat sheet is close, but out of reach of its series
+                    events = [event for event in events if event.kind != RETURN]
+                    stop = None
+                else:
+                    piece, stop = last, (last.reach, RETURN)
+            if stop is None:
+                pieces.append(piece)
+                continue
+            if stop[1] == NODE:  # found when the next piece begins
+                before = pieces.pop()
+                time = events[-1].time[0]
+                pieces.append(before.cut(before.parameter(time - before.time)))
+                events = [event for event in events if event.time[0] <= time]
+            elif stop[0] or not pieces:
+                pieces.append(piece.cut(stop[0]))
+            return Curve(framework, tuple(pieces)), events, stop[1]
+    except LostCurveError as error:
+        reason = str(error)
+    else:
+        reason = f"{_MOST_PIECES} pieces were followed"
+    if not pieces:
+        raise NotApplicableError(f"the branch could not be followed: {reason}")
+    curve = Curve(framework, tuple(pieces))
+    events.append(Event(SINGULAR, (curve.duration, curve.duration), detail=reason))
+    return curve, events, SINGULAR
+
+
+def landing(framework: Framework, piece: Piece) -> Piece | None:
+    """The last piece of a curve that comes back to the flat sheet, in place of one close to it.
+
+    Near the flat sheet the Jacobian is nearly singular, so that the series there is used, run
+    through backwards. None if `piece` starts out of its reach.
+    """
+    x = piece.coefficients[0]
+    try:
+        heights = framework.displacement(x)[:, 2]
+        start = Start.of(framework, heights)
+    except NotApplicableError:
+        return None
+    leaving = leaving_piece(start)
+    goal, held = x[start.held], start.held
+    if abs(leaving.at(leaving.reach)[held]) < abs(goal):
+        return None
+    t = brentq(lambda t: leaving.at(t)[held] - goal, 0.0, leaving.reach, xtol=1e-15)
+    if np.max(np.abs(leaving.at(t) - x)) > 1e-8:
+        return None
+    return leaving.turned(float(t), piece.time)
+
+
+def _at_equal_angles(problem: Problem, curve: Curve, by: Edge, frames: int) -> FloatArray:
+    """Times at which the angle of a fold has equal steps from 0 to its last value."""
+    unit = float(curve.framework.unit)
+    at = problem.pattern.folds.index(by)
+
+    def angles(times: FloatArray) -> FloatArray:
+        unknowns = np.array([curve.at(time / unit) for time in times])
+        coords = in_space(problem, curve, unknowns, 1)
+        return angles_at(problem, curve, times, coords, 1)[:, at]
+
+    coarse = np.linspace(0.0, curve.duration * unit, max(4 * frames, 100))
+    values = angles(coarse)
+    steps = np.diff(values)
+    if not (np.all(steps > 0) or np.all(steps < 0)):
+        back = int(np.argmax(steps * steps[0] <= 0))
+        raise UsageError(
+            f"fold {by[0]}-{by[1]} turns back at time {coarse[back]:.4g}: its angle does not name "
+            "the frames; choose another fold, or stop earlier"
+        )
+    found = [0.0]
+    for goal in np.linspace(0.0, values[-1], frames)[1:-1]:
+        k = int(np.searchsorted(np.abs(values), abs(goal))) - 1
+        ends = coarse[k], coarse[k + 1]
+        found.append(float(brentq(lambda t, g=goal: angles(np.array([t]))[0] - g, *ends)))
+    return np.array([*found, coarse[-1]])
+
+
+def _named(event: Event, problem: Problem, unit: float) -> Event:
+    """The event with the vertices and the unit of the pattern."""
+
+    def face(t: Triangle) -> Triangle:
+        a, b, c = (problem.labels[v] for v in t)
+        return a, b, c
+
+    low, high = event.time
+    folds = tuple((problem.labels[i], problem.labels[j]) for i, j in event.folds)
+    vertices = tuple(problem.labels[v] for v in event.vertices)
+    return replace(
+        event,
+        time=(low * unit, high * unit),
+        faces=tuple(face(t) for t in event.faces),
+        folds=folds,
+        vertices=vertices,
+        detail=f"flat at vertex {', '.join(map(str, vertices))}" if vertices else event.detail,
+    )

@@ -1,0 +1,136 @@
+"""A motion: the sheet as it folds along a branch, with frames, fold angles and events."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from exactfold.arrays import FloatArray
+from exactfold.branches.branch import Branch
+from exactfold.errors import UsageError
+from exactfold.motion.angles import fold_angles_of, hinges_of
+from exactfold.motion.curve import Curve
+from exactfold.motion.events import Event
+from exactfold.pattern.crease_pattern import Triangle
+from exactfold.problem.problem import Problem
+
+_SAMPLES = 4
+
+
+@dataclass(frozen=True, repr=False)
+class Motion:
+    """The sheet folding along a branch, in floats; `branch` is proved, the motion is not.
+
+    Faces stay rigid: every edge keeps its length to about 1e-13 of it. Time is the arclength of the
+    curve of configurations: the length of the path in the coordinates of all corners that fold,
+    with the triangle `pinned` held, in the length unit of the pattern.
+
+    `times`: of the frames, shape (frames,), the first 0. `coords`: shape (frames, V, 3), the flat
+    sheet first, `pinned` held in its place in the plane z = 0. `angles`: fold angles in radians,
+    shape (frames, folds), in the order of `pattern.folds`, positive for a valley and continued past
+    +-pi. `events`: in the order of time. `end`: the kind of event at which the motion stops, or
+    "length". `side`: 1 for the ray of the branch that `branch` shows, -1 for its mirror image.
+    """
+
+    branch: Branch
+    side: int
+    curve: Curve
+    times: FloatArray
+    coords: FloatArray
+    angles: FloatArray
+    events: tuple[Event, ...]
+    end: str
+
+    @property
+    def pinned(self) -> Triangle:
+        """The triangle that is held."""
+        a, b, c = (self._problem.labels[v] for v in self.curve.framework.pinned)
+        return a, b, c
+
+    @property
+    def duration(self) -> float:
+        """The time of the last frame."""
+        return float(self.times[-1])
+
+    @cached_property
+    def _problem(self) -> Problem:
+        return Problem.of(self.branch.pattern)
+
+    def at(self, time: float) -> FloatArray:
+        """The positions of all vertices at a time, shape (V, 3).
+
+        Raises `UsageError` for a time before the first or after the last frame.
+
+        >>> from exactfold.count.find import find_branch
+        >>> from exactfold.motion.following import follow
+        >>> motion = follow(find_branch("two-vertex", "+-"))
+        >>> bool(abs(motion.at(motion.duration) - motion.coords[-1]).max() < 1e-12)
+        True
+        """
+        if not 0 <= time <= self.duration * (1 + 1e-12):
+            raise UsageError(f"time {time}: this motion has the times 0 to {self.duration:.6g}")
+        unknowns = self.curve.at(time / float(self.curve.framework.unit))
+        return np.asarray(in_space(self._problem, self.curve, unknowns[None], self.side)[0])
+
+    @property
+    def length_error(self) -> float:
+        """The largest relative change of the length of an edge in any frame."""
+        i, j = np.array(self.branch.pattern.edges, dtype=np.intp).T
+        lengths = np.linalg.norm(self.coords[:, i] - self.coords[:, j], axis=2)
+        return float(np.max(np.abs(lengths / lengths[0] - 1)))
+
+    def table(self) -> tuple[tuple[str, ...], FloatArray]:
+        """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
+        names = ("time", *(f"{i}-{j}" for i, j in self.branch.pattern.folds))
+        return names, np.column_stack([self.times, np.degrees(self.angles)])
+
+    def __repr__(self) -> str:
+        name = self.branch.sign_text
+        short = name if len(name) <= 32 else f"{name[:29]}..."
+        return (
+            f"<Motion: branch {short}, {len(self.times)} frames to {self.end} at "
+            f"{self.duration:.6g}>"
+        )
+
+
+def in_space(problem: Problem, curve: Curve, unknowns: FloatArray, side: int) -> FloatArray:
+    """All vertices of the pattern at given unknowns of the framework, shape (times, V, 3).
+
+    What lies in a triangulated triangle moves with it. In the unit and at the place of the pattern.
+    """
+    framework, pattern = curve.framework, problem.pattern
+    reduced = framework.positions(unknowns) * float(framework.unit)
+    coords = np.zeros((len(unknowns), len(pattern.vertices), 3))
+    coords[:, problem.labels] = reduced
+    for vertex, cycle, weights in problem.flat_inside:
+        for corner, weight in zip(cycle, weights, strict=True):
+            coords[:, vertex] += float(weight) * coords[:, corner]
+    x, y = pattern.vertices[problem.labels[framework.pinned[0]]]
+    coords += np.array([float(x), float(y), 0.0])
+    coords[:, :, 2] *= side
+    return coords
+
+
+def angles_at(
+    problem: Problem, curve: Curve, times: FloatArray, coords: FloatArray, side: int
+) -> FloatArray:
+    """Fold angles of frames, continued without jumps along the whole curve, shape (times, folds).
+
+    Between the frames the curve is sampled, so that few frames suffice.
+    """
+    hinges = hinges_of(problem.pattern)
+    between, unknowns = curve.samples(_SAMPLES)
+    unit = float(curve.framework.unit)
+    whole = np.concatenate([between * unit, times])
+    angles = np.vstack(
+        [
+            fold_angles_of(in_space(problem, curve, unknowns, side), hinges),
+            fold_angles_of(coords, hinges),
+        ]
+    )
+    order = np.argsort(whole, kind="stable")
+    continued = np.empty_like(angles)
+    continued[order] = np.unwrap(angles[order], axis=0)
+    return np.asarray(continued[len(between) :])
