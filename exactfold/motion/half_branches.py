@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
@@ -60,9 +62,12 @@ class HeightSigns:
     @cached_property
     def _rows(self) -> FloatArray:
         sheet = self.sheet
-        functionals = [vertex_sign_functional(sheet, v) for v in sheet.interior]
-        rows = np.zeros((len(functionals) + 1, len(sheet.vertices)))
-        for row, functional in zip(rows, [*functionals, saddle_functional(sheet)], strict=True):
+        functionals: list[Mapping[int, Fraction | int]] = [
+            *(vertex_sign_functional(sheet, v) for v in sheet.interior),
+            saddle_functional(sheet),
+        ]
+        rows = np.zeros((len(functionals), len(sheet.vertices)))
+        for row, functional in zip(rows, functionals, strict=True):
             largest = max(abs(c) for c in functional.values())
             for v, c in functional.items():
                 row[v] = c / largest
