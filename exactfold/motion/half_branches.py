@@ -62,15 +62,16 @@ class HeightSigns:
     @cached_property
     def _rows(self) -> FloatArray:
         sheet = self.sheet
-        functionals: list[Mapping[int, Fraction | int]] = [
+        functionals: list[Mapping[int, Fraction] | Mapping[int, int]] = [
             *(vertex_sign_functional(sheet, v) for v in sheet.interior),
             saddle_functional(sheet),
         ]
         rows = np.zeros((len(functionals), len(sheet.vertices)))
         for row, functional in zip(rows, functionals, strict=True):
-            largest = max(abs(c) for c in functional.values())
-            for v, c in functional.items():
-                row[v] = c / largest
+            exact = {v: Fraction(c) for v, c in functional.items()}
+            largest = max(map(abs, exact.values()))
+            for v, c in exact.items():
+                row[v] = float(c / largest)
         return rows
 
     def of(self, heights: FloatArray) -> HalfBranch:
