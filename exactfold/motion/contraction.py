@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from scipy.sparse import csc_array
 
-from exactfold.arrays import BigArray, FloatArray, IntArray
+from exactfold.arrays import BigArray, FloatArray, IndexArray, IntArray
 
 SCALE = 128
 """Numbers of a `Contraction`, and all arguments, are integers over 2^SCALE."""
@@ -28,7 +28,7 @@ _WORD = 62
 
 @dataclass(frozen=True, repr=False)
 class Contraction:
-    """Bounds for |s| <= h: residual b(h), slope q(h), and quadratic part kappa(h), polynomials in h.
+    """Bounds for |s| <= h: residual b(h), slope q(h), quadratic part kappa(h), polynomials in h.
 
     b(h) >= |P H(p(s), s)|, q(h) >= |1 - P DH(p(s), s)|, kappa(h) >= |P D2H(s)|, in the norm
     |y| = max |y_i| / w_i. Theorem 1: if b + q r + kappa r^2 / 2 < r and q + kappa r < 1, then for
@@ -88,7 +88,7 @@ class Contraction:
 
     def __repr__(self) -> str:
         b, q, kappa = (c[0] / ONE for c in (self.residual, self.slope, self.quadratic))
-        return f"<Contraction: residual {b:.1e}, slope {q:.1e}, quadratic {kappa:.1e} at the centre>"
+        return f"<Contraction: residual {b:.1e}, slope {q:.1e}, quadratic {kappa:.1e}>"
 
 
 def up(value: int, shift: int) -> int:
@@ -109,11 +109,52 @@ def derivative(coefficients: Sequence[int]) -> list[int]:
     return [k * c for k, c in enumerate(coefficients)][1:]
 
 
+Whole = IntArray | BigArray
+
+
+@dataclass(frozen=True, repr=False)
+class Places:
+    """The ends of the edges at the free vertices, sorted by vertex: signs of +-1 in the equations.
+
+    A row v_e for every edge stands for the matrix that takes y to v_e . (y_i - y_j).
+    """
+
+    size: int
+    vertex: IndexArray
+    edge: IndexArray
+    sign: IndexArray
+
+    def dense(self, rows: Any) -> Any:
+        """The matrix of the rows, shape (edges, size)."""
+        found = np.zeros((len(rows), self.size), dtype=rows.dtype)
+        columns = 3 * self.vertex[:, None] + np.arange(3)
+        found[self.edge[:, None], columns] = self.sign[:, None] * rows[self.edge]
+        return found
+
+    def product(self, left: Any, rows: Any) -> Any:
+        """left @ dense(rows), without the zeros."""
+        weighted = self.sign[:, None] * rows[self.edge]
+        starts = np.flatnonzero(np.diff(self.vertex, prepend=-1))
+        taken = left[:, self.edge]
+        parts = [np.add.reduceat(taken * weighted[:, a], starts, axis=1) for a in range(3)]
+        return np.stack(parts, axis=2).reshape(len(left), -1)
+
+    @property
+    def most(self) -> int:
+        """The largest number of edges at a vertex."""
+        return int(np.bincount(self.vertex).max())
+
+    def __repr__(self) -> str:
+        return f"<Places: {len(self.edge)} ends of edges, {self.size} unknowns>"
+
+
 def contraction(
     inverse: FloatArray,
     residuals: Sequence[Sequence[int]],
     residual_bits: int,
-    matrices: Sequence[csc_array],
+    places: Places,
+    rows: Sequence[Whole],
+    last: Sequence[int],
     squares: Sequence[Sequence[int]],
     sums: Sequence[int],
     weights: Sequence[int],
@@ -121,52 +162,54 @@ def contraction(
     """The bounds for P, which is `inverse` rounded. Everything is exact or rounded upwards.
 
     `residuals[k]` is the coefficient of s^k of H(p(s), s), integers over 2^`residual_bits`.
-    `matrices[k]` is that of DH(p(s), s) in integers over 2^MATRIX_BITS; each but the last row is
-    off by at most half a unit times y_i + y_j in each of the three places of edge (i, j). With the
-    positive `weights` over 2^WEIGHT_BITS, `sums` bounds these places for |y| <= 1, and `squares[k]`
-    bounds the coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
+    `rows[k]` are the edge vectors of that of DH(p(s), s), integers over 2^MATRIX_BITS, each off by
+    at most half a unit; `last` is the exact last row of DH. With the positive `weights` over
+    2^WEIGHT_BITS, `sums[e]` is the sum of w_i + w_j over the three places of edge e = (i, j), and
+    `squares[k]` bounds the coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over
+    2^(2 WEIGHT_BITS).
     """
     n = len(weights)
-    rounded = np.rint(inverse * 2.0**MATRIX_BITS)
-    if not np.abs(rounded).max(initial=0.0) < 2.0**_WORD:
-        rounded = np.array([[int(x) for x in row] for row in rounded], dtype=object)
-    p = rounded.astype(object if rounded.dtype == object else np.int64)
-    size = abs(p)
+    p = _whole(inverse)
+    size = np.asarray(abs(p))
 
     def norm(rows: Sequence[int], bits: int) -> int:
         """max rows_i / w_i, where the rows are over 2^bits, over 2^SCALE."""
         shift = SCALE + WEIGHT_BITS - bits
         left, right = max(shift, 0), max(-shift, 0)
-        return max(
-            -(-(row << left) // (w << right)) for row, w in zip(rows, weights, strict=True)
-        )
+        return max(-(-(row << left) // (w << right)) for row, w in zip(rows, weights, strict=True))
 
     off = _above(size[:, :-1], sums)  # over 2^(MATRIX_BITS + WEIGHT_BITS), in half units
     slope = []
-    for k, matrix in enumerate(matrices):
-        product = _product(p, matrix)
+    for k, vectors in enumerate(rows):
+        product = _product(p, places, vectors)
         if k == 0:
+            product = product + _dot(p[:, -1:], np.array([last], dtype=object))
             product[np.diag_indices(n)] -= 1 << 2 * MATRIX_BITS
-        rows = [
+        sizes = [
             2 * row + error
-            for row, error in zip(_above(abs(product), weights), off, strict=True)
+            for row, error in zip(_above(np.asarray(abs(product)), weights), off, strict=True)
         ]
-        slope.append(norm(rows, 2 * MATRIX_BITS + WEIGHT_BITS + 1))
+        slope.append(norm(sizes, 2 * MATRIX_BITS + WEIGHT_BITS + 1))
     quadratic = [
         norm(_above(size[:, :-1], square), MATRIX_BITS + 2 * WEIGHT_BITS) for square in squares
     ]
     shifts = [max(0, max(map(int.bit_length, g)) - _VECTOR_BITS) for g in residuals]
     short = [[x >> shift for x in g] for g, shift in zip(residuals, shifts, strict=True)]
-    images = abs(_dot(p, np.array(short, dtype=object).T)).T
+    images = np.asarray(abs(_dot(p, np.array(short, dtype=object).T))).T.tolist()
     rest = _above(size, [1] * n)
     residual = []
     for image, shift in zip(images, shifts, strict=True):
-        rows = [(int(x) + (y if shift else 0)) << shift for x, y in zip(image, rest, strict=True)]
-        residual.append(norm(rows, MATRIX_BITS + residual_bits))
+        bounds = [(x + (y if shift else 0)) << shift for x, y in zip(image, rest, strict=True)]
+        residual.append(norm(bounds, MATRIX_BITS + residual_bits))
     return Contraction(tuple(residual), tuple(slope), tuple(quadratic))
 
 
-Whole = IntArray | BigArray
+def _whole(inverse: FloatArray) -> Whole:
+    """The nearest integers over 2^MATRIX_BITS."""
+    rounded = np.rint(inverse * 2.0**MATRIX_BITS)
+    if np.abs(rounded).max(initial=0.0) < 2.0**_WORD:
+        return rounded.astype(np.int64)
+    return np.array([[int(x) for x in row] for row in rounded], dtype=object)
 
 
 def _largest(array: Whole) -> int:
@@ -180,12 +223,11 @@ def _dot(a: Whole, b: Whole) -> Whole:
     return np.asarray(a.astype(object) @ b.astype(object))
 
 
-def _product(p: Whole, matrix: csc_array) -> Whole:
-    """`_dot` with a sparse matrix."""
-    most = int(abs(matrix).sum(axis=0).max())
-    if _largest(p) * most < 1 << _WORD:
-        return np.asarray((matrix.T @ p.astype(np.int64).T).T)
-    return _dot(p, matrix.toarray())
+def _product(p: Whole, places: Places, rows: Whole) -> Whole:
+    """P times the matrix of the rows, exact as `_dot`."""
+    if _largest(p) * _largest(rows) * places.most < 1 << _WORD:
+        return np.asarray(places.product(p[:, :-1].astype(np.int64), rows.astype(np.int64)))
+    return np.asarray(places.product(p[:, :-1].astype(object), rows.astype(object)))
 
 
 def _above(a: Whole, v: Sequence[int]) -> list[int]:

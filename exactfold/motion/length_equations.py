@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csc_array, vstack
 
-from exactfold.arrays import BigArray, FloatArray
-from exactfold.motion.contraction import MATRIX_BITS, WEIGHT_BITS
+from exactfold.arrays import BigArray, FloatArray, IntArray
+from exactfold.motion.contraction import MATRIX_BITS, WEIGHT_BITS, Places
 from exactfold.motion.framework import Framework
 
 Row = tuple[int, ...]
@@ -52,17 +51,26 @@ class LengthEquations:
         d[:, framework.free, :] = np.array(curve, dtype=object).reshape(len(curve), -1, 3)
         return np.asarray(d[:, framework.edges[:, 0], :] - d[:, framework.edges[:, 1], :])
 
-    def matrix(self, rows: BigArray, last: Sequence[int] | None = None) -> csc_array:
-        """The matrix of edge vectors over 2^bits and one more row over 2^MATRIX_BITS.
-
-        The edge vectors are rounded to the nearest integers over 2^MATRIX_BITS.
-        """
+    def rounded(self, rows: BigArray) -> IntArray | BigArray:
+        """Edge vectors over 2^bits as the nearest integers over 2^MATRIX_BITS."""
         shift = self.bits - MATRIX_BITS
-        nearest = ((rows + (1 << (shift - 1))) >> shift).astype(np.float64)
-        below = np.zeros(self.framework.size) if last is None else np.array(last, dtype=np.float64)
-        return csc_array(
-            vstack([self.framework.matrix(nearest), csc_array(below[None, :])])
-        ).astype(np.int64)
+        nearest = (rows + (1 << (shift - 1))) >> shift
+        largest = int(abs(nearest).max(initial=0))
+        return np.asarray(nearest.astype(np.int64) if largest < 1 << 62 else nearest)
+
+    @cached_property
+    def places(self) -> Places:
+        """Where the edges meet the unknowns."""
+        framework = self.framework
+        place = {int(v): k for k, v in enumerate(framework.free)}
+        ends = sorted(
+            (place[v], e, sign)
+            for e, pair in enumerate(framework.edges.tolist())
+            for v, sign in zip(pair, (1, -1), strict=True)
+            if v in place
+        )
+        vertex, edge, signs = (np.array(x, dtype=np.intp) for x in zip(*ends, strict=True))
+        return Places(framework.size, vertex, edge, signs)
 
     def weight_sums(self, weights: Sequence[int]) -> BigArray:
         """w_i + w_j in the three places of every edge, shape (edges, 3)."""
@@ -90,7 +98,9 @@ def squared(e: BigArray) -> list[BigArray]:
     top = len(e) - 1
     found = []
     for k in range(2 * top + 1):
-        total = (e[k // 2] ** 2).sum(axis=1) if k % 2 == 0 else 0
+        total = np.zeros(e.shape[1], dtype=object)
+        if k % 2 == 0:
+            total = total + (e[k // 2] ** 2).sum(axis=1)
         first = max(0, k - top)
         if half := (k + 1) // 2 - first:
             a, b = e[first : first + half], e[k - first : k - first - half : -1]
@@ -114,9 +124,7 @@ def corrected(
         shift = max(0, max(map(int.bit_length, g)) - 60)
         step = np.rint(inverse @ np.array([float(x >> shift) for x in g]) * 2.0**30)
         found.append(
-            tuple(
-                a - ((int(x) << shift) >> (30 + extra)) for a, x in zip(row, step, strict=True)
-            )
+            tuple(a - ((int(x) << shift) >> (30 + extra)) for a, x in zip(row, step, strict=True))
         )
     return tuple(found)
 

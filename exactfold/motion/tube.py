@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
 
 from exactfold.arrays import FloatArray
+from exactfold.motion.arclength import Interval, length_between
 from exactfold.motion.contraction import (
     MATRIX_BITS,
     SCALE,
@@ -26,103 +28,22 @@ from exactfold.motion.length_equations import (
     squared,
     weights_of,
 )
+from exactfold.motion.piece import PARAMETER_BITS, REACH_BITS, Ball, Piece, evaluated
 
 ROW_BITS = 20
 """The row T is in integers over 2^ROW_BITS."""
-
-REACH_BITS = 6
-"""The reach of a tube is an integer over 2^REACH_BITS."""
-
-PARAMETER_BITS = 40
-"""Parameters within a tube are integers over 2^PARAMETER_BITS."""
 
 _MOST_REACH = 4 << REACH_BITS
 
 
 @dataclass(frozen=True, repr=False)
-class Ball:
-    """A box |x_i - centre_i| <= radii_i of unknowns, integers over 2^`bits`."""
+class Tube(Piece):
+    """A piece of a curve of configurations: T(x(s) - c) = s with T = `row` over 2^ROW_BITS.
 
-    bits: int
-    centre: Row
-    radii: Row
-
-    def contains(self, other: Ball) -> bool:
-        """Whether a box lies in this one.
-
-        >>> Ball(1, (2,), (2,)).contains(Ball(0, (1,), (1,)))
-        True
-        """
-        bits = max(self.bits, other.bits)
-        a, b = bits - self.bits, bits - other.bits
-        return all(
-            abs((x << a) - (y << b)) + (s << b) <= r << a
-            for x, r, y, s in zip(self.centre, self.radii, other.centre, other.radii, strict=True)
-        )
-
-    @property
-    def floats(self) -> FloatArray:
-        """The centre, and the radii, nearly: shape (2, unknowns)."""
-        one = 1 << self.bits
-        return np.array([[x / one for x in row] for row in (self.centre, self.radii)])
-
-    def __repr__(self) -> str:
-        widest = max(self.radii) / (1 << self.bits)
-        return f"<Ball: {len(self.centre)} unknowns, radius {widest:.1e}>"
-
-
-@dataclass(frozen=True, repr=False)
-class Tube:
-    """Proved: for every |s| <= `reach` exactly one configuration x(s) near p(s) with T(x - c) = s.
-
-    p(s) = sum_k a_k s^k with `coefficients` a_k over 2^`bits`, c = a_0, T = `row` over 2^ROW_BITS;
-    near: within `radius` of the maximum norm with `weights` over 2^WEIGHT_BITS. x(s) is a regular
-    zero of the length equations and depends analytically on s (docs/motion.md, Theorem 1).
-    `reach` is an integer over 2^REACH_BITS, `radius` over 2^SCALE.
+    The unknowns are those of the length equations of the framework; c = a_0.
     """
 
-    framework: Framework
-    bits: int
-    coefficients: Curve
     row: Row
-    weights: Row
-    contraction: Contraction
-    reach: int
-
-    @cached_property
-    def radius(self) -> int:
-        """The radius of the tube over its whole reach."""
-        return self.radius_within(self.reach << (PARAMETER_BITS - REACH_BITS))
-
-    def radius_within(self, most: int) -> int:
-        """A radius for the parameters |s| <= most, over 2^PARAMETER_BITS."""
-        found = self.contraction.radius(most << (SCALE - PARAMETER_BITS))
-        if found is None:
-            raise ArithmeticError("a tube without a radius was not proved")
-        return found
-
-    @cached_property
-    def uniqueness(self) -> int:
-        """Zeros within this radius of p(s) are equal, over 2^SCALE: more than `radius`."""
-        return self.contraction.uniqueness(self.reach << (SCALE - REACH_BITS))
-
-    def enclosure(self, parameter: int) -> Ball:
-        """A box that holds x(s) and no other configuration with T(x - c) = s.
-
-        `parameter` is s over 2^PARAMETER_BITS, at most the reach.
-        """
-        centre = evaluated(self.coefficients, parameter)
-        radius = self.radius_within(abs(parameter))
-        return Ball(self.bits, centre, self._lengths(radius, 1))
-
-    def velocity(self, parameter: int) -> Ball:
-        """A box that holds x'(s)."""
-        most = abs(parameter) << (SCALE - PARAMETER_BITS)
-        slope = tuple(
-            tuple(k * a for a in row) for k, row in enumerate(self.coefficients) if k
-        )
-        error = self.contraction.velocity(most, self.radius_within(abs(parameter)))
-        return Ball(self.bits, evaluated(slope, parameter), self._lengths(error, 1))
 
     def located(self, ball: Ball) -> tuple[int, int] | None:
         """The parameters of the configuration in a box, if it is proved to lie on this tube.
@@ -130,28 +51,34 @@ class Tube:
         The box holds some configuration x. Where this returns (low, high), over 2^PARAMETER_BITS,
         x = x(s) for some low <= s <= high. None says nothing.
         """
-        bits = max(self.bits, ball.bits)
-        a, b = bits - self.bits, bits - ball.bits
-        gaps = [
-            (y << b) - (x << a) for x, y in zip(self.coefficients[0], ball.centre, strict=True)
-        ]
+        ball = ball.finer(self.bits)
+        bits, finer = ball.bits, ball.bits - self.bits
+        gaps = [y - (x << finer) for x, y in zip(self.coefficients[0], ball.centre, strict=True)]
         down = bits + ROW_BITS - PARAMETER_BITS
         middle = sum(t * x for t, x in zip(self.row, gaps, strict=True)) >> down
-        spread = 1 + up(
-            sum(abs(t) * r for t, r in zip(self.row, ball.radii, strict=True)),
-            ball.bits + ROW_BITS - PARAMETER_BITS,
-        ) if ball.bits + ROW_BITS >= PARAMETER_BITS else None
-        if spread is None or abs(middle) + spread > self.reach << (PARAMETER_BITS - REACH_BITS):
+        spread = 2 + (sum(abs(t) * r for t, r in zip(self.row, ball.radii, strict=True)) >> down)
+        if abs(middle) + spread > self.longest:
             return None
         point = evaluated(self.coefficients, middle)
         for x, y, r, v, w in zip(
             point, ball.centre, ball.radii, self._speeds, self.weights, strict=True
         ):
-            gap = abs((x << a) - (y << b)) + (1 << a) + (r << b)
-            gap += up(v * spread, PARAMETER_BITS) << a
-            if gap << (SCALE + WEIGHT_BITS - bits) >= self.uniqueness * w:
+            gap = (
+                abs((x << finer) - y) + (1 << finer) + r + (up(v * spread, PARAMETER_BITS) << finer)
+            )
+            if gap << (SCALE + WEIGHT_BITS) >= (self.uniqueness * w) << bits:
                 return None
         return middle - spread, middle + spread
+
+    def length(self, low: int, high: int) -> Interval:
+        """Bounds of the length of the curve for low <= s <= high, in the framework's unit.
+
+        `low` and `high` are over 2^PARAMETER_BITS.
+        """
+        rows = [tuple(k * a for a in row) for k, row in enumerate(self.coefficients) if k]
+        error = self.velocity(max(abs(low), abs(high))).radii
+        unit = 1 << PARAMETER_BITS
+        return length_between(rows, self.bits, error, Fraction(low, unit), Fraction(high, unit))
 
     def lies_in(self, ball: Ball) -> bool:
         """Whether the configuration in a box is proved to lie on this tube."""
@@ -184,31 +111,8 @@ class Tube:
             for i in range(len(self.row))
         )
 
-    def _lengths(self, radius: int, more: int) -> Row:
-        """radius w_i over 2^bits, rounded up, and `more`."""
-        down = SCALE + WEIGHT_BITS - self.bits
-        if down < 0:
-            return tuple((radius * w << -down) + more for w in self.weights)
-        return tuple(up(radius * w, down) + more for w in self.weights)
 
-    def __repr__(self) -> str:
-        return (
-            f"<Tube: |s| <= {self.reach / (1 << REACH_BITS):.2f}, "
-            f"radius {self.radius / (1 << SCALE):.1e}>"
-        )
-
-
-def evaluated(curve: Sequence[Sequence[int]], parameter: int) -> Row:
-    """The curve at a parameter over 2^PARAMETER_BITS, rounded down to whole units."""
-    top = len(curve) - 1
-    powers = [parameter**k << PARAMETER_BITS * (top - k) for k in range(top + 1)]
-    return tuple(
-        sum(a * power for a, power in zip(column, powers, strict=True)) >> PARAMETER_BITS * top
-        for column in zip(*curve, strict=True)
-    )
-
-
-def residuals_of(equations: LengthEquations, curve: Curve, row: Row) -> list[list[int]]:
+def _residuals(equations: LengthEquations, curve: Curve, row: Row) -> list[list[int]]:
     """The coefficients of 2 [g(p(s)); T(p(s) - c) - s], over 2^(2 bits)."""
     e = equations.along(curve)
     shift = equations.bits - ROW_BITS
@@ -222,21 +126,24 @@ def residuals_of(equations: LengthEquations, curve: Curve, row: Row) -> list[lis
     return [[*map(int, g), x << (shift + 1)] for g, x in zip(found, last, strict=True)]
 
 
-def bounds_of(
-    equations: LengthEquations, curve: Curve, row: Row, weights: Row, inverse: FloatArray
+def _bounds(
+    equations: LengthEquations,
+    curve: Curve,
+    residuals: list[list[int]],
+    row: Row,
+    weights: Row,
+    inverse: FloatArray,
 ) -> Contraction:
     """The contraction of the length equations along a curve, with the row T(x - c) - s below."""
     e = equations.along(curve)
-    matrices = [
-        equations.matrix(e[0] + equations.flat_edges, [t << (MATRIX_BITS - ROW_BITS) for t in row]),
-        *(equations.matrix(part) for part in e[1:]),
-    ]
     sums = equations.weight_sums(weights)
     return contraction(
         inverse,
-        residuals_of(equations, curve, row),
+        residuals,
         2 * equations.bits + 1,
-        matrices,
+        equations.places,
+        [equations.rounded(part) for part in (e[0] + equations.flat_edges, *e[1:])],
+        [t << (MATRIX_BITS - ROW_BITS) for t in row],
         [[int(x) for x in (sums**2).sum(axis=1)]],
         [int(x) for x in sums.sum(axis=1)],
         weights,
@@ -250,7 +157,7 @@ def prove_tube(
     step: float,
     *,
     order: int = 8,
-    thickness: float = 1e-6,
+    thickness: float = 1e-8,
 ) -> Tube | None:
     """A tube round the curve at the point of it nearest to `near`; None if none is proved.
 
@@ -261,7 +168,9 @@ def prove_tube(
     framework, bits = equations.framework, equations.bits
     centre = equations.nearest(near) if isinstance(near, np.ndarray) else near
     try:
-        jacobian = framework.jacobian(equations.floats(centre)).toarray()
+        jacobian = equations.places.dense(
+            framework.flat_edges + framework.along(equations.floats(centre))
+        )
         last = np.zeros(framework.size)
         last[-1] = 1.0
         tangent = np.linalg.solve(np.vstack([jacobian, towards]), last)
@@ -280,14 +189,15 @@ def prove_tube(
         g = [int(x) for x in _stretch(equations, centre)]
         (centre,) = corrected(inverse, [centre], [[*g, 0]], bits + 1)
     curve = [centre, *(equations.nearest(a) for a in _taylor(framework, inverse, order))]
-    found = corrected(inverse, curve, residuals_of(equations, tuple(curve), row), bits + 1)
+    found = corrected(inverse, curve, _residuals(equations, tuple(curve), row), bits + 1)
     curve = [centre, *found[1:]]
-    weights = weights_of(_slopes(framework, inverse, [equations.floats(a) for a in curve[1:]]))
-    proof = bounds_of(equations, tuple(curve), row, weights, inverse)
+    weights = weights_of(_slopes(equations, inverse, [equations.floats(a) for a in curve[1:]]))
+    residuals = _residuals(equations, tuple(curve), row)
+    proof = _bounds(equations, tuple(curve), residuals, row, weights, inverse)
     reach = longest(proof, thickness)
     if not reach:
         return None
-    return Tube(framework, bits, tuple(curve), row, weights, proof, reach)
+    return Tube(framework, bits, tuple(curve), weights, proof, reach, row)
 
 
 def longest(proof: Contraction, thickness: float, most: int = _MOST_REACH) -> int:
@@ -304,6 +214,43 @@ def longest(proof: Contraction, thickness: float, most: int = _MOST_REACH) -> in
         middle = (low + high) // 2
         low, high = (middle, high) if works(middle) else (low, middle)
     return low
+
+
+def sharpened(tube: Tube, parameter: int) -> Ball:
+    """A box of about 14 digits that holds x(s), s over 2^PARAMETER_BITS.
+
+    A step of Newton's method from p(s), and the test of Theorem 1 there, for this s alone. The zero
+    it proves is that of the tube, because it lies where zeros are unique. Where that fails, the
+    answer is `Tube.enclosure`.
+    """
+    equations = LengthEquations(tube.framework, tube.bits)
+    framework, bits, whole = tube.framework, tube.bits, tube.enclosure(parameter)
+    point = whole.centre
+    value = parameter << bits + ROW_BITS - PARAMETER_BITS
+    row = np.array([float(t) for t in tube.row]) / (1 << ROW_BITS)
+    edges = framework.flat_edges + framework.along(equations.floats(point))
+    try:
+        inverse = np.linalg.inv(np.vstack([equations.places.dense(edges), row]))
+    except np.linalg.LinAlgError:
+        return whole
+
+    def residual() -> list[int]:
+        gaps = (x - c for x, c in zip(point, tube.coefficients[0], strict=True))
+        last = sum(t * x for t, x in zip(tube.row, gaps, strict=True)) - value
+        return [*_stretch(equations, point), last << bits - ROW_BITS + 1]
+
+    for _ in range(2):
+        (point,) = corrected(inverse, [point], [residual()], bits + 1)
+    proof = _bounds(equations, (point,), [residual()], tube.row, tube.weights, inverse)
+    radius = proof.radius(0)
+    if radius is None:
+        return whole
+    down = SCALE + WEIGHT_BITS - bits
+    found = Ball(bits, point, tuple(up(radius * w, down) for w in tube.weights))
+    for x, y, r, w in zip(point, whole.centre, found.radii, tube.weights, strict=True):
+        if (abs(x - y) + 1 + r) << (SCALE + WEIGHT_BITS) >= (tube.uniqueness * w) << bits:
+            return whole
+    return found
 
 
 def _stretch(equations: LengthEquations, centre: Row) -> list[int]:
@@ -327,11 +274,11 @@ def _taylor(framework: Framework, inverse: FloatArray, order: int) -> list[Float
 
 
 def _slopes(
-    framework: Framework, inverse: FloatArray, curve: Sequence[FloatArray]
+    equations: LengthEquations, inverse: FloatArray, curve: Sequence[FloatArray]
 ) -> FloatArray:
     """|P B(a_1)| + |P B(a_2)| / 2 + ..., in floats."""
     total = np.zeros_like(inverse)
     for k, row in enumerate(curve[:3]):
-        matrix = framework.matrix(framework.along(row))
-        total += np.abs((matrix.T @ inverse[:, :-1].T).T) / 2.0**k
+        rows = equations.framework.along(row)
+        total += np.abs(equations.places.product(inverse[:, :-1], rows)) / 2.0**k
     return total
