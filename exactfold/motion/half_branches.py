@@ -47,7 +47,7 @@ class HalfBranch:
         return f"{self.sign_text}, saddle {SIGNS[self.saddle]}"
 
 
-def half_branch(branch: Branch, side: int, problem: Problem) -> HalfBranch:
+def half_branch_of(branch: Branch, side: int, problem: Problem) -> HalfBranch:
     """The half-branch that a branch shows, or that of its mirror image for `side` -1."""
     signs = tuple(side * branch.vertex_signs[v] for v in problem.foldable)
     return HalfBranch(signs, side * branch.saddle)
