@@ -249,13 +249,21 @@ def continued(track: Track, *, bits: int = 64) -> Iterator[Link | str]:
     if track.links:
         before = track.links[-1]
         ball, velocity = before.tube.enclosure(before.exit), before.tube.velocity(before.exit)
-        time = before.left
-        step = float(before.tube.length(0, before.exit)[0])
-    else:
-        last = track.start.last
-        ball, velocity = track.start.ball(last), track.start.ball_velocity(last)
-        time = track._started
-        step = float(time[0]) / 2
+        return onwards(
+            equations, ball, velocity, before.left, float(before.tube.length(0, before.exit)[0])
+        )
+    last, time = track.start.last, track._started
+    ball, velocity = track.start.ball(last), track.start.ball_velocity(last)
+    return onwards(equations, ball, velocity, time, float(time[0]) / 2)
+
+
+def onwards(
+    equations: LengthEquations, ball: Ball, velocity: Ball, time: Interval, step: float
+) -> Iterator[Link | str]:
+    """The links from a configuration in a box on, which is passed with a velocity in a box.
+
+    The first tube is about `step` long. Ends with the reason if there is no next link.
+    """
     while True:
         tube, entry = _next(equations, ball, velocity, step)
         if tube is None or entry is None:
