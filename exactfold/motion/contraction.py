@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from math import isqrt
 from typing import Any
 
 import numpy as np
@@ -18,12 +20,12 @@ SCALE = 128
 """Numbers of a `Contraction`, and all arguments, are integers over 2^SCALE."""
 
 ONE = 1 << SCALE
-MATRIX_BITS = 22
-"""P and the matrices are rounded to multiples of 2^-MATRIX_BITS before they are multiplied."""
+INVERSE_BITS = 26
+"""P is rounded to a multiple of 2^-INVERSE_BITS."""
 
 WEIGHT_BITS = 16
-_VECTOR_BITS = 24
 _WORD = 62
+_SHORTEST = 14
 
 
 @dataclass(frozen=True, repr=False)
@@ -52,15 +54,13 @@ class Contraction:
         b, q, kappa = (polynomial(c, reach) for c in (self.residual, self.slope, self.quadratic))
         if q >= ONE:
             return None
-        r = b
-        for _ in range(60):
-            more = b + up(q * r, SCALE) + up(kappa * r * r, 2 * SCALE + 1)
-            if more <= r + (r >> 20):
-                break
-            r = more
-            if r >= ONE:
-                return None
-        r += (r >> 10) + 2
+        # The smaller root of b - (1 - q) r + kappa r^2 / 2, and a little more.
+        room = ONE - q
+        square = room * room - 2 * kappa * b
+        if square <= 0:
+            return None
+        r = (2 * b << SCALE) // (room + isqrt(square))
+        r += (r >> 16) + 2
         # Integers: b + q r + kappa r^2 / 2 < r and q + kappa r < 1, nothing rounded.
         quadratic = kappa * r
         if ((b - r) << (SCALE + 1)) + 2 * q * r + (quadratic * r >> SCALE) + 1 >= 0:
@@ -134,12 +134,17 @@ class Places:
     def product(self, left: Any, rows: Any) -> Any:
         """left @ dense(rows), without the zeros."""
         weighted = self.sign[:, None] * rows[self.edge]
-        starts = np.flatnonzero(np.diff(self.vertex, prepend=-1))
         taken = left[:, self.edge]
-        parts = [np.add.reduceat(taken * weighted[:, a], starts, axis=1) for a in range(3)]
-        return np.stack(parts, axis=2).reshape(len(left), -1)
+        found = np.empty((len(left), self.size), dtype=np.result_type(left, rows))
+        for a in range(3):
+            found[:, a::3] = np.add.reduceat(taken * weighted[:, a], self._starts, axis=1)
+        return found
 
-    @property
+    @cached_property
+    def _starts(self) -> IndexArray:
+        return np.flatnonzero(np.diff(self.vertex, prepend=-1))
+
+    @cached_property
     def most(self) -> int:
         """The largest number of edges at a vertex."""
         return int(np.bincount(self.vertex).max())
@@ -153,8 +158,9 @@ def contraction(
     residuals: Sequence[Sequence[int]],
     residual_bits: int,
     places: Places,
-    rows: Sequence[Whole],
+    rows: Sequence[BigArray],
     last: Sequence[int],
+    row_bits: int,
     squares: Sequence[Sequence[int]],
     sums: Sequence[int],
     weights: Sequence[int],
@@ -162,11 +168,10 @@ def contraction(
     """The bounds for P, which is `inverse` rounded. Everything is exact or rounded upwards.
 
     `residuals[k]` is the coefficient of s^k of H(p(s), s), integers over 2^`residual_bits`.
-    `rows[k]` are the edge vectors of that of DH(p(s), s), integers over 2^MATRIX_BITS, each off by
-    at most half a unit; `last` is the exact last row of DH. With the positive `weights` over
-    2^WEIGHT_BITS, `sums[e]` is the sum of w_i + w_j over the three places of edge e = (i, j), and
-    `squares[k]` bounds the coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over
-    2^(2 WEIGHT_BITS).
+    `rows[k]` are the edge vectors of that of DH(p(s), s) and `last` is its last row, for k = 0
+    only, integers over 2^`row_bits`. With the positive `weights` over 2^WEIGHT_BITS, `sums[e]` is
+    the sum of w_i + w_j over the three places of edge e = (i, j), and `squares[k]` bounds the
+    coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
     """
     n = len(weights)
     p = _whole(inverse)
@@ -178,35 +183,39 @@ def contraction(
         left, right = max(shift, 0), max(-shift, 0)
         return max(-(-(row << left) // (w << right)) for row, w in zip(rows, weights, strict=True))
 
-    off = _above(size[:, :-1], sums)  # over 2^(MATRIX_BITS + WEIGHT_BITS), in half units
+    off = _above(size[:, :-1], sums)  # what half a unit in every row can do, in half units
+    room = _WORD - _largest(p).bit_length() - places.most.bit_length()
     slope = []
     for k, vectors in enumerate(rows):
+        # All but the first, which nearly cancels, are rounded to what machine words hold.
+        drop = max(0, _largest(vectors).bit_length() - room) if k and room > _SHORTEST else 0
+        if drop:
+            vectors = np.asarray((vectors + (1 << (drop - 1))) >> drop)
         product = _product(p, places, vectors)
         if k == 0:
             product = product + _dot(p[:, -1:], np.array([last], dtype=object))
-            product[np.diag_indices(n)] -= 1 << 2 * MATRIX_BITS
-        sizes = [
-            2 * row + error
-            for row, error in zip(_above(np.asarray(abs(product)), weights), off, strict=True)
-        ]
-        slope.append(norm(sizes, 2 * MATRIX_BITS + WEIGHT_BITS + 1))
+            product[np.diag_indices(n)] -= 1 << INVERSE_BITS + row_bits
+        above = _above(np.asarray(abs(product)), weights)
+        sizes = [(2 * x + (y if drop else 0)) << drop for x, y in zip(above, off, strict=True)]
+        slope.append(norm(sizes, INVERSE_BITS + row_bits + WEIGHT_BITS + 1))
     quadratic = [
-        norm(_above(size[:, :-1], square), MATRIX_BITS + 2 * WEIGHT_BITS) for square in squares
+        norm(_above(size[:, :-1], square), INVERSE_BITS + 2 * WEIGHT_BITS) for square in squares
     ]
-    shifts = [max(0, max(map(int.bit_length, g)) - _VECTOR_BITS) for g in residuals]
+    spare = max(_WORD - _largest(p).bit_length() - n.bit_length(), _SHORTEST)
+    shifts = [max(0, max(map(int.bit_length, g)) - spare) for g in residuals]
     short = [[x >> shift for x in g] for g, shift in zip(residuals, shifts, strict=True)]
     images = np.asarray(abs(_dot(p, np.array(short, dtype=object).T))).T.tolist()
     rest = _above(size, [1] * n)
     residual = []
     for image, shift in zip(images, shifts, strict=True):
         bounds = [(x + (y if shift else 0)) << shift for x, y in zip(image, rest, strict=True)]
-        residual.append(norm(bounds, MATRIX_BITS + residual_bits))
+        residual.append(norm(bounds, INVERSE_BITS + residual_bits))
     return Contraction(tuple(residual), tuple(slope), tuple(quadratic))
 
 
 def _whole(inverse: FloatArray) -> Whole:
-    """The nearest integers over 2^MATRIX_BITS."""
-    rounded = np.rint(inverse * 2.0**MATRIX_BITS)
+    """The nearest integers over 2^INVERSE_BITS."""
+    rounded = np.rint(inverse * 2.0**INVERSE_BITS)
     if np.abs(rounded).max(initial=0.0) < 2.0**_WORD:
         return rounded.astype(np.int64)
     return np.array([[int(x) for x in row] for row in rounded], dtype=object)

@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from exactfold.arrays import BigArray, FloatArray, IntArray
-from exactfold.motion.contraction import MATRIX_BITS, WEIGHT_BITS, Places
+from exactfold.arrays import BigArray, FloatArray
+from exactfold.motion.contraction import WEIGHT_BITS, Places
 from exactfold.motion.framework import Framework
 
 Row = tuple[int, ...]
@@ -50,13 +50,6 @@ class LengthEquations:
         d = np.zeros((len(curve), len(framework.points), 3), dtype=object)
         d[:, framework.free, :] = np.array(curve, dtype=object).reshape(len(curve), -1, 3)
         return np.asarray(d[:, framework.edges[:, 0], :] - d[:, framework.edges[:, 1], :])
-
-    def rounded(self, rows: BigArray) -> IntArray | BigArray:
-        """Edge vectors over 2^bits as the nearest integers over 2^MATRIX_BITS."""
-        shift = self.bits - MATRIX_BITS
-        nearest = (rows + (1 << (shift - 1))) >> shift
-        largest = int(abs(nearest).max(initial=0))
-        return np.asarray(nearest.astype(np.int64) if largest < 1 << 62 else nearest)
 
     @cached_property
     def places(self) -> Places:
@@ -132,7 +125,8 @@ def corrected(
 def weights_of(matrix: FloatArray) -> Row:
     """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a matrix with entries >= 0."""
     vector = np.ones(len(matrix))
-    for _ in range(12):
-        vector = matrix @ vector + 1e-3 * vector
+    for _ in range(30):
+        image = matrix @ vector
+        vector = vector + image / max(float(image.max()), 1e-300)
         vector = vector / vector.max()
     return tuple(max(1, int(x)) for x in vector * 2.0**WEIGHT_BITS)

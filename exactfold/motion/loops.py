@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from functools import cached_property
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,9 +11,14 @@ from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.motion.angles import fold_angles_of
 from exactfold.motion.arclength import Interval
-from exactfold.motion.half_branches import HalfBranch, HeightSigns
+from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
+from exactfold.motion.flat_patches import FlatPatch
+from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.length_equations import LengthEquations
-from exactfold.motion.tracks import Link, Track, half_branch, onwards
+from exactfold.motion.node_tube import ROW_BITS as NODE_ROW_BITS
+from exactfold.motion.node_tube import NodeTube, prove_node_tube
+from exactfold.motion.piece import PARAMETER_BITS, Ball
+from exactfold.motion.tracks import Link, half_branch, onwards
 from exactfold.motion.tube import Tube
 from exactfold.motion.tube_start import (
     ROOT_BITS,
@@ -43,17 +47,43 @@ class Landing:
     start: StartTube
     tau: int
 
+    @property
+    def ball(self) -> Ball:
+        """A box of unknowns of the length equations that holds the configuration at `tau`."""
+        return self.start.ball(self.tau)
+
     def __repr__(self) -> str:
         return f"<Landing: {self.to}>"
+
+
+@dataclass(frozen=True, repr=False)
+class Passage:
+    """How a motion passes a node: on an arc `tube` through it, from one parameter to another.
+
+    The configuration at `entry` lies on the link before, which goes the same way there; the next
+    link begins at `exit`. `entered` and `left` bound the time as in `Link`. `vertices` are flat at
+    the node, by the numbers of the pattern.
+    """
+
+    tube: NodeTube
+    vertices: tuple[int, ...]
+    entry: int
+    exit: int
+    entered: Interval
+    left: Interval
+
+    def __repr__(self) -> str:
+        return f"<Passage: flat at {self.vertices}, time {float(self.entered[0]):.4g}>"
 
 
 @dataclass(frozen=True, repr=False)
 class Loop:
     """The true configurations from the flat state along `source` back to it along `target`.
 
-    One analytic curve without a gap, proved from end to end where `status` is PROVED. `length`
-    bounds its length in the unit of the sheet, that of the part that is proved if UNDECIDED;
-    `target` is then None and `reason` says what stopped the proof.
+    One analytic curve without a gap, proved from end to end where `status` is PROVED: from `start`
+    through `steps` to `landing`. `through` are the nodes that it passes, each by its flat vertices.
+    `length` bounds its length in the unit of the sheet; if UNDECIDED that of the part that is
+    proved, `target` and `landing` are None, and `reason` says what stopped the proof.
     """
 
     source: HalfBranch
@@ -61,8 +91,14 @@ class Loop:
     length: Interval
     status: Verdict
     reason: str
-    track: Track = field(repr=False)
-    landing: Landing | None = field(repr=False)
+    start: StartTube
+    steps: tuple[Link | Passage, ...]
+    landing: Landing | None
+
+    @property
+    def through(self) -> tuple[tuple[int, ...], ...]:
+        """The vertices that are flat at each node on the way, in order."""
+        return tuple(step.vertices for step in self.steps if isinstance(step, Passage))
 
     def to_dict(self) -> dict[str, object]:
         """The loop as `exactfold motions --json` prints it."""
@@ -70,7 +106,7 @@ class Loop:
         return {
             "from": self.source.to_dict(),
             "to": None if self.target is None else self.target.to_dict(),
-            "through": [],
+            "through": [{"flat": list(vertices)} for vertices in self.through],
             "length": [float(low), float(high)],
             "status": str(self.status),
             "reason": self.reason,
@@ -86,65 +122,102 @@ class LoopFinder:
 
     problem: Problem
 
-    @cached_property
-    def _signs(self) -> HeightSigns:
-        return HeightSigns(self.problem.sheet)
-
     def loop(self, branch: Branch, side: int = 1) -> Loop:
         """The loop that leaves the flat state along a half-branch of a simple, proved branch.
 
         Raises as `half_branch`.
+
+        >>> from exactfold.count.find import find_branch
+        >>> branch = find_branch("two-vertex", "+-")
+        >>> LoopFinder(Problem.of(branch.pattern)).loop(branch)
+        <Loop: +-, saddle + to --, saddle +, proved>
         """
-        track = half_branch(branch, side)
-        source = self._named(track.start)
-        equations = LengthEquations.of(track.framework)
-        links: list[Link] = []
-        landing: Landing | None = None
-        reason = ""
-        for link in self._links(equations, track):
-            if isinstance(link, str):
-                reason = link
-                break
-            links.append(link)
-            landing = self._landing(link)
-            if landing is not None:
-                break
-            if len(links) == MOST_TUBES:
-                reason = f"{MOST_TUBES} tubes were not enough"
-                break
-        unit = track.framework.unit
-        if landing is None:
-            low, high = links[-1].left if links else track.start.length(0, track.start.last)
-        else:
-            low, high = _whole_length(links[-1], landing)
-        track = Track(
-            track.pattern,
-            track.labels,
-            track.corner,
-            track.start,
-            tuple(links),
-            UNDECIDED if landing is None else PROVED,
-            reason,
-        )
+        start = half_branch(branch, side).start
+        steps, landing, reason = self._followed(start)
+        unit = start.framework.unit
+        low, high = steps[-1].left if steps else start.length(0, start.last)
+        if landing is not None:
+            low, high = _whole_length(steps[-1], landing)
         return Loop(
-            source,
+            _named(start),
             None if landing is None else landing.to,
             (low * unit, high * unit),
-            track.status,
+            UNDECIDED if landing is None else PROVED,
             reason,
-            track,
+            start,
+            tuple(steps),
             landing,
         )
 
-    def _links(self, equations: LengthEquations, track: Track) -> Iterator[Link | str]:
-        last, time = track.start.last, track.start.length(0, track.start.last)
-        ball, velocity = track.start.ball(last), track.start.ball_velocity(last)
-        return onwards(equations, ball, velocity, time, float(time[0]) / 2)
+    def _followed(self, start: StartTube) -> tuple[list[Link | Passage], Landing | None, str]:
+        """The steps from a start tube on, to a landing or to what stopped the proof."""
+        equations = LengthEquations.of(start.framework)
+        last, time = start.last, start.length(0, start.last)
+        ahead = onwards(
+            equations, start.ball(last), start.ball_velocity(last), time, float(time[0]) / 2
+        )
+        steps: list[Link | Passage] = []
+        while len(steps) < MOST_TUBES:
+            link = next(ahead)
+            if isinstance(link, Link):
+                steps.append(link)
+                landing = self._landing(link)
+                if landing is not None:
+                    return steps, landing, ""
+                continue
+            found = self._passage(steps)
+            if found is None:
+                return steps, None, link
+            kept, passage = found
+            steps = [*steps[:kept], passage]
+            tube, at = passage.tube, passage.exit
+            step = float(tube.length(0, at)[0])
+            ahead = onwards(equations, tube.ball(at), tube.ball_velocity(at), passage.left, step)
+        return steps, None, f"{MOST_TUBES} tubes were not enough"
 
-    def _named(self, start: StartTube, side: int = 1) -> HalfBranch:
-        """The half-branch of a start tube, or of its mirror image."""
-        named = HalfBranch(start.vertex_signs, start.side)
-        return named if side > 0 else named.mirrored
+    def _passage(self, steps: Sequence[Link | Passage]) -> tuple[int, Passage] | None:
+        """The passage of a node shortly ahead, and how many of the steps lead up to it."""
+        if not steps or not isinstance(steps[-1], Link):
+            return None
+        last = steps[-1]
+        framework = last.tube.framework
+        crossing = crossing_ahead(
+            framework,
+            last.tube.enclosure(last.exit).floats[0],
+            last.tube.velocity(last.exit).floats[0],
+        )
+        if crossing is None:
+            return None
+        flat = flat_vertices(framework, crossing[0])
+        patch = FlatPatch.of(framework, flat)
+        tube = None if patch is None else prove_node_tube(framework, patch, *crossing)
+        if tube is None:
+            return None
+        # The first link that reaches into the tube, so that the short ones before the node go.
+        first = len(steps)
+        while first and isinstance(steps[first - 1], Link):
+            first -= 1
+        node, row = tube.node.floats[0], np.array(tube.row) * 2.0**-NODE_ROW_BITS
+        for k in range(first, len(steps)):
+            link = steps[k]
+            if not isinstance(link, Link):
+                continue
+            s = float(row @ (link.tube.enclosure(link.exit).floats[0] - node))
+            entry = round(s * (1 << PARAMETER_BITS))
+            if not -tube.longest * 7 // 8 <= entry < 0:
+                continue
+            found = link.tube.located(tube.ball(entry))
+            if found is None or found[0] < link.entry[1]:
+                continue
+            if link.tube.goes_along(tube.ball_velocity(entry)) != 1:
+                continue
+            at = tube.longest * 3 // 4
+            entered = link.time(found[0])[0], link.time(found[1])[1]
+            shortest, longest = tube.length(entry, at)
+            left = entered[0] + shortest, entered[1] + longest
+            vertices = tuple(self.problem.labels[v] for v in flat)
+            return k + 1, Passage(tube, vertices, entry, at, entered, left)
+        return None
 
     def _landing(self, link: Link) -> Landing | None:
         """The start tube of another half-branch a point of which lies on this tube."""
@@ -166,7 +239,7 @@ class LoopFinder:
         velocity = start.ball_velocity(tau)
         if tube.goes_along(velocity) * (1 if tau > 0 else -1) != -1:
             return None
-        return Landing(self._named(start, 1 if tau > 0 else -1), start, tau)
+        return Landing(_named(start, 1 if tau > 0 else -1), start, tau)
 
     def _start(self, tube: Tube, heights: FloatArray) -> StartTube | None:
         try:
@@ -175,12 +248,16 @@ class LoopFinder:
             return None
 
 
-def _whole_length(link: Link, landing: Landing) -> Interval:
+def _named(start: StartTube, side: int = 1) -> HalfBranch:
+    """The half-branch of a start tube, or of its mirror image."""
+    named = HalfBranch(start.vertex_signs, start.side)
+    return named if side > 0 else named.mirrored
+
+
+def _whole_length(step: Link | Passage, landing: Landing) -> Interval:
     """Bounds of the length of a loop, whose last tube is met by the start tube of the landing."""
-    found = link.tube.located(landing.start.ball(landing.tau))
-    if found is None:
+    if not isinstance(step, Link) or (found := step.tube.located(landing.ball)) is None:
         raise ArithmeticError("the landing is not on the tube")
-    low = link.time(min(found))[0] if found[0] > link.entry[1] else link.entered[0]
-    high = link.time(max(found))[1]
     shortest, longest = landing.start.length(0, abs(landing.tau))
-    return low + shortest, high + longest
+    low = step.time(found[0])[0] if found[0] >= step.entry[1] else step.entered[0]
+    return low + shortest, step.time(found[1])[1] + longest

@@ -49,9 +49,8 @@ class Link:
 
     def time(self, parameter: int) -> Interval:
         """Bounds of the time at a parameter between the entry and the end of the tube."""
-        low, high = self.entry
-        shortest = self.tube.length(high, parameter)[0]
-        return self.entered[0] + shortest, self.entered[1] + self.tube.length(low, parameter)[1]
+        low, high = self.tube.length(self.entry, parameter)
+        return self.entered[0] + low, self.entered[1] + high
 
     def __repr__(self) -> str:
         return (
@@ -250,7 +249,11 @@ def continued(track: Track, *, bits: int = 64) -> Iterator[Link | str]:
         before = track.links[-1]
         ball, velocity = before.tube.enclosure(before.exit), before.tube.velocity(before.exit)
         return onwards(
-            equations, ball, velocity, before.left, float(before.tube.length(0, before.exit)[0])
+            equations,
+            ball,
+            velocity,
+            before.left,
+            float(before.tube.length(before.entry, before.exit)[0]),
         )
     last, time = track.start.last, track._started
     ball, velocity = track.start.ball(last), track.start.ball_velocity(last)
@@ -273,9 +276,8 @@ def onwards(
             )
             return
         at = tube.longest * _EXIT[0] // _EXIT[1]
-        low, high = entry
-        shortest = tube.length(high, at)[0]
-        left = time[0] + shortest, time[1] + tube.length(low, at)[1]
+        shortest, longest = tube.length(entry, at)
+        left = time[0] + shortest, time[1] + longest
         yield Link(tube, entry, at, time, left)
         ball, velocity, time = tube.enclosure(at), tube.velocity(at), left
         step = float(shortest) * _EXIT[1] / _EXIT[0]

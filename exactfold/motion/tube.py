@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from math import isqrt
 
 import numpy as np
 
 from exactfold.arrays import FloatArray
 from exactfold.motion.arclength import Interval, length_between
 from exactfold.motion.contraction import (
-    MATRIX_BITS,
     SCALE,
     WEIGHT_BITS,
     Contraction,
@@ -70,15 +70,24 @@ class Tube(Piece):
                 return None
         return middle - spread, middle + spread
 
-    def length(self, low: int, high: int) -> Interval:
-        """Bounds of the length of the curve for low <= s <= high, in the framework's unit.
+    def length(self, entry: tuple[int, int], end: int) -> Interval:
+        """Bounds of the length of the curve from a parameter in `entry` to `end`, exactly.
 
-        `low` and `high` are over 2^PARAMETER_BITS.
+        In the framework's unit; parameters over 2^PARAMETER_BITS, `entry[1]` <= `end`.
         """
         rows = [tuple(k * a for a in row) for k, row in enumerate(self.coefficients) if k]
-        error = self.velocity(max(abs(low), abs(high))).radii
+        middle = (entry[0] + entry[1]) // 2
+        error = self.velocity(max(abs(middle), abs(end))).radii
         unit = 1 << PARAMETER_BITS
-        return length_between(rows, self.bits, error, Fraction(low, unit), Fraction(high, unit))
+        low, high = length_between(rows, self.bits, error, PARAMETER_BITS, middle, end)
+        slack = Fraction((entry[1] - entry[0] + 1) * self._fastest, unit << self.bits)
+        return max(low - slack, Fraction(0)), high + slack
+
+    @cached_property
+    def _fastest(self) -> int:
+        """A bound of |x'(s)| over the whole reach, over 2^bits."""
+        error = self.velocity(self.longest).radii
+        return isqrt(sum((v + r) ** 2 for v, r in zip(self._speeds, error, strict=True))) + 1
 
     def lies_in(self, ball: Ball) -> bool:
         """Whether the configuration in a box is proved to lie on this tube."""
@@ -142,8 +151,9 @@ def _bounds(
         residuals,
         2 * equations.bits + 1,
         equations.places,
-        [equations.rounded(part) for part in (e[0] + equations.flat_edges, *e[1:])],
-        [t << (MATRIX_BITS - ROW_BITS) for t in row],
+        [e[0] + equations.flat_edges, *e[1:]],
+        [t << (equations.bits - ROW_BITS) for t in row],
+        equations.bits,
         [[int(x) for x in (sums**2).sum(axis=1)]],
         [int(x) for x in sums.sum(axis=1)],
         weights,
@@ -188,16 +198,17 @@ def prove_tube(
     for _ in range(2):
         g = [int(x) for x in _stretch(equations, centre)]
         (centre,) = corrected(inverse, [centre], [[*g, 0]], bits + 1)
-    curve = [centre, *(equations.nearest(a) for a in _taylor(framework, inverse, order))]
-    found = corrected(inverse, curve, _residuals(equations, tuple(curve), row), bits + 1)
-    curve = [centre, *found[1:]]
-    weights = weights_of(_slopes(equations, inverse, [equations.floats(a) for a in curve[1:]]))
-    residuals = _residuals(equations, tuple(curve), row)
-    proof = _bounds(equations, tuple(curve), residuals, row, weights, inverse)
-    reach = longest(proof, thickness)
-    if not reach:
-        return None
-    return Tube(framework, bits, tuple(curve), weights, proof, reach, row)
+    series = _taylor(framework, inverse, order)
+    weights = weights_of(_slopes(equations, inverse, series))
+    curve = (centre, *(equations.nearest(a) for a in series))
+    for _ in range(2):
+        residuals = _residuals(equations, curve, row)
+        proof = _bounds(equations, curve, residuals, row, weights, inverse)
+        reach = longest(proof, thickness)
+        if reach:
+            return Tube(framework, bits, curve, weights, proof, reach, row)
+        curve = (centre, *corrected(inverse, curve, residuals, bits + 1)[1:])
+    return None
 
 
 def longest(proof: Contraction, thickness: float, most: int = _MOST_REACH) -> int:

@@ -9,13 +9,11 @@ from math import isqrt, log2
 
 import numpy as np
 
-from exactfold.arrays import FloatArray
+from exactfold.arrays import BigArray, FloatArray
 from exactfold.errors import NotApplicableError
 from exactfold.motion.arclength import Interval, length_between
 from exactfold.motion.contraction import (
-    MATRIX_BITS,
     Contraction,
-    Whole,
     contraction,
     up,
 )
@@ -108,10 +106,7 @@ class StartTube(Piece):
             plane = [0 if i % 3 == 2 else (2 * k + 2) * x for i, x in enumerate(row)]
             rows += [tuple(heights), tuple(plane)]
         error = [(r + 1) << 2 * m for r in self.ball_velocity(high).radii]
-        unit = 1 << ROOT_BITS
-        return length_between(
-            rows, self.bits + 2 * m, error, Fraction(low, unit), Fraction(high, unit)
-        )
+        return length_between(rows, self.bits + 2 * m, error, ROOT_BITS, low, high)
 
 
 def prove_start(
@@ -232,14 +227,13 @@ def _bounds(
     equations: LengthEquations, curve: Curve, held: int, m: int, weights: Row, inverse: FloatArray
 ) -> Contraction:
     e = equations.along(curve)
-    down = equations.bits + 2 * m - MATRIX_BITS
-    rows: list[Whole] = []
+    rows: list[BigArray] = []
     for k in range(len(e) + 1):
         whole = np.zeros(e.shape[1:], dtype=object)
         if k < len(e):
             whole[:, 2] = e[k, :, 2] * (1 << 2 * m)
         whole[:, :2] = e[k - 1, :, :2] if k else equations.flat_edges[:, :2] * (1 << 2 * m)
-        rows.append(np.asarray((whole + (1 << (down - 1))) >> down))
+        rows.append(whole)
     sums = equations.weight_sums(weights)
     flat = (sums[:, :2] ** 2).sum(axis=1)
     return contraction(
@@ -248,7 +242,8 @@ def _bounds(
         2 * (equations.bits + m) + 1,
         equations.places,
         rows,
-        [(1 << MATRIX_BITS) * (i == held) for i in range(len(weights))],
+        [(i == held) << (equations.bits + 2 * m) for i in range(len(weights))],
+        equations.bits + 2 * m,
         [[int(x) ** 2 for x in sums[:, 2]], [up(int(x), 2 * m) for x in flat]],
         [int(x) for x in sums.sum(axis=1)],
         weights,
