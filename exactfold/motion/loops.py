@@ -30,6 +30,7 @@ from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 4000
+_LOOK_BACK = (1, 3, 5, 8, 12)
 _NEAR_FLAT = 0.8
 """Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
 
@@ -177,20 +178,23 @@ class LoopFinder:
 
     def _passage(self, steps: Sequence[Link | Passage]) -> tuple[int, Passage] | None:
         """The passage of a node shortly ahead, and how many of the steps lead up to it."""
-        if not steps or not isinstance(steps[-1], Link):
-            return None
-        last = steps[-1]
-        framework = last.tube.framework
-        crossing = crossing_ahead(
-            framework,
-            last.tube.enclosure(last.exit).floats[0],
-            last.tube.velocity(last.exit).floats[0],
-        )
-        if crossing is None:
-            return None
-        flat = flat_vertices(framework, crossing[0])
+        # The links right before a node are too close to it for floats.
+        back = [steps[-k] for k in _LOOK_BACK if k <= len(steps)]
+        for link in (step for step in back if isinstance(step, Link)):
+            point, velocity = link.tube.enclosure(link.exit), link.tube.velocity(link.exit)
+            crossing = crossing_ahead(link.tube.framework, point.floats[0], velocity.floats[0])
+            if crossing is not None:
+                return self._passage_at(steps, *crossing)
+        return None
+
+    def _passage_at(
+        self, steps: Sequence[Link | Passage], point: FloatArray, tangent: FloatArray
+    ) -> tuple[int, Passage] | None:
+        """The passage of the node near the unknowns `point`, from one of the last links."""
+        framework = steps[-1].tube.framework
+        flat = flat_vertices(framework, point)
         patch = FlatPatch.of(framework, flat)
-        tube = None if patch is None else prove_node_tube(framework, patch, *crossing)
+        tube = None if patch is None else prove_node_tube(framework, patch, point, tangent)
         if tube is None:
             return None
         # The first link that reaches into the tube, so that the short ones before the node go.
