@@ -268,7 +268,7 @@ def continued(track: Track, *, bits: int = 64) -> Iterator[Link | str]:
         left = time[0] + shortest, time[1] + longest
         yield Link(tube, entry, at, time, left)
         ball, velocity, time = tube.enclosure(at), tube.velocity(at), left
-        step = float(shortest) * _EXIT[1] / _EXIT[0]
+        step = float(shortest + longest) / 2 * _EXIT[1] / _EXIT[0]
 
 
 def _next(
