@@ -90,19 +90,16 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
         require(tube.entered(ball, velocity) <= end, "a motion leaves a tube before it enters")
         before, ball, velocity = ball, tube.enclosure(end), tube.velocity(end)
     length += _chord(before, ball, bits)
-    require(
-        parse_rational(claims["length"]) <= length * equations.unit,
-        "the motion is shorter than claimed",
-    )
+    claimed = parse_rational(claims["length"])
+    require(claimed <= length * equations.unit, "the motion is shorter than claimed")
     return {"sha256": digest, "tubes": len(tubes), **claims}
 
 
 def _vector(value: Any, what: str, size: int, bits: int) -> list[int]:
     """Integers over 2^bits that are not too large."""
     found = [integer(x) for x in items(value, what, size)]
-    require(
-        all(abs(x) >> bits + SPARE == 0 for x in found), f"a number of the {what} is out of range"
-    )
+    small = all(abs(x) >> bits + SPARE == 0 for x in found)
+    require(small, f"a number of the {what} is out of range")
     return found
 
 
@@ -174,6 +171,6 @@ def summary(claims: dict[str, Any]) -> str:
     tubes = counted(claims["tubes"], "tube", "tubes")
     length = float(parse_rational(claims["length"]))
     return (
-        f"VALID: the motion along the half-branch {shown} ({len(signs)}), side {side}, is one curve "
-        f"without a gap of length {length:.6g} or more; {tubes}; sha256 {claims['sha256']}"
+        f"VALID: the motion along the half-branch {shown} ({len(signs)}), side {side}, is one "
+        f"curve without a gap of length {length:.6g} or more; {tubes}; sha256 {claims['sha256']}"
     )

@@ -2,14 +2,16 @@
 
 For H(x, s) = 0, quadratic in x, a polynomial p(s), any matrix P and |s| <= h let b, q, kappa bound
 |P H(p(s), s)|, |1 - P DH(p(s), s)| and |P D2H(s)| in a maximum norm with weights. If b + q r +
-kappa r^2 / 2 < r and q + kappa r < 1, there is exactly one zero within r of p(s) for each s: the map
-y -> y - P H(p(s) + y, s) takes the ball into itself and contracts it (docs/motion.md, Theorem 1).
+kappa r^2 / 2 < r and q + kappa r < 1, there is exactly one zero within r of p(s) for each s: the
+map y -> y - P H(p(s) + y, s) takes the ball into itself and contracts it (docs/motion.md,
+Theorem 1).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from operator import mul
 
 from .reading import require
 
@@ -62,7 +64,7 @@ def derivative(coefficients: Sequence[Fraction]) -> list[Fraction]:
 
 
 def rounded(x: Fraction, places: int) -> Fraction:
-    """x rounded up to `places` places after the point, or as many significant ones if x is small."""
+    """x rounded up to `places` places after the point, or as many digits if x is small."""
     places += max(0, x.denominator.bit_length() - abs(x.numerator).bit_length())
     return Fraction(-(-(x.numerator << places) // x.denominator), 1 << places)
 
@@ -95,7 +97,7 @@ def bounds(
     b = [norm([abs(dot(row, g)) for row in p], INVERSE_BITS + residual_bits) for g in residuals]
     q = [
         norm(
-            [sum(abs(x) * w for x, w in zip(row, weights, strict=True)) for row in matrix],
+            [dot(map(abs, row), weights) for row in matrix],
             INVERSE_BITS + matrix_bits + WEIGHT_BITS,
         )
         for matrix in matrices
@@ -107,21 +109,22 @@ def bounds(
     return Bounds(*([rounded(x, ROUND) for x in part] for part in (b, q, kappa)))
 
 
-def dot(a: Sequence[int], b: Sequence[int]) -> int:
+def dot(a: Iterable[int], b: Iterable[int]) -> int:
     """The scalar product."""
-    return sum(x * y for x, y in zip(a, b, strict=True))
+    return sum(map(mul, a, b))
 
 
 def product(p: list[Vector], columns: Columns) -> list[Vector]:
     """P times a sparse matrix."""
-    return [[sum(row[e] * x for e, x in column) for column in columns] for row in p]
+    places = [([e for e, _ in column], [x for _, x in column]) for column in columns]
+    return [[sum(map(mul, [row[e] for e in at], values)) for at, values in places] for row in p]
 
 
 def weights_of(matrix: list[list[float]]) -> Vector:
     """Near the Perron vector of a matrix with entries >= 0: positive, over 2^WEIGHT_BITS."""
     vector = [1.0] * len(matrix)
     for _ in range(30):
-        image = [sum(x * y for x, y in zip(row, vector, strict=True)) for row in matrix]
+        image = [sum(map(mul, row, vector)) for row in matrix]
         top = max(max(image), 1e-300)
         vector = [x + y / top for x, y in zip(vector, image, strict=True)]
         top = max(vector)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import lcm
+from operator import add, mul, sub
 
 from .krawczyk import inverse
-from .motion_bounds import INVERSE_BITS, Columns, Vector
+from .motion_bounds import INVERSE_BITS, Columns, Vector, dot
 from .reading import require
 from .sheet import Sheet
 
@@ -15,6 +16,11 @@ ORDER = 8  # of the polynomial of a piece
 SPARE = 60  # bits before the point
 Curve = list[Vector]
 """Row k is the coefficient of s^k."""
+
+Parts = list[list[tuple[int, ...]]]
+"""The a_e of all edges for every coefficient of a curve."""
+
+Coefficient = Callable[[Curve, Parts, int], Vector]
 
 
 class LengthEquations:
@@ -48,12 +54,9 @@ class LengthEquations:
 
     def along(self, row: Sequence[int]) -> list[tuple[int, ...]]:
         """a_e for all edges."""
-        at = {v: tuple(row[k : k + 3]) for v, k in self.place.items()}
-        zero = (0, 0, 0)
-        return [
-            tuple(a - b for a, b in zip(at.get(i, zero), at.get(j, zero), strict=True))
-            for i, j in self.edges
-        ]
+        at: dict[int, tuple[int, ...]] = dict.fromkeys(self.pinned, (0, 0, 0))
+        at |= {v: tuple(row[k : k + 3]) for v, k in self.place.items()}
+        return [tuple(map(sub, at[i], at[j])) for i, j in self.edges]
 
     def columns(self, rows: Sequence[Sequence[int]], last: Sequence[int] | None) -> Columns:
         """The matrix of d -> rows_e . d_e, and of one more row."""
@@ -72,12 +75,9 @@ class LengthEquations:
 
     def weight_sums(self, weights: Sequence[int]) -> list[tuple[int, ...]]:
         """w_i + w_j in the three places of every edge."""
-        at = {v: tuple(weights[k : k + 3]) for v, k in self.place.items()}
-        zero = (0, 0, 0)
-        return [
-            tuple(a + b for a, b in zip(at.get(i, zero), at.get(j, zero), strict=True))
-            for i, j in self.edges
-        ]
+        at: dict[int, tuple[int, ...]] = dict.fromkeys(self.pinned, (0, 0, 0))
+        at |= {v: tuple(weights[k : k + 3]) for v, k in self.place.items()}
+        return [tuple(map(add, at[i], at[j])) for i, j in self.edges]
 
     def approximate_inverse(self, columns: Columns, bits: int) -> list[Vector]:
         """P for a matrix over 2^bits: any would do, as it is tested."""
@@ -91,35 +91,38 @@ class LengthEquations:
         return found
 
 
-def convolved(parts: Sequence[Sequence[Sequence[int]]], axes: slice, k: int) -> Vector:
+def convolved(parts: Parts, axes: slice, k: int) -> Vector:
     """The coefficient of s^k of |e|^2 for every edge, on some axes; e = sum_k parts[k] s^k."""
     total = [0] * len(parts[0])
     top = len(parts) - 1
     for i in range(max(0, k - top), k // 2 + 1):
         twice = 1 if 2 * i == k else 2
         for n, (a, b) in enumerate(zip(parts[i], parts[k - i], strict=True)):
-            total[n] += twice * sum(x * y for x, y in zip(a[axes], b[axes], strict=True))
+            total[n] += twice * sum(map(mul, a[axes], b[axes]))
     return total
 
 
 def extended(
-    curve: Curve, p: list[Vector], coefficient: Callable[[Curve, int], Vector], extra: int
+    equations: LengthEquations,
+    centre: Vector,
+    p: list[Vector],
+    coefficient: Coefficient,
+    extra: int,
 ) -> Curve:
-    """The curve with coefficients up to ORDER, by Newton's method with P; nothing is claimed.
+    """A curve from the centre by Newton's method with P, coefficient by coefficient.
 
-    `coefficient(curve, k)` is that of s^k in the equations, over 2^(bits + extra).
+    `coefficient(curve, parts, k)` is that of s^k in the equations, over 2^(bits + extra). Nothing
+    is claimed: any curve would do, as it is tested.
     """
-    curve = list(curve)
-    size = len(curve[0])
-    while len(curve) <= ORDER:
-        curve.append([0] * size)
+    curve, parts = [centre], [equations.along(centre)]
+    for k in range(1, ORDER + 1):
+        curve.append([0] * len(centre))
+        parts.append(equations.along(curve[k]))
         for _ in range(2):
-            g = coefficient(curve, len(curve) - 1)
+            g = coefficient(curve, parts, k)
             down = INVERSE_BITS + extra
-            curve[-1] = [
-                x - (sum(a * b for a, b in zip(row, g, strict=True)) >> down)
-                for x, row in zip(curve[-1], p, strict=True)
-            ]
+            curve[k] = [x - (dot(row, g) >> down) for x, row in zip(curve[k], p, strict=True)]
+            parts[k] = equations.along(curve[k])
     return curve
 
 
@@ -128,7 +131,4 @@ def at(curve: Curve, s: Fraction) -> Vector:
     powers = [s**k for k in range(len(curve))]
     low = powers[-1].denominator
     whole = [int(x * low) for x in powers]
-    return [
-        sum(a * x for a, x in zip(column, whole, strict=True)) // low
-        for column in zip(*curve, strict=True)
-    ]
+    return [dot(column, whole) // low for column in zip(*curve, strict=True)]

@@ -5,8 +5,17 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
-from .motion_bounds import INVERSE_BITS, WEIGHT_BITS, Bounds, Vector, bounds, product, weights_of
-from .motion_equations import Curve, LengthEquations, at, convolved, extended
+from .motion_bounds import (
+    INVERSE_BITS,
+    WEIGHT_BITS,
+    Bounds,
+    Vector,
+    bounds,
+    dot,
+    product,
+    weights_of,
+)
+from .motion_equations import Curve, LengthEquations, Parts, at, convolved, extended
 from .reading import require
 
 ROW_BITS = 20
@@ -63,15 +72,13 @@ class Start(Piece):
         self.halvings, up, bits = halvings, 1 << 2 * halvings, equations.bits
         last = [int(k == held) << bits + 2 * halvings for k in range(equations.size)]
         edges = equations.along(centre)
-        tilted = [
-            (x * up, y * up, e[2] * up) for (x, y, _), e in zip(equations.flat, edges, strict=True)
-        ]
+        pairs = zip(equations.flat, edges, strict=True)
+        tilted = [(x * up, y * up, e[2] * up) for (x, y, _), e in pairs]
         columns = equations.columns(tilted, last)
         p = equations.approximate_inverse(columns, bits + 2 * halvings)
 
-        def coefficient(curve: Curve, k: int) -> Vector:
+        def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
             """That of s^k, over 2^(2 bits + 2 halvings + 1)."""
-            parts = [equations.along(row) for row in curve]
             total = [0] * len(equations.edges)
             if k < len(curve):
                 total = [
@@ -88,7 +95,7 @@ class Start(Piece):
             here = curve[k][held] if 0 < k < len(curve) else 0
             return [*total, here << bits + 2 * halvings + 1]
 
-        curve = extended([centre], p, coefficient, bits + 2 * halvings + 1)
+        curve = extended(equations, centre, p, coefficient, bits + 2 * halvings + 1)
         parts = [equations.along(row) for row in curve]
         matrices = [product(p, columns)]
         for k in range(1, len(curve) + 1):
@@ -101,7 +108,7 @@ class Start(Piece):
         squares = [[z * z for _, _, z in sums], [(x * x + y * y) // up + 1 for x, y, _ in sums]]
         proof = bounds(
             p,
-            [coefficient(curve, k) for k in range(2 * len(curve))],
+            [coefficient(curve, parts, k) for k in range(2 * len(curve))],
             2 * (bits + halvings) + 1,
             matrices,
             bits + 2 * halvings,
@@ -143,23 +150,19 @@ class Tube(Piece):
         columns = equations.columns(here, [t << bits - ROW_BITS for t in row])
         p = equations.approximate_inverse(columns, bits)
 
-        def coefficient(curve: Curve, k: int) -> Vector:
+        def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
             """That of s^k, over 2^(2 bits + 1)."""
-            parts = [equations.along(a) for a in curve]
             total = convolved(parts, slice(0, 3), k)
             last = 0
             if k < len(curve):
-                linear = [
-                    2 * sum(x * y for x, y in zip(u, e, strict=True))
-                    for u, e in zip(equations.flat, parts[k], strict=True)
-                ]
+                linear = [2 * dot(u, e) for u, e in zip(equations.flat, parts[k], strict=True)]
                 total = [x + y for x, y in zip(total, linear, strict=True)]
                 if k:
-                    last = sum(t * a for t, a in zip(row, curve[k], strict=True))
+                    last = dot(row, curve[k])
             last -= int(k == 1) << bits + ROW_BITS
             return [*total, last << bits - ROW_BITS + 1]
 
-        curve = extended([centre], p, coefficient, bits + 1)
+        curve = extended(equations, centre, p, coefficient, bits + 1)
         parts = [equations.along(a) for a in curve]
         matrices = [product(p, columns)]
         matrices += [product(p, equations.columns(part, None)) for part in parts[1:]]
@@ -167,7 +170,7 @@ class Tube(Piece):
         squares = [[sum(x * x for x in e) for e in equations.weight_sums(weights)]]
         proof = bounds(
             p,
-            [coefficient(curve, k) for k in range(2 * len(curve) - 1)],
+            [coefficient(curve, parts, k) for k in range(2 * len(curve) - 1)],
             2 * bits + 1,
             matrices,
             bits,
@@ -184,11 +187,9 @@ class Tube(Piece):
         reach, and x as near to p(s) as only x(s) does.
         """
         one = 1 << self.bits + ROW_BITS
-        middle = Fraction(
-            sum(t * (x - c) for t, x, c in zip(self.row, ball.centre, self.curve[0], strict=True)),
-            one,
-        )
-        spread = Fraction(sum(abs(t) * r for t, r in zip(self.row, ball.radii, strict=True)), one)
+        gaps = [x - c for x, c in zip(ball.centre, self.curve[0], strict=True)]
+        middle = Fraction(dot(self.row, gaps), one)
+        spread = Fraction(dot(map(abs, self.row), ball.radii), one)
         require(abs(middle) + spread <= self.reach, "a motion enters a tube beyond its reach")
         point = at(self.curve, middle)
         for i, (x, y) in enumerate(zip(point, ball.centre, strict=True)):
@@ -196,8 +197,8 @@ class Tube(Piece):
             gap = abs(x - y) + 1 + ball.radii[i] + spread * fast
             room = self.apart * Fraction(self.weights[i] << self.bits, 1 << WEIGHT_BITS)
             require(gap < room, "a motion does not enter the next tube where zeros are unique")
-        forwards = sum(t * v for t, v in zip(self.row, velocity.centre, strict=True))
-        against = sum(abs(t) * r for t, r in zip(self.row, velocity.radii, strict=True))
+        forwards = dot(self.row, velocity.centre)
+        against = dot(map(abs, self.row), velocity.radii)
         require(forwards > against, "a motion may enter a tube backwards")
         return middle + spread
 
