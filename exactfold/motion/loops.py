@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from math import inf, nextafter
 
 import numpy as np
 
@@ -81,25 +83,18 @@ class Passage:
 class Loop:
     """The true configurations from the flat state along `source` back to it along `target`.
 
-    One analytic curve without a gap, proved from end to end where `status` is PROVED: from `start`
-    through `steps` to `landing`. `through` are the nodes that it passes, each by its flat vertices.
-    `length` bounds its length in the unit of the sheet; if UNDECIDED that of the part that is
-    proved, `target` and `landing` are None, and `reason` says what stopped the proof.
+    `through`: the vertices that are flat at each node on the way, in order. `length` bounds the
+    length in the unit of the sheet; where `status` is UNDECIDED that of the part that is proved,
+    `target` is None, and `reason` says what stopped the proof. `tubes`: how many proved it.
     """
 
     source: HalfBranch
     target: HalfBranch | None
+    through: tuple[tuple[int, ...], ...]
     length: Interval
     status: Verdict
     reason: str
-    start: StartTube
-    steps: tuple[Link | Passage, ...]
-    landing: Landing | None
-
-    @property
-    def through(self) -> tuple[tuple[int, ...], ...]:
-        """The vertices that are flat at each node on the way, in order."""
-        return tuple(step.vertices for step in self.steps if isinstance(step, Passage))
+    tubes: int
 
     def to_dict(self) -> dict[str, object]:
         """The loop as `exactfold motions --json` prints it."""
@@ -108,13 +103,48 @@ class Loop:
             "from": self.source.to_dict(),
             "to": None if self.target is None else self.target.to_dict(),
             "through": [{"flat": list(vertices)} for vertices in self.through],
-            "length": [float(low), float(high)],
+            "length": [below(low), above(high)],
             "status": str(self.status),
             "reason": self.reason,
+            "tubes": self.tubes,
         }
 
     def __repr__(self) -> str:
         return f"<Loop: {self.source} to {self.target}, {self.status}>"
+
+
+@dataclass(frozen=True, repr=False)
+class LoopProof:
+    """One analytic curve of configurations from `start` through `steps` to `landing`, no gap.
+
+    Without `landing` it ends after the last step, and `reason` says why.
+    """
+
+    problem: Problem
+    start: StartTube
+    steps: tuple[Link | Passage, ...]
+    landing: Landing | None
+    reason: str
+
+    @property
+    def loop(self) -> Loop:
+        """What is proved."""
+        landing, unit = self.landing, self.start.framework.unit
+        low, high = self.steps[-1].left if self.steps else self.start.length(0, self.start.last)
+        if landing is not None:
+            low, high = _whole_length(self.steps[-1], landing)
+        return Loop(
+            named(self.start),
+            None if landing is None else landing.to,
+            tuple(step.vertices for step in self.steps if isinstance(step, Passage)),
+            (low * unit, high * unit),
+            UNDECIDED if landing is None else PROVED,
+            self.reason,
+            len(self.steps) + 1,
+        )
+
+    def __repr__(self) -> str:
+        return f"<LoopProof: {len(self.steps)} steps, {self.loop!r}>"
 
 
 @dataclass(frozen=True)
@@ -123,32 +153,19 @@ class LoopFinder:
 
     problem: Problem
 
-    def loop(self, branch: Branch, side: int = 1) -> Loop:
+    def follow(self, branch: Branch, side: int = 1) -> LoopProof:
         """The loop that leaves the flat state along a half-branch of a simple, proved branch.
 
         Raises as `half_branch`.
 
         >>> from exactfold.count.find import find_branch
         >>> branch = find_branch("two-vertex", "+-")
-        >>> LoopFinder(Problem.of(branch.pattern)).loop(branch)
+        >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
         <Loop: +-, saddle + to --, saddle +, proved>
         """
         start = half_branch(branch, side).start
         steps, landing, reason = self._followed(start)
-        unit = start.framework.unit
-        low, high = steps[-1].left if steps else start.length(0, start.last)
-        if landing is not None:
-            low, high = _whole_length(steps[-1], landing)
-        return Loop(
-            _named(start),
-            None if landing is None else landing.to,
-            (low * unit, high * unit),
-            UNDECIDED if landing is None else PROVED,
-            reason,
-            start,
-            tuple(steps),
-            landing,
-        )
+        return LoopProof(self.problem, start, tuple(steps), landing, reason)
 
     def _followed(self, start: StartTube) -> tuple[list[Link | Passage], Landing | None, str]:
         """The steps from a start tube on, to a landing or to what stopped the proof."""
@@ -243,7 +260,7 @@ class LoopFinder:
         velocity = start.ball_velocity(tau)
         if tube.goes_along(velocity) * (1 if tau > 0 else -1) != -1:
             return None
-        return Landing(_named(start, 1 if tau > 0 else -1), start, tau)
+        return Landing(named(start, 1 if tau > 0 else -1), start, tau)
 
     def _start(self, tube: Tube, heights: FloatArray) -> StartTube | None:
         try:
@@ -252,7 +269,7 @@ class LoopFinder:
             return None
 
 
-def _named(start: StartTube, side: int = 1) -> HalfBranch:
+def named(start: StartTube, side: int = 1) -> HalfBranch:
     """The half-branch of a start tube, or of its mirror image."""
     named = HalfBranch(start.vertex_signs, start.side)
     return named if side > 0 else named.mirrored
@@ -265,3 +282,14 @@ def _whole_length(step: Link | Passage, landing: Landing) -> Interval:
     shortest, longest = landing.start.length(0, abs(landing.tau))
     low = step.time(found[0])[0] if found[0] >= step.entry[1] else step.entered[0]
     return low + shortest, step.time(found[1])[1] + longest
+
+
+def below(value: Fraction) -> float:
+    """The nearest float, or the next one below if that is above the value."""
+    found = float(value)
+    return found if Fraction(found) <= value else nextafter(found, -inf)
+
+
+def above(value: Fraction) -> float:
+    """The nearest float, or the next one above if that is below the value."""
+    return -below(-value)
