@@ -81,7 +81,7 @@ class Watch:
         found = [
             *self._node(piece),
             *self._angle_events(piece, grid, angles),
-            *self._turnings(piece, grid, positions),
+            *self._turnings(piece, grid, positions, angles),
             *self._returns(piece, grid, raw),
         ]
         if self.look_for_contacts:
@@ -138,8 +138,7 @@ class Watch:
                 def excess(
                     s: float, e: int = e, near: float = angles[k + 1, e], goal: float = goal
                 ) -> float:
-                    raw = self._angle(piece, s, e)
-                    return abs(raw + 2 * np.pi * round((near - raw) / (2 * np.pi))) - goal
+                    return abs(self._angle(piece, s, e, near)) - goal
 
                 low, high = _bracket(excess, grid[k], grid[k + 1])
                 i, j, left, right = (int(v) for v in fold)
@@ -147,12 +146,14 @@ class Watch:
                 found.append(self._event(piece, kind, low, high, faces=faces, folds=((i, j),)))
         return found
 
-    def _angle(self, piece: Piece, s: float, e: int) -> float:
+    def _angle(self, piece: Piece, s: float, e: int, near: float) -> float:
+        """The angle of a hinge, continued to one that is near."""
         positions = self.framework.positions(piece.at(s))
-        return float(fold_angles_of(positions, self.framework.hinges[e : e + 1])[0])
+        raw = float(fold_angles_of(positions, self.framework.hinges[e : e + 1])[0])
+        return raw + 2 * np.pi * round((near - raw) / (2 * np.pi))
 
     def _turnings(
-        self, piece: Piece, grid: FloatArray, positions: FloatArray
+        self, piece: Piece, grid: FloatArray, positions: FloatArray, angles: FloatArray
     ) -> list[tuple[float, Event]]:
         framework = self.framework
         rates = angle_rates(positions, framework.displacement(piece.speed(grid)), framework.hinges)
@@ -170,7 +171,12 @@ class Watch:
 
             low, high = _bracket(rate, grid[k], grid[k + 1])
             i, j = (int(v) for v in framework.hinges[e, :2])
-            found.append(self._event(piece, TURNING, low, high, folds=((i, j),)))
+            size = abs(np.degrees(self._angle(piece, high, e, angles[k + 1, e])))
+            found.append(
+                self._event(
+                    piece, TURNING, low, high, folds=((i, j),), detail=f"at {size:.4g} degrees"
+                )
+            )
         return found
 
     def _returns(
