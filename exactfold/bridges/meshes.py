@@ -78,9 +78,7 @@ def animated_gltf(
                 attributes=gltf.Attributes(POSITION=first, NORMAL=base),
                 indices=file.add(faces.reshape(-1, 1), _UINT, _INDICES),
                 material=side,
-                targets=[
-                    {"POSITION": p, "NORMAL": n} for p, n in zip(others, moved, strict=True)
-                ],
+                targets=[{"POSITION": p, "NORMAL": n} for p, n in zip(others, moved, strict=True)],
             )
         )
     keys, weights = _keys(len(coords), returns)

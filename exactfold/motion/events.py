@@ -211,16 +211,25 @@ class Watch:
             return []
         k = int(np.argmax(hits))
         low, high = grid[k - 1], grid[k]
-        while high - low > 1e-13 * max(piece.reach, 1e-300):
-            middle = 0.5 * (low + high)
-            if not low < middle < high:
-                break
-            if self._crossings.found(self.framework.positions(piece.at(middle))):
-                high = middle
-            else:
-                low = middle
+        pair = pairs = self._crossings.pairs(positions[k])
+        while len(pairs):  # others may cross before those that cross at the end
+            start, pair = low, pairs
+            while high - start > 1e-13 * max(piece.reach, 1e-300):
+                middle = 0.5 * (start + high)
+                if not start < middle < high:
+                    break
+                there = self.framework.positions(piece.at(middle))
+                if self._crossings.cross(there[None], pairs).any():
+                    high = middle
+                else:
+                    start = middle
+            pairs = self._crossings.pairs(self.framework.positions(piece.at(start)))
+            if len(pairs):
+                high = start
+        low = start
         there = self.framework.positions(piece.at(high))
-        crossing = self._crossings.found(there)[0]
+        first = pair[self._crossings.cross(there[None], pair)[0]][0]
+        crossing = self._crossings.named(first)
         faces = (self._face_at(crossing.edge, crossing.face), crossing.face)
         detail = self._crossings.kind(crossing, there)
         return [self._event(piece, CONTACT, low, high, faces=faces, detail=detail)]
