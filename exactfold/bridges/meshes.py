@@ -122,11 +122,12 @@ def animated_gltf(
 def gltf_bytes(model: GLTF2, *, binary: bool) -> bytes:
     """A GLB file, or a .gltf file of JSON with its data inside."""
     if binary:
-        return b"".join(model.save_to_bytes())
+        return bytes(b"".join(model.save_to_bytes()))
     import pygltflib as gltf
 
     model.convert_buffers(gltf.BufferFormat.DATAURI)
-    return (model.to_json(separators=(",", ":")) + "\n").encode("utf-8")
+    text: str = model.to_json(separators=(",", ":"))
+    return f"{text}\n".encode()
 
 
 def _keys(frames: int, returns: bool) -> tuple[FloatArray, FloatArray]:
@@ -134,7 +135,7 @@ def _keys(frames: int, returns: bool) -> tuple[FloatArray, FloatArray]:
     steps = list(range(frames))
     if not returns:
         steps += steps[-2::-1]
-    times = np.arange(len(steps)) * (SECONDS / (frames - 1))
+    times = np.arange(len(steps), dtype=np.float64) * (SECONDS / (frames - 1))
     weights = np.zeros((len(steps), frames))
     weights[np.arange(len(steps)), steps] = 1.0
     return times, np.ascontiguousarray(weights[:, 1:])

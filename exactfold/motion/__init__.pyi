@@ -4,3 +4,4 @@ from exactfold.motion.following import follow as follow
 from exactfold.motion.framework import Framework as Framework
 from exactfold.motion.motion import Motion as Motion
 from exactfold.motion.start import Start as Start
+from exactfold.motion.writing import write_motion as write_motion

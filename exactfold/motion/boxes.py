@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from exactfold.arrays import FloatArray, IndexArray
+
+Corners: TypeAlias = tuple[FloatArray, FloatArray]
+"""The lower and the upper corners of boxes, shape (n, 3) each."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -31,12 +35,13 @@ class BoxTree:
                 )
         return cls(np.argsort(code, kind="stable"))
 
-    def levels(self, low: FloatArray, high: FloatArray, depth: int) -> list[FloatArray]:
+    def levels(self, corners: Corners, depth: int) -> list[FloatArray]:
         """Boxes of the nodes, from the root down to single things, shape (6, 2^k) each.
 
-        `low`, `high`: corners of the boxes of the things, shape (n, 3); of a node the three lower
-        and the three upper bounds. What is missing of 2^depth things has an empty box.
+        `corners`: of the boxes of the things; of a node the three lower and the three upper bounds.
+        What is missing of 2^depth things has an empty box.
         """
+        low, high = corners
         boxes = np.full((6, 1 << depth), np.inf)
         boxes[3:] = -np.inf
         boxes[:3, : len(self.order)] = low[self.order].T
@@ -51,13 +56,10 @@ class BoxTree:
         return f"<BoxTree: {len(self.order)} boxes>"
 
 
-def meeting(
-    one: BoxTree, two: BoxTree, corners: tuple[FloatArray, ...], others: tuple[FloatArray, ...]
-) -> IndexArray:
+def meeting(one: BoxTree, two: BoxTree, corners: Corners, others: Corners) -> IndexArray:
     """All pairs (k, m) such that box k of the first tree meets box m of the second.
 
-    `corners`, `others`: low and high corners of the boxes, shapes (n, 3). Shape (pairs, 2), in no
-    order that means anything.
+    `corners`, `others`: of their boxes. Shape (pairs, 2), in no order that means anything.
 
     >>> places = np.array([[0.0, 0.0], [1.0, 0.0], [5.0, 5.0]])
     >>> low = np.column_stack([places, np.zeros(3)])
@@ -66,7 +68,7 @@ def meeting(
     [(0, 0), (0, 1), (1, 0), (1, 1), (2, 2)]
     """
     depth = int(max(len(one.order), len(two.order)) - 1).bit_length()
-    first, second = one.levels(*corners, depth), two.levels(*others, depth)
+    first, second = one.levels(corners, depth), two.levels(others, depth)
     one_at = two_at = np.zeros(1, dtype=np.intp)
     for k in range(depth + 1):
         if k:

@@ -56,8 +56,8 @@ def follow(
     `by`. `side`: 1 for the ray that `branch` shows, -1 for its mirror image.
 
     Raises `UsageError` for options that make no sense, `NotApplicableError` for a branch that is
-    not simple, `UndecidedBranchError` for one of which nothing is proved. A motion that ends "singular" could not be followed further, which
-    does not mean that it ends there.
+    not simple, `UndecidedBranchError` for one of which nothing is proved. A motion that ends
+    "singular" could not be followed further, which does not mean that it ends there.
 
     >>> from exactfold.count.find import find_branch
     >>> follow(find_branch("two-vertex", "+-"), until="90deg", frames=5)

@@ -1,4 +1,4 @@
-"""`write_motion`: a motion as a FOLD file with frames, as glTF with an animation, or as OBJ files."""
+"""`write_motion`: a motion as FOLD with frames, as glTF with an animation, or as OBJ files."""
 
 from __future__ import annotations
 

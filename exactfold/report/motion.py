@@ -71,7 +71,7 @@ def ending_text(motion: Motion) -> str:
 def event_text(event: Event) -> str:
     """An event in plain words, with its faces and folds.
 
-    >>> event_text(Event("contact", (0.5, 0.5), faces=((1, 2, 3), (4, 5, 6)), detail="edge on edge"))
+    >>> event_text(Event("contact", (0.5, 0.5), ((1, 2, 3), (4, 5, 6)), detail="edge on edge"))
     'faces 1-2-3 and 4-5-6 meet (edge on edge)'
     """
     folds = ", ".join(f"{i}-{j}" for i, j in event.folds)

@@ -1,4 +1,4 @@
-"""SVG pictures without dependencies: elements as text, numbers kept short, axes with round ticks."""
+"""SVG pictures without dependencies: elements as text, short numbers, axes with round ticks."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def path(points: Sequence[Point], *, closed: bool = False, **more: str | float) 
     '<path d="M0 0L1 0.5" fill="none"/>'
     """
     steps = "L".join(f"{number(x)} {number(y)}" for x, y in points)
-    return element("path", d=f"M{steps}{'Z' if closed else ''}", **more)
+    return element("path", "", d=f"M{steps}{'Z' if closed else ''}", **more)
 
 
 def picture(width: float, height: float, parts: Iterable[str], title: str) -> str:

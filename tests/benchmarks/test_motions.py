@@ -1,4 +1,4 @@
-"""How long motions take: `pytest tests/benchmarks/test_motions.py --benchmark-enable -s -m slow`."""
+"""How long motions take: run with `-m slow --benchmark-enable -s`."""
 
 from __future__ import annotations
 
