@@ -179,11 +179,18 @@ def continued(
         yield piece
         x = piece.at(piece.reach)
         direction = piece.speed(piece.reach)
-        coefficients, orientation = expansion(framework, x, direction, order)
-        reach = _radius(coefficients, tolerance)
-        if not (np.isfinite(reach) and reach > _SMALLEST):
-            raise LostCurveError("the steps of the continuation become too short")
-        piece = Piece(coefficients, reach, piece.time + piece.length, orientation)
+        time = piece.time + piece.length
+        piece = piece_of(*expansion(framework, x, direction, order), time, tolerance)
+
+
+def piece_of(
+    coefficients: FloatArray, orientation: int, time: float = 0.0, tolerance: float = TOLERANCE
+) -> Piece:
+    """The piece as far as an expansion is good; raises `LostCurveError` if that is not far."""
+    reach = _radius(coefficients, tolerance)
+    if not (np.isfinite(reach) and reach > _SMALLEST):
+        raise LostCurveError("the steps of the continuation become too short")
+    return Piece(coefficients, reach, time, orientation)
 
 
 def expansion(

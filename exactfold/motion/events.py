@@ -10,8 +10,9 @@ from scipy.optimize import brentq, minimize_scalar
 
 from exactfold.arrays import FloatArray
 from exactfold.motion.angles import angle_rates, fold_angles_of
+from exactfold.motion.crossing_curves import crossing_in, flat_vertices
 from exactfold.motion.crossings import Crossings
-from exactfold.motion.curve import Piece, orientation_at
+from exactfold.motion.curve import Piece
 from exactfold.motion.framework import Framework
 from exactfold.pattern.crease_pattern import Edge, Triangle
 
@@ -21,7 +22,7 @@ ANGLE, LENGTH = "angle", "length"
 
 _SAMPLES = 8
 _NEAR_FLAT = 0.3
-_FLAT, _FLAT_STAR = 1e-5, 1e-4
+_FLAT = 1e-5
 
 
 @dataclass(frozen=True)
@@ -100,28 +101,10 @@ class Watch:
         before, self._before = self._before, piece
         if before is None or before.orientation * piece.orientation >= 0:
             return []
-        low, high = 0.0, before.reach
-        for _ in range(50):
-            middle = 0.5 * (low + high)
-            sign = orientation_at(self.framework, before.at(middle), before.speed(middle))
-            if sign == before.orientation:
-                low = middle
-            else:
-                high = middle
-        times = tuple(before.time + before.length_to(s) for s in (low, high))
-        flat = self._flat_stars(before.at(high))
-        return [(0.0, Event(NODE, (times[0], times[1]), vertices=flat))]
-
-    def _flat_stars(self, unknowns: FloatArray) -> tuple[int, ...]:
-        """The interior vertices at which all folds are flat, or nearly."""
-        positions = self.framework.positions(unknowns)
-        angles = np.abs(fold_angles_of(positions, self.framework.hinges))
-        ends = self.framework.hinges[:, :2]
-        return tuple(
-            v
-            for v in self.framework.sheet.interior
-            if angles[(ends == v).any(axis=1)].max(initial=0.0) < _FLAT_STAR
-        )
+        ends = crossing_in(self.framework, before)
+        low, high = (before.time + before.length_to(s) for s in ends)
+        flat = flat_vertices(self.framework, before.at(ends[1]))
+        return [(0.0, Event(NODE, (low, high), vertices=flat))]
 
     def _angle_events(
         self, piece: Piece, grid: FloatArray, angles: FloatArray

@@ -1,0 +1,80 @@
+"""Proved bounds of the length of a piece of a curve that is near a polynomial one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import isqrt, lcm
+
+import numpy as np
+
+from exactfold.motion.length_equations import Row, squared
+
+_DEGREE = 10
+_COMMON = lcm(*range(1, _DEGREE + 2))
+_ROUND = 80
+Interval = tuple[Fraction, Fraction]
+
+
+def length_between(
+    velocity: Sequence[Row], bits: int, error: Sequence[int], places: int, low: int, high: int
+) -> Interval:
+    """Bounds of the length of x(s) for low <= s <= high, integers over 2^`places`.
+
+    `velocity` are the coefficients of p'(s) over 2^bits, `error` bounds of |x_i'(s) - p_i'(s)| over
+    2^bits for all s between. With a polynomial S near |p'|,
+
+        | |p'| - S | <= max | |p'|^2 - S^2 | / min S,
+
+    both from the absolute values of the coefficients, and the integral of S is exact.
+
+    >>> [float(x) for x in length_between([(3, 4)], 0, (0, 0), 1, 0, 1)]
+    [2.5, 2.5]
+    """
+    if high <= low:
+        return Fraction(0), Fraction(0)
+    curve = np.array(velocity, dtype=object)[:, None, :]
+    speed = [int(x[0]) for x in squared(curve)]  # |p'|^2 over 2^(2 bits)
+    # Places after the point for S, so that slow curves keep their digits.
+    extra = max(0, 64 - speed[0].bit_length() // 2)
+    speed = [x << 2 * extra for x in speed]
+    unit = bits + extra
+    root = [isqrt(speed[0]) or 1]
+    for k in range(1, _DEGREE + 1):
+        rest = speed[k] if k < len(speed) else 0
+        rest -= sum(root[i] * root[k - i] for i in range(1, k))
+        root.append(rest // (2 * root[0]))
+    top = max(len(speed), 2 * _DEGREE + 1) - 1
+    misfit = [-x for x in speed] + [0] * (top + 1 - len(speed))
+    for i, a in enumerate(root):
+        for j, b in enumerate(root):
+            misfit[i + j] += a * b
+    most = max(abs(low), abs(high))
+
+    def largest(coefficients: Sequence[int]) -> int:
+        """The sum of |c_k| most^k, rounded up."""
+        total = 0
+        for c in reversed(coefficients):
+            total = -(-total * most >> places) + abs(c)
+        return total
+
+    least = 2 * root[0] - largest(root)
+    off = isqrt(sum(r * r for r in error)) + 1 if any(error) else 0
+    span = Fraction(high - low, 1 << places)
+    if least <= 0:  # the direction turns too much: only bounds of the speed are left
+        fast = largest([isqrt(sum(x * x for x in row)) + 1 for row in velocity])
+        return Fraction(0), rounded(Fraction(fast + off, 1 << bits) * span, 1)
+    slack = (Fraction(off, 1 << bits) + Fraction(-(-largest(misfit) // least), 1 << unit)) * span
+    integral = sum(
+        (high ** (k + 1) - low ** (k + 1) << places * (_DEGREE - k)) * r * (_COMMON // (k + 1))
+        for k, r in enumerate(root)
+    )
+    middle = Fraction(integral, _COMMON << unit + places * (_DEGREE + 1))
+    return max(Fraction(0), rounded(middle - slack, -1)), rounded(middle + slack, 1)
+
+
+def rounded(value: Fraction, direction: int) -> Fraction:
+    """A dyadic number near a rational one, not below it (1) or not above it (-1)."""
+    scaled = value.numerator << _ROUND
+    whole = -(-scaled // value.denominator) if direction > 0 else scaled // value.denominator
+    return Fraction(whole, 1 << _ROUND)

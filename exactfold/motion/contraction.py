@@ -1,0 +1,251 @@
+"""A curve of zeros near a polynomial curve: the numbers that prove it, exact and rounded upwards.
+
+For equations H(x, s) = 0, quadratic in x, a predictor p(s) and any matrix P, the map
+y -> y - P H(p(s) + y, s) is studied in a weighted maximum norm (docs/motion.md, Theorem 1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import isqrt
+from typing import Any
+
+import numpy as np
+
+from exactfold.arrays import BigArray, FloatArray, IndexArray, IntArray
+
+SCALE = 128
+"""Numbers of a `Contraction`, and all arguments, are integers over 2^SCALE."""
+
+ONE = 1 << SCALE
+INVERSE_BITS = 26
+"""P is rounded to a multiple of 2^-INVERSE_BITS."""
+
+WEIGHT_BITS = 16
+_WORD = 62
+_SHORTEST = 14
+
+
+@dataclass(frozen=True, repr=False)
+class Contraction:
+    """Bounds for |s| <= h: residual b(h), slope q(h), quadratic part kappa(h), polynomials in h.
+
+    b(h) >= |P H(p(s), s)|, q(h) >= |1 - P DH(p(s), s)|, kappa(h) >= |P D2H(s)|, in the norm
+    |y| = max |y_i| / w_i. Theorem 1: if b + q r + kappa r^2 / 2 < r and q + kappa r < 1, then for
+    every |s| <= h there is exactly one zero x(s) with |x(s) - p(s)| <= r; it is regular and depends
+    analytically on s. Two zeros within R of p(s), q + kappa R < 1, are equal.
+    """
+
+    residual: tuple[int, ...]
+    slope: tuple[int, ...]
+    quadratic: tuple[int, ...]
+
+    def radius(self, reach: int) -> int | None:
+        """An r with which Theorem 1 holds, nearly the smallest; None if none was found.
+
+        >>> half = ONE >> 1
+        >>> Contraction((1,), (half,), (0,)).radius(ONE)
+        4
+        >>> Contraction((1,), (ONE,), (0,)).radius(ONE) is None
+        True
+        """
+        b, q, kappa = (polynomial(c, reach) for c in (self.residual, self.slope, self.quadratic))
+        if q >= ONE:
+            return None
+        # The smaller root of b - (1 - q) r + kappa r^2 / 2, and a little more.
+        room = ONE - q
+        square = room * room - 2 * kappa * b
+        if square <= 0:
+            return None
+        r = (2 * b << SCALE) // (room + isqrt(square))
+        r += (r >> 16) + 2
+        # Integers: b + q r + kappa r^2 / 2 < r and q + kappa r < 1, nothing rounded.
+        quadratic = kappa * r
+        if ((b - r) << (SCALE + 1)) + 2 * q * r + (quadratic * r >> SCALE) + 1 >= 0:
+            return None
+        return r if (q << SCALE) + quadratic < 1 << 2 * SCALE else None
+
+    def uniqueness(self, reach: int) -> int:
+        """An R within which zeros are unique for |s| <= reach; 0 if none is known."""
+        q, kappa = polynomial(self.slope, reach), polynomial(self.quadratic, reach)
+        room = ONE - q - (ONE >> 6)
+        return (room << SCALE) // kappa if room > 0 and kappa else 0
+
+    def velocity(self, reach: int, radius: int) -> int:
+        """A bound of |x'(s) - p'(s)| for |s| <= reach, where x(s) is within `radius` of p(s).
+
+        (b' + q' r + kappa' r^2 / 2) / (1 - q - kappa r).
+        """
+        b, q, kappa = (
+            polynomial(derivative(c), reach) for c in (self.residual, self.slope, self.quadratic)
+        )
+        top = b + up(q * radius, SCALE) + up(kappa * radius * radius, 2 * SCALE + 1)
+        bottom = ONE - polynomial(self.slope, reach)
+        bottom -= up(polynomial(self.quadratic, reach) * radius, SCALE)
+        return -((-top << SCALE) // bottom)
+
+    def __repr__(self) -> str:
+        b, q, kappa = (c[0] / ONE for c in (self.residual, self.slope, self.quadratic))
+        return f"<Contraction: residual {b:.1e}, slope {q:.1e}, quadratic {kappa:.1e}>"
+
+
+def up(value: int, shift: int) -> int:
+    """value / 2^shift, rounded up."""
+    return -(-value >> shift)
+
+
+def polynomial(coefficients: Sequence[int], at: int) -> int:
+    """A polynomial with coefficients >= 0 at a number >= 0, rounded up."""
+    total = 0
+    for c in reversed(coefficients):
+        total = up(total * at, SCALE) + c
+    return total
+
+
+def derivative(coefficients: Sequence[int]) -> list[int]:
+    """The coefficients of the derivative."""
+    return [k * c for k, c in enumerate(coefficients)][1:]
+
+
+Whole = IntArray | BigArray
+
+
+@dataclass(frozen=True, repr=False)
+class Places:
+    """The ends of the edges at the free vertices, sorted by vertex: signs of +-1 in the equations.
+
+    A row v_e for every edge stands for the matrix that takes y to v_e . (y_i - y_j).
+    """
+
+    size: int
+    vertex: IndexArray
+    edge: IndexArray
+    sign: IndexArray
+
+    def dense(self, rows: Any) -> Any:
+        """The matrix of the rows, shape (edges, size)."""
+        found = np.zeros((len(rows), self.size), dtype=rows.dtype)
+        columns = 3 * self.vertex[:, None] + np.arange(3)
+        found[self.edge[:, None], columns] = self.sign[:, None] * rows[self.edge]
+        return found
+
+    def product(self, left: Any, rows: Any) -> Any:
+        """left @ dense(rows), without the zeros."""
+        weighted = self.sign[:, None] * rows[self.edge]
+        taken = left[:, self.edge]
+        found = np.empty((len(left), self.size), dtype=np.result_type(left, rows))
+        for a in range(3):
+            found[:, a::3] = np.add.reduceat(taken * weighted[:, a], self._starts, axis=1)
+        return found
+
+    @cached_property
+    def _starts(self) -> IndexArray:
+        return np.flatnonzero(np.diff(self.vertex, prepend=-1))
+
+    @cached_property
+    def most(self) -> int:
+        """The largest number of edges at a vertex."""
+        return int(np.bincount(self.vertex).max())
+
+    def __repr__(self) -> str:
+        return f"<Places: {len(self.edge)} ends of edges, {self.size} unknowns>"
+
+
+def contraction(
+    inverse: FloatArray,
+    residuals: Sequence[Sequence[int]],
+    residual_bits: int,
+    places: Places,
+    rows: Sequence[BigArray],
+    last: Sequence[int],
+    row_bits: int,
+    squares: Sequence[Sequence[int]],
+    sums: Sequence[int],
+    weights: Sequence[int],
+) -> Contraction:
+    """The bounds for P, which is `inverse` rounded. Everything is exact or rounded upwards.
+
+    `residuals[k]` is the coefficient of s^k of H(p(s), s), integers over 2^`residual_bits`.
+    `rows[k]` are the edge vectors of that of DH(p(s), s) and `last` is its last row, for k = 0
+    only, integers over 2^`row_bits`. With the positive `weights` over 2^WEIGHT_BITS, `sums[e]` is
+    the sum of w_i + w_j over the three places of edge e = (i, j), and `squares[k]` bounds the
+    coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
+    """
+    n = len(weights)
+    p = _whole(inverse)
+    size = np.asarray(abs(p))
+
+    def norm(rows: Sequence[int], bits: int) -> int:
+        """max rows_i / w_i, where the rows are over 2^bits, over 2^SCALE."""
+        shift = SCALE + WEIGHT_BITS - bits
+        left, right = max(shift, 0), max(-shift, 0)
+        return max(-(-(row << left) // (w << right)) for row, w in zip(rows, weights, strict=True))
+
+    off = _above(size[:, :-1], sums)  # what half a unit in every row can do, in half units
+    room = _WORD - _largest(p).bit_length() - places.most.bit_length()
+    slope = []
+    for k, vectors in enumerate(rows):
+        # All but the first, which nearly cancels, are rounded to what machine words hold.
+        drop = max(0, _largest(vectors).bit_length() - room) if k and room > _SHORTEST else 0
+        if drop:
+            vectors = np.asarray((vectors + (1 << (drop - 1))) >> drop)
+        product = _product(p, places, vectors)
+        if k == 0:
+            product = product + _dot(p[:, -1:], np.array([last], dtype=object))
+            product[np.diag_indices(n)] -= 1 << INVERSE_BITS + row_bits
+        above = _above(np.asarray(abs(product)), weights)
+        sizes = [(2 * x + (y if drop else 0)) << drop for x, y in zip(above, off, strict=True)]
+        slope.append(norm(sizes, INVERSE_BITS + row_bits + WEIGHT_BITS + 1))
+    quadratic = [
+        norm(_above(size[:, :-1], square), INVERSE_BITS + 2 * WEIGHT_BITS) for square in squares
+    ]
+    spare = max(_WORD - _largest(p).bit_length() - n.bit_length(), _SHORTEST)
+    shifts = [max(0, max(map(int.bit_length, g)) - spare) for g in residuals]
+    short = [[x >> shift for x in g] for g, shift in zip(residuals, shifts, strict=True)]
+    images = np.asarray(abs(_dot(p, np.array(short, dtype=object).T))).T.tolist()
+    rest = _above(size, [1] * n)
+    residual = []
+    for image, shift in zip(images, shifts, strict=True):
+        bounds = [(x + (y if shift else 0)) << shift for x, y in zip(image, rest, strict=True)]
+        residual.append(norm(bounds, INVERSE_BITS + residual_bits))
+    return Contraction(tuple(residual), tuple(slope), tuple(quadratic))
+
+
+def _whole(inverse: FloatArray) -> Whole:
+    """The nearest integers over 2^INVERSE_BITS."""
+    rounded = np.rint(inverse * 2.0**INVERSE_BITS)
+    if np.abs(rounded).max(initial=0.0) < 2.0**_WORD:
+        return rounded.astype(np.int64)
+    return np.array([[int(x) for x in row] for row in rounded], dtype=object)
+
+
+def _largest(array: Whole) -> int:
+    return int(abs(array).max(initial=0))
+
+
+def _dot(a: Whole, b: Whole) -> Whole:
+    """The product, exact: in machine words where they hold all sums."""
+    if _largest(a) * _largest(b) * a.shape[1] < 1 << _WORD:
+        return np.asarray(a.astype(np.int64) @ b.astype(np.int64))
+    return np.asarray(a.astype(object) @ b.astype(object))
+
+
+def _product(p: Whole, places: Places, rows: Whole) -> Whole:
+    """P times the matrix of the rows, exact as `_dot`."""
+    if _largest(p) * _largest(rows) * places.most < 1 << _WORD:
+        return np.asarray(places.product(p[:, :-1].astype(np.int64), rows.astype(np.int64)))
+    return np.asarray(places.product(p[:, :-1].astype(object), rows.astype(object)))
+
+
+def _above(a: Whole, v: Sequence[int]) -> list[int]:
+    """Upper bounds of a @ v for entries >= 0."""
+    largest = _largest(a)
+    excess = (largest * sum(v)).bit_length() - _WORD
+    if excess <= 0:
+        found = a.astype(np.int64) @ np.array(v, dtype=np.int64)
+        return [int(x) for x in found]
+    if largest >> (excess + 2):  # then what is left fits
+        return [x << (excess + 2) for x in _above((a >> (excess + 2)) + 1, v)]
+    return [int(x) for x in a.astype(object) @ np.array(v, dtype=object)]

@@ -1,0 +1,204 @@
+"""Configurations in which the stars of some vertices are flat, proved to exist."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import combinations
+from math import lcm
+
+import numpy as np
+
+from exactfold.arrays import BigArray, FloatArray, IndexArray
+from exactfold.motion.contraction import ONE, SCALE, Contraction, up
+from exactfold.motion.framework import Framework
+from exactfold.motion.piece import Ball
+
+_MATRIX_BITS = 40
+
+
+@dataclass(frozen=True, repr=False)
+class FlatPatch:
+    """The faces at some vertices of a framework, kept flat: a rigid panel with four corners.
+
+    `flat` are the vertices. The framework whose patch is rigid has as unknowns the displacements
+    of `moving`, which are the free vertices outside of the patch and up to three of it, `base`; the
+    other vertices of the patch are affine combinations of the base, with rational `weights`. Its
+    equations are the lengths of `bars`: the edges that leave the patch, and the sides of the base.
+    """
+
+    framework: Framework
+    flat: tuple[int, ...]
+
+    @classmethod
+    def of(cls, framework: Framework, flat: Iterable[int]) -> FlatPatch | None:
+        """The patch of these vertices; None unless there are as many equations as unknowns.
+
+        That is so where the patch, a disk, has four corners: the folds at its inner vertices are
+        three for each of them, and one more.
+        """
+        patch = cls(framework, tuple(sorted(flat)))
+        if not patch.flat or len(patch.base) != 3:
+            return None
+        return patch if len(patch.bars) == 3 * len(patch.moving) else None
+
+    @cached_property
+    def vertices(self) -> frozenset[int]:
+        """The vertices of the patch."""
+        inside = set(self.flat)
+        faces = (t for t in self.framework.sheet.triangles if inside & set(t))
+        return frozenset(v for t in faces for v in t)
+
+    @cached_property
+    def base(self) -> tuple[int, ...]:
+        """Three vertices of the patch that span it, those that are pinned first."""
+        points, held = self.framework.points, set(self.framework.pinned)
+
+        def rank(triple: tuple[int, ...]) -> tuple[int, int]:
+            (ax, ay), (bx, by), (cx, cy) = (points[v] for v in triple)
+            area = abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
+            return (len(held.intersection(triple)) if area else -1, area)
+
+        return max(combinations(sorted(self.vertices), 3), key=rank, default=())
+
+    @cached_property
+    def weights(self) -> Mapping[int, tuple[Fraction, ...]]:
+        """The vertices of the patch that are not in the base, with their affine coordinates."""
+        points = self.framework.points
+        (ax, ay), (bx, by), (cx, cy) = (points[v] for v in self.base)
+        whole = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+        found = {}
+        for v in sorted(self.vertices.difference(self.base)):
+            x, y = points[v]
+            b = Fraction((x - ax) * (cy - ay) - (y - ay) * (cx - ax), whole)
+            c = Fraction((bx - ax) * (y - ay) - (by - ay) * (x - ax), whole)
+            found[v] = (1 - b - c, b, c)
+        return found
+
+    @cached_property
+    def moving(self) -> tuple[int, ...]:
+        """The vertices whose displacements are the unknowns."""
+        return tuple(int(v) for v in self.framework.free if v not in self.weights)
+
+    @cached_property
+    def bars(self) -> IndexArray:
+        """Pairs of vertices whose distances are the equations, shape (bars, 2)."""
+        inside, held = self.vertices, set(self.framework.pinned)
+        edges = [e for e in self.framework.edges.tolist() if not inside.issuperset(e)]
+        sides = [p for p in combinations(self.base, 2) if not held.issuperset(p)]
+        return np.array([*edges, *sides], dtype=np.intp).reshape(-1, 2)
+
+    @cached_property
+    def _denominator(self) -> int:
+        return lcm(*(w.denominator for row in self.weights.values() for w in row))
+
+    @cached_property
+    def _rows(self) -> BigArray:
+        """Each vertex by the moving ones, integers over the denominator: shape (V, moving)."""
+        place = {v: k for k, v in enumerate(self.moving)}
+        rows = np.zeros((len(self.framework.points), len(self.moving)), dtype=object)
+        for v, k in place.items():
+            rows[v, k] = self._denominator
+        for v, weights in self.weights.items():
+            for corner, weight in zip(self.base, weights, strict=True):
+                if corner in place:
+                    rows[v, place[corner]] = int(weight * self._denominator)
+        return rows
+
+    def enclosed(self, near: FloatArray, bits: int) -> Ball | None:
+        """A box of unknowns of the framework with exactly one configuration whose patch is flat.
+
+        `near`: its unknowns, nearly. Newton's method with exact residuals, then the test of
+        Kantorovich in the form of `Contraction`, in integers. None proves nothing.
+        """
+        framework = self.framework
+        bits = max(bits, framework.bits)
+        free = {int(v): k for k, v in enumerate(framework.free)}
+        start = near.reshape(-1, 3)[[free[v] for v in self.moving]]
+        z = np.array(
+            [[int(x) << (bits - 60) for x in row] for row in np.rint(start * 2.0**60)],
+            dtype=object,
+        ).reshape(-1, 3)
+        jacobian = self._jacobian(z, bits)
+        try:
+            floats = np.array([[x / (1 << _MATRIX_BITS) for x in row] for row in jacobian])
+            inverse = np.linalg.inv(floats)
+        except np.linalg.LinAlgError:
+            return None
+        if not np.abs(inverse).max() < 2.0**40:
+            return None
+        p = _whole(inverse, _MATRIX_BITS)
+        for _ in range(4):
+            step = p @ self._stretch(z, bits)
+            z = z - (step >> (_MATRIX_BITS + bits + 1)).reshape(-1, 3)
+        # Each residual is off by less than a unit.
+        residual = int(max(abs(p @ self._stretch(z, bits)) + abs(p).sum(axis=1)))
+        jacobian = self._jacobian(z, bits)
+        slope = p @ jacobian
+        slope[np.diag_indices(len(p))] -= 1 << 2 * _MATRIX_BITS
+        # Each entry of the Jacobian is off by at most one unit.
+        q = _largest_row(abs(slope) + abs(p).sum(axis=1)[:, None])
+        proof = Contraction(
+            (up(residual << SCALE, _MATRIX_BITS + 2 * bits + 1) + 1,),
+            (up(q << SCALE, 2 * _MATRIX_BITS) + 1,),
+            (up(_largest_row(abs(p) * self._second) << SCALE, _MATRIX_BITS) + 1,),
+        )
+        radius = proof.radius(ONE)
+        if radius is None:
+            return None
+        d = self._rows @ z  # over the denominator
+        spread = abs(self._rows).sum(axis=1)
+        centre, radii = [], []
+        for v in framework.free:
+            reach = up(radius * int(spread[v]) << bits, SCALE)
+            for x in d[v]:
+                centre.append(int(x) // self._denominator)
+                radii.append(-(-reach // self._denominator) + 1)
+        return Ball(bits, tuple(centre), tuple(radii))
+
+    def _edges(self, z: BigArray, bits: int) -> tuple[BigArray, BigArray]:
+        """d_e and U_e of the bars, times the denominator, over 2^bits: shape (bars, 3)."""
+        framework = self.framework
+        d = self._rows @ z
+        shift = bits - framework.bits
+        flat = np.array([[x << shift, y << shift, 0] for x, y in framework.points], dtype=object)
+        i, j = self.bars.T
+        return d[i] - d[j], (flat[i] - flat[j]) * self._denominator
+
+    def _stretch(self, z: BigArray, bits: int) -> BigArray:
+        """Twice the equations, over 2^(2 bits), rounded towards 0 by less than a unit."""
+        d, flat = self._edges(z, bits)
+        exact = ((d + 2 * flat) * d).sum(axis=1)
+        square = self._denominator**2
+        return np.array([-(-x // square) if x < 0 else x // square for x in exact], dtype=object)
+
+    def _jacobian(self, z: BigArray, bits: int) -> BigArray:
+        """The derivative of the equations, over 2^_MATRIX_BITS, rounded down."""
+        d, flat = self._edges(z, bits)
+        i, j = self.bars.T
+        rows = self._rows[i] - self._rows[j]
+        dense = (rows[:, :, None] * (d + flat)[:, None, :]).reshape(len(i), -1)
+        shift, square = bits - _MATRIX_BITS, self._denominator**2
+        return np.asarray((dense // square) >> shift)
+
+    @cached_property
+    def _second(self) -> BigArray:
+        """For each bar a bound of its second derivative in the maximum norm, rounded up."""
+        i, j = self.bars.T
+        spread = abs(self._rows[i] - self._rows[j]).sum(axis=1)
+        square = self._denominator**2
+        return np.array([-(-3 * int(x) ** 2 // square) for x in spread], dtype=object)
+
+    def __repr__(self) -> str:
+        return f"<FlatPatch: flat at {self.flat}, {len(self.bars)} bars>"
+
+
+def _whole(matrix: FloatArray, bits: int) -> BigArray:
+    return np.array([[int(x) for x in row] for row in np.rint(matrix * 2.0**bits)], dtype=object)
+
+
+def _largest_row(matrix: BigArray) -> int:
+    """The largest sum of a row of entries >= 0."""
+    return int(max(matrix.sum(axis=1)))

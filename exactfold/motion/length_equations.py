@@ -1,0 +1,132 @@
+"""Polynomial curves put into the length equations, in integers over a power of two."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from exactfold.arrays import BigArray, FloatArray
+from exactfold.motion.contraction import WEIGHT_BITS, Places
+from exactfold.motion.framework import Framework
+
+Row = tuple[int, ...]
+Curve = tuple[Row, ...]
+"""sum_k a_k s^k: row k is a_k, integers over a power of two, one for each unknown."""
+
+
+@dataclass(frozen=True, repr=False)
+class LengthEquations:
+    """The equations of a framework for curves whose coefficients are integers over 2^`bits`."""
+
+    framework: Framework
+    bits: int
+
+    @classmethod
+    def of(cls, framework: Framework, bits: int = 64) -> LengthEquations:
+        """With `bits` or more, as many as the flat coordinates need.
+
+        >>> from exactfold.pattern.families import two_vertex
+        >>> LengthEquations.of(Framework.of(two_vertex()))
+        <LengthEquations: 8 edges, 64 bits>
+        """
+        return cls(framework, max(bits, framework.bits))
+
+    @cached_property
+    def flat_edges(self) -> BigArray:
+        """U_e over 2^bits, shape (edges, 3)."""
+        shift, points = self.bits - self.framework.bits, self.framework.points
+        rows = [
+            [(a - b) << shift for a, b in zip(points[i], points[j], strict=True)] + [0]
+            for i, j in self.framework.edges
+        ]
+        return np.array(rows, dtype=object).reshape(-1, 3)
+
+    def along(self, curve: Sequence[Sequence[int]]) -> BigArray:
+        """a_k,e for all coefficients of a curve, shape (coefficients, edges, 3)."""
+        framework = self.framework
+        d = np.zeros((len(curve), len(framework.points), 3), dtype=object)
+        d[:, framework.free, :] = np.array(curve, dtype=object).reshape(len(curve), -1, 3)
+        return np.asarray(d[:, framework.edges[:, 0], :] - d[:, framework.edges[:, 1], :])
+
+    @cached_property
+    def places(self) -> Places:
+        """Where the edges meet the unknowns."""
+        framework = self.framework
+        place = {int(v): k for k, v in enumerate(framework.free)}
+        ends = sorted(
+            (place[v], e, sign)
+            for e, pair in enumerate(framework.edges.tolist())
+            for v, sign in zip(pair, (1, -1), strict=True)
+            if v in place
+        )
+        vertex, edge, signs = (np.array(x, dtype=np.intp) for x in zip(*ends, strict=True))
+        return Places(framework.size, vertex, edge, signs)
+
+    def weight_sums(self, weights: Sequence[int]) -> BigArray:
+        """w_i + w_j in the three places of every edge, shape (edges, 3)."""
+        framework = self.framework
+        w = np.zeros((len(framework.points), 3), dtype=object)
+        w[framework.free] = np.array(weights, dtype=object).reshape(-1, 3)
+        return np.asarray(w[framework.edges[:, 0]] + w[framework.edges[:, 1]])
+
+    def nearest(self, vector: FloatArray) -> Row:
+        """Floats as integers over 2^bits."""
+        shift = self.bits - 60
+        return tuple(int(x) << shift for x in np.rint(vector * 2.0**60))
+
+    def floats(self, row: Sequence[int]) -> FloatArray:
+        """Integers over 2^bits as floats."""
+        one = 1 << self.bits
+        return np.array([x / one for x in row])
+
+    def __repr__(self) -> str:
+        return f"<LengthEquations: {len(self.framework.edges)} edges, {self.bits} bits>"
+
+
+def squared(e: BigArray) -> list[BigArray]:
+    """The coefficients of |e|^2, e = sum_k e_k s^k of shape (coefficients, edges, axes)."""
+    top = len(e) - 1
+    found = []
+    for k in range(2 * top + 1):
+        total = np.zeros(e.shape[1], dtype=object)
+        if k % 2 == 0:
+            total = total + (e[k // 2] ** 2).sum(axis=1)
+        first = max(0, k - top)
+        if half := (k + 1) // 2 - first:
+            a, b = e[first : first + half], e[k - first : k - first - half : -1]
+            total = total + 2 * (a * b).sum(axis=(0, 2))
+        found.append(total)
+    return found
+
+
+def corrected(
+    inverse: FloatArray,
+    curve: Sequence[Sequence[int]],
+    residuals: Sequence[Sequence[int]],
+    extra: int,
+) -> Curve:
+    """a_k - P H_k, rounded: one step of Newton's method with the same P for all coefficients.
+
+    The residuals are integers over 2^(bits + extra), the curve over 2^bits.
+    """
+    found = []
+    for row, g in zip(curve, residuals, strict=False):
+        shift = max(0, max(map(int.bit_length, g)) - 60)
+        step = np.rint(inverse @ np.array([float(x >> shift) for x in g]) * 2.0**30)
+        found.append(
+            tuple(a - ((int(x) << shift) >> (30 + extra)) for a, x in zip(row, step, strict=True))
+        )
+    return tuple(found)
+
+
+def weights_of(matrix: FloatArray) -> Row:
+    """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a matrix with entries >= 0."""
+    vector = np.ones(len(matrix))
+    for _ in range(30):
+        image = matrix @ vector
+        vector = vector + image / max(float(image.max()), 1e-300)
+        vector = vector / vector.max()
+    return tuple(max(1, int(x)) for x in vector * 2.0**WEIGHT_BITS)

@@ -1,0 +1,263 @@
+"""Loops: from the flat state along a half-branch, and back to the flat state along another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from exactfold.arrays import FloatArray
+from exactfold.branches.branch import Branch
+from exactfold.motion.angles import fold_angles_of
+from exactfold.motion.arclength import Interval
+from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
+from exactfold.motion.flat_patches import FlatPatch
+from exactfold.motion.half_branches import HalfBranch
+from exactfold.motion.length_equations import LengthEquations
+from exactfold.motion.node_tube import ROW_BITS as NODE_ROW_BITS
+from exactfold.motion.node_tube import NodeTube, prove_node_tube
+from exactfold.motion.piece import PARAMETER_BITS, Ball
+from exactfold.motion.tracks import Link, half_branch, onwards
+from exactfold.motion.tube import Tube
+from exactfold.motion.tube_start import (
+    ROOT_BITS,
+    NotProvedAtTheFlatStateError,
+    StartTube,
+    prove_start,
+)
+from exactfold.problem.problem import Problem
+from exactfold.verdict import PROVED, UNDECIDED, Verdict
+
+MOST_TUBES = 4000
+_NEAR_FLAT = 0.8
+"""Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
+
+
+@dataclass(frozen=True, repr=False)
+class Landing:
+    """Where a motion comes back to the flat state: on the last tube lies a point of `start`.
+
+    At `tau` the start tube of the half-branch `to`, which is that of its mirror image for a
+    negative `tau`, passes the last tube in the opposite direction; so the motion ends in the flat
+    state along `to`.
+    """
+
+    to: HalfBranch
+    start: StartTube
+    tau: int
+
+    @property
+    def ball(self) -> Ball:
+        """A box of unknowns of the length equations that holds the configuration at `tau`."""
+        return self.start.ball(self.tau)
+
+    def __repr__(self) -> str:
+        return f"<Landing: {self.to}>"
+
+
+@dataclass(frozen=True, repr=False)
+class Passage:
+    """How a motion passes a node: on an arc `tube` through it, from one parameter to another.
+
+    The configuration at `entry` lies on the link before, which goes the same way there; the next
+    link begins at `exit`. `entered` and `left` bound the time as in `Link`. `vertices` are flat at
+    the node, by the numbers of the pattern.
+    """
+
+    tube: NodeTube
+    vertices: tuple[int, ...]
+    entry: int
+    exit: int
+    entered: Interval
+    left: Interval
+
+    def __repr__(self) -> str:
+        return f"<Passage: flat at {self.vertices}, time {float(self.entered[0]):.4g}>"
+
+
+@dataclass(frozen=True, repr=False)
+class Loop:
+    """The true configurations from the flat state along `source` back to it along `target`.
+
+    One analytic curve without a gap, proved from end to end where `status` is PROVED: from `start`
+    through `steps` to `landing`. `through` are the nodes that it passes, each by its flat vertices.
+    `length` bounds its length in the unit of the sheet; if UNDECIDED that of the part that is
+    proved, `target` and `landing` are None, and `reason` says what stopped the proof.
+    """
+
+    source: HalfBranch
+    target: HalfBranch | None
+    length: Interval
+    status: Verdict
+    reason: str
+    start: StartTube
+    steps: tuple[Link | Passage, ...]
+    landing: Landing | None
+
+    @property
+    def through(self) -> tuple[tuple[int, ...], ...]:
+        """The vertices that are flat at each node on the way, in order."""
+        return tuple(step.vertices for step in self.steps if isinstance(step, Passage))
+
+    def to_dict(self) -> dict[str, object]:
+        """The loop as `exactfold motions --json` prints it."""
+        low, high = self.length
+        return {
+            "from": self.source.to_dict(),
+            "to": None if self.target is None else self.target.to_dict(),
+            "through": [{"flat": list(vertices)} for vertices in self.through],
+            "length": [float(low), float(high)],
+            "status": str(self.status),
+            "reason": self.reason,
+        }
+
+    def __repr__(self) -> str:
+        return f"<Loop: {self.source} to {self.target}, {self.status}>"
+
+
+@dataclass(frozen=True)
+class LoopFinder:
+    """Follows the half-branches of one sheet; what they share is computed once."""
+
+    problem: Problem
+
+    def loop(self, branch: Branch, side: int = 1) -> Loop:
+        """The loop that leaves the flat state along a half-branch of a simple, proved branch.
+
+        Raises as `half_branch`.
+
+        >>> from exactfold.count.find import find_branch
+        >>> branch = find_branch("two-vertex", "+-")
+        >>> LoopFinder(Problem.of(branch.pattern)).loop(branch)
+        <Loop: +-, saddle + to --, saddle +, proved>
+        """
+        start = half_branch(branch, side).start
+        steps, landing, reason = self._followed(start)
+        unit = start.framework.unit
+        low, high = steps[-1].left if steps else start.length(0, start.last)
+        if landing is not None:
+            low, high = _whole_length(steps[-1], landing)
+        return Loop(
+            _named(start),
+            None if landing is None else landing.to,
+            (low * unit, high * unit),
+            UNDECIDED if landing is None else PROVED,
+            reason,
+            start,
+            tuple(steps),
+            landing,
+        )
+
+    def _followed(self, start: StartTube) -> tuple[list[Link | Passage], Landing | None, str]:
+        """The steps from a start tube on, to a landing or to what stopped the proof."""
+        equations = LengthEquations.of(start.framework)
+        last, time = start.last, start.length(0, start.last)
+        ahead = onwards(
+            equations, start.ball(last), start.ball_velocity(last), time, float(time[0]) / 2
+        )
+        steps: list[Link | Passage] = []
+        while len(steps) < MOST_TUBES:
+            link = next(ahead)
+            if isinstance(link, Link):
+                steps.append(link)
+                landing = self._landing(link)
+                if landing is not None:
+                    return steps, landing, ""
+                continue
+            found = self._passage(steps)
+            if found is None:
+                return steps, None, link
+            kept, passage = found
+            steps = [*steps[:kept], passage]
+            tube, at = passage.tube, passage.exit
+            step = float(tube.length(0, at)[0])
+            ahead = onwards(equations, tube.ball(at), tube.ball_velocity(at), passage.left, step)
+        return steps, None, f"{MOST_TUBES} tubes were not enough"
+
+    def _passage(self, steps: Sequence[Link | Passage]) -> tuple[int, Passage] | None:
+        """The passage of a node shortly ahead, and how many of the steps lead up to it."""
+        if not steps or not isinstance(steps[-1], Link):
+            return None
+        last = steps[-1]
+        framework = last.tube.framework
+        crossing = crossing_ahead(
+            framework,
+            last.tube.enclosure(last.exit).floats[0],
+            last.tube.velocity(last.exit).floats[0],
+        )
+        if crossing is None:
+            return None
+        flat = flat_vertices(framework, crossing[0])
+        patch = FlatPatch.of(framework, flat)
+        tube = None if patch is None else prove_node_tube(framework, patch, *crossing)
+        if tube is None:
+            return None
+        # The first link that reaches into the tube, so that the short ones before the node go.
+        first = len(steps)
+        while first and isinstance(steps[first - 1], Link):
+            first -= 1
+        node, row = tube.node.floats[0], np.array(tube.row) * 2.0**-NODE_ROW_BITS
+        for k in range(first, len(steps)):
+            link = steps[k]
+            if not isinstance(link, Link):
+                continue
+            s = float(row @ (link.tube.enclosure(link.exit).floats[0] - node))
+            entry = round(s * (1 << PARAMETER_BITS))
+            if not -tube.longest * 7 // 8 <= entry < 0:
+                continue
+            found = link.tube.located(tube.ball(entry))
+            if found is None or found[0] < link.entry[1]:
+                continue
+            if link.tube.goes_along(tube.ball_velocity(entry)) != 1:
+                continue
+            at = tube.longest * 3 // 4
+            entered = link.time(found[0])[0], link.time(found[1])[1]
+            shortest, longest = tube.length(entry, at)
+            left = entered[0] + shortest, entered[1] + longest
+            vertices = tuple(self.problem.labels[v] for v in flat)
+            return k + 1, Passage(tube, vertices, entry, at, entered, left)
+        return None
+
+    def _landing(self, link: Link) -> Landing | None:
+        """The start tube of another half-branch a point of which lies on this tube."""
+        tube = link.tube
+        x = tube.enclosure(link.exit).floats[0]
+        framework = tube.framework
+        angles = fold_angles_of(framework.positions(x), framework.hinges)
+        if np.abs(angles).max(initial=0.0) > _NEAR_FLAT:
+            return None
+        heights = framework.displacement(x)[:, 2]
+        start = self._start(tube, heights)
+        if start is None:
+            return None
+        held = start.coefficients[0][start.held] / (1 << start.bits)
+        # The height that is held is the same along the whole start tube: it gives t, and tau.
+        tau = round(float(x[start.held]) / held * (1 << (ROOT_BITS + start.halvings)))
+        if not 0 < abs(tau) <= start.last or not tube.lies_in(start.ball(tau)):
+            return None
+        velocity = start.ball_velocity(tau)
+        if tube.goes_along(velocity) * (1 if tau > 0 else -1) != -1:
+            return None
+        return Landing(_named(start, 1 if tau > 0 else -1), start, tau)
+
+    def _start(self, tube: Tube, heights: FloatArray) -> StartTube | None:
+        try:
+            return prove_start(tube.framework, self.problem.gauge, heights)
+        except NotProvedAtTheFlatStateError:
+            return None
+
+
+def _named(start: StartTube, side: int = 1) -> HalfBranch:
+    """The half-branch of a start tube, or of its mirror image."""
+    named = HalfBranch(start.vertex_signs, start.side)
+    return named if side > 0 else named.mirrored
+
+
+def _whole_length(step: Link | Passage, landing: Landing) -> Interval:
+    """Bounds of the length of a loop, whose last tube is met by the start tube of the landing."""
+    if not isinstance(step, Link) or (found := step.tube.located(landing.ball)) is None:
+        raise ArithmeticError("the landing is not on the tube")
+    shortest, longest = landing.start.length(0, abs(landing.tau))
+    low = step.time(found[0])[0] if found[0] >= step.entry[1] else step.entered[0]
+    return low + shortest, step.time(found[1])[1] + longest

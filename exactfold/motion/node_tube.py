@@ -1,0 +1,397 @@
+"""Arcs through a node: a configuration with a flat patch, where several curves cross."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from exactfold.arrays import BigArray, FloatArray
+from exactfold.exact.numbers import over_common_denominator
+from exactfold.motion.arclength import Interval, length_between
+from exactfold.motion.contraction import SCALE, WEIGHT_BITS, Contraction, up
+from exactfold.motion.flat_patches import FlatPatch
+from exactfold.motion.framework import Framework
+from exactfold.motion.length_equations import Curve, LengthEquations, Row, squared, weights_of
+from exactfold.motion.piece import PARAMETER_BITS, Ball, Piece
+from exactfold.motion.tube import longest
+from exactfold.rigidity.curvature import wheel_stress
+
+ROW_BITS = 20
+_BITS = 30
+"""P is rounded to multiples of 2^-_BITS."""
+
+
+@dataclass(frozen=True, repr=False)
+class NodeTube(Piece):
+    """The curve x* + s y(s) through a node x*, the one configuration in `node` with a flat patch.
+
+    y solves, with the edge vectors X_e of x* and the wheel stresses w_v of the flat vertices v,
+
+        X_e . y_e + (s / 2) |y_e|^2 = 0 for edges e, except one for each v, in place of which
+        sum_e w_v,e |y_e|^2 / 2 = 0,   and T . y = 1:
+
+    at x* the wheel stresses balance, so that the sum of w_v,e times the equations of the edges is s
+    times the second line. So for s = 0, too, these are N regular equations (docs/motions.md), and
+    x* + s y(s) is an analytic curve that crosses the others at the node.
+    """
+
+    patch: FlatPatch
+    node: Ball
+    row: Row
+
+    def ball(self, parameter: int) -> Ball:
+        """A box of unknowns of the length equations that holds the configuration at s."""
+        inner = self.enclosure(parameter)
+        node, most = self.node.finer(self.bits), abs(parameter)
+        centre = tuple(
+            x + (parameter * y >> PARAMETER_BITS)
+            for x, y in zip(node.centre, inner.centre, strict=True)
+        )
+        radii = tuple(
+            r + up(most * y, PARAMETER_BITS) + 1
+            for r, y in zip(node.radii, inner.radii, strict=True)
+        )
+        return Ball(self.bits, centre, radii)
+
+    def ball_velocity(self, parameter: int) -> Ball:
+        """A box that holds the derivative by s of these unknowns: y + s y'."""
+        inner, rate, most = self.enclosure(parameter), self.velocity(parameter), abs(parameter)
+        centre = tuple(
+            y + (parameter * v >> PARAMETER_BITS)
+            for y, v in zip(inner.centre, rate.centre, strict=True)
+        )
+        radii = tuple(
+            y + up(most * v, PARAMETER_BITS) + 1
+            for y, v in zip(inner.radii, rate.radii, strict=True)
+        )
+        return Ball(self.bits, centre, radii)
+
+    def length(self, low: int, high: int) -> Interval:
+        """Bounds of the length of the curve for low <= s <= high, in the framework's unit."""
+        rows = [tuple((k + 1) * a for a in row) for k, row in enumerate(self.coefficients)]
+        most = max(abs(low), abs(high))
+        error = [
+            max(a, b) + 2
+            for a, b in zip(
+                self.ball_velocity(most).radii, self.ball_velocity(-most).radii, strict=True
+            )
+        ]
+        return length_between(rows, self.bits, error, PARAMETER_BITS, low, high)
+
+
+def prove_node_tube(
+    framework: Framework,
+    patch: FlatPatch,
+    near: FloatArray,
+    along: FloatArray,
+    *,
+    order: int = 8,
+    bits: int = 64,
+    thickness: float = 1e-7,
+) -> NodeTube | None:
+    """The arc through the node near the unknowns `near`, about in the direction `along`.
+
+    None proves nothing. Floats choose the direction, series and P; the rest is verified in
+    integers, with every configuration of the box of the node in the place of x*.
+    """
+    equations = LengthEquations.of(framework, bits)
+    node = patch.enclosed(near, equations.bits)
+    if node is None:
+        return None
+    stresses = _Stresses.of(equations, patch)
+    found = _series(equations, stresses, node, along, order)
+    if found is None:
+        return None
+    curve, row, inverse, weights = found
+    proof = _bounds(equations, stresses, node, curve, row, inverse, weights)
+    reach = longest(proof, thickness)
+    if not reach:
+        return None
+    return NodeTube(framework, equations.bits, curve, weights, proof, reach, patch, node, row)
+
+
+@dataclass(frozen=True, repr=False)
+class _Stresses:
+    """The wheel stresses of the flat vertices on the edges: integers over 2^`bits`, one row each.
+
+    Row k takes the place of edge `replaced[k]`; the stresses on these edges are independent.
+    """
+
+    rows: BigArray
+    bits: int
+    replaced: tuple[int, ...]
+
+    @classmethod
+    def of(cls, equations: LengthEquations, patch: FlatPatch) -> _Stresses:
+        framework = equations.framework
+        place = {(int(i), int(j)): k for k, (i, j) in enumerate(framework.edges)}
+        rows = np.zeros((len(patch.flat), len(place)), dtype=object)
+        for k, v in enumerate(patch.flat):
+            stress = wheel_stress(framework.sheet, v)
+            whole, _ = over_common_denominator(stress.values())
+            for edge, value in zip(stress, whole, strict=True):
+                if edge in place:
+                    rows[k, place[edge]] = value
+        bits = max(int(abs(rows).max()).bit_length(), 1)
+        return cls(rows, bits, _independent(rows))
+
+    @property
+    def floats(self) -> FloatArray:
+        """The rows as floats."""
+        one = 1 << self.bits
+        return np.array([[x / one for x in row] for row in self.rows])
+
+
+def _independent(rows: BigArray) -> tuple[int, ...]:
+    """Columns on which the rows are independent, by exact elimination."""
+    left = [[Fraction(int(x)) for x in row] for row in rows]
+    chosen: list[int] = []
+    for k, row in enumerate(left):
+        column = max(range(len(row)), key=lambda c: abs(row[c]))
+        chosen.append(column)
+        for other in left[k + 1 :]:
+            factor = other[column] / row[column]
+            for c in range(len(row)):
+                other[c] -= factor * row[c]
+    return tuple(chosen)
+
+
+def _series(
+    equations: LengthEquations, stresses: _Stresses, node: Ball, along: FloatArray, order: int
+) -> tuple[Curve, Row, FloatArray, Row] | None:
+    """The series of y in s, T, P and the weights, all from floats."""
+    framework, w = equations.framework, stresses.floats
+    kept = np.ones(len(framework.edges), dtype=bool)
+    kept[list(stresses.replaced)] = False
+    d = node.floats[0]
+    x = framework.flat_edges + framework.along(d)
+    dense = equations.places.dense
+    linear = dense(x)
+    y = along / np.linalg.norm(along)
+    row = y.copy()
+    for _ in range(8):
+        e = framework.along(y)
+        value = np.concatenate(
+            [(x * e).sum(axis=1)[kept], 0.5 * w @ (e * e).sum(axis=1), [row @ y - 1.0]]
+        )
+        matrix = np.vstack([linear[kept], w @ dense(e), row])
+        try:
+            y = y - np.linalg.solve(matrix, value)
+        except np.linalg.LinAlgError:
+            return None
+    if not np.isfinite(y).all() or np.abs(y - along / np.linalg.norm(along)).max() > 0.2:
+        return None
+    series = _taylor(equations, stresses, kept, linear, row, y, order)
+    if series is None:
+        return None
+    # The unit of s is chosen so that the coefficients fall by about a half.
+    sizes = np.abs(series).max(axis=1)
+    growth = max(
+        ((sizes[k] / sizes[0]) ** (1 / k) for k in range(1, order + 1) if sizes[k] > 0),
+        default=1.0,
+    )
+    scale = float(2.0 ** np.rint(np.log2(0.5 / growth)))
+    for k in range(order + 1):
+        series[k] *= scale ** (k + 1)
+    whole = np.rint(row / scale * 2.0**ROW_BITS)
+    if not np.abs(whole).max() < 2.0**40:
+        return None
+    e = framework.along(series[0])
+    matrix = np.vstack([linear, whole * 2.0**-ROW_BITS])
+    for k, edge in enumerate(stresses.replaced):
+        matrix[edge] = w[k] @ dense(e)
+    try:
+        inverse = np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
+        return None
+    if not np.abs(inverse).max() < 2.0**30:
+        return None
+    curve = tuple(equations.nearest(a) for a in series)
+    t = tuple(int(x) for x in whole)
+    for _ in range(2):
+        curve = _corrected(equations, stresses, node, curve, t, inverse)
+    parts = framework.along(series)
+    slopes = sum(
+        np.abs(inverse @ _derivative(equations, stresses.replaced, w, x, parts, k)) / 2.0**k
+        for k in (1, 2)
+    )
+    return curve, t, inverse, weights_of(np.asarray(slopes))
+
+
+def _derivative(
+    equations: LengthEquations,
+    replaced: Sequence[int],
+    stresses: Any,
+    x: Any,
+    parts: Any,
+    k: int,
+    kept_factor: int = 1,
+) -> Any:
+    """The coefficient of s^k of the derivative of the equations, without its last row T.
+
+    X_e for k = 0 and else the y_e of the coefficient before, times `kept_factor`; the rows that are
+    replaced hold the sum of w_v,e times those of the coefficient k.
+    """
+    dense, none = equations.places.dense, np.zeros_like(x)
+    before = x if k == 0 else parts[k - 1] if k - 1 < len(parts) else none
+    matrix = np.vstack(
+        [dense(before) * kept_factor, np.zeros((1, equations.framework.size), dtype=x.dtype)]
+    )
+    matrix[list(replaced)] = stresses @ dense(parts[k] if k < len(parts) else none)
+    return matrix
+
+
+def _taylor(
+    equations: LengthEquations,
+    stresses: _Stresses,
+    kept: np.ndarray[tuple[int], np.dtype[np.bool_]],
+    linear: FloatArray,
+    row: FloatArray,
+    y: FloatArray,
+    order: int,
+) -> FloatArray | None:
+    framework, w = equations.framework, stresses.floats
+    matrix = np.vstack([linear[kept], w @ equations.places.dense(framework.along(y)), row])
+    try:
+        inverse = np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
+        return None
+    series = np.zeros((order + 1, len(y)))
+    parts = np.zeros((order + 1, len(framework.edges), 3))
+    series[0], parts[0] = y, framework.along(y)
+    for k in range(1, order + 1):
+        linear_right = sum(
+            ((parts[i] * parts[k - 1 - i]).sum(axis=1) for i in range(k)),
+            start=np.zeros(len(framework.edges)),
+        )
+        square_right = sum(
+            ((parts[i] * parts[k - i]).sum(axis=1) for i in range(1, k)),
+            start=np.zeros(len(framework.edges)),
+        )
+        right = np.concatenate([linear_right[kept], w @ square_right, [0.0]])
+        series[k] = -0.5 * inverse @ right
+        parts[k] = framework.along(series[k])
+    return series
+
+
+def _residuals(
+    equations: LengthEquations, stresses: _Stresses, node: Ball, curve: Curve, row: Row
+) -> list[BigArray]:
+    """The coefficients of twice the equations at the centre, over 2^(2 bits + stresses.bits)."""
+    bits, more = equations.bits, stresses.bits
+    x = equations.flat_edges + equations.along([node.finer(bits).centre])[0]
+    e = equations.along(curve)
+    squares = squared(e)
+    found = []
+    for k in range(len(squares) + 1):
+        total = np.zeros(len(x), dtype=object)
+        if k < len(e):
+            total = total + 2 * (x * e[k]).sum(axis=1)
+        if k:
+            total = total + squares[k - 1]
+        total = total * (1 << more)
+        stressed = (
+            stresses.rows @ squares[k]
+            if k < len(squares)
+            else np.zeros(len(stresses.rows), dtype=object)
+        )
+        total[list(stresses.replaced)] = stressed
+        last = 0
+        if k < len(curve):
+            last = sum(t * a for t, a in zip(row, curve[k], strict=True))
+            last -= (1 << bits + ROW_BITS) if k == 0 else 0
+        found.append(np.append(total, last << (bits + more - ROW_BITS + 1)))
+    return found
+
+
+def _corrected(
+    equations: LengthEquations,
+    stresses: _Stresses,
+    node: Ball,
+    curve: Curve,
+    row: Row,
+    inverse: FloatArray,
+) -> Curve:
+    """One step of Newton's method with the same P for all coefficients."""
+    more = equations.bits + stresses.bits + 1
+    p = _whole(inverse)
+    found = []
+    for a, g in zip(curve, _residuals(equations, stresses, node, curve, row), strict=False):
+        step = p @ g
+        found.append(
+            tuple(int(x) - (int(s) >> (_BITS + more)) for x, s in zip(a, step, strict=True))
+        )
+    return tuple(found)
+
+
+def _bounds(
+    equations: LengthEquations,
+    stresses: _Stresses,
+    node: Ball,
+    curve: Curve,
+    row: Row,
+    inverse: FloatArray,
+    weights: Row,
+) -> Contraction:
+    """The contraction of the equations of y for every node in its box; all is rounded upwards."""
+    framework, bits, more = equations.framework, equations.bits, stresses.bits
+    p, n = _whole(inverse), framework.size
+    size = abs(p)
+    kept = [e for e in range(len(framework.edges)) if e not in stresses.replaced]
+    box = node.finer(bits)
+    x = equations.flat_edges + equations.along([box.centre])[0]
+    parts = equations.along(curve)
+    # How far X_e may be from x_e, shape (edges, 3).
+    spread = np.zeros((len(framework.points), 3), dtype=object)
+    spread[framework.free] = np.array(box.radii, dtype=object).reshape(-1, 3)
+    i, j = framework.edges.T
+    spread = spread[i] + spread[j]
+    sums = equations.weight_sums(weights)
+    w = np.array(weights, dtype=object)
+
+    def norm(rows: BigArray, places: int) -> int:
+        """The largest rows_i / w_i over 2^SCALE, for rows over 2^places, w over 2^WEIGHT_BITS."""
+        shift = SCALE + WEIGHT_BITS - places
+        return max(
+            -(-(int(r) << max(shift, 0)) // (v << max(-shift, 0)))
+            for r, v in zip(rows, weights, strict=True)
+        )
+
+    slope = []
+    for k in range(len(curve) + 1):
+        matrix = _derivative(
+            equations, stresses.replaced, stresses.rows, x, parts, k, kept_factor=1 << more
+        )
+        if k == 0:
+            matrix[-1] = [t << (bits + more - ROW_BITS) for t in row]
+        product = p @ matrix
+        if k == 0:
+            product[np.diag_indices(n)] -= 1 << (_BITS + bits + more)
+        found = norm(abs(product) @ w, _BITS + bits + more + WEIGHT_BITS)
+        if k == 0:
+            off = (spread * sums).sum(axis=1)
+            found += norm(size[:, kept] @ off[kept], _BITS + bits + WEIGHT_BITS)
+        slope.append(found)
+    residual = []
+    for k, g in enumerate(_residuals(equations, stresses, node, curve, row)):
+        found = norm(abs(p @ g), _BITS + 2 * bits + more + 1)
+        if k < len(parts):
+            off = (spread * abs(parts[k])).sum(axis=1)
+            found += norm(size[:, kept] @ off[kept], _BITS + 2 * bits)
+        residual.append(found)
+    squares = (sums**2).sum(axis=1)
+    stressed = abs(stresses.rows) @ squares
+    quadratic = [
+        norm(size[:, list(stresses.replaced)] @ stressed, _BITS + more + 2 * WEIGHT_BITS),
+        norm(size[:, kept] @ squares[kept], _BITS + 2 * WEIGHT_BITS),
+    ]
+    return Contraction(tuple(residual), tuple(slope), tuple(quadratic))
+
+
+def _whole(inverse: FloatArray) -> BigArray:
+    rounded = np.rint(inverse * 2.0**_BITS)
+    return np.array([[int(x) for x in row] for row in rounded], dtype=object)

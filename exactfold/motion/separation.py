@@ -1,0 +1,321 @@
+"""Proof that the faces of a sheet do not touch while it moves along a piece of a curve.
+
+Between two faces without a common vertex stands a plane if some direction n has n.(x - y) > 0 for
+all corners x of one and y of the other; between two that share only the vertex v, if n.(x - v) > 0
+and n.(v - y) > 0 for the other corners. Two faces with a common fold touch beyond it only where the
+fold is closed: where the distance of their other corners is as small as in the sheet folded over
+along it, which is a rational number. So sums of a few products decide everything.
+
+Positions are p(s) + e with a polynomial p in floats and a bound of |e|, both of them exact up to
+roundings that are bounded here: with all sums of sizes at most `_MOST`, every number computed below
+is off by less than `_MARGIN`, which is demanded on top.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+
+from exactfold.arrays import BoolArray, FloatArray, IndexArray
+from exactfold.motion.framework import Framework
+from exactfold.pattern.crease_pattern import Triangle
+
+_MOST, _MARGIN = 64.0, 1e-11
+_PRODUCTS = 2_000_000
+
+
+@dataclass(frozen=True)
+class Swept:
+    """Positions of all vertices on |s - middle| <= half: a + b (s - middle) + e, |e| <= error.
+
+    Arrays of shape (V, 3), in units of the framework; `planar` if the third component is not
+    bounded and must not be used.
+    """
+
+    start: FloatArray
+    slope: FloatArray
+    error: FloatArray
+    half: float
+    planar: bool = False
+
+    @classmethod
+    def of(
+        cls,
+        coefficients: FloatArray,
+        radius: FloatArray,
+        low: float,
+        high: float,
+        *,
+        planar: bool = False,
+    ) -> Swept:
+        """From p(s) = sum_k c_k s^k, shape (order + 1, V, 3), and |x - p| <= radius, shape (V, 3).
+
+        The polynomial is expanded at the middle; what is beyond the slope goes into the error.
+        """
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        rows = coefficients.copy()
+        for k in range(len(rows)):  # Horner's scheme, repeated: rows[k] is p^(k)(middle) / k!
+            for m in range(len(rows) - 2, k - 1, -1):
+                rows[m] += middle * rows[m + 1]
+        error = radius.copy()
+        for k in range(2, len(rows)):
+            error += np.abs(rows[k]) * half**k
+        slope = rows[1] if len(rows) > 1 else np.zeros_like(rows[0])
+        reach = np.abs(rows[0]) + np.abs(slope) * half + error
+        if not reach.max() < _MOST / 16:
+            error = np.full_like(error, np.inf)
+        return cls(rows[0], slope, error + 1e-14, half, planar)
+
+
+@dataclass(frozen=True, repr=False)
+class FacePairs:
+    """All pairs of faces of a sheet, by what they share.
+
+    `apart`: rows of two faces without a common vertex. `corner`: rows (v, a, b, c, d), faces vab
+    and vcd. `folds`: rows (left, right) of corners across a fold, in the order of `sheet.folds`;
+    `closed`: their squared distance where the fold is closed, rounded up, in units of the
+    framework.
+    """
+
+    framework: Framework
+
+    @cached_property
+    def apart(self) -> IndexArray:
+        """Pairs of indices of faces without a common vertex, shape (pairs, 2)."""
+        rows = [pair for pair, shared in self._pairs if not shared]
+        return np.array(rows, dtype=np.intp).reshape(-1, 2)
+
+    @cached_property
+    def corner(self) -> IndexArray:
+        """Pairs of indices of faces with one common vertex, shape (pairs, 2)."""
+        rows = [pair for pair, shared in self._pairs if len(shared) == 1]
+        return np.array(rows, dtype=np.intp).reshape(-1, 2)
+
+    @cached_property
+    def _pairs(self) -> list[tuple[tuple[int, int], set[int]]]:
+        triangles = [set(t) for t in self.framework.sheet.triangles]
+        pairs = combinations(range(len(triangles)), 2)
+        return [((i, j), triangles[i] & triangles[j]) for i, j in pairs]
+
+    @cached_property
+    def corners(self) -> IndexArray:
+        """For each row of `corner` the vertices (v, a, b, c, d), faces vab and vcd."""
+        rows = []
+        for i, j in self.corner:
+            first, second = (self.framework.sheet.triangles[k] for k in (i, j))
+            (v,) = set(first) & set(second)
+            rows.append([v, *(w for w in first if w != v), *(w for w in second if w != v)])
+        return np.array(rows, dtype=np.intp).reshape(-1, 5)
+
+    @cached_property
+    def closed(self) -> FloatArray:
+        """|l - r'|^2 for the mirror image r' of r in the line of the fold, not less than exact."""
+        points, bits = self.framework.points, self.framework.bits
+        found = []
+        for i, j in self.framework.sheet.folds:
+            left, right = self.framework.sheet.opposite((i, j))
+            (ix, iy), (jx, jy), (lx, ly), (rx, ry) = (points[v] for v in (i, j, left, right))
+            ex, ey = jx - ix, jy - iy
+            square = ex * ex + ey * ey
+            # Along the fold the corners keep their places; across it the distances are subtracted.
+            along = (lx - rx) * ex + (ly - ry) * ey
+            across = (ex * (ly - iy) - ey * (lx - ix)) + (ex * (ry - iy) - ey * (rx - ix))
+            found.append((along * along + across * across) / (square << 2 * bits))
+        return np.array(found) * (1 + 1e-12)
+
+    def names(self, row: int, kind: str) -> tuple[Triangle, Triangle]:
+        """The two faces of a pair."""
+        triangles = self.framework.sheet.triangles
+        i, j = (self.apart if kind == "apart" else self.corner)[row]
+        return triangles[i], triangles[j]
+
+    def __repr__(self) -> str:
+        return f"<FacePairs: {len(self.framework.sheet.triangles)} faces>"
+
+
+@dataclass(frozen=True)
+class Open:
+    """Pairs that are not proved to be apart: rows of `apart`, of `corner`, and of the folds."""
+
+    apart: IndexArray
+    corner: IndexArray
+    folds: IndexArray
+
+    def __bool__(self) -> bool:
+        return bool(len(self.apart) or len(self.corner) or len(self.folds))
+
+    @classmethod
+    def all_of(cls, pairs: FacePairs) -> Open:
+        """Everything."""
+        sizes = len(pairs.apart), len(pairs.corner), len(pairs.closed)
+        return cls(*(np.arange(size, dtype=np.intp) for size in sizes))
+
+
+def not_separated(pairs: FacePairs, swept: Swept, among: Open) -> Open:
+    """Which of the pairs are not proved to stay apart on a stretch of the motion."""
+    apart = np.array_split(among.apart, 1 + len(among.apart) * 9 * 23 // _PRODUCTS)
+    triangles = pairs.framework.triangles
+    left = [part[~_apart(swept, triangles, pairs.apart[part])] for part in apart]
+    return Open(
+        np.concatenate(left),
+        among.corner[~_at_corner(swept, pairs.corners[among.corner])],
+        among.folds[~_open_folds(swept, pairs, among.folds)],
+    )
+
+
+def clear_until(
+    pairs: FacePairs,
+    coefficients: FloatArray,
+    radius: FloatArray,
+    low: float,
+    high: float,
+    *,
+    planar: bool = False,
+    among: Open | None = None,
+    finest: float = 1e-6,
+) -> tuple[float, Open]:
+    """How far along a piece no two faces touch, proved, and what was not proved right after that.
+
+    The piece is p(s) = sum_k c_k s^k for low <= s <= high, shape (order + 1, V, 3), with every
+    coordinate within `radius` of it, shape (V, 3). It is halved where a pair is not separated, down
+    to the part `finest` of it; the second answer is empty where all of it is clear. Pairs that are
+    named there may be apart all the same.
+    """
+    shortest = finest * (high - low)
+    stack = [(low, high, Open.all_of(pairs) if among is None else among)]
+    while stack:
+        a, b, asked = stack.pop()
+        swept = Swept.of(coefficients, radius, a, b, planar=planar)
+        left = not_separated(pairs, swept, asked)
+        if not left:
+            continue
+        middle = 0.5 * (a + b)
+        if b - a <= shortest or not a < middle < b:
+            return a, left
+        stack += [(middle, b, left), (a, middle, left)]
+    return high, Open(*(np.zeros(0, dtype=np.intp),) * 3)
+
+
+def _apart(swept: Swept, triangles: IndexArray, rows: IndexArray) -> BoolArray:
+    """Whether pairs of faces without a common vertex are separated by a plane."""
+    one, two = triangles[rows[:, 0]], triangles[rows[:, 1]]
+    axes = np.broadcast_to(np.eye(3)[: 2 if swept.planar else 3], (len(rows), 3 - swept.planar, 3))
+    done = _separated(swept, one, two, axes)
+    rest = np.flatnonzero(~done)
+    if len(rest):
+        a, b = swept.start[one[rest]], swept.start[two[rest]]
+        done[rest] = _separated(swept, one[rest], two[rest], _axes(a, b, swept.planar))
+    return done
+
+
+def _at_corner(swept: Swept, rows: IndexArray) -> BoolArray:
+    """Whether pairs of faces with one common vertex are separated by a plane through it."""
+    if not len(rows):
+        return np.zeros(0, dtype=bool)
+    v, one, two = rows[:, :1], rows[:, 1:3], rows[:, 3:]
+    at = swept.start if not swept.planar else swept.start * np.array([1.0, 1.0, 0.0])
+    axes = _nearest_points(_unit(np.concatenate([at[one] - at[v], at[v] - at[two]], axis=1)))
+    # The plane passes through the moving vertex: both sides are differences from it.
+    left = _least(swept, axes, one, np.broadcast_to(v, one.shape))
+    right = _least(swept, axes, np.broadcast_to(v, two.shape), two)
+    return np.asarray((np.minimum(left, right) > _MARGIN).any(axis=1))
+
+
+def _open_folds(swept: Swept, pairs: FacePairs, rows: IndexArray) -> BoolArray:
+    """Whether folds are proved not to be closed."""
+    hinges = pairs.framework.hinges[rows]
+    left, right = hinges[:, 2], hinges[:, 3]
+    gap = swept.start[left] - swept.start[right]
+    spread = swept.half * np.abs(swept.slope[left] - swept.slope[right])
+    spread += swept.error[left] + swept.error[right]
+    if swept.planar:
+        gap, spread = gap[:, :2], spread[:, :2]
+    # |gap + d|^2 >= |gap|^2 + 2 gap.d; the part linear in s is kept together.
+    drift = swept.half * np.abs(
+        (gap * (swept.slope[left] - swept.slope[right])[:, : gap.shape[1]]).sum(axis=1)
+    )
+    error = (np.abs(gap) * (swept.error[left] + swept.error[right])[:, : gap.shape[1]]).sum(axis=1)
+    least = (gap * gap).sum(axis=1) - 2 * (drift + error)
+    return np.asarray((least > pairs.closed[rows] + _MARGIN) | (bends(swept, hinges) != 0))
+
+
+def bends(swept: Swept, hinges: IndexArray) -> IndexArray:
+    """1 for folds that are valleys all the time, -1 for mountains, 0 if neither is proved.
+
+    By the sign of det(j - i, left - i, right - i), the volume between the two faces.
+    """
+    found = np.zeros(len(hinges), dtype=np.intp)
+    if swept.planar:
+        return found
+    i = hinges[:, 0]
+    arms = [swept.start[hinges[:, k]] - swept.start[i] for k in (1, 2, 3)]
+    spreads = [
+        swept.half * np.abs(swept.slope[hinges[:, k]] - swept.slope[i])
+        + swept.error[hinges[:, k]]
+        + swept.error[i]
+        for k in (1, 2, 3)
+    ]
+    size = [np.linalg.norm(arm, axis=1) for arm in arms]
+    most = [n + np.linalg.norm(spread, axis=1) for n, spread in zip(size, spreads, strict=True)]
+    volume = (arms[0] * np.cross(arms[1], arms[2])).sum(axis=1)
+    # |det(e + de, ...) - det(e, ...)| is at most the product of the larger lengths less the others.
+    change = most[0] * most[1] * most[2] - size[0] * size[1] * size[2]
+    clear = np.abs(volume) > change * (1 + 1e-9) + _MARGIN
+    # A valley has the left corner above the right face: a positive volume.
+    found[clear] = np.sign(volume[clear]).astype(np.intp)
+    return found
+
+
+def _separated(swept: Swept, one: IndexArray, two: IndexArray, axes: FloatArray) -> BoolArray:
+    """Whether one of the axes, shape (pairs, axes, 3), separates two faces, shape (pairs, 3)."""
+    i, j = np.repeat(one, 3, axis=1), np.tile(two, (1, 3))
+    best = np.maximum(_least(swept, axes, i, j), _least(swept, -axes, i, j))
+    return np.asarray((best > _MARGIN).any(axis=1))
+
+
+def _least(swept: Swept, axes: FloatArray, i: IndexArray, j: IndexArray) -> FloatArray:
+    """The least of n.(x_i - x_j) over pairs of vertices, for each axis: shape (pairs, axes)."""
+    at = np.einsum("pac,pkc->pak", axes, swept.start[i] - swept.start[j])
+    drift = np.einsum("pac,pkc->pak", axes, swept.slope[i] - swept.slope[j])
+    error = np.einsum("pac,pkc->pak", np.abs(axes), swept.error[i] + swept.error[j])
+    return np.asarray((at - swept.half * np.abs(drift) - error).min(axis=2))
+
+
+def _axes(a: FloatArray, b: FloatArray, planar: bool) -> FloatArray:
+    """Directions among which one separates two triangles (pairs, 3, 3) if any does; length <= 1."""
+    sides_a, sides_b = (np.roll(t, -1, axis=1) - t for t in (a, b))
+    if planar:
+        sides = np.concatenate([sides_a, sides_b], axis=1)
+        return _unit(np.stack([-sides[..., 1], sides[..., 0], np.zeros(sides.shape[:2])], axis=-1))
+    normals = [np.cross(sides[:, :1], sides[:, 1:2]) for sides in (sides_a, sides_b)]
+    crossed = np.cross(sides_a[:, :, None], sides_b[:, None]).reshape(len(a), 9, 3)
+    across = [
+        np.cross(sides, _unit(n)) for sides, n in zip((sides_a, sides_b), normals, strict=True)
+    ]
+    return _unit(np.concatenate([*across, *normals, crossed], axis=1))
+
+
+def _nearest_points(p: FloatArray) -> FloatArray:
+    """Of four points, shape (pairs, 4, 3), the point next to 0 of each line and plane they span.
+
+    n.p > 0 for all four points has a solution n exactly if 0 is not in their convex hull; then the
+    point of the hull next to 0 is one, and it is among the points, these, or there is none.
+    """
+    found = [p]
+    for i, j in combinations(range(4), 2):
+        side = p[:, j] - p[:, i]
+        square = np.maximum((side * side).sum(axis=1), 1e-300)
+        share = (p[:, i] * side).sum(axis=1) / square
+        found.append((p[:, i] - share[:, None] * side)[:, None])
+    for i, j, k in combinations(range(4), 3):
+        normal = np.cross(p[:, j] - p[:, i], p[:, k] - p[:, i])
+        found.append((normal * np.sign((normal * p[:, i]).sum(axis=1))[:, None])[:, None])
+    return _unit(np.concatenate(found, axis=1))
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.maximum(length, 1e-300) * (1 - 1e-12))

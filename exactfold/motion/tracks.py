@@ -1,0 +1,315 @@
+"""Tracks: the motion along a branch from the flat state on, as a chain of linked tubes."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+
+from exactfold.arrays import FloatArray
+from exactfold.branches.branch import Branch
+from exactfold.errors import NotApplicableError, UsageError
+from exactfold.motion.arclength import Interval
+from exactfold.motion.framework import Framework
+from exactfold.motion.length_equations import LengthEquations
+from exactfold.motion.piece import Ball
+from exactfold.motion.tube import Tube, prove_tube, sharpened
+from exactfold.motion.tube_start import StartTube, prove_start
+from exactfold.pattern.crease_pattern import CreasePattern, Triangle
+from exactfold.problem.problem import Problem
+from exactfold.verdict import PROVED, UNDECIDED, Verdict
+
+MOST_TUBES = 1000
+_LEAST = 1e-5  # of a step, in the unit of the framework
+_EXIT = 11, 16  # the part of the reach at which the next tube begins
+
+
+class FlatVertexError(NotApplicableError):
+    """A branch with a vertex that is proved flat is a multiple root: no curve is known there."""
+
+
+@dataclass(frozen=True, repr=False)
+class Link:
+    """A tube of a track, with the part of it that belongs to the track.
+
+    The motion enters at some parameter in `entry` = (low, high) and leaves at `exit`, exactly, at
+    a time between `left` of the track before and itself: `entered` and `left` bound the time, the
+    length of the motion from the flat state, in the unit of the framework. Parameters are over
+    2^PARAMETER_BITS.
+    """
+
+    tube: Tube
+    entry: tuple[int, int]
+    exit: int
+    entered: Interval
+    left: Interval
+
+    def time(self, parameter: int) -> Interval:
+        """Bounds of the time at a parameter between the entry and the end of the tube."""
+        low, high = self.tube.length(self.entry, parameter)
+        return self.entered[0] + low, self.entered[1] + high
+
+    def __repr__(self) -> str:
+        return (
+            f"<Link: time {float(self.entered[0]):.4g} to {float(self.left[0]):.4g}, {self.tube!r}>"
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class Frame:
+    """One configuration of a track: the only one in its box with this value of T(x - c).
+
+    `time` bounds the length of the motion from the flat state, in the unit of the sheet.
+    """
+
+    time: Interval
+    ball: Ball
+
+    def __repr__(self) -> str:
+        return f"<Frame: time {float(self.time[0]):.6g}, {self.ball!r}>"
+
+
+@dataclass(frozen=True, repr=False)
+class Track:
+    """The motion from the flat state along a half-branch, proved without a gap.
+
+    `start` and `links` hold pieces of one analytic curve of configurations, in its order: the exit
+    of each lies on the next, and both go the same way there (docs/motion.md, Theorem 4).
+    `vertex_signs` are those on the half-branch itself, by foldable vertex of `pattern`; `side` is
+    1 or -1, the sign of the boundary saddle or, if `corner` is not None, the vertex sign of this
+    reflex corner in the sheet with its notch closed. `labels[v]` is the vertex of `pattern` that
+    vertex v of the framework is: what lies in triangulated triangles moves with them.
+
+    `status` is PROVED if the track goes as far as asked, else UNDECIDED; what there is is proved in
+    any case. `reason` says where it ended and why.
+    """
+
+    pattern: CreasePattern
+    labels: tuple[int, ...]
+    corner: int | None
+    start: StartTube
+    links: tuple[Link, ...]
+    status: Verdict
+    reason: str
+
+    @property
+    def framework(self) -> Framework:
+        """The sheet that moves, without what stays flat, and its pinned triangle."""
+        return self.start.framework
+
+    @property
+    def vertex_signs(self) -> dict[int, int]:
+        """The signs of the half-branch by foldable vertex of the pattern."""
+        interior = self.framework.sheet.interior
+        return {self.labels[v]: s for v, s in zip(interior, self.start.vertex_signs, strict=True)}
+
+    @property
+    def side(self) -> int:
+        """The sign of the boundary saddle, or of the reflex corner."""
+        return self.start.side
+
+    @property
+    def length(self) -> Interval:
+        """Bounds of the length of the whole track, in the unit of the sheet."""
+        low, high = self.links[-1].left if self.links else self._started
+        return low * self.framework.unit, high * self.framework.unit
+
+    @property
+    def _started(self) -> Interval:
+        return self.start.length(0, self.start.last)
+
+    def frames(self, times: FloatArray | list[float]) -> list[Frame]:
+        """Enclosed configurations near given times, in the unit of the sheet.
+
+        Each is one point of the curve, in a box of about 14 digits (8 within the start tube),
+        at a time near the one asked for, which `Frame.time` bounds. Raises `UsageError` for times
+        that the track does not reach.
+        """
+        return [self.frame(float(time)) for time in times]
+
+    def frame(self, time: float) -> Frame:
+        """One enclosed configuration near a time; as `frames`."""
+        unit = self.framework.unit
+        wanted = Fraction(time) / unit
+        if not 0 <= wanted <= (self.links[-1].left if self.links else self._started)[1]:
+            raise UsageError(f"the track does not reach the time {time:g}")
+        k = bisect_left([link.left[1] for link in self.links], wanted)
+        if wanted <= self._started[1]:
+            tau = _solve(lambda x: self.start.length(0, x)[0] - wanted, 0, self.start.last)
+            low, high = self.start.length(0, tau)
+            ball = self.start.ball(tau)
+        else:
+            link = self.links[k]
+            first = max(0, link.entry[1])
+            parameter = _solve(lambda x: link.time(x)[0] - wanted, first, link.exit)
+            low, high = link.time(parameter)
+            ball = sharpened(link.tube, parameter)
+        return Frame((Fraction(low * unit), Fraction(high * unit)), ball)
+
+    def __repr__(self) -> str:
+        signs = "".join("+" if s > 0 else "-" for s in self.start.vertex_signs)
+        side = "+" if self.side > 0 else "-"
+        return (
+            f"<Track {signs} {side}: {self.status}, {len(self.links)} tubes, "
+            f"length {float(self.length[0]):.6g}>"
+        )
+
+
+Stop = Callable[[Link], "str | None"]
+"""Called with each proved link; a text, why the track ends here, or None to go on."""
+
+
+def half_branch(
+    branch: Branch, side: int = 1, pinned: Triangle | None = None, *, bits: int = 64
+) -> Track:
+    """The track of a half-branch as far as its start tube.
+
+    `branch`: simple and proved; `side` 1 is the half-branch with its heights, -1 the opposite one.
+    `pinned`: the triangle that does not move, by vertices of the sheet without rigid parts.
+
+    Raises `FlatVertexError` if a vertex is proved flat on the branch, `UsageError` if the branch
+    is not proved, `NotProvedAtTheFlatStateError` where the curve is not enclosed.
+    """
+    if side not in (1, -1):
+        raise UsageError(f"the side is {side!r}, not 1 or -1")
+    if branch.status is not PROVED or branch.root is None:
+        raise UsageError("a motion is proved from a branch that is proved")
+    problem = Problem.of(branch.pattern)
+    problem.require_foldable()
+    flat = [v for v in problem.foldable if branch.vertex_signs[v] == 0]
+    if flat:
+        raise FlatVertexError(
+            f"vertex {flat[0]} stays flat on this branch, which is a multiple root: whether and "
+            "how it continues is not decided"
+        )
+    heights = branch.approx_heights
+    framework = Framework.of(problem.sheet, pinned)
+    start = prove_start(
+        framework,
+        problem.gauge,
+        side * np.array([heights[v] for v in problem.labels]),
+        bits=bits,
+    )
+    corner = None if problem.gauge.corner is None else problem.labels[problem.gauge.corner]
+    return Track(branch.pattern, problem.labels, corner, start, (), PROVED, "the start tube")
+
+
+def follow_proved(
+    branch: Branch,
+    side: int = 1,
+    *,
+    until: float | None = None,
+    stop: Stop | None = None,
+    most: int = MOST_TUBES,
+    pinned: Triangle | None = None,
+    bits: int = 64,
+) -> Track:
+    """The proved motion along a branch, until a time, or until `stop` says so.
+
+    The time is the length of the curve in the unknowns of the framework, in the unit of the sheet.
+    `side` and `pinned` as in `half_branch`, whose errors are raised. The track is UNDECIDED if it
+    ends before: where tubes become shorter than 1e-5 of the sheet, as near a configuration where
+    several curves meet, or after `most` tubes.
+
+    >>> from exactfold.count.find import find_branch
+    >>> from exactfold.pattern.random_squares import random_square
+    >>> track = follow_proved(find_branch(random_square(2, seed=0), "+-"), until=0.5)
+    >>> track.status, track.vertex_signs, track.side
+    (<Verdict.PROVED: 'proved'>, {4: 1, 5: -1}, 1)
+    """
+    track = half_branch(branch, side, pinned, bits=bits)
+    goal = None if until is None else Fraction(until) / track.framework.unit
+    links: list[Link] = []
+    status, reason = UNDECIDED, "the curve was not followed further"
+    for link in continued(track, bits=bits):
+        if isinstance(link, str):
+            reason = link
+            break
+        links.append(link)
+        said = None if stop is None else stop(link)
+        if said is not None:
+            status, reason = PROVED, said
+            break
+        if goal is not None and link.left[0] >= goal:
+            status, reason = PROVED, "the length that was asked for"
+            break
+        if len(links) >= most:
+            reason = f"{most} tubes were not enough"
+            break
+    return replace(track, links=tuple(links), status=status, reason=reason)
+
+
+def continued(track: Track, *, bits: int = 64) -> Iterator[Link | str]:
+    """The links that continue a track, one by one; at last, if there is no next one, why."""
+    equations = LengthEquations.of(track.framework, bits)
+    if track.links:
+        before = track.links[-1]
+        ball, velocity = before.tube.enclosure(before.exit), before.tube.velocity(before.exit)
+        return onwards(
+            equations,
+            ball,
+            velocity,
+            before.left,
+            float(before.tube.length(before.entry, before.exit)[0]),
+        )
+    last, time = track.start.last, track._started
+    ball, velocity = track.start.ball(last), track.start.ball_velocity(last)
+    return onwards(equations, ball, velocity, time, float(time[0]) / 2)
+
+
+def onwards(
+    equations: LengthEquations, ball: Ball, velocity: Ball, time: Interval, step: float
+) -> Iterator[Link | str]:
+    """The links from a configuration in a box on, which is passed with a velocity in a box.
+
+    The first tube is about `step` long. Ends with the reason if there is no next link.
+    """
+    while True:
+        tube, entry = _next(equations, ball, velocity, step)
+        if tube is None or entry is None:
+            yield (
+                "no tube longer than 1e-5 of the sheet was proved here: the configuration is "
+                "singular or nearly so, or several curves meet"
+            )
+            return
+        at = tube.longest * _EXIT[0] // _EXIT[1]
+        shortest, longest = tube.length(entry, at)
+        left = time[0] + shortest, time[1] + longest
+        yield Link(tube, entry, at, time, left)
+        ball, velocity, time = tube.enclosure(at), tube.velocity(at), left
+        step = float(shortest) * _EXIT[1] / _EXIT[0]
+
+
+def _next(
+    equations: LengthEquations, ball: Ball, velocity: Ball, step: float
+) -> tuple[Tube | None, tuple[int, int] | None]:
+    """A tube on which the configuration in a box lies, which the motion passes forwards."""
+    while step > _LEAST:
+        tube = prove_tube(equations, ball.finer(equations.bits).centre, velocity.floats[0], step)
+        if tube is not None:
+            entry = tube.located(ball)
+            forwards = entry is not None and tube.goes_along(velocity) == 1
+            if entry is not None and forwards and entry[1] < tube.longest * _EXIT[0] // _EXIT[1]:
+                return tube, entry
+        step /= 4
+    return None, None
+
+
+def _solve(function: Callable[[int], Fraction], low: int, high: int) -> int:
+    """Nearly where an increasing function that is not far from linear is 0."""
+    bottom, top = function(low), function(high)
+    for _ in range(8):
+        if high - low < 2 or bottom >= 0 or top <= 0:
+            break
+        middle = low + int((high - low) * -bottom / (top - bottom))
+        value = function(middle)
+        if abs(value) < Fraction(1, 1 << 40):
+            return middle
+        if value > 0:
+            high, top, bottom = middle, value, bottom / 2
+        else:
+            low, bottom, top = middle, value, top / 2
+    return high if top <= 0 else low
