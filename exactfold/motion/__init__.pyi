@@ -5,7 +5,6 @@ from exactfold.motion.framework import Framework as Framework
 from exactfold.motion.motion import Motion as Motion
 from exactfold.motion.piece import Ball as Ball
 from exactfold.motion.start import Start as Start
-from exactfold.motion.writing import write_motion as write_motion
 from exactfold.motion.tracks import FlatVertexError as FlatVertexError
 from exactfold.motion.tracks import Frame as Frame
 from exactfold.motion.tracks import Link as Link
@@ -16,3 +15,4 @@ from exactfold.motion.tracks import half_branch as half_branch
 from exactfold.motion.tube import Tube as Tube
 from exactfold.motion.tube_start import NotProvedAtTheFlatStateError as NotProvedAtTheFlatStateError
 from exactfold.motion.tube_start import StartTube as StartTube
+from exactfold.motion.writing import write_motion as write_motion
