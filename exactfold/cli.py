@@ -14,6 +14,7 @@ from exactfold.commands.parameters import (
     Json,
     Pattern,
     Patterns,
+    Place,
     Sheet,
     Signs,
     Snap,
@@ -22,7 +23,9 @@ from exactfold.commands.parameters import (
     degrees,
     distance,
     flag,
+    fold_name,
     method_name,
+    one_side,
     whole,
 )
 from exactfold.commands.shell import (
@@ -250,12 +253,7 @@ def export(
     pattern: Pattern,
     signs: Signs = None,
     up: Up = None,
-    place: Annotated[
-        int | None,
-        typer.Option(
-            "--branch", parser=whole(1), metavar="N", help="Instead: the N-th that `count` lists."
-        ),
-    ] = None,
+    place: Place = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FILE.fold", help="Default, and -: stdout."),
@@ -285,6 +283,92 @@ def export(
         raise UsageError("give one of --signs, --up and --branch")
     apart(output, pattern)
     asked = Wanted(pattern, snap, sheet, signs, up, place, output, amount, force, as_json)
+    raise typer.Exit(asked.answer())
+
+
+@app.command(cls=Command)
+@reported
+def fold(
+    pattern: Pattern,
+    signs: Signs = None,
+    up: Up = None,
+    place: Place = None,
+    side: Annotated[
+        Any,
+        typer.Option(
+            parser=one_side, metavar="+|-", help="-: the mirror image, with all signs reversed."
+        ),
+    ] = "+",
+    until: Annotated[
+        str,
+        typer.Option(
+            metavar="WHERE",
+            help="Where to stop: `contact`, when faces meet or a fold closes; `return`, when the "
+            "sheet is flat again; a fold angle such as 90deg; or a number, the time.",
+        ),
+    ] = "contact",
+    frames: Annotated[
+        int, typer.Option(parser=whole(2), metavar="N", help="Number of frames.")
+    ] = 60,
+    by: Annotated[
+        Any,
+        typer.Option(
+            parser=fold_name,
+            metavar="I-J",
+            help="Frames at equal steps of the angle of this fold, not of time.",
+        ),
+    ] = None,
+    through_nodes: Annotated[
+        bool, flag("--through-nodes", text="Go straight on where another motion crosses.")
+    ] = False,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            callback=not_a_dash,
+            metavar="FILE",
+            help="Write the frames: FILE.fold; .glb or .gltf with an animation; or .obj, a file "
+            "for each, FILE_0000.obj and on.",
+        ),
+    ] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            callback=not_a_dash, metavar="FILE.svg", help="Draw all fold angles along the motion."
+        ),
+    ] = None,
+    as_json: Json = False,
+    snap: Snap = None,
+    sheet: Sheet = None,
+) -> None:
+    """Follow one branch in space, faces rigid, until something happens.
+
+    Without --signs, --up and --branch, the branch on which all vertices pop up.
+    The branch is proved; the motion is followed in floating point.
+    """
+    from exactfold.commands.fold import Wanted
+
+    if (signs is not None) + (up is not None) + (place is not None) > 1:
+        raise UsageError("give one of --signs, --up and --branch")
+    apart(output, pattern, plot)
+    apart(plot, pattern)
+    asked = Wanted(
+        pattern,
+        snap,
+        sheet,
+        signs,
+        up,
+        place,
+        side,
+        until,
+        frames,
+        by,
+        through_nodes,
+        output,
+        plot,
+        as_json,
+    )
     raise typer.Exit(asked.answer())
 
 

@@ -266,3 +266,7 @@ class NotEnoughMemoryError(WorkerDiedError):
 
 class DaskMissingError(ExactfoldError):
     """dask.distributed, an optional part, is not installed."""
+
+
+class GltfMissingError(ExactfoldError):
+    """pygltflib, an optional part that writes glTF files, is not installed."""

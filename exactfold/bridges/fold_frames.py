@@ -1,15 +1,20 @@
-"""A branch as a FOLD file of two frames, for programs that fold and draw: see docs/export.md."""
+"""Branches and motions as FOLD files with frames, for programs that fold and draw."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.fold_writing import fold_document
 
 BRANCH_KEY: Final = "frame_exactfold:branch"
+MOTION_KEY: Final = "frame_exactfold:motion"
+TIME_KEY: Final = "frame_exactfold:time"
 HEIGHTS_KEY: Final = "vertices_exactfold:heights"
+_NOISE: Final = 1e-7
+"""Degrees: a smaller angle against its letter is a rounding error."""
 
 
 def branch_document(
@@ -25,6 +30,8 @@ def branch_document(
 ) -> dict[str, Any]:
     """The FOLD 1.2 object of a branch: the flat sheet, and as frame 1 the sheet in space.
 
+    See docs/export.md.
+
     The first frame is `fold_document(pattern, assignment, angles=angles)`, angles in degrees, with
     the custom keys `frame_exactfold:branch` (`facts`: what the branch is) and
     `vertices_exactfold:heights` (`heights`: bounds "p/q" by vertex). Frame 1 inherits all of it
@@ -37,23 +44,123 @@ def branch_document(
     >>> document["file_frames"][0]["frame_classes"], document["frame_classes"]
     (['foldedForm'], ['creasePattern'])
     """
+    document = _flat_frame(
+        pattern, assignment, angles, name=name, title=title, facts={BRANCH_KEY: dict(facts)}
+    )
+    document[HEIGHTS_KEY] = [list(row) for row in heights]
+    document["file_frames"] = [
+        {
+            "frame_title": f"{name} to second order: close to a folded state, not exact",
+            **_in_space(),
+            "vertices_coords": [list(point) for point in folded],
+        }
+    ]
+    return document
+
+
+def motion_document(
+    pattern: CreasePattern,
+    assignment: Mapping[Edge, str],
+    angles: Mapping[Edge, float],
+    frames: Sequence[MotionFrame],
+    *,
+    name: str,
+    title: str | None = None,
+    facts: Mapping[str, Any],
+) -> dict[str, Any]:
+    """The FOLD 1.2 object of a motion: the flat sheet, and after it every frame in space.
+
+    The first frame is that of `branch_document`, with `facts` under `frame_exactfold:motion`. Each
+    frame of `frames` inherits it, and has coordinates and fold angles of its own; letters too where
+    an angle has the other sign than the letter says. Raises what `fold_document` raises.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> frame = MotionFrame(0.5, [(0, 0, 0)] * 4, {(0, 3): -1.0})
+    >>> document = motion_document(
+    ...     single_vertex(3), {(0, 3): "V"}, {}, [frame], name="branch -", facts={})
+    >>> document["edges_assignment"][2], document["file_frames"][0]["edges_assignment"][2]
+    ('V', 'M')
+    >>> document["file_frames"][0]["edges_foldAngle"]
+    [0.0, 0.0, -1.0, 0.0, 0.0, 0.0]
+    """
+    document = _flat_frame(
+        pattern, assignment, angles, name=name, title=title, facts={MOTION_KEY: dict(facts)}
+    )
+    letters = dict(zip(pattern.edges, document["edges_assignment"], strict=True))
+    document["file_frames"] = [
+        _frame(frame, letters, f"{name}, frame {k} of {len(frames)}, time {frame.time:.6g}")
+        for k, frame in enumerate(frames, 1)
+    ]
+    return document
+
+
+@dataclass(frozen=True)
+class MotionFrame:
+    """A sheet in space: `coords` with three components a vertex, `angles` in degrees by fold."""
+
+    time: float
+    coords: Sequence[Sequence[float]]
+    angles: Mapping[Edge, float]
+
+
+def _in_space() -> dict[str, Any]:
+    """The keys of a frame in space that inherits the flat sheet."""
+    return {
+        "frame_classes": ["foldedForm"],
+        "frame_attributes": ["3D"],
+        "frame_parent": 0,
+        "frame_inherit": True,
+    }
+
+
+def _flat_frame(
+    pattern: CreasePattern,
+    assignment: Mapping[Edge, str],
+    angles: Mapping[Edge, float],
+    *,
+    name: str,
+    title: str | None,
+    facts: Mapping[str, Any],
+) -> dict[str, Any]:
+    """The first frame, the exact flat sheet."""
     whole = name if title is None else f"{title}, {name}"
     flat = fold_document(pattern, assignment, whole, angles)
     # The keys of the file come first, then those of the frame, as people read it.
     document = {key: value for key, value in flat.items() if key.startswith("file_")}
     document["frame_title"] = f"flat sheet, with the first-order fold angles of {name}"
     document["frame_unit"] = "unit"
-    document[BRANCH_KEY] = dict(facts)
-    document |= flat
-    document[HEIGHTS_KEY] = [list(row) for row in heights]
-    document["file_frames"] = [
-        {
-            "frame_title": f"{name} to second order: close to a folded state, not exact",
-            "frame_classes": ["foldedForm"],
-            "frame_attributes": ["3D"],
-            "frame_parent": 0,
-            "frame_inherit": True,
-            "vertices_coords": [list(point) for point in folded],
-        }
-    ]
-    return document
+    return document | dict(facts) | flat
+
+
+def _frame(frame: MotionFrame, letters: Mapping[Edge, str], title: str) -> dict[str, Any]:
+    angles = dict.fromkeys(letters, 0.0)
+    angles.update({fold: _principal(angle) for fold, angle in frame.angles.items()})
+    own = {edge: _letter(letter, angles[edge]) for edge, letter in letters.items()}
+    for edge, letter in own.items():
+        angles[edge] = _agreeing(letter, angles[edge])
+    return {
+        "frame_title": title,
+        TIME_KEY: frame.time,
+        **_in_space(),
+        "vertices_coords": [[float(x) for x in point] for point in frame.coords],
+        **({} if own == letters else {"edges_assignment": list(own.values())}),
+        "edges_foldAngle": list(angles.values()),
+    }
+
+
+def _principal(angle: float) -> float:
+    """The angle between -180 and 180 degrees, one that is closed on the side it came from."""
+    if abs(angle) > 180 + _NOISE:
+        angle -= 360 * round(angle / 360)
+    return max(-180.0, min(180.0, angle))
+
+
+def _letter(letter: str, angle: float) -> str:
+    """The letter of a fold at an angle: its own unless the angle has another sign."""
+    if abs(angle) <= _NOISE or letter == "B":
+        return letter
+    return "V" if angle > 0 else "M"
+
+
+def _agreeing(letter: str, angle: float) -> float:
+    return angle if letter == ("V" if angle > 0 else "M") else 0.0

@@ -10,10 +10,13 @@ from pathlib import Path
 from exactfold.branches.branch import Branch
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, name_of, say
+from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import UnreadableFileError, UsageError
+from exactfold.errors import NotCountedError, UnreadableFileError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.verdict import PROVED
+from exactfold.wording import counted
 
 
 @dataclass(frozen=True)
@@ -91,6 +94,30 @@ class Asked:
                 write_certificate(branch_certificate(result), self.certificate)
         else:
             say("no certificate was written: nothing is proved")
+
+
+def chosen(
+    pattern: CreasePattern, signs: str | None, up: str | None, place: int | None, bar: Bar
+) -> Branch:
+    """The branch that --signs or --up names, or the one at a place in the listing, from 1.
+
+    Raises the errors of `BranchFinder` and `count_branches`, and `UsageError` or `NotCountedError`
+    for a place that is not listed.
+    """
+    if place is None:
+        finder = BranchFinder(pattern)
+        bar("setting up")
+        return finder.find(given_signs(finder, signs, up), progress=bar)
+    result = count_branches(pattern, progress=bar)
+    if not 1 <= place <= len(result.branches):
+        proved = "" if result.status is PROVED else f", undecided: {result.reason}"
+        listed = len(result.branches)
+        cause = UsageError if listed else NotCountedError
+        raise cause(
+            f"--branch {place}: `exactfold count` lists "
+            f"{counted(listed or 'no', 'branch')} of this pattern{proved}"
+        )
+    return result.branches[place - 1]
 
 
 def given_signs(finder: BranchFinder, signs: str | None, up: str | None) -> dict[int, int]:

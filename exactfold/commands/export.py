@@ -10,19 +10,15 @@ from typing import Any
 
 from exactfold.branches.branch import Branch
 from exactfold.branches.export import AMOUNT, BranchExport, exported
-from exactfold.commands.branch import given_signs
+from exactfold.commands.branch import chosen
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import EXIT, Bar, name_of, say
-from exactfold.count.collect import count_branches
-from exactfold.count.find import BranchFinder
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import NotCountedError, UndecidedBranchError, UsageError
-from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
 from exactfold.schemas import headed
-from exactfold.verdict import PROVED, UNDECIDED
-from exactfold.wording import counted
+from exactfold.verdict import UNDECIDED
 
 
 @dataclass(frozen=True)
@@ -43,7 +39,7 @@ class Wanted:
     def answer(self) -> int:
         """Find the branch, write it and say so; the exit code.
 
-        Raises the errors of `read`, `BranchFinder`, `count_branches` and `exported`, but for
+        Raises the errors of `read`, `chosen` and `exported`, but for
         `UndecidedBranchError`, which is said on stderr with what `BranchFinder` gave as a reason.
         """
         output = None if self.output is None or str(self.output) == "-" else self.output
@@ -51,7 +47,7 @@ class Wanted:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
             pattern = read(self.file, self.snap, self.sheet, "export").pattern
-            branch = self._branch(pattern, bar)
+            branch = chosen(pattern, self.signs, self.up, self.place, bar)
             bar("writing")
             try:
                 export = exported(
@@ -78,22 +74,6 @@ class Wanted:
     @property
     def _title(self) -> str | None:
         return None if str(self.file) == "/dev/stdin" else self.file.stem
-
-    def _branch(self, pattern: CreasePattern, bar: Bar) -> Branch:
-        if self.place is None:
-            finder = BranchFinder(pattern)
-            bar("setting up")
-            return finder.find(given_signs(finder, self.signs, self.up), progress=bar)
-        result = count_branches(pattern, progress=bar)
-        if not 1 <= self.place <= len(result.branches):
-            proved = "" if result.status is PROVED else f", undecided: {result.reason}"
-            listed = len(result.branches)
-            cause = UsageError if listed else NotCountedError
-            raise cause(
-                f"--branch {self.place}: `exactfold count` lists "
-                f"{counted(listed or 'no', 'branch')} of this pattern{proved}"
-            )
-        return result.branches[self.place - 1]
 
 
 def _summary(

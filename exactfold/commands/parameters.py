@@ -66,6 +66,22 @@ def degrees(text: object) -> float:
         raise typer.BadParameter(f"{str(text)!r} is not a number") from None
 
 
+def one_side(text: object) -> int:
+    """1 or -1, from "+" or "-"."""
+    if text not in ("+", "-", "+1", "-1", "1"):
+        raise typer.BadParameter(f"{text!r} is neither + nor -")
+    return -1 if str(text).startswith("-") else 1
+
+
+def fold_name(text: object) -> tuple[int, int]:
+    """A fold as it is printed, such as 4-7."""
+    try:
+        i, j = (int(part) for part in str(text).split("-"))
+    except ValueError:
+        raise typer.BadParameter(f"{str(text)!r} is not a fold such as 4-7") from None
+    return min(i, j), max(i, j)
+
+
 def distance(text: object) -> Fraction:
     """A positive number, such as 1e-6, exactly as it is written."""
     try:
@@ -142,4 +158,11 @@ Signs = Annotated[
 Up = Annotated[
     str | None,
     typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
+]
+
+Place = Annotated[
+    int | None,
+    typer.Option(
+        "--branch", parser=whole(1), metavar="N", help="Instead: the N-th that `count` lists."
+    ),
 ]

@@ -20,3 +20,4 @@ from exactfold.motion.tracks import half_branch as half_branch
 from exactfold.motion.tube import Tube as Tube
 from exactfold.motion.tube_start import NotProvedAtTheFlatStateError as NotProvedAtTheFlatStateError
 from exactfold.motion.tube_start import StartTube as StartTube
+from exactfold.motion.writing import write_motion as write_motion

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from exactfold.arrays import BoolArray, FloatArray, IndexArray
+from exactfold.motion.boxes import BoxTree, meeting
 from exactfold.motion.framework import Framework
 
 _ALL_PAIRS = 40_000
@@ -51,43 +52,66 @@ class Crossings:
         shared = (ends[:, :, None] == corners[:, None, :]).any(axis=(1, 2))
         return np.asarray(pairs[~shared])
 
+    @cached_property
+    def _trees(self) -> tuple[BoxTree, BoxTree]:
+        flat = self.framework.flat
+        return (
+            BoxTree.of(flat[self.edges].mean(axis=1)),
+            BoxTree.of(flat[self.framework.triangles].mean(axis=1)),
+        )
+
     def _near(self, positions: FloatArray) -> IndexArray:
         """The pairs whose bounding boxes meet, at one configuration (V, 3)."""
         if self._pairs is not None:
             return self._pairs
         ends, corners = positions[self.edges], positions[self.framework.triangles]
-        low, high = (ends.min(axis=1), ends.max(axis=1))
-        least, most = (corners.min(axis=1), corners.max(axis=1))
-        axis = int(np.argmax(np.ptp(positions, axis=0)))
-        # Two intervals meet exactly if one of them starts inside the other.
-        pairs = np.concatenate(
-            [
-                _starting_inside(low[:, axis], high[:, axis], least[:, axis]),
-                _starting_inside(least[:, axis], most[:, axis], low[:, axis], strict=True)[:, ::-1],
-            ]
+        pairs = meeting(
+            *self._trees,
+            (ends.min(axis=1), ends.max(axis=1)),
+            (corners.min(axis=1), corners.max(axis=1)),
         )
-        for k in range(3):
-            e, f = pairs.T
-            pairs = pairs[(low[e, k] <= most[f, k]) & (least[f, k] <= high[e, k])]
         return self._apart(pairs)
 
-    def found(self, positions: FloatArray) -> list[Crossing]:
-        """All crossings at one configuration, shape (V, 3)."""
+    def pairs(self, positions: FloatArray) -> IndexArray:
+        """All pairs (edge, face) that cross at one configuration (V, 3), shape (crossings, 2)."""
         pairs = self._near(positions)
-        hits = self._cross(positions[None], pairs)[0]
-        return [self._named(pair) for pair in pairs[hits]]
+        return np.asarray(pairs[self.cross(positions[None], pairs)[0]])
 
     def any_of(self, positions: FloatArray) -> BoolArray:
         """Whether there is a crossing at each of many configurations, shape (times, V, 3)."""
         if self._pairs is not None:
-            return np.asarray(self._cross(positions, self._pairs).any(axis=1))
-        return np.array([self._cross(x[None], self._near(x)).any() for x in positions])
+            return np.asarray(self.cross(positions, self._pairs).any(axis=1))
+        graphs = self.graphs(positions)
+        return np.array(
+            [not flat and len(self.pairs(x)) > 0 for flat, x in zip(graphs, positions, strict=True)]
+        )
 
-    def _named(self, pair: IndexArray) -> Crossing:
+    def graphs(self, positions: FloatArray) -> BoolArray:
+        """Whether the sheet lies over the plane of the pinned face without overlap, at each time.
+
+        It does if every face lies over it with its upper side up and the rim with no crossing: such
+        a map of a disk has degree 1, so that no two points have one image. Then nothing meets.
+        """
+        plane = positions[..., :2]
+        a, b, c = (plane[:, v] for v in self.framework.triangles.T)
+        upright = _turn(a, b, c).min(axis=1) > _NOISE
+        rim = self.framework.sheet.boundary
+        sides = list(zip(rim, (*rim[1:], rim[0]), strict=True))
+        for k, (p, q) in enumerate(sides):
+            for r, s in sides[k + 2 : len(sides) - (k == 0)]:
+                p_, q_, r_, s_ = (plane[:, v] for v in (p, q, r, s))
+                apart = (_turn(p_, q_, r_) * _turn(p_, q_, s_) > _NOISE) | (
+                    _turn(r_, s_, p_) * _turn(r_, s_, q_) > _NOISE
+                )
+                upright &= apart
+        return np.asarray(upright)
+
+    def named(self, pair: IndexArray) -> Crossing:
+        """A pair (edge, face) by its vertices."""
         (i, j), (a, b, c) = self.edges[pair[0]], self.framework.triangles[pair[1]]
         return Crossing((int(i), int(j)), (int(a), int(b), int(c)))
 
-    def _cross(self, positions: FloatArray, pairs: IndexArray) -> BoolArray:
+    def cross(self, positions: FloatArray, pairs: IndexArray) -> BoolArray:
         """Which edges run through which faces, shape (times, pairs)."""
         p, q = (positions[:, v] for v in self.edges[pairs[:, 0]].T)
         a, b, c = (positions[:, v] for v in self.framework.triangles[pairs[:, 1]].T)
@@ -117,18 +141,11 @@ class Crossings:
         return "vertex on face" if near_end < near_side else "edge on edge"
 
 
+def _turn(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
+    """Twice the area of triangles in the plane, positive where they are counter-clockwise."""
+    u, v = b - a, c - a
+    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+
+
 def _volume(p: FloatArray, q: FloatArray, u: FloatArray, v: FloatArray) -> FloatArray:
     return np.asarray((np.cross(q - p, u - p) * (v - p)).sum(-1))
-
-
-def _starting_inside(
-    low: FloatArray, high: FloatArray, starts: FloatArray, *, strict: bool = False
-) -> IndexArray:
-    """All (k, m) with low_k <= starts_m <= high_k, or low_k < starts_m if `strict`."""
-    order = np.argsort(starts, kind="stable")
-    ordered = starts[order]
-    first = np.searchsorted(ordered, low, side="right" if strict else "left")
-    count = np.maximum(np.searchsorted(ordered, high, side="right") - first, 0)
-    owner = np.repeat(np.arange(len(low)), count)
-    offset = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
-    return np.column_stack([owner, order[np.repeat(first, count) + offset]])

@@ -13,7 +13,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from exactfold.arrays import FloatArray
 from exactfold.errors import NotApplicableError
 from exactfold.motion.framework import Framework
-from exactfold.motion.start import Start, bordered
+from exactfold.motion.start import Start, blown_up, blown_up_jacobian, bordered
 
 ORDER = 10
 TOLERANCE = 1e-11
@@ -66,13 +66,24 @@ class Piece:
     def length_to(self, parameter: float) -> float:
         """The arclength from 0, by Gauss-Legendre quadrature."""
         s = 0.5 * parameter * (_NODES + 1)
-        return float(0.5 * parameter * (_WEIGHTS @ np.linalg.norm(self.speed(s), axis=-1)))
+        return float(0.5 * parameter * (_WEIGHTS @ self._pace(s)))
+
+    @cached_property
+    def _squares(self) -> FloatArray:
+        """The squared speed as a polynomial, highest power first."""
+        rows = self.coefficients[1:] * np.arange(1, len(self.coefficients))[:, None]
+        products = rows @ rows.T
+        return np.array([np.trace(products[:, ::-1], k) for k in range(1 - len(rows), len(rows))])
+
+    def _pace(self, parameter: FloatArray | float) -> FloatArray:
+        """The speed as a number: the change of arclength."""
+        return np.asarray(np.sqrt(np.maximum(np.polyval(self._squares, parameter), 0.0)))
 
     def parameter(self, length: float) -> float:
         """The parameter at which the arclength from 0 is `length`, by Newton's method."""
         s = self.reach * min(max(length / self.length, 0.0), 1.0) if self.length else 0.0
         for _ in range(20):
-            slope = float(np.linalg.norm(self.speed(s)))
+            slope = float(self._pace(s))
             step = (length - self.length_to(s)) / slope if slope else 0.0
             s = min(max(s + step, 0.0), self.reach)
             if abs(step) <= 1e-14 * self.reach:
@@ -119,7 +130,7 @@ class Curve:
         s = piece.parameter(time - piece.time)
         x = piece.at(s)
         if not piece.orientation:  # a series at the flat sheet, where the Jacobian is singular
-            return x
+            return near_flat(self.framework, x)
         try:
             return on_curve(self.framework, x, piece.speed(s))[0]
         except LostCurveError:  # close to a node: the polynomial is good to the tolerance
@@ -244,6 +255,27 @@ def on_curve(
             break
         last = size
     return x, factors, held
+
+
+def near_flat(framework: Framework, x: FloatArray) -> FloatArray:
+    """The configuration next to x, close to the flat one, with the same largest height.
+
+    By two steps of Newton's method in the blown-up equations, which are regular there.
+    """
+    t = float(np.max(np.abs(x[2::3]), initial=0.0))
+    if t == 0:
+        return x
+    scale = np.full(framework.size, t * t)
+    scale[2::3] = t
+    y = x / scale
+    held = 3 * int(np.argmax(np.abs(y[2::3]))) + 2
+    try:
+        factors = splu(bordered(blown_up_jacobian(framework, y, t * t), held))
+    except RuntimeError:
+        return x
+    for _ in range(2):
+        y = y + factors.solve(np.append(-blown_up(framework, y, t * t), 0.0))
+    return np.asarray(y * scale)
 
 
 def _radius(coefficients: FloatArray, tolerance: float) -> float:

@@ -82,7 +82,7 @@ class Watch:
         found = [
             *self._node(piece),
             *self._angle_events(piece, grid, angles),
-            *self._turnings(piece, grid, positions),
+            *self._turnings(piece, grid, positions, angles),
             *self._returns(piece, grid, raw),
         ]
         if self.look_for_contacts:
@@ -121,8 +121,7 @@ class Watch:
                 def excess(
                     s: float, e: int = e, near: float = angles[k + 1, e], goal: float = goal
                 ) -> float:
-                    raw = self._angle(piece, s, e)
-                    return abs(raw + 2 * np.pi * round((near - raw) / (2 * np.pi))) - goal
+                    return abs(self._angle(piece, s, e, near)) - goal
 
                 low, high = _bracket(excess, grid[k], grid[k + 1])
                 i, j, left, right = (int(v) for v in fold)
@@ -130,12 +129,14 @@ class Watch:
                 found.append(self._event(piece, kind, low, high, faces=faces, folds=((i, j),)))
         return found
 
-    def _angle(self, piece: Piece, s: float, e: int) -> float:
+    def _angle(self, piece: Piece, s: float, e: int, near: float) -> float:
+        """The angle of a hinge, continued to one that is near."""
         positions = self.framework.positions(piece.at(s))
-        return float(fold_angles_of(positions, self.framework.hinges[e : e + 1])[0])
+        raw = float(fold_angles_of(positions, self.framework.hinges[e : e + 1])[0])
+        return raw + 2 * np.pi * round((near - raw) / (2 * np.pi))
 
     def _turnings(
-        self, piece: Piece, grid: FloatArray, positions: FloatArray
+        self, piece: Piece, grid: FloatArray, positions: FloatArray, angles: FloatArray
     ) -> list[tuple[float, Event]]:
         framework = self.framework
         rates = angle_rates(positions, framework.displacement(piece.speed(grid)), framework.hinges)
@@ -153,7 +154,12 @@ class Watch:
 
             low, high = _bracket(rate, grid[k], grid[k + 1])
             i, j = (int(v) for v in framework.hinges[e, :2])
-            found.append(self._event(piece, TURNING, low, high, folds=((i, j),)))
+            size = abs(np.degrees(self._angle(piece, high, e, angles[k + 1, e])))
+            found.append(
+                self._event(
+                    piece, TURNING, low, high, folds=((i, j),), detail=f"at {size:.4g} degrees"
+                )
+            )
         return found
 
     def _returns(
@@ -188,16 +194,25 @@ class Watch:
             return []
         k = int(np.argmax(hits))
         low, high = grid[k - 1], grid[k]
-        while high - low > 1e-13 * max(piece.reach, 1e-300):
-            middle = 0.5 * (low + high)
-            if not low < middle < high:
-                break
-            if self._crossings.found(self.framework.positions(piece.at(middle))):
-                high = middle
-            else:
-                low = middle
+        pair = pairs = self._crossings.pairs(positions[k])
+        while len(pairs):  # others may cross before those that cross at the end
+            start, pair = low, pairs
+            while high - start > 1e-13 * max(piece.reach, 1e-300):
+                middle = 0.5 * (start + high)
+                if not start < middle < high:
+                    break
+                there = self.framework.positions(piece.at(middle))
+                if self._crossings.cross(there[None], pairs).any():
+                    high = middle
+                else:
+                    start = middle
+            pairs = self._crossings.pairs(self.framework.positions(piece.at(start)))
+            if len(pairs):
+                high = start
+        low = start
         there = self.framework.positions(piece.at(high))
-        crossing = self._crossings.found(there)[0]
+        first = pair[self._crossings.cross(there[None], pair)[0]][0]
+        crossing = self._crossings.named(first)
         faces = (self._face_at(crossing.edge, crossing.face), crossing.face)
         detail = self._crossings.kind(crossing, there)
         return [self._event(piece, CONTACT, low, high, faces=faces, detail=detail)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time as clock
 from dataclasses import dataclass, replace
 from itertools import islice
 from math import isfinite, radians
@@ -11,7 +12,7 @@ from scipy.optimize import brentq
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
-from exactfold.errors import NotApplicableError, UsageError
+from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.motion.curve import Curve, LostCurveError, Piece, continued, leaving_piece
 from exactfold.motion.events import (
     ANGLE,
@@ -55,13 +56,14 @@ def follow(
     `by`. `side`: 1 for the ray that `branch` shows, -1 for its mirror image.
 
     Raises `UsageError` for options that make no sense, `NotApplicableError` for a branch that is
-    not simple or has no heights. A motion that ends "singular" could not be followed further, which
-    does not mean that it ends there.
+    not simple, `UndecidedBranchError` for one of which nothing is proved. A motion that ends
+    "singular" could not be followed further, which does not mean that it ends there.
 
     >>> from exactfold.count.find import find_branch
     >>> follow(find_branch("two-vertex", "+-"), until="90deg", frames=5)
     <Motion: branch +-, 5 frames to angle at 1.37421>
     """
+    began = clock.perf_counter()
     goal = Goal.of(until, through_nodes)
     if frames < 2:
         raise UsageError(f"{frames} frames: a motion has at least 2")
@@ -87,6 +89,7 @@ def follow(
         angles_at(problem, curve, times, coords, side),
         tuple(_named(event, problem, unit) for event in sorted(events, key=lambda e: e.time)),
         end,
+        clock.perf_counter() - began,
     )
 
 
@@ -129,7 +132,7 @@ class Goal:
 def _start(framework: Framework, problem: Problem, branch: Branch) -> Start:
     heights = branch.approx_heights
     if not heights:
-        raise NotApplicableError("nothing is proved of the branch: there is nothing to follow")
+        raise UndecidedBranchError("nothing is proved of the branch: there is nothing to follow")
     for vertex, sign in branch.vertex_signs.items():
         if not sign and vertex in problem.foldable:
             raise NotApplicableError(

@@ -122,13 +122,16 @@ class Framework:
 
     def matrix(self, rows: FloatArray) -> csc_array:
         """The matrix that takes d to rows_e . d_e, sparse; `rows` has the shape (edges, 3)."""
-        row, column, source, sign = self._structure
+        row, starts, source, sign = self._structure
         data = sign * rows.reshape(-1)[source]
-        return csc_array((data, (row, column)), shape=(len(self.edges), self.size))
+        return csc_array((data, row, starts), shape=(len(self.edges), self.size))
 
     @cached_property
     def _structure(self) -> tuple[IndexArray, IndexArray, IndexArray, FloatArray]:
-        """Row, column, place in the rows (edges, 3) and sign of every entry."""
+        """Row, place in the rows (edges, 3) and sign of every entry, column by column.
+
+        The second array says where the columns start.
+        """
         place = np.full(len(self.points), -1, dtype=np.intp)
         place[self.free] = np.arange(len(self.free))
         parts = []
@@ -138,7 +141,10 @@ class Framework:
             for axis in range(3):
                 parts.append((e, 3 * at[e] + axis, 3 * e + axis, np.full(len(e), sign)))
         row, column, source, signs = (np.concatenate(part) for part in zip(*parts, strict=True))
-        return row, column, source, signs
+        order = np.lexsort((row, column))
+        starts = np.searchsorted(column[order], np.arange(self.size + 1))
+        # 32 bits, as the solver wants them.
+        return row[order].astype(np.int32), starts.astype(np.int32), source[order], signs[order]
 
     # --- faces in space --------------------------------------------------------------------------
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any, Final
 
 import numpy as np
 
@@ -14,12 +16,19 @@ from exactfold.motion.angles import fold_angles_of, hinges_of
 from exactfold.motion.curve import Curve
 from exactfold.motion.events import Event
 from exactfold.pattern.crease_pattern import Triangle
+from exactfold.pattern.described import described
+from exactfold.pattern.near_degeneracy import warnings
 from exactfold.problem.problem import Problem
+from exactfold.schemas import headed
+from exactfold.verdict import PROVED
+
+FOLLOWED: Final = "followed"
+"""The status of a motion that was followed in floats along a proved branch."""
 
 _SAMPLES = 4
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Motion:
     """The sheet folding along a branch, in floats; `branch` is proved, the motion is not.
 
@@ -42,6 +51,25 @@ class Motion:
     angles: FloatArray
     events: tuple[Event, ...]
     end: str
+    seconds: float = field(default=0.0, compare=False)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Motion):
+            return NotImplemented
+        return (
+            (self.branch, self.side, self.events, self.end)
+            == (other.branch, other.side, other.events, other.end)
+            and np.array_equal(self.times, other.times)
+            and np.array_equal(self.coords, other.coords)
+            and np.array_equal(self.angles, other.angles)
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # arrays have none
+
+    @property
+    def status(self) -> str:
+        """ "followed": in floats along a proved branch; "undecided" if the branch is not proved."""
+        return FOLLOWED if self.branch.status is PROVED else str(self.branch.status)
 
     @property
     def pinned(self) -> Triangle:
@@ -81,10 +109,55 @@ class Motion:
         lengths = np.linalg.norm(self.coords[:, i] - self.coords[:, j], axis=2)
         return float(np.max(np.abs(lengths / lengths[0] - 1)))
 
+    def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
+        """Times and all fold angles in radians at `least` points or more, for plots.
+
+        Shapes (times,) and (times, folds); the angles are continued past +-pi.
+        """
+        each = max(_SAMPLES, -(-least // len(self.curve.pieces)))
+        times, unknowns = self.curve.samples(each)
+        coords = in_space(self._problem, self.curve, unknowns, self.side)
+        angles = np.unwrap(fold_angles_of(coords, hinges_of(self.branch.pattern)), axis=0)
+        return times * float(self.curve.framework.unit), angles
+
     def table(self) -> tuple[tuple[str, ...], FloatArray]:
         """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
         names = ("time", *(f"{i}-{j}" for i, j in self.branch.pattern.folds))
         return names, np.column_stack([self.times, np.degrees(self.angles)])
+
+    @property
+    def largest_angles(self) -> FloatArray:
+        """For each fold its largest angle in any frame in degrees, with its sign."""
+        rows = np.argmax(np.abs(self.angles), axis=0)
+        return np.asarray(np.degrees(self.angles[rows, np.arange(self.angles.shape[1])]))
+
+    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+        """The object printed by `exactfold fold --json`: `schema("motion")`.
+
+        `name`: of the pattern; `written`: the files that hold the motion.
+        """
+        branch = self.branch
+        folds = [f"{i}-{j}" for i, j in branch.pattern.folds]
+        return {
+            **headed("motion"),
+            "pattern": described(branch.pattern, name),
+            "status": self.status,
+            "reason": branch.reason,
+            "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
+            "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
+            "side": self.side,
+            "pinned": list(self.pinned),
+            "frames": {"number": len(self.times), "times": self.times.tolist()},
+            "angles": dict(zip(folds, np.degrees(self.angles).T.tolist(), strict=True)),
+            "largest_angles": dict(zip(folds, self.largest_angles.tolist(), strict=True)),
+            "events": [event.to_dict() for event in self.events],
+            "end": self.end,
+            "duration": self.duration,
+            "length_error": self.length_error,
+            "written": list(written),
+            "warnings": warnings(branch.pattern),
+            "seconds": round(self.seconds, 3),
+        }
 
     def __repr__(self) -> str:
         name = self.branch.sign_text

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_array, vstack
+from scipy.sparse import csc_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from exactfold.arrays import FloatArray
@@ -97,8 +97,14 @@ def blown_up_jacobian(framework: Framework, y: FloatArray, s: float = 0.0) -> cs
 
 def bordered(jacobian: csc_array, held: int) -> csc_array:
     """The square matrix of a Jacobian with a last row that holds one unknown."""
-    row = csc_array(([1.0], ([0], [held])), shape=(1, jacobian.shape[1]))
-    return csc_array(vstack([jacobian, row]))
+    rows, columns = jacobian.shape
+    end = jacobian.indptr[held + 1]
+    starts = jacobian.indptr.copy()
+    starts[held + 1 :] += 1
+    return csc_array(
+        (np.insert(jacobian.data, end, 1.0), np.insert(jacobian.indices, end, rows), starts),
+        shape=(rows + 1, columns),
+    )
 
 
 def _newton(framework: Framework, y: FloatArray, held: int) -> tuple[FloatArray, SuperLU]:

@@ -124,7 +124,12 @@ def document_text(document: Mapping[str, Any]) -> str:
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:
-    """Write a UTF-8 text file whole or not at all, by renaming a temporary file beside it.
+    """Write a UTF-8 text file as `write_bytes` does; raises `UnwritableFileError`."""
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: str | PathLike[str], content: bytes) -> None:
+    """Write a file whole or not at all, by renaming a temporary file beside it.
 
     An existing symbolic link is followed; a device or pipe is written to directly. Raises
     `UnwritableFileError`, and then leaves no partial file.
@@ -133,14 +138,14 @@ def write_text(path: str | PathLike[str], text: str) -> None:
     try:
         target = Path(path)
         if target.exists() and not target.is_file() and not target.is_dir():
-            target.write_text(text, encoding="utf-8")
+            target.write_bytes(content)
             return
         target = Path(os.path.realpath(path))  # not of a pipe, which has no real path
         if target.is_dir():
             raise IsADirectoryError(21, "it is a folder")
         temporary = target.with_name(f".exactfold-{secrets.token_hex(8)}.tmp")
-        with temporary.open("x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+        with temporary.open("xb") as file:
+            file.write(content)
         os.replace(temporary, target)
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
         if temporary is not None:

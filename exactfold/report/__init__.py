@@ -1,13 +1,16 @@
 """What people read: answers in plain words and tables, with rich."""
 
+from exactfold.report.angles_plot import angles_plot
 from exactfold.report.batch import batch_report
 from exactfold.report.branch import branch_report, branch_row, branches_report, export_report
 from exactfold.report.count import count_report
 from exactfold.report.info import examples_report, expectation, info_report, panels_info
+from exactfold.report.motion import motion_report
 from exactfold.report.panels import panels_report
 from exactfold.report.terminal import console, show
 
 __all__ = [
+    "angles_plot",
     "batch_report",
     "branch_report",
     "branch_row",
@@ -18,6 +21,7 @@ __all__ = [
     "expectation",
     "export_report",
     "info_report",
+    "motion_report",
     "panels_info",
     "panels_report",
     "show",

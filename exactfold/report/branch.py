@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from exactfold.exact.numbers import decimal_above
-from exactfold.report.terminal import facts_table, letters_text, status_text
+from exactfold.report.terminal import cut, facts_table, letters_text, status_text
 from exactfold.wording import counted
 
 if TYPE_CHECKING:
@@ -23,13 +23,13 @@ def branch_report(result: Branch) -> Group:
     """One branch: what is proved, which vertices pop up, and the folds."""
     rows: list[tuple[str, str | Text]] = [
         ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
-        ("up", _cut(_with_sign(result, 1))),
-        ("down", _cut(_with_sign(result, -1))),
+        ("up", cut(_with_sign(result, 1))),
+        ("down", cut(_with_sign(result, -1))),
     ]
     if flat := _with_sign(result, 0):
-        rows.append(("flat", _cut(flat)))
+        rows.append(("flat", cut(flat)))
     if result.radius is not None:
-        rows.append(("mountain-valley", letters_text(_cut(result.assignment_text))))
+        rows.append(("mountain-valley", letters_text(cut(result.assignment_text))))
         if undecided := len(result.undecided_folds):
             rows.append(("undecided", counted(undecided, "fold")))
         rows.append(
@@ -48,7 +48,7 @@ def _with_sign(result: Branch, sign: int) -> str:
 
 def branch_row(name: str, result: Branch) -> Row:
     """The row of a branch in `branches_report`."""
-    return name, str(result.status), _cut(result.sign_text), _cut(result.assignment_text)
+    return name, str(result.status), cut(result.sign_text), cut(result.assignment_text)
 
 
 def branches_report(rows: list[Row]) -> Group:
@@ -70,8 +70,8 @@ def export_report(output: str, branch: Branch, export: BranchExport) -> Table:
         [
             ("written", output),
             ("status", status_text(export.status)),
-            ("vertex signs", _cut(branch.sign_text)),
-            ("mountain-valley", letters_text(_cut(branch.assignment_text))),
+            ("vertex signs", cut(branch.sign_text)),
+            ("mountain-valley", letters_text(cut(branch.assignment_text))),
             ("fold angles", f"largest {max(sizes):.4g}, smallest {min(sizes):.4g} degrees"),
             (
                 "folded frame",
@@ -79,7 +79,3 @@ def export_report(output: str, branch: Branch, export: BranchExport) -> Table:
             ),
         ]
     )
-
-
-def _cut(text: str, most: int = 160) -> str:
-    return text if len(text) <= most else f"{text[:most]}... (--json has all)"

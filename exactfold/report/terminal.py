@@ -32,6 +32,11 @@ def letters_text(letters: str) -> Text:
     return text
 
 
+def cut(text: str, most: int = 160) -> str:
+    """Text that may be long, cut where it is."""
+    return text if len(text) <= most else f"{text[:most]}... (--json has all)"
+
+
 def facts_table(rows: list[tuple[str, RenderableType]]) -> Table:
     """A name and a value on each line."""
     table = Table(box=None, show_header=False, pad_edge=False)

@@ -1,0 +1,128 @@
+"""`write_motion`: a motion as FOLD with frames, as glTF with an animation, or as OBJ files."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from exactfold.branches.export import AMOUNT
+from exactfold.branches.letters import UPSIDE_DOWN
+from exactfold.bridges.fold_frames import MotionFrame, motion_document
+from exactfold.bridges.meshes import animated_gltf, gltf_bytes, obj_text
+from exactfold.errors import UsageError
+from exactfold.exact.numbers import shown
+from exactfold.motion.events import RETURN
+from exactfold.motion.motion import Motion
+from exactfold.pattern.fold_writing import document_text, write_bytes, write_text
+
+ENDINGS = (".fold", ".glb", ".gltf", ".obj")
+
+
+def write_motion(
+    motion: Motion, path: str | PathLike[str], *, title: str | None = None
+) -> tuple[Path, ...]:
+    """Write a motion in the format that the ending of the path names; the files written.
+
+    ".fold": FOLD 1.2, the exact flat sheet and after it all frames, with their fold angles
+    (`motion_document`). ".glb" and ".gltf": glTF 2.0 in one file with an animation of the frames,
+    for Blender and three.js; needs pygltflib (`pip install 'exactfold[motion]'`). ".obj": a file
+    for each frame, NAME_0000.obj and on. `title` names the pattern. See docs/folding.md.
+
+    Raises `UsageError` for another ending, `GltfMissingError`, `UnwritableFileError`.
+
+    >>> import os, tempfile
+    >>> from exactfold.count.find import find_branch
+    >>> from exactfold.motion.following import follow
+    >>> motion = follow(find_branch("two-vertex", "+-"), until="90deg", frames=3)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     files = write_motion(motion, os.path.join(folder, "two.obj"))
+    ...     [file.name for file in files]
+    ['two_0000.obj', 'two_0001.obj', 'two_0002.obj']
+    """
+    if not isinstance(motion, Motion):
+        raise UsageError(
+            f"write_motion(motion, path): {shown(motion)} is not a motion; `follow` returns one"
+        )
+    target = Path(path)
+    ending = checked_ending(target)
+    if ending == ".fold":
+        write_text(target, document_text(fold_motion(motion, title=title)))
+        return (target,)
+    pattern = motion.branch.pattern
+    triangles = np.array(pattern.triangles, dtype=np.intp)
+    name = title or "sheet"
+    if ending == ".obj":
+        files = [target.with_name(f"{target.stem}_{k:04}.obj") for k in range(len(motion.times))]
+        for file, coords in zip(files, motion.coords, strict=True):
+            write_text(file, obj_text(coords, triangles, name))
+        return tuple(files)
+    model = animated_gltf(
+        motion.coords, triangles, name, returns=motion.end == RETURN, facts=facts(motion)
+    )
+    write_bytes(target, gltf_bytes(model, binary=ending == ".glb"))
+    return (target,)
+
+
+def checked_ending(path: Path) -> str:
+    """The format that a path names; raises `UsageError` for one that is not written.
+
+    >>> checked_ending(Path("a.b/Motion.GLB"))
+    '.glb'
+    """
+    ending = path.suffix.lower()
+    if ending not in ENDINGS:
+        raise UsageError(f"{path}: a motion is written as {', '.join(ENDINGS)}; name one of these")
+    return ending
+
+
+def fold_motion(motion: Motion, *, title: str | None = None) -> dict[str, Any]:
+    """The FOLD object of a motion, as `write_motion` writes it.
+
+    `edges_foldAngle` of the flat sheet are the first-order angles of the branch, the largest 30
+    degrees: a simulator that reads no more than this frame stays on the branch (docs/export.md).
+    """
+    branch, folds = motion.branch, motion.branch.pattern.folds
+    letters = dict(branch.assignment)
+    if motion.side < 0:
+        letters = {fold: letter.translate(UPSIDE_DOWN) for fold, letter in letters.items()}
+    angles = {
+        fold: motion.side * angle if letters[fold] in "MV" else 0.0
+        for fold, angle in branch.fold_angles.degrees(AMOUNT).items()
+    }
+    frames = [
+        MotionFrame(
+            float(time),
+            coords.tolist(),
+            dict(zip(folds, np.degrees(row).tolist(), strict=True)),
+        )
+        for time, coords, row in zip(motion.times, motion.coords, motion.angles, strict=True)
+    ]
+    known = facts(motion)
+    return motion_document(
+        branch.pattern,
+        letters,
+        angles,
+        frames,
+        name=f"motion along branch {known['vertex_signs'][:60]}",
+        title=title,
+        facts=known,
+    )
+
+
+def facts(motion: Motion) -> dict[str, Any]:
+    """What the files say of a motion."""
+    branch = motion.branch
+    return {
+        "vertex_signs": branch.sign_text,
+        "vertices": list(branch.pattern.interior),
+        "side": motion.side,
+        "status": motion.status,
+        "end": motion.end,
+        "duration": motion.duration,
+        "pinned": list(motion.pinned),
+        "length_error": motion.length_error,
+        "pattern": branch.pattern.sha256,
+    }

@@ -1,0 +1,122 @@
+"""What `exactfold fold` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from exactfold.branches.letters import UPSIDE_DOWN
+from exactfold.motion.events import (
+    ANGLE,
+    CONTACT,
+    FLAT_FOLD,
+    LENGTH,
+    NODE,
+    RETURN,
+    SINGULAR,
+    TURNING,
+    Event,
+)
+from exactfold.report.terminal import cut, facts_table, letters_text, status_text
+from exactfold.wording import counted
+
+if TYPE_CHECKING:
+    from exactfold.motion.motion import Motion
+    from exactfold.pattern.crease_pattern import Triangle
+
+_TURNINGS: Final = 8
+_LARGEST: Final = 5
+
+
+def motion_report(motion: Motion, written: Sequence[str] = ()) -> Group:
+    """A motion: its branch, where it ends and why, its events, and what was written."""
+    branch = motion.branch
+    letters = branch.assignment_text
+    side = "mirror image: all signs reversed" if motion.side < 0 else "as named"
+    rows: list[tuple[str, RenderableType]] = [
+        ("branch", Text.assemble(cut(branch.sign_text), ", ", status_text(branch.status))),
+        ("side", f"{'-' if motion.side < 0 else '+'} ({side})"),
+        (
+            "mountain-valley",
+            letters_text(cut(letters.translate(UPSIDE_DOWN) if motion.side < 0 else letters)),
+        ),
+        ("motion", "followed in floats: not proved"),
+        ("end", f"time {motion.duration:.6g}: {ending_text(motion)}"),
+        ("largest angles", _largest(motion)),
+        ("lengths", f"kept to {motion.length_error:.1e} of each"),
+        ("frames", f"{len(motion.times)}, with face {_face(motion.pinned)} held"),
+    ]
+    if len(written) > 4:
+        written = [written[0], "...", written[-1]]
+    rows += [("written" if not k else "", name) for k, name in enumerate(written)]
+    return Group(facts_table(rows), *_events(motion))
+
+
+def ending_text(motion: Motion) -> str:
+    """Why a motion ends, in plain words."""
+    last = [event for event in motion.events if event.kind == motion.end]
+    if motion.end == LENGTH or not last:
+        return "the length that was asked for"
+    text = event_text(last[-1])
+    if motion.end == NODE:
+        text += "; --through-nodes goes on"
+    return text
+
+
+def event_text(event: Event) -> str:
+    """An event in plain words, with its faces and folds.
+
+    >>> event_text(Event("contact", (0.5, 0.5), ((1, 2, 3), (4, 5, 6)), detail="edge on edge"))
+    'faces 1-2-3 and 4-5-6 meet (edge on edge)'
+    """
+    folds = ", ".join(f"{i}-{j}" for i, j in event.folds)
+    detail = f" ({event.detail})" if event.detail else ""
+    if event.kind == CONTACT:
+        return f"faces {' and '.join(map(_face, event.faces))} meet{detail}"
+    words = {
+        FLAT_FOLD: f"fold {folds} closes: its two faces meet",
+        TURNING: f"fold {folds} turns back{detail}",
+        ANGLE: f"fold {folds} has the angle that was asked for",
+        NODE: f"another motion crosses here{detail}",
+        RETURN: "the sheet is flat again",
+        SINGULAR: f"it could not be followed further{detail}",
+    }
+    return words[event.kind]
+
+
+def _face(face: Triangle) -> str:
+    return "-".join(map(str, face))
+
+
+def _largest(motion: Motion) -> str:
+    angles, folds = motion.largest_angles, motion.branch.pattern.folds
+    order = np.argsort(-np.abs(angles), kind="stable")[:_LARGEST]
+    shown = ", ".join(f"{folds[k][0]}-{folds[k][1]} {angles[k]:.4g}" for k in order)
+    more = "" if len(folds) <= _LARGEST else ", ..."
+    return f"{shown}{more} degrees"
+
+
+def _events(motion: Motion) -> list[RenderableType]:
+    """The table of events; of many folds that turn back the first are listed."""
+    turning = [event for event in motion.events if event.kind == TURNING]
+    left_out = turning[_TURNINGS:]
+    shown = [event for event in motion.events if event not in left_out]
+    if not shown:
+        return []
+    table = Table(box=None, pad_edge=False)
+    table.add_column("time")
+    table.add_column("event")
+    table.add_column("", overflow="fold")
+    for event in shown:
+        table.add_row(f"{event.time[1]:.6g}", event.kind, event_text(event))
+    parts: list[RenderableType] = [Text(""), table]
+    if left_out:
+        number = counted(len(left_out), "more fold")
+        verb = "turns" if len(left_out) == 1 else "turn"
+        parts.append(Text(f"... and {number} {verb} back (--json lists all)"))
+    return parts

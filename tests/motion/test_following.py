@@ -1,0 +1,449 @@
+"""Motions in floats, against what is known exactly of them."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from sheets import random_wheel, reflex_corners, scrambled
+
+from exactfold import CreasePattern, count_branches, find_branch, follow, random_square
+from exactfold.data import example_path
+from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
+from exactfold.motion.crossings import Crossings
+from exactfold.motion.motion import Motion
+from exactfold.pattern import read_fold
+
+
+def drawn_signs(n, seed):
+    source = random.Random(seed)
+    return "".join(source.choice("+-") for _ in range(n))
+
+
+def squares(n, number):
+    for seed in range(number):
+        yield find_branch(random_square(n, seed=seed), drawn_signs(n, seed))
+
+
+def letters(angles):
+    return "".join("V" if angle > 0 else "M" for angle in angles)
+
+
+# --- rigid faces ---------------------------------------------------------------------------------
+
+
+def assert_rigid(motion):
+    pattern = motion.branch.pattern
+    flat = np.array([[float(x), float(y)] for x, y in pattern.vertices])
+    i, j = np.array(pattern.edges).T
+    exact = np.linalg.norm(flat[i] - flat[j], axis=1)
+    lengths = np.linalg.norm(motion.coords[:, i] - motion.coords[:, j], axis=2)
+    assert np.max(np.abs(lengths / exact - 1)) <= 1e-12
+    assert motion.length_error <= 1e-12
+    held = motion.coords[:, list(motion.pinned)]
+    assert np.array_equal(held, np.broadcast_to(held[0], held.shape))
+    assert not held[..., 2].any()
+
+
+@pytest.mark.parametrize("n", range(1, 7))
+def test_lengths_are_kept_on_random_squares(n):
+    for branch in squares(n, 4):
+        motion = follow(branch, until="return", through_nodes=True, frames=9)
+        assert motion.end in ("return", "singular")
+        assert_rigid(motion)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("n", range(1, 7))
+def test_lengths_are_kept_on_fifty_random_squares(n):
+    for branch in squares(n, 50):
+        assert_rigid(follow(branch, frames=9))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_lengths_are_kept_on_reflex_sheets_and_in_triangulated_triangles(seed):
+    sheet = scrambled(seed, reflex_corners(seed), 3, loose=True)
+    for branch in count_branches(sheet).branches[::3]:
+        assert_rigid(follow(branch, until="return", through_nodes=True, frames=9))
+    octahedron = read_fold(example_path("flat-octahedron"))
+    assert_rigid(follow(count_branches(octahedron).branches[seed], frames=9))
+
+
+@pytest.mark.parametrize("n", [1, 3, 6, 30])
+def test_a_motion_starts_along_its_branch(n):
+    for branch in squares(n, 3):
+        for side in (1, -1):
+            motion = follow(branch, until=1e-3, frames=2, side=side)
+            turn = str.maketrans("MV", "MV" if side > 0 else "VM")
+            assert letters(motion.angles[1]) == branch.assignment_text.translate(turn)
+            degrees = branch.fold_angles.degrees(30)
+            first = np.array([degrees[fold] for fold in branch.pattern.folds])
+            found = side * motion.angles[1]
+            assert found / np.max(np.abs(found)) == pytest.approx(first / 30, abs=1e-4)
+
+
+# --- the same sheet, seen otherwise --------------------------------------------------------------
+
+
+def same_motion(one: Motion, two: Motion, places, scale=1.0):
+    """Whether fold k of one moves as fold places[k] of the other."""
+    assert one.end == two.end
+    assert two.times == pytest.approx(scale * one.times, rel=1e-9)
+    assert two.angles[:, places] == pytest.approx(one.angles, abs=1e-8)
+    kinds = [[event.kind for event in motion.events] for motion in (one, two)]
+    assert sorted(kinds[0]) == sorted(kinds[1])
+
+
+def the_branch(pattern, wanted):
+    """The branch with these letters, and the side that has them."""
+    for branch in count_branches(pattern).branches:
+        for side in (1, -1):
+            turn = str.maketrans("MV", "MV" if side > 0 else "VM")
+            text = branch.assignment_text.translate(turn)
+            if dict(zip(pattern.folds, text, strict=True)) == wanted:
+                yield branch, side
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_mirror_image_of_a_sheet_has_the_mirror_motion(seed):
+    pattern = random_square(3, seed=seed)
+    branch = find_branch(pattern, drawn_signs(3, seed))
+    motion = follow(branch, frames=15)
+    mirrored = CreasePattern(
+        [(-x, y) for x, y in pattern.vertices], [(a, c, b) for a, b, c in pattern.triangles]
+    )
+    [(other, side)] = the_branch(mirrored, dict(branch.assignment))
+    image = follow(other, frames=15, side=side)
+    same_motion(motion, image, range(len(pattern.folds)))
+    assert image.coords == pytest.approx(motion.coords * [-1, 1, 1], abs=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_other_labels_make_the_same_motion(seed):
+    pattern = random_square(3, seed=seed)
+    branch = find_branch(pattern, drawn_signs(3, seed))
+    order = list(range(len(pattern.vertices)))
+    random.Random(seed).shuffle(order)  # vertex v is called order[v]
+    points = {order[v]: point for v, point in enumerate(pattern.vertices)}
+    named = CreasePattern(
+        [points[v] for v in range(len(order))],
+        [tuple(order[v] for v in face) for face in pattern.triangles],
+    )
+    renamed = {tuple(sorted((order[i], order[j]))): (i, j) for i, j in pattern.folds}
+    wanted = {fold: branch.assignment[renamed[fold]] for fold in named.folds}
+    [(other, side)] = the_branch(named, wanted)
+    places = [named.folds.index(tuple(sorted((order[i], order[j])))) for i, j in pattern.folds]
+    same_motion(follow(branch, frames=15), follow(other, frames=15, side=side), places)
+
+
+@pytest.mark.parametrize("factor", [Fraction(3, 7), Fraction(10**9)])
+def test_a_larger_sheet_takes_longer(factor):
+    pattern = random_square(4, seed=1)
+    large = CreasePattern(
+        [(factor * x, factor * y) for x, y in pattern.vertices], pattern.triangles
+    )
+    one, two = (follow(find_branch(sheet, "+-++"), frames=15) for sheet in (pattern, large))
+    same_motion(one, two, range(len(pattern.folds)), float(factor))
+    assert two.coords == pytest.approx(float(factor) * one.coords, rel=1e-9, abs=1e-9 * factor)
+
+
+def test_the_two_sides_are_mirror_images():
+    branch = find_branch(random_square(4, seed=2), "++-+")
+    up, down = (follow(branch, side=side, frames=7) for side in (1, -1))
+    assert np.array_equal(up.coords * [1, 1, -1], down.coords)
+    assert up.angles == pytest.approx(-down.angles, abs=1e-14)
+    assert (up.end, up.duration) == (down.end, down.duration)
+    assert up != down
+
+
+# --- one vertex of degree four: a spherical four-bar linkage --------------------------------------
+
+
+def four_bar(sectors, one, two):
+    """What closes a vertex with these sector angles, from the half-angle tangents of two folds.
+
+    Sector 0 lies in the plane, between the folds with the tangents `one` and `two`; sector 3 turns
+    about the first and sector 1 about the second, and their outer sides must have the angle of
+    sector 2. Multiplied by (1 + one^2) (1 + two^2) this is a polynomial; here divided by them.
+    """
+    a, b, c, d = sectors
+    cosines = [(1 - t * t) / (1 + t * t) for t in (one, two)]
+    sines = [2 * t / (1 + t * t) for t in (one, two)]
+    first, across = np.array([1, 0, 0]), np.array([0, 1, 0])
+    second = np.array([np.cos(a), np.sin(a), 0])
+    along = np.array([-np.sin(a), np.cos(a), 0])
+    up = np.array([0, 0, 1])
+    outer = np.cos(d) * first + np.sin(d) * (-cosines[0] * across + sines[0] * up)
+    other = np.cos(b) * second + np.sin(b) * (cosines[1] * along + sines[1] * up)
+    return outer @ other - np.cos(c)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("sign", "+-")
+def test_one_vertex_of_degree_four_is_a_spherical_four_bar(seed, sign):
+    pattern = random_wheel(seed, 4)
+    motion = follow(find_branch(pattern, sign), until="return", frames=40)
+    hub = np.array([float(x) for x in pattern.vertices[4]])
+    arms = [np.array([float(x) for x in pattern.vertices[v]]) - hub for v in range(4)]
+    around = [np.arctan2(arm[1], arm[0]) for arm in arms]
+    sectors = [(around[(v + 1) % 4] - around[v]) % (2 * np.pi) for v in range(4)]
+    assert sum(sectors) == pytest.approx(2 * np.pi)
+    assert pattern.folds == ((0, 4), (1, 4), (2, 4), (3, 4))
+    tangents = np.tan(motion.angles / 2)
+    bent = np.abs(motion.angles) > 1e-3
+    assert bent.any(axis=0).all()
+    for k in range(4):
+        turned = sectors[k:] + sectors[:k]
+        for row in tangents:
+            assert abs(four_bar(turned, row[k], row[(k + 1) % 4])) < 1e-11
+    # The test sees a wrong angle.
+    middle = tangents[20]
+    assert abs(four_bar(sectors, middle[0], -middle[1])) > 1e-6 or not bent[20, :2].all()
+
+
+# --- events --------------------------------------------------------------------------------------
+
+
+def det(a, b, c):
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
+
+
+def volume(p, q, r, s):
+    return det(*([x - y for x, y in zip(v, p, strict=True)] for v in (q, r, s)))
+
+
+def crossing_exactly(pattern, coords):
+    """All (edge, face) without a common corner that cross, in exact rationals."""
+    points = [[Fraction(float(x)) for x in point] for point in coords]
+    found = []
+    for i, j in pattern.edges:
+        for face in pattern.triangles:
+            if {i, j} & set(face):
+                continue
+            p, q, (a, b, c) = points[i], points[j], (points[v] for v in face)
+            if volume(a, b, c, p) * volume(a, b, c, q) >= 0:
+                continue
+            sides = [volume(p, q, a, b) > 0, volume(p, q, b, c) > 0, volume(p, q, c, a) > 0]
+            if all(sides) or not any(sides):
+                found.append(((i, j), face))
+    return found
+
+
+def contacts():
+    """Motions that end in a contact."""
+    for seed in range(40):
+        branch = find_branch(random_square(4, seed=seed), drawn_signs(4, seed))
+        motion = follow(branch, frames=9)
+        if motion.end == "contact":
+            yield motion
+
+
+def test_contacts_are_those_of_exact_rationals():
+    motions = list(contacts())[:6]
+    assert len(motions) == 6
+    kinds = set()
+    for motion in motions:
+        pattern, event = motion.branch.pattern, motion.events[-1]
+        assert event.time[0] <= event.time[1] == motion.duration
+        later = follow(motion.branch, until=motion.duration * (1 + 1e-5), frames=9)
+        assert [e.kind for e in later.events].count("contact") == 1
+        for time in np.linspace(0, event.time[0] * (1 - 1e-6), 12):
+            assert crossing_exactly(pattern, later.at(time)) == []
+        found = crossing_exactly(pattern, later.at(event.time[1] * (1 + 1e-6)))
+        one, two = (set(face) for face in event.faces)
+        assert any(
+            (set(edge) <= one and set(face) == two) or (set(edge) <= two and set(face) == one)
+            for edge, face in found
+        )
+        assert not len(one & two) > 1
+        kinds.add(event.detail)
+    assert kinds <= {"edge on edge", "vertex on face"}
+    assert kinds
+
+
+def test_a_fold_that_closes_has_180_degrees():
+    motion = follow(find_branch("two-vertex", "+-"), frames=5)
+    event = motion.events[-1]
+    assert motion.end == event.kind == "flat-fold"
+    at = motion.branch.pattern.folds.index(event.folds[0])
+    assert abs(motion.angles[-1, at]) == pytest.approx(np.pi, abs=1e-9)
+    assert np.max(np.abs(motion.angles)) <= np.pi + 1e-9
+    assert all(set(event.folds[0]) <= set(face) for face in event.faces)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_where_a_crease_turns_back_its_angle_is_extreme(seed):
+    branch = find_branch(random_square(5, seed=seed), drawn_signs(5, seed))
+    motion = follow(branch, until="return", through_nodes=True, frames=5)
+    turning = [event for event in motion.events if event.kind == "turning"]
+    assert turning
+    times, angles = motion.sampled(2000)
+    folds = branch.pattern.folds
+    for event in turning:
+        at, time = folds.index(event.folds[0]), event.time[1]
+        step = 1e-4 * motion.duration
+        if not step < time < motion.duration - step:
+            continue
+        near = follow(branch, until=time + step, through_nodes=True, frames=2)
+        before, there, after = (near.at(t) for t in (time - step, time, near.duration))
+        values = [angle_of(branch.pattern, at, x) for x in (before, there, after)]
+        bent = np.unwrap(values)
+        assert (bent[1] - bent[0]) * (bent[2] - bent[1]) <= 1e-12
+    # And there are no others: each change of direction in fine samples has its event.
+    named = [(folds.index(event.folds[0]), event.time[1]) for event in turning]
+    changes = np.diff(np.sign(np.diff(angles, axis=0)), axis=0)
+    for row, at in np.argwhere(np.abs(changes) == 2):
+        low, high = times[row], times[min(row + 2, len(times) - 1)]
+        size = np.abs(np.diff(angles[row : row + 3, at]))
+        if size.min() < 1e-9:
+            continue
+        assert any(k == at and low - 1e-6 <= time <= high + 1e-6 for k, time in named)
+
+
+def angle_of(pattern, place, coords):
+    """A fold angle from the normals of its faces, by the angle between two vectors."""
+    i, j = pattern.folds[place]
+    left, right = pattern.opposite((i, j))
+    axis = coords[j] - coords[i]
+    one = np.cross(axis, coords[left] - coords[i])
+    two = np.cross(coords[right] - coords[i], axis)
+    sine = np.cross(one, two) @ axis / np.linalg.norm(axis)
+    return -np.arctan2(sine, one @ two)
+
+
+def test_the_sheet_comes_back_flat():
+    for n in (1, 2, 3):
+        branch = find_branch(random_square(n, seed=n), "+" * n)
+        motion = follow(branch, until="return", frames=30)
+        assert motion.end == "return"
+        assert motion.coords[-1] == pytest.approx(motion.coords[0], abs=1e-9)
+        turns = motion.angles[-1] / (2 * np.pi)
+        assert turns == pytest.approx(np.round(turns), abs=1e-6)
+        assert np.max(np.abs(motion.coords[15] - motion.coords[0])) > 0.1
+
+
+def test_nodes_stop_a_motion_unless_they_are_passed():
+    branch = find_branch(random_square(8, seed=1), "+-++--+-")
+    motion = follow(branch, until="return", frames=3)
+    assert motion.end == motion.events[-1].kind == "node"
+    assert motion.duration == pytest.approx(motion.events[-1].time[0])
+    [vertex] = motion.events[-1].vertices
+    star = [k for k, fold in enumerate(branch.pattern.folds) if vertex in fold]
+    assert np.max(np.abs(motion.angles[-1, star])) < 1e-3
+    assert np.max(np.abs(motion.angles[1, star])) > 1e-2
+    through = follow(branch, frames=3, through_nodes=True)
+    assert through.duration > motion.duration
+    assert "node" in [event.kind for event in through.events]
+
+
+# --- frames --------------------------------------------------------------------------------------
+
+
+def test_a_motion_ends_where_it_is_asked_to():
+    branch = find_branch("two-vertex", "+-")
+    assert follow(branch, until=0.25, frames=4).times == pytest.approx([0, 0.25 / 3, 0.5 / 3, 0.25])
+    assert follow(branch, until="0.25").end == "length"
+    degrees = follow(branch, until="30deg")
+    assert np.degrees(np.max(np.abs(degrees.angles[-1]))) == pytest.approx(30)
+    assert (degrees.end, degrees.events[-1].kind) == ("angle", "angle")
+
+
+def test_frames_at_equal_steps_of_an_angle():
+    branch = find_branch("two-vertex", "+-")
+    motion = follow(branch, until="60deg", frames=7, by=(3, 5))
+    at = branch.pattern.folds.index((3, 5))
+    steps = np.diff(motion.angles[:, at])
+    assert steps == pytest.approx(np.full(6, steps[0]), abs=1e-9)
+    assert np.std(np.diff(motion.times)) > 1e-4
+    with pytest.raises(UsageError, match="turns back"):
+        follow(find_branch(random_square(2, seed=1), "+-"), until="return", by=(1, 4))
+
+
+def test_any_time_between_frames():
+    motion = follow(find_branch("two-vertex", "-+"), frames=11)
+    for k in (0, 3, 10):
+        assert motion.at(motion.times[k]) == pytest.approx(motion.coords[k], abs=1e-12)
+    x, y = motion.at(0.5), motion.at(0.5 + 1e-6)
+    free = [v for v in range(6) if v not in motion.pinned]
+    assert np.linalg.norm((y - x)[free]) == pytest.approx(1e-6, rel=1e-4)  # time is arclength
+    for time in (-0.1, motion.duration + 0.1, float("nan")):
+        with pytest.raises(UsageError, match="this motion has the times"):
+            motion.at(time)
+
+
+def test_tables_and_angles_of_all_folds():
+    motion = follow(find_branch("two-vertex", "-+"), frames=4)
+    names, rows = motion.table()
+    assert names[:2] == ("time", "0-4")
+    assert rows.shape == (4, 8)
+    assert rows[:, 1:] == pytest.approx(np.degrees(motion.angles))
+    largest = motion.largest_angles
+    assert np.abs(largest) == pytest.approx(np.abs(rows[:, 1:]).max(axis=0))
+    times, angles = motion.sampled(500)
+    assert len(times) == len(angles) >= 500
+    assert angles[-1] == pytest.approx(motion.angles[-1], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"until": "never"},
+        {"until": "200deg"},
+        {"until": -1},
+        {"until": float("nan")},
+        {"frames": 1},
+        {"side": 0},
+        {"by": (0, 1)},
+    ],
+)
+def test_options_that_make_no_sense(options):
+    with pytest.raises(UsageError):
+        follow(find_branch("two-vertex", "+-"), **options)
+
+
+def test_branches_that_are_not_followed():
+    flat = next(b for b in count_branches("flat-vertex").branches if "0" in b.sign_text)
+    with pytest.raises(NotApplicableError, match="vertex 5 is flat"):
+        follow(flat)
+    from dataclasses import replace
+
+    nothing = replace(find_branch("two-vertex", "+-"), root=None)
+    with pytest.raises(UndecidedBranchError, match="nothing is proved"):
+        follow(nothing)
+
+
+# --- which faces meet ----------------------------------------------------------------------------
+
+
+def test_the_tree_of_boxes_finds_what_all_pairs_find():
+    branch = find_branch(random_square(60, seed=3), drawn_signs(60, 3))
+    motion = follow(branch, until="90deg", frames=6)
+    framework = motion.curve.framework
+    source = np.random.default_rng(1)
+    seen = []
+    for frame in motion.coords:
+        for noise in (0.0, 0.05, 0.3):
+            x = frame + noise * source.normal(size=frame.shape)
+            with_tree = Crossings(framework)
+            assert with_tree._pairs is None
+            expected = {
+                (e, f)
+                for e, edge in enumerate(with_tree.edges)
+                for f, face in enumerate(framework.triangles)
+                if not set(edge) & set(face)
+            }
+            pairs = np.array(sorted(expected))
+            crossing = pairs[with_tree.cross(x[None], pairs)[0]]
+            assert {tuple(p) for p in with_tree.pairs(x)} == {tuple(p) for p in crossing}
+            assert with_tree.any_of(x[None]).tolist() == [len(crossing) > 0]
+            if with_tree.graphs(x[None])[0]:
+                assert len(crossing) == 0
+            seen.append((bool(with_tree.graphs(x[None])[0]), len(crossing) > 0))
+    assert (True, False) in seen
+    assert (False, True) in seen
