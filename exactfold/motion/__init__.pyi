@@ -1,4 +1,6 @@
 from exactfold.motion.angles import fold_angles_of as fold_angles_of
+from exactfold.motion.contacts import FirstContact as FirstContact
+from exactfold.motion.contacts import first_contact as first_contact
 from exactfold.motion.events import Event as Event
 from exactfold.motion.following import follow as follow
 from exactfold.motion.framework import Framework as Framework

@@ -161,7 +161,7 @@ class LoopFinder:
         >>> from exactfold.count.find import find_branch
         >>> branch = find_branch("two-vertex", "+-")
         >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
-        <Loop: +-, saddle + to --, saddle +, proved>
+        <Loop: +-, saddle + to +-, saddle -, proved>
         """
         start = half_branch(branch, side).start
         steps, landing, reason = self._followed(start)

@@ -25,7 +25,7 @@ from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 1000
-_LEAST = 1e-5  # of a step, in the unit of the framework
+_LEAST = 1e-7  # of a step, in the unit of the framework
 _EXIT = 11, 16  # the part of the reach at which the next tube begins
 
 
@@ -263,7 +263,7 @@ def follow_proved(
 
     The time is the length of the curve in the unknowns of the framework, in the unit of the sheet.
     `side` and `pinned` as in `half_branch`, whose errors are raised. The track is UNDECIDED if it
-    ends before: where tubes become shorter than 1e-5 of the sheet, as near a configuration where
+    ends before: where tubes become shorter than 1e-7 of the sheet, as near a configuration where
     several curves meet, or after `most` tubes.
 
     >>> from exactfold.count.find import find_branch
@@ -323,7 +323,7 @@ def onwards(
         tube, entry = _next(equations, ball, velocity, step)
         if tube is None or entry is None:
             yield (
-                "no tube longer than 1e-5 of the sheet was proved here: the configuration is "
+                "no tube longer than 1e-7 of the sheet was proved here: the configuration is "
                 "singular or nearly so, or several curves meet"
             )
             return
