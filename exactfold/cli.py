@@ -372,6 +372,36 @@ def fold(
     raise typer.Exit(asked.answer())
 
 
+@app.command(cls=Command)
+@reported
+def motions(
+    pattern: Pattern,
+    workers: Annotated[
+        int | None,
+        typer.Option(parser=whole(1), metavar="N", help="Processes. Default: all cores."),
+    ] = None,
+    dask: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Run on the dask.distributed cluster with this scheduler; `local` starts one "
+            "here.",
+        ),
+    ] = None,
+    as_json: Json = False,
+    snap: Snap = None,
+    sheet: Sheet = None,
+) -> None:
+    """Follow every branch, with proof, until the sheet is flat again.
+
+    A sheet with n foldable vertices leaves the flat state along 2^(n+1) half-branches, which true
+    motions join in pairs, contact ignored: this says which with which.
+    """
+    from exactfold.commands.motions import Wanted
+
+    raise typer.Exit(Wanted(pattern, snap, sheet, workers, dask, as_json).answer())
+
+
 @app.command("random", cls=Command)
 @reported
 def random_(

@@ -170,7 +170,7 @@ def _touching(
             if _closes(pairs, coefficients, radius, int(fold), max(0.0, low - step), s):
                 return _Touching(s, fold=int(fold))
         point = Swept.of(coefficients, radius, s, s)
-        for crossing in crossings.found(point.start):
+        for crossing in map(crossings.named, crossings.pairs(point.start)):
             if through(point, crossing.edge, crossing.face):
                 return _Touching(s, crossing)
         if s >= high:

@@ -32,6 +32,7 @@ from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 4000
+_FOLDED_FLAT = 1e-2
 _LOOK_BACK = (1, 3, 5, 8, 12)
 _NEAR_FLAT = 0.8
 """Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
@@ -185,7 +186,7 @@ class LoopFinder:
                 continue
             found = self._passage(steps)
             if found is None:
-                return steps, None, link
+                return steps, None, self._why(steps, link)
             kept, passage = found
             steps = [*steps[:kept], passage]
             tube, at = passage.tube, passage.exit
@@ -239,6 +240,17 @@ class LoopFinder:
             vertices = tuple(self.problem.labels[v] for v in flat)
             return k + 1, Passage(tube, vertices, entry, at, entered, left)
         return None
+
+    def _why(self, steps: Sequence[Link | Passage], reason: str) -> str:
+        """Why a loop is not followed further, as floats show the last configuration."""
+        if not steps or not isinstance(steps[-1], Link):
+            return reason
+        framework = steps[-1].tube.framework
+        x = steps[-1].tube.enclosure(steps[-1].exit).floats[0]
+        angles = np.abs(fold_angles_of(framework.positions(x), framework.hinges))
+        if np.minimum(angles, np.pi - angles).max(initial=0.0) < _FOLDED_FLAT:
+            return "all faces come to lie in one plane, folded flat: motions may branch there"
+        return reason
 
     def _landing(self, link: Link) -> Landing | None:
         """The start tube of another half-branch a point of which lies on this tube."""

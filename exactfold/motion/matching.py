@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
+from typing import Any
 
 from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder
@@ -16,9 +17,12 @@ from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.loops import Loop, LoopFinder
 from exactfold.motion.tube_start import NotProvedAtTheFlatStateError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.described import described
 from exactfold.pattern.loading import PatternLike, as_pattern
+from exactfold.pattern.near_degeneracy import warnings
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import agreeing, counted
 
@@ -56,6 +60,22 @@ class Loops:
                     found[a], found[a.mirrored] = b, b.mirrored
         return found
 
+    def report(self, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold motions --json`: `schema("motions")`."""
+        return {
+            **headed("motions"),
+            "pattern": described(self.pattern, name),
+            "status": str(self.status),
+            "reason": self.reason,
+            "vertices": list(self.pattern.foldable_vertices),
+            "half_branches": 2 ** (len(self.pattern.foldable_vertices) + 1),
+            "matched": len(self.matching),
+            "loops": [loop.to_dict() for loop in self.loops],
+            "skipped": dict(self.skipped),
+            "warnings": warnings(self.pattern),
+            "seconds": round(self.seconds, 3),
+        }
+
     def __repr__(self) -> str:
         proved = sum(loop.target is not None for loop in self.loops)
         return f"<Loops: {self.status}, {proved} of {len(self.loops)} loops proved>"
@@ -78,7 +98,7 @@ def find_loops(
 
     >>> found = find_loops("two-vertex")
     >>> found
-    <Loops: proved, 4 of 4 loops proved>
+    <Loops: proved, 2 of 2 loops proved>
     >>> print(*(f"{loop.source} to {loop.target}" for loop in found.loops), sep="\\n")
     """
     begun = time.perf_counter()
@@ -99,6 +119,7 @@ def find_loops(
         key=lambda loop: loop.source,
     )
     _check(found)
+    found = _once(found)
     reasons = []
     if skipped:
         reasons.append(
@@ -164,6 +185,19 @@ def _followed(
         if loop.target is not None:
             ended |= {loop.target, loop.target.mirrored}
         yield loop
+
+
+def _once(found: Iterable[Loop]) -> list[Loop]:
+    """Of loops that are the same, run through backwards or mirrored, the first one."""
+    seen: set[HalfBranch] = set()
+    kept = []
+    for loop in found:
+        if loop.source not in seen:
+            kept.append(loop)
+        seen |= {loop.source, loop.source.mirrored}
+        if loop.target is not None:
+            seen |= {loop.target, loop.target.mirrored}
+    return kept
 
 
 def _check(found: Iterable[Loop]) -> None:

@@ -6,6 +6,7 @@ from exactfold.report.branch import branch_report, branch_row, branches_report, 
 from exactfold.report.count import count_report
 from exactfold.report.info import examples_report, expectation, info_report, panels_info
 from exactfold.report.motion import motion_report
+from exactfold.report.motions import motions_report
 from exactfold.report.panels import panels_report
 from exactfold.report.terminal import console, show
 
@@ -22,6 +23,7 @@ __all__ = [
     "export_report",
     "info_report",
     "motion_report",
+    "motions_report",
     "panels_info",
     "panels_report",
     "show",
