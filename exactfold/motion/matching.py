@@ -99,7 +99,6 @@ def find_loops(
     >>> found = find_loops("two-vertex")
     >>> found
     <Loops: proved, 2 of 2 loops proved>
-    >>> print(*(f"{loop.source} to {loop.target}" for loop in found.loops), sep="\\n")
     """
     begun = time.perf_counter()
     sheet = as_pattern(pattern)
