@@ -1,3 +1,4 @@
+from exactfold import actuation as actuation
 from exactfold import algebra as algebra
 from exactfold import branches as branches
 from exactfold import bridges as bridges
@@ -15,6 +16,7 @@ from exactfold import problem as problem
 from exactfold import rigidity as rigidity
 from exactfold import schemas as schemas
 from exactfold import solve as solve
+from exactfold.actuation import actuate as actuate
 from exactfold.branches import Branch as Branch
 from exactfold.branches import BranchCount as BranchCount
 from exactfold.branches import export_branch as export_branch

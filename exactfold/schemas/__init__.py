@@ -15,6 +15,7 @@ VERSIONS: Final = {
     "count-stream": 1,
     "branch": 1,
     "export": 1,
+    "actuate": 1,
     "info": 1,
     "convert": 1,
     "check": 1,
