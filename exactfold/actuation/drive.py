@@ -9,10 +9,11 @@ from fractions import Fraction
 
 import numpy as np
 
+from exactfold.actuation.choices import CreaseChoice
 from exactfold.actuation.directions import Directions
 from exactfold.actuation.orthogonal import dimension_bounds, independent_rows, orthogonal_torques
-from exactfold.actuation.powers import Powers, margin_bound, rivals
-from exactfold.actuation.programs import chosen_folds, largest_margin
+from exactfold.actuation.powers import Powers, exact_weights, margin_bound, rivals
+from exactfold.actuation.programs import largest_margin
 from exactfold.actuation.result import Actuation, Bounds, checked_torques, outward
 from exactfold.arrays import BoolArray, FloatArray
 from exactfold.branches.branch import Branch
@@ -33,8 +34,8 @@ from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 MOST_FOLDABLE = 12
 """Most foldable vertices: every branch is a rival, and their number doubles with each vertex."""
 
-SECONDS = 30.0
-"""Time for the choice of creases, unless another is given."""
+NODES = 1000
+"""Linear programs for the choice of creases, unless another number is given."""
 
 _SHARPER = (64, 128)
 """Bits of the roots where those of the count do not tell two branches apart."""
@@ -50,7 +51,7 @@ def actuate(
     up: Iterable[int] | None = None,
     creases: int | None = None,
     torques: Mapping[Edge, RationalLike] | None = None,
-    seconds: float = SECONDS,
+    nodes: int = NODES,
     progress: Progress | None = None,
 ) -> Actuation:
     """Torques on the folds for which the ray with given vertex signs has the most power, by most.
@@ -59,9 +60,9 @@ def actuate(
     `creases` folds if given (docs/actuation.md, 2); u is the unit vector of the first-order fold
     angles. `signs` and `up` as for `find_branch`. A linear program proposes; the torques are made
     rational, and their margin and the bound of all margins are proved in interval arithmetic. The
-    folds are chosen by a mixed-integer program within `seconds`; that no other choice is better is
-    not claimed beyond the bound. With `torques`, exact numbers by fold, these are judged instead:
-    `best` is then that of torques as large as the largest given.
+    folds are chosen by branch and bound with at most `nodes` linear programs; where these are not
+    enough, the bound is larger than the margin, but still proved. With `torques`, exact numbers by
+    fold, these are judged instead: `best` is then that of torques as large as the largest given.
 
     Raises `TooManyRivalsError` for more than 12 foldable vertices, `UnprovedRivalsError` if not all
     branches are proved, `UsageError` for wrong arguments, and the errors of `find_branch`.
@@ -77,7 +78,7 @@ def actuate(
     finder = BranchFinder(pattern)
     size = finder.problem.size
     wanted = finder.signs(signs, up)
-    _check(pattern, creases, torques)
+    _check(pattern, creases, torques, nodes)
     if size > MOST_FOLDABLE:
         raise TooManyRivalsError(
             f"{size} vertices can pop: exactfold compares a branch with its rivals where at most "
@@ -90,12 +91,15 @@ def actuate(
     if count.status is not PROVED:
         raise UnprovedRivalsError(f"not all branches are proved: {count.reason}")
     return _Search(
-        pattern, named, list(count.branches), size + 1, creases, torques, seconds, progress
+        pattern, named, list(count.branches), size + 1, creases, torques, nodes, progress
     ).found(start)
 
 
 def _check(
-    pattern: CreasePattern, creases: int | None, torques: Mapping[Edge, RationalLike] | None
+    pattern: CreasePattern,
+    creases: int | None,
+    torques: Mapping[Edge, RationalLike] | None,
+    nodes: int,
 ) -> None:
     if creases is not None and torques is not None:
         raise UsageError("give either torques to judge or the number of creases to drive")
@@ -103,6 +107,8 @@ def _check(
         raise UsageError(
             f"{creases} driven creases: give from 1 to {len(pattern.folds)}, the number of folds"
         )
+    if nodes < 1:
+        raise UsageError("the choice of creases takes at least one linear program")
     if torques is not None and not any(checked_torques(pattern, torques).values()):
         raise UsageError("all torques are 0")
 
@@ -118,11 +124,11 @@ class _Search:
         size: int,
         creases: int | None,
         torques: Mapping[Edge, RationalLike] | None,
-        seconds: float,
+        nodes: int,
         progress: Progress | None,
     ) -> None:
         self.pattern, self.named, self.branches, self.size = pattern, named, branches, size
-        self.creases, self.seconds, self.progress = creases, seconds, progress
+        self.creases, self.nodes, self.progress = creases, nodes, progress
         self.given = None if torques is None else checked_torques(pattern, torques)
         self.say("fold angles")
         self.own = Directions.of([named])
@@ -206,22 +212,16 @@ class _Search:
         units: FloatArray = self.directions.middles
         gaps = units[self.place] - np.array([sign * units[b] for b, sign in rays])
         allowed = self._moving
-        limited = self.creases is not None and self.creases < int(allowed.sum())
-        proposal = largest_margin(gaps, allowed, self.creases if limited else None)
-        weights = _exact_weights(proposal.weights)
-        best = margin_bound(
-            self.directions,
-            self.place,
-            [(ray, w) for ray, w in zip(rays, weights, strict=True) if w],
-            self.creases if limited else None,
-        )
+        if self.creases is not None and self.creases < int(allowed.sum()):
+            search = CreaseChoice(self.directions, self.place, rays, gaps, allowed, self.creases)
+            choice = search.best(self.nodes, self.progress)
+            return self._rounded(choice.torques), choice.bound
+        proposal = largest_margin(gaps, allowed)
+        weights = exact_weights(rays, proposal.weights)
+        best = margin_bound(self.directions, self.place, weights)
         if self.given is not None:
             torques = list(self.given.values())
             return torques, best * max(map(abs, torques))
-        if limited and self.creases is not None:
-            self.say("choice of creases")
-            allowed = chosen_folds(gaps, allowed, self.creases, self.seconds)
-            proposal = largest_margin(gaps, allowed)
         return self._rounded(proposal.torques), best
 
     def _rounded(self, torques: FloatArray) -> list[Fraction]:
@@ -243,13 +243,6 @@ class _Search:
         largest = np.maximum(powers.high, -powers.low)
         close = (largest >= powers.low[self.place]).astype(bool)
         return [int(b) for b in np.flatnonzero(close) if b != self.place]
-
-
-def _exact_weights(weights: FloatArray) -> list[Fraction]:
-    """Weights that are not negative and add up to exactly 1."""
-    exact = [Fraction(x) if x > 1e-12 else Fraction(0) for x in weights.tolist()]
-    total = sum(exact, Fraction(0))
-    return [x / total for x in exact]
 
 
 def _judged(margin: Bounds, torques: Sequence[Fraction]) -> tuple[Verdict, str]:

@@ -12,8 +12,11 @@ from fractions import Fraction
 import numpy as np
 
 from exactfold.actuation.directions import BITS, Directions
-from exactfold.arrays import BigArray
+from exactfold.arrays import BigArray, FloatArray
 from exactfold.exact.numbers import over_common_denominator
+
+_SMALL = 1e-12
+"""Weights below this are left out."""
 
 Bounds = tuple[Fraction, Fraction]
 Ray = tuple[int, int]
@@ -64,31 +67,44 @@ def rivals(directions: Directions, chosen: int) -> list[Ray]:
     return [(chosen, -1), *((b, sign) for b in others for sign in (1, -1))]
 
 
+Weights = Sequence[tuple[Ray, Fraction]]
+"""Weights of rivals, not negative, with sum 1."""
+
+
 def margin_bound(
     directions: Directions,
     chosen: int,
-    weights: Sequence[tuple[Ray, Fraction]],
-    creases: int | None = None,
+    weights: Weights,
+    limited: Sequence[bool] | None = None,
+    most: int = 0,
+    barred: Sequence[bool] | None = None,
 ) -> Fraction:
-    """No torques of size at most 1, on at most `creases` folds, have a larger margin than this.
+    """No torques of size at most 1 have a larger margin than this.
 
-    Weak duality. For weights w_r >= 0 with sum 1 on rivals r, the margin of tau is at most
-    sum_r w_r tau . (u - u_r) = tau . g, and that is at most the sum of the `creases` largest |g_e|
-    (of all without a limit), as |tau_e| <= 1. Every choice of weights gives a true bound.
+    With `limited`, no torques that drive at most `most` of these folds, and any of the others; with
+    `barred`, none that leave these folds alone. Weak duality: the margin of tau is at most
+    sum_r w_r tau . (u - u_r) = tau . g for weights w_r >= 0 with sum 1 on rivals r; and tau . g is
+    at most the sum of |g_e|, over the `most` largest of the limited folds and all others, as
+    |tau_e| <= 1. Every choice of weights gives a true bound.
     """
     integers, common = over_common_denominator(weight for _, weight in weights)
     if min(integers, default=0) < 0 or sum(integers) != common:
-        raise ArithmeticError("weights of rivals are not negative and add up to 1")
+        raise ArithmeticError("weights of rivals are negative, or do not add up to 1")
     low, high = common * directions.lows[chosen], common * directions.highs[chosen]
     for ((place, sign), _), weight in zip(weights, integers, strict=True):
-        a, b = directions.lows[place], directions.highs[place]
-        low, high = (
-            (low - weight * b, high - weight * a)
-            if sign > 0
-            else (
-                low + weight * a,
-                high + weight * b,
-            )
-        )
-    sizes = sorted(np.maximum(abs(low), abs(high)).tolist(), reverse=True)
-    return Fraction(sum(sizes[:creases]), common << BITS)
+        ends = directions.lows[place], directions.highs[place]
+        under, over = ends if sign > 0 else (-ends[1], -ends[0])
+        low, high = low - weight * over, high - weight * under
+    sizes = np.maximum(abs(low), abs(high))
+    if barred is not None:
+        sizes[np.array(barred)] = 0
+    within = np.zeros(len(sizes), dtype=np.bool_) if limited is None else np.array(limited)
+    largest = sorted(sizes[within].tolist(), reverse=True)[:most]
+    return Fraction(sum(sizes[~within].tolist()) + sum(largest), common << BITS)
+
+
+def exact_weights(rays: Sequence[Ray], weights: FloatArray) -> list[tuple[Ray, Fraction]]:
+    """Weights that are exactly what `margin_bound` asks for, near those of a linear program."""
+    exact = [Fraction(x) if x > _SMALL else Fraction(0) for x in weights.tolist()]
+    total = sum(exact, Fraction(0))
+    return [(ray, x / total) for ray, x in zip(rays, exact, strict=True) if x]
