@@ -82,16 +82,26 @@ class Directions:
         middles: FloatArray = ((self.lows + self.highs) / (2 << BITS)).astype(float)
         return middles
 
-    def with_row(self, place: int, other: Directions, sign: int = 1) -> Directions:
-        """The same with row `place` replaced by the only row of another, or by its opposite."""
-        low, high = other.low[0], other.high[0]
-        if sign < 0:
-            low, high = tuple(-x for x in high), tuple(-x for x in low)
+    def with_row(self, place: int, other: Directions) -> Directions:
+        """The same with row `place` replaced by the only row of another."""
         return replace(
             self,
-            low=(*self.low[:place], low, *self.low[place + 1 :]),
-            high=(*self.high[:place], high, *self.high[place + 1 :]),
+            low=(*self.low[:place], other.low[0], *self.low[place + 1 :]),
+            high=(*self.high[:place], other.high[0], *self.high[place + 1 :]),
         )
+
+    def alone(self, place: int, sign: int) -> Directions:
+        """Row `place` alone, or the opposite of it."""
+        low, high = self.low[place], self.high[place]
+        if sign < 0:
+            low, high = tuple(-x for x in high), tuple(-x for x in low)
+        return replace(self, low=(low,), high=(high,))
+
+    def narrowed(self, other: Directions) -> Directions:
+        """The only row within the bounds of the only row of another, which holds the same ray."""
+        low = tuple(map(max, self.low[0], other.low[0]))
+        high = tuple(map(min, self.high[0], other.high[0]))
+        return replace(self, low=(low,), high=(high,))
 
     def meeting(self, other: Directions) -> list[tuple[int, int]]:
         """(place, sign) of the rays whose bounds meet those of the only row of another.

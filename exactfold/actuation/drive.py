@@ -148,8 +148,9 @@ class _Search:
                 meeting = self.directions.meeting(self.own)
         if len(meeting) != 1:
             raise UnprovedRivalsError("two branches are too close to be told apart")
-        [(place, _)] = meeting
-        self.directions = self.directions.with_row(place, self.own)
+        [(place, sign)] = meeting
+        row = self.directions.alone(place, sign).narrowed(self.own)
+        self.directions = self.directions.with_row(place, row)
         return place
 
     def _sharpen(self, places: Sequence[int], bits: int) -> None:

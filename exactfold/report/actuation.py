@@ -30,10 +30,11 @@ def actuation_report(found: Actuation, *, everything: bool = False) -> Group:
         ("power", f"{_between(found.power)}; on any other ray {_between(found.largest_rival)}"),
         ("alone", _alone(found)),
     ]
-    parts: list[Text | Table] = [facts_table(list(rows)), Text(""), _torques(found)]
-    if len(found.directions) > 1:
-        parts += [Text(""), *_ranking(found, everything)]
-    return Group(*parts)
+    if not found.driven:
+        return Group(facts_table(list(rows)))
+    return Group(
+        facts_table(list(rows)), Text(""), _torques(found), Text(""), *_ranking(found, everything)
+    )
 
 
 def _between(bounds: Bounds) -> str:
