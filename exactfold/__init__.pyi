@@ -16,7 +16,6 @@ from exactfold import problem as problem
 from exactfold import rigidity as rigidity
 from exactfold import schemas as schemas
 from exactfold import solve as solve
-from exactfold.actuation import actuate as actuate
 from exactfold.branches import Branch as Branch
 from exactfold.branches import BranchCount as BranchCount
 from exactfold.branches import export_branch as export_branch

@@ -23,8 +23,8 @@ if __name__ == "__main__":
 
 from driving import hinges, model_of
 
-from exactfold import CreasePattern, actuate, random_square
-from exactfold.actuation import Actuation
+from exactfold import CreasePattern, random_square
+from exactfold.actuation import Actuation, actuate
 
 AMOUNT = 0.02
 """a: the angle in radians to which a torque of 1 drives a fold that is alone."""
@@ -147,7 +147,7 @@ def main(squares: int, *sizes: int) -> None:
             for name, torques in three_torques(found).items():
                 ends[name] = ends.get(name, 0) + ends_on_the_branch(found, torques)
         told = ", ".join(f"{name} {count}" for name, count in ends.items())
-        print(f"{inside} vertices, {squares} squares: {told}", flush=True)
+        print(f"Vi = {inside}, {squares} squares: {told}", flush=True)
 
 
 if __name__ == "__main__":

@@ -15,11 +15,11 @@ from exactfold import (
     PROVED,
     REFUTED,
     UNDECIDED,
-    actuate,
     count_branches,
     find_branch,
     random_square,
 )
+from exactfold.actuation import actuate
 from exactfold.errors import (
     FloatRefusedError,
     NotCountedError,

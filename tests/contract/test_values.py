@@ -47,7 +47,7 @@ SHEETS = exactfold.drawing.exact_sheets(DRAWING)
 OPENED = exactfold.open_pattern(exactfold.data.example_path("zigzags"))
 MOTIONS = exactfold.decompose(OPENED.sheet)
 SPACES = exactfold.decompose(panels(single_vertex(5)))
-DRIVEN = exactfold.actuate(exactfold.data.example_path("single-vertex-4"), "+")
+DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
 VALUES = {
     "pattern": PATTERN,
     "pattern with long coordinates": exactfold.CreasePattern(
