@@ -40,6 +40,9 @@ NODES = 1000
 _SHARPER = (64, 128)
 """Bits of the roots where those of the count do not tell two branches apart."""
 
+_LOOSE = Fraction(1, 10_000)
+"""Bounds of a margin that differ by a larger share of it ask for sharper roots."""
+
 _DIGITS = (6, 9, 12)
 """Digits after the point of torques: more only where fewer lose much of the margin."""
 
@@ -134,6 +137,7 @@ class _Search:
         self.own = Directions.of([named])
         self.directions = Directions.of(branches)
         self.place = self._matched()
+        self.deciding: set[int] = set()
 
     def say(self, stage: str) -> None:
         if self.progress is not None:
@@ -153,7 +157,7 @@ class _Search:
         self.directions = self.directions.with_row(place, row)
         return place
 
-    def _sharpen(self, places: Sequence[int], bits: int) -> None:
+    def _sharpen(self, places: Iterable[int], bits: int) -> None:
         for b in places:
             with suppress(NotApplicableError):
                 self.branches[b] = self.branches[b].sharpened(bits)
@@ -166,9 +170,11 @@ class _Search:
         torques, best = self._torques()
         margin = self._margin(torques)
         for bits in _SHARPER:
-            if margin[0] <= 0 < margin[1]:
-                self._sharpen(self._close(torques), bits)
-                margin = self._margin(torques)
+            if margin[1] - margin[0] <= _LOOSE * abs(margin[0]) or not any(torques):
+                break
+            self._sharpen({*self.deciding, *self._close(torques)} - {self.place}, bits)
+            torques, best = self._torques()
+            margin = self._margin(torques)
         self.say("orthogonal torques")
         others = [b for b in range(len(self.branches)) if b != self.place]
         independent, _ = independent_rows(self.directions, others) or ([], [])
@@ -216,9 +222,11 @@ class _Search:
         if self.creases is not None and self.creases < int(allowed.sum()):
             search = CreaseChoice(self.directions, self.place, rays, gaps, allowed, self.creases)
             choice = search.best(self.nodes, self.progress)
+            self.deciding = {rays[r][0] for r in search.known}
             return self._rounded(choice.torques), choice.bound
         proposal = largest_margin(gaps, allowed)
         weights = exact_weights(rays, proposal.weights)
+        self.deciding = {place for (place, _), _ in weights}
         best = margin_bound(self.directions, self.place, weights)
         if self.given is not None:
             torques = list(self.given.values())
@@ -239,11 +247,11 @@ class _Search:
         return Powers.of(self.directions, torques).margin(self.place)
 
     def _close(self, torques: Sequence[Fraction]) -> list[int]:
-        """The rivals that are not proved to have less power than the branch."""
+        """The rivals that may have the largest power of all rivals."""
         powers = Powers.of(self.directions, torques)
-        largest = np.maximum(powers.high, -powers.low)
-        close = (largest >= powers.low[self.place]).astype(bool)
-        return [int(b) for b in np.flatnonzero(close) if b != self.place]
+        most = powers.largest_rival(self.place)[0] * powers.unit
+        close = (np.maximum(powers.high, -powers.low) >= most).astype(bool)
+        return np.flatnonzero(close).tolist()
 
 
 def _judged(margin: Bounds, torques: Sequence[Fraction]) -> tuple[Verdict, str]:

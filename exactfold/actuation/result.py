@@ -74,7 +74,7 @@ class Actuation:
     have a larger margin; proved. `given` tells torques that were given from those that were found.
 
     `orthogonal_dimension`: proved bounds of the dimension of the torques that do no work on any
-    other branch (Tachi and Hull's necessary condition), modulo those that do none on any first-order motion.
+    other branch (Tachi and Hull's necessary condition), modulo those that do none on any motion.
     `independent`: other branches whose fold angles are proved to be linearly independent.
     `orthogonal` is an example, where the dimension is proved to be positive.
 

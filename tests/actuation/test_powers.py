@@ -159,3 +159,16 @@ def test_dependent_branches_are_not_called_independent():
     rows, _ = independent_rows(twice, [0, len(twice) - 1])
     assert len(rows) == 1
     assert independent_rows(twice, []) == ([], [])
+
+
+def test_a_single_branch_has_one_rival_its_other_side():
+    alone = DIRECTIONS.alone(1, 1)
+    tau = [Fraction(int(np.sign(x))) for x in DIRECTIONS.middles[1]]
+    powers = Powers.of(alone, tau)
+    assert rivals(alone, 0) == [(0, -1)]
+    assert powers.largest_rival(0) == tuple(-x for x in powers.bounds(0)[::-1])
+    low, high = powers.margin(0)
+    best = margin_bound(alone, 0, [((0, -1), Fraction(1))])
+    assert low <= 2 * sum(map(abs, map(Fraction, DIRECTIONS.middles[1]))) <= high
+    assert low < best <= high
+    assert independent_rows(alone, []) == ([], [])
