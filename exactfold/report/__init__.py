@@ -1,5 +1,6 @@
 """What people read: answers in plain words and tables, with rich."""
 
+from exactfold.report.actuation import actuation_report
 from exactfold.report.angles_plot import angles_plot
 from exactfold.report.batch import batch_report
 from exactfold.report.branch import branch_report, branch_row, branches_report, export_report
@@ -11,6 +12,7 @@ from exactfold.report.panels import panels_report
 from exactfold.report.terminal import console, show
 
 __all__ = [
+    "actuation_report",
     "angles_plot",
     "batch_report",
     "branch_report",

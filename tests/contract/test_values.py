@@ -47,6 +47,7 @@ SHEETS = exactfold.drawing.exact_sheets(DRAWING)
 OPENED = exactfold.open_pattern(exactfold.data.example_path("zigzags"))
 MOTIONS = exactfold.decompose(OPENED.sheet)
 SPACES = exactfold.decompose(panels(single_vertex(5)))
+DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
 VALUES = {
     "pattern": PATTERN,
     "pattern with long coordinates": exactfold.CreasePattern(
@@ -106,6 +107,10 @@ VALUES = {
     "solver": exactfold.solvers()["newton"],
     "finder": exactfold.count.BranchFinder(PATTERN),
     "signed branch": exactfold.find_branch(PATTERN, "+-"),
+    "actuation": DRIVEN,
+    "directions": DRIVEN.directions,
+    "orthogonal torques": DRIVEN.orthogonal,
+    "ranked": DRIVEN.ranking()[0],
     "verdict": exactfold.UNDECIDED,
     "streamed": None,  # made for each test, in a folder of its own
 }
