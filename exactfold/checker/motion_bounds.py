@@ -34,8 +34,8 @@ class Bounds:
         b, q, kappa = value(self.b, h), value(self.q, h), value(self.kappa, h)
         require(q < 1, "a matrix is not near the inverse of the Jacobian along a tube")
         r = rounded(b / (1 - q) * (1 + 2 * b * kappa / (1 - q) ** 2), 60) + Fraction(1, 1 << ROUND)
-        require(b + q * r + kappa * r * r / 2 < r, "a tube does not hold a zero")
-        require(q + kappa * r < 1, "zeros in a tube may be several")
+        one = b + q * r + kappa * r * r / 2 < r and q + kappa * r < 1
+        require(one, "a tube does not hold one zero for each parameter")
         return r
 
     def uniqueness(self, h: Fraction) -> Fraction:

@@ -2,7 +2,6 @@ from exactfold.motion.angles import fold_angles_of as fold_angles_of
 from exactfold.motion.framework import Framework as Framework
 from exactfold.motion.piece import Ball as Ball
 from exactfold.motion.start import Start as Start
-from exactfold.motion.tracks import FlatVertexError as FlatVertexError
 from exactfold.motion.tracks import Frame as Frame
 from exactfold.motion.tracks import Link as Link
 from exactfold.motion.tracks import Track as Track
@@ -10,5 +9,4 @@ from exactfold.motion.tracks import continued as continued
 from exactfold.motion.tracks import follow_proved as follow_proved
 from exactfold.motion.tracks import half_branch as half_branch
 from exactfold.motion.tube import Tube as Tube
-from exactfold.motion.tube_start import NotProvedAtTheFlatStateError as NotProvedAtTheFlatStateError
 from exactfold.motion.tube_start import StartTube as StartTube

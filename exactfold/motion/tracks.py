@@ -11,7 +11,7 @@ import numpy as np
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
-from exactfold.errors import NotApplicableError, UsageError
+from exactfold.errors import FlatVertexError, UsageError
 from exactfold.evidence.entries import Document
 from exactfold.evidence.motion import motion_certificate
 from exactfold.motion.arclength import Interval
@@ -27,10 +27,6 @@ from exactfold.verdict import PROVED, UNDECIDED, Verdict
 MOST_TUBES = 1000
 _LEAST = 1e-5  # of a step, in the unit of the framework
 _EXIT = 11, 16  # the part of the reach at which the next tube begins
-
-
-class FlatVertexError(NotApplicableError):
-    """A branch with a vertex that is proved flat is a multiple root: no curve is known there."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -10,7 +10,7 @@ from math import isqrt, log2
 import numpy as np
 
 from exactfold.arrays import BigArray, FloatArray
-from exactfold.errors import NotApplicableError
+from exactfold.errors import NotApplicableError, NotProvedAtTheFlatStateError
 from exactfold.motion.arclength import Interval, length_between
 from exactfold.motion.contraction import (
     Contraction,
@@ -34,10 +34,6 @@ from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functi
 
 ROOT_BITS = PARAMETER_BITS // 2
 """The parameter tau of a start tube, whose square is s, is an integer over 2^ROOT_BITS."""
-
-
-class NotProvedAtTheFlatStateError(NotApplicableError):
-    """No tube was proved from the flat state, or not which branch it belongs to."""
 
 
 @dataclass(frozen=True, repr=False)
