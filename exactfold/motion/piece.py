@@ -112,11 +112,19 @@ class Piece:
     def velocity(self, parameter: int) -> Ball:
         """A box that holds x'(s)."""
         most = abs(parameter)
-        slope = tuple(tuple(k * a for a in row) for k, row in enumerate(self.coefficients) if k)
         error = self.contraction.velocity(
             most << (SCALE - PARAMETER_BITS), self.radius_within(most)
         )
-        return Ball(self.bits, evaluated(slope, parameter), self._lengths(error))
+        return Ball(self.bits, evaluated(self.slope, parameter), self._lengths(error))
+
+    @cached_property
+    def slope(self) -> Curve:
+        """The coefficients of p'(s) over 2^bits."""
+        return tuple(tuple(k * a for a in row) for k, row in enumerate(self.coefficients) if k)
+
+    def _floats(self, row: Row) -> FloatArray:
+        one = 1 << self.bits
+        return np.array([x / one for x in row])
 
     def _lengths(self, radius: int) -> Row:
         """radius w_i over 2^bits, and one unit for the centre that was rounded."""

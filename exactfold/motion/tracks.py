@@ -186,13 +186,12 @@ class Track:
             raise UsageError(f"the track does not reach the time {time:g}")
         k = bisect_left([link.left[1] for link in self.links], wanted)
         if wanted <= self._started[1]:
-            tau = _solve(lambda x: self.start.length(0, x)[0] - wanted, 0, self.start.last)
+            tau = self.start.near(float(wanted), 0, self.start.last)
             low, high = self.start.length(0, tau)
             ball = self.start.ball(tau)
         else:
             link = self.links[k]
-            first = max(0, link.entry[1])
-            parameter = _solve(lambda x: link.time(x)[0] - wanted, first, link.exit)
+            parameter = link.tube.near(float(wanted - link.entered[0]), max(link.entry), link.exit)
             low, high = link.time(parameter)
             ball = sharpened(link.tube, parameter)
         return Frame((Fraction(low * unit), Fraction(high * unit)), ball)
@@ -332,20 +331,3 @@ def _next(
                 return tube, entry
         step /= 4
     return None, None
-
-
-def _solve(function: Callable[[int], Fraction], low: int, high: int) -> int:
-    """Nearly where an increasing function that is not far from linear is 0."""
-    bottom, top = function(low), function(high)
-    for _ in range(8):
-        if high - low < 2 or bottom >= 0 or top <= 0:
-            break
-        middle = low + int((high - low) * -bottom / (top - bottom))
-        value = function(middle)
-        if abs(value) < Fraction(1, 1 << 40):
-            return middle
-        if value > 0:
-            high, top, bottom = middle, value, bottom / 2
-        else:
-            low, bottom, top = middle, value, top / 2
-    return high if top <= 0 else low

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from math import isqrt, log2
 
 import numpy as np
 
 from exactfold.arrays import BigArray, FloatArray
 from exactfold.errors import NotApplicableError, NotProvedAtTheFlatStateError
-from exactfold.motion.arclength import Interval, length_between
+from exactfold.motion.arclength import Interval, length_between, parameter_after
 from exactfold.motion.contraction import (
     Contraction,
     contraction,
@@ -95,14 +96,26 @@ class StartTube(Piece):
 
         `low` and `high` are over 2^ROOT_BITS.
         """
+        m, rows = self.halvings, self._slope_in_tau
+        error = [(r + 1) << 2 * m for r in self.ball_velocity(high).radii]
+        return length_between(rows, self.bits + 2 * m, error, ROOT_BITS, low, high)
+
+    @cached_property
+    def _slope_in_tau(self) -> list[Row]:
+        """The coefficients of the derivative of d by tau, over 2^(bits + 2 halvings)."""
         m = self.halvings
         rows = []
         for k, row in enumerate(self.coefficients):
             heights = [(2 * k + 1) * x << m if i % 3 == 2 else 0 for i, x in enumerate(row)]
             plane = [0 if i % 3 == 2 else (2 * k + 2) * x for i, x in enumerate(row)]
             rows += [tuple(heights), tuple(plane)]
-        error = [(r + 1) << 2 * m for r in self.ball_velocity(high).radii]
-        return length_between(rows, self.bits + 2 * m, error, ROOT_BITS, low, high)
+        return rows
+
+    def near(self, length: float, low: int, high: int) -> int:
+        """A tau between `low` and `high` that is nearly this length after `low`."""
+        scale = 2.0 ** (-2 * self.halvings)
+        rows = np.array([self._floats(row) for row in self._slope_in_tau]) * scale
+        return parameter_after(rows, length, ROOT_BITS, low, high)
 
 
 def prove_start(
