@@ -17,6 +17,7 @@ from .reading import require
 
 INVERSE_BITS = 40
 WEIGHT_BITS = 16
+LEAST_WEIGHT = (1 << WEIGHT_BITS) // 100
 ROUND = 128  # places after the point of bounds
 Vector = list[int]
 Columns = list[list[tuple[int, int]]]
@@ -129,4 +130,4 @@ def weights_of(matrix: list[list[float]]) -> Vector:
         vector = [x + y / top for x, y in zip(vector, image, strict=True)]
         top = max(vector)
         vector = [x / top for x in vector]
-    return [max(1, int(x * 2**WEIGHT_BITS)) for x in vector]
+    return [max(LEAST_WEIGHT, int(x * 2**WEIGHT_BITS)) for x in vector]

@@ -107,7 +107,7 @@ class Piece:
         Raises `ArithmeticError` beyond the reach.
         """
         centre = evaluated(self.coefficients, parameter)
-        return Ball(self.bits, centre, self._lengths(self.radius_within(abs(parameter))))
+        return Ball(self.bits, centre, self.lengths(self.radius_within(abs(parameter))))
 
     def velocity(self, parameter: int) -> Ball:
         """A box that holds x'(s)."""
@@ -115,7 +115,19 @@ class Piece:
         error = self.contraction.velocity(
             most << (SCALE - PARAMETER_BITS), self.radius_within(most)
         )
-        return Ball(self.bits, evaluated(self.slope, parameter), self._lengths(error))
+        return Ball(self.bits, evaluated(self.slope, parameter), self.lengths(error))
+
+    def unique_near(self, point: Row, radius: int, middle: Row) -> bool:
+        """Whether the ball about a point lies where zeros are unique for the parameter of `middle`.
+
+        `middle` is p(s), rounded down.
+        """
+        room = self.uniqueness
+        return all(
+            ((abs(x - y) + 1) << (SCALE + WEIGHT_BITS)) + (radius * w << self.bits)
+            < room * w << self.bits
+            for x, y, w in zip(point, middle, self.weights, strict=True)
+        )
 
     @cached_property
     def slope(self) -> Curve:
@@ -126,7 +138,7 @@ class Piece:
         one = 1 << self.bits
         return np.array([x / one for x in row])
 
-    def _lengths(self, radius: int) -> Row:
+    def lengths(self, radius: int) -> Row:
         """radius w_i over 2^bits, and one unit for the centre that was rounded."""
         down = SCALE + WEIGHT_BITS - self.bits
         left, right = max(-down, 0), max(down, 0)

@@ -6,6 +6,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 1000
+_FAR_ENOUGH = "the length that was asked for"
 _LEAST = 1e-5  # of a step, in the unit of the framework
 _EXIT = 11, 16  # the part of the reach at which the next tube begins
 
@@ -112,11 +114,12 @@ class Track:
     @property
     def length(self) -> Interval:
         """Bounds of the length of the whole track, in the unit of the sheet."""
-        low, high = self.links[-1].left if self.links else self._started
+        low, high = self.links[-1].left if self.links else self.started
         return low * self.framework.unit, high * self.framework.unit
 
-    @property
-    def _started(self) -> Interval:
+    @cached_property
+    def started(self) -> Interval:
+        """Bounds of the length of the start tube, in the unit of the framework."""
         return self.start.length(0, self.start.last)
 
     def certificate(self) -> Document:
@@ -172,9 +175,8 @@ class Track:
     def frames(self, times: FloatArray | list[float]) -> list[Frame]:
         """Enclosed configurations near given times, in the unit of the sheet.
 
-        Each is one point of the curve, in a box of about 14 digits (8 within the start tube),
-        at a time near the one asked for, which `Frame.time` bounds. Raises `UsageError` for times
-        that the track does not reach.
+        Each is one point of the curve, in a box of about 14 digits, at a time near the one asked
+        for, which `Frame.time` bounds. Raises `UsageError` for times that the track does not reach.
         """
         return [self.frame(float(time)) for time in times]
 
@@ -182,13 +184,13 @@ class Track:
         """One enclosed configuration near a time; as `frames`."""
         unit = self.framework.unit
         wanted = Fraction(time) / unit
-        if not 0 <= wanted <= (self.links[-1].left if self.links else self._started)[1]:
+        if not 0 <= wanted <= (self.links[-1].left if self.links else self.started)[1]:
             raise UsageError(f"the track does not reach the time {time:g}")
         k = bisect_left([link.left[1] for link in self.links], wanted)
-        if wanted <= self._started[1]:
+        if wanted <= self.started[1]:
             tau = self.start.near(float(wanted), 0, self.start.last)
             low, high = self.start.length(0, tau)
-            ball = self.start.ball(tau)
+            ball = self.start.sharpened(tau)
         else:
             link = self.links[k]
             parameter = link.tube.near(float(wanted - link.entered[0]), max(link.entry), link.exit)
@@ -270,7 +272,9 @@ def follow_proved(
     track = half_branch(branch, side, pinned, bits=bits)
     goal = None if until is None else Fraction(until) / track.framework.unit
     links: list[Link] = []
-    status, reason = UNDECIDED, "the curve was not followed further"
+    if goal is not None and track.started[0] >= goal:
+        return replace(track, reason=_FAR_ENOUGH)
+    status, reason = UNDECIDED, ""
     for link in continued(track, bits=bits):
         if isinstance(link, str):
             reason = link
@@ -281,7 +285,7 @@ def follow_proved(
             status, reason = PROVED, said
             break
         if goal is not None and link.left[0] >= goal:
-            status, reason = PROVED, "the length that was asked for"
+            status, reason = PROVED, _FAR_ENOUGH
             break
         if len(links) >= most:
             reason = f"{most} tubes were not enough"
@@ -300,7 +304,7 @@ def continued(track: Track, *, bits: int = 64) -> Iterator[Link | str]:
     else:
         last = track.start.last
         ball, velocity = track.start.ball(last), track.start.ball_velocity(last)
-        time = track._started
+        time = track.started
         step = float(time[0]) / 2
     while True:
         tube, entry = _next(equations, ball, velocity, step)

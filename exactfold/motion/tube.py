@@ -263,14 +263,9 @@ def sharpened(tube: Tube, parameter: int) -> Ball:
         (point,) = corrected(inverse, [point], [residual()], bits + 1)
     proof = _bounds(equations, (point,), [residual()], tube.row, tube.weights, inverse)
     radius = proof.radius(0)
-    if radius is None:
+    if radius is None or not tube.unique_near(point, radius, whole.centre):
         return whole
-    down = SCALE + WEIGHT_BITS - bits
-    found = Ball(bits, point, tuple(up(radius * w, down) for w in tube.weights))
-    for x, y, r, w in zip(point, whole.centre, found.radii, tube.weights, strict=True):
-        if (abs(x - y) + 1 + r) << (SCALE + WEIGHT_BITS) >= (tube.uniqueness * w) << bits:
-            return whole
-    return found
+    return Ball(bits, point, tube.lengths(radius))
 
 
 def _stretch(equations: LengthEquations, centre: Row) -> list[int]:

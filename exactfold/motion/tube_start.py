@@ -65,7 +65,61 @@ class StartTube(Piece):
 
         `tau` is over 2^ROOT_BITS, its square at most the reach.
         """
-        inner, m = self.enclosure(tau * tau), self.halvings
+        return self._blown_down(self.enclosure(tau * tau), tau)
+
+    def sharpened(self, tau: int) -> Ball:
+        """`ball` with about 14 digits: a step of Newton's method for this tau, and Theorem 1 there.
+
+        The zero is that of the tube, because it lies where zeros are unique. Where that fails, the
+        answer is `ball`.
+        """
+        whole, up_to = self.enclosure(tau * tau), PARAMETER_BITS + 2 * self.halvings
+        equations = LengthEquations(self.framework, self.bits)
+        point, s = whole.centre, tau * tau  # over 2^up_to, the factor of |u|^2
+
+        def terms() -> tuple[BigArray, list[int]]:
+            """U + (s u, h) over 2^(bits + up_to), and the residual over 2^(2 bits + up_to + 1)."""
+            e = equations.along([point])[0]
+            flat = equations.flat_edges
+            bent = np.concatenate([s * e[:, :2], e[:, 2:] * (1 << up_to)], axis=1)
+            residual = (((2 << up_to) * flat + bent) * e).sum(axis=1)
+            held = point[self.held] - self.coefficients[0][self.held]
+            last = held << self.bits + up_to + 1
+            return flat * (1 << up_to) + bent, [*(int(x) for x in residual), last]
+
+        rows, _ = terms()
+        one = 1 << self.bits + up_to
+        last = np.zeros(self.framework.size)
+        last[self.held] = 1.0
+        edges = np.array([[x / one for x in row] for row in rows])
+        try:
+            inverse = np.linalg.inv(np.vstack([equations.places.dense(edges), last]))
+        except np.linalg.LinAlgError:
+            return self._blown_down(whole, tau)
+        for _ in range(2):
+            (point,) = corrected(inverse, [point], [terms()[1]], self.bits + up_to + 1)
+        rows, residual = terms()
+        sums = equations.weight_sums(self.weights)
+        proof = contraction(
+            inverse,
+            [residual],
+            2 * self.bits + up_to + 1,
+            equations.places,
+            [rows],
+            [one * (i == self.held) for i in range(len(point))],
+            self.bits + up_to,
+            [[up(int(s * (x * x + y * y)), up_to) + int(z * z) for x, y, z in sums]],
+            sums,
+            self.weights,
+        )
+        radius = proof.radius(0)
+        if radius is None or not self.unique_near(point, radius, whole.centre):
+            return self._blown_down(whole, tau)
+        return self._blown_down(Ball(self.bits, point, self.lengths(radius)), tau)
+
+    def _blown_down(self, inner: Ball, tau: int) -> Ball:
+        """The box of unknowns of the length equations for a box of (u, h)."""
+        m = self.halvings
         shifts, factors = (PARAMETER_BITS + 2 * m, ROOT_BITS + m), (tau * tau, tau)
         centre, radii = [], []
         for i, (x, r) in enumerate(zip(inner.centre, inner.radii, strict=True)):
