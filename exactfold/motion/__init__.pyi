@@ -12,7 +12,6 @@ from exactfold.motion.matching import find_loops as find_loops
 from exactfold.motion.motion import Motion as Motion
 from exactfold.motion.piece import Ball as Ball
 from exactfold.motion.start import Start as Start
-from exactfold.motion.tracks import FlatVertexError as FlatVertexError
 from exactfold.motion.tracks import Frame as Frame
 from exactfold.motion.tracks import Link as Link
 from exactfold.motion.tracks import Track as Track
@@ -20,6 +19,5 @@ from exactfold.motion.tracks import continued as continued
 from exactfold.motion.tracks import follow_proved as follow_proved
 from exactfold.motion.tracks import half_branch as half_branch
 from exactfold.motion.tube import Tube as Tube
-from exactfold.motion.tube_start import NotProvedAtTheFlatStateError as NotProvedAtTheFlatStateError
 from exactfold.motion.tube_start import StartTube as StartTube
 from exactfold.motion.writing import write_motion as write_motion
