@@ -1,3 +1,4 @@
+from exactfold import actuation as actuation
 from exactfold import algebra as algebra
 from exactfold import branches as branches
 from exactfold import bridges as bridges
@@ -16,6 +17,7 @@ from exactfold import problem as problem
 from exactfold import rigidity as rigidity
 from exactfold import schemas as schemas
 from exactfold import solve as solve
+from exactfold.actuation import actuate as actuate
 from exactfold.branches import Branch as Branch
 from exactfold.branches import BranchCount as BranchCount
 from exactfold.branches import export_branch as export_branch
@@ -36,6 +38,7 @@ from exactfold.evidence import read_branches as read_branches
 from exactfold.evidence import write_certificate as write_certificate
 from exactfold.modes import decompose as decompose
 from exactfold.motion import Motion as Motion
+from exactfold.motion import find_loops as find_loops
 from exactfold.motion import follow as follow
 from exactfold.pattern import CreasePattern as CreasePattern
 from exactfold.pattern import PanelPattern as PanelPattern

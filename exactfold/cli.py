@@ -372,6 +372,74 @@ def fold(
     raise typer.Exit(asked.answer())
 
 
+@app.command(cls=Command)
+@reported
+def motions(
+    pattern: Pattern,
+    workers: Annotated[
+        int | None,
+        typer.Option(parser=whole(1), metavar="N", help="Processes. Default: all cores."),
+    ] = None,
+    dask: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Run on the dask.distributed cluster with this scheduler; `local` starts one "
+            "here.",
+        ),
+    ] = None,
+    as_json: Json = False,
+    snap: Snap = None,
+    sheet: Sheet = None,
+) -> None:
+    """Follow every branch, with proof, until the sheet is flat again.
+
+    A sheet with n foldable vertices leaves the flat state along 2^(n+1) half-branches, which true
+    motions join in pairs, contact ignored: this says which with which.
+    """
+    from exactfold.commands.motions import Wanted
+
+    raise typer.Exit(Wanted(pattern, snap, sheet, workers, dask, as_json).answer())
+
+
+@app.command(cls=Command)
+@reported
+def actuate(
+    pattern: Pattern,
+    signs: Signs = None,
+    up: Up = None,
+    creases: Annotated[
+        int | None,
+        typer.Option(parser=whole(1), metavar="K", help="Drive at most K creases. Default: all."),
+    ] = None,
+    torques: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.json",
+            help='Instead: judge these torques, {"0-4": 0.5, ...}; creases not named have 0.',
+        ),
+    ] = None,
+    as_json: Json = False,
+    snap: Snap = None,
+    sheet: Sheet = None,
+    everything: Annotated[bool, flag("--all", text="List every branch in the ranking.")] = False,
+) -> None:
+    """Find torques on the creases that drive the sheet along one branch and not along the others.
+
+    All torques have size at most 1, and a positive one folds towards a valley.
+    The sheet is driven to the side on which the vertex signs are those given;
+    opposite torques drive it to the other side.
+    """
+    from exactfold.commands.actuate import Driven
+
+    if (signs is not None) + (up is not None) != 1:
+        raise UsageError("give either --signs or --up")
+    if creases is not None and torques is not None:
+        raise UsageError("--creases and --torques do not go together")
+    asked = Driven(pattern, snap, sheet, signs, up, creases, torques, as_json, everything)
+    raise typer.Exit(asked.answer())
+
+
 @app.command("random", cls=Command)
 @reported
 def random_(

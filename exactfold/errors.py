@@ -123,6 +123,10 @@ class CertificateFormatError(InputError):
     """The file is not a certificate of a known format and version."""
 
 
+class BadTorquesError(InputError):
+    """A file of torques that is not an object of numbers by crease."""
+
+
 class ClusterError(InputError):
     """A cluster that does not answer, has no workers, or workers that cannot do the work."""
 
@@ -220,6 +224,14 @@ class NotTriangulatedError(NotCountedError):
 
 class NoInteriorVertexError(NotCountedError):
     """A pattern without interior vertices has no curvature equation and no branches to count."""
+
+
+class TooManyRivalsError(NotCountedError):
+    """A sheet with more branches than torques for one of them can be compared on."""
+
+
+class UnprovedRivalsError(NotCountedError):
+    """A branch cannot be compared with all others, as not all are proved or told apart."""
 
 
 class UndecidedBranchError(ExactfoldError):

@@ -9,13 +9,15 @@ their own, and verify every claim. The folder alone is enough. Exit code 0: ever
 some claim is not supported. 3: not a certificate. 70: a worker process died, memory is short, or a
 defect of this program; nothing is known of the file.
 
-Four kinds of certificates are told apart by what is in the file: listings of all branches
+Five kinds of certificates are told apart by what is in the file: listings of all branches
 (`listing`, docs/certificate.md), compact ones with one root for each sign vector (`compact`,
 docs/compact-certificate.md), proofs of one branch (`branch`, docs/branch.md), which are checked by
-formulas of their own, and all motions of a sheet of rigid panels (`panels`, docs/certificate.md).
+formulas of their own, and all motions of a sheet of rigid panels (`panels`, docs/certificate.md),
+and the true motion along one branch (`motion`, docs/motion.md).
 `formats` owns their names, versions and limits.
 
-Floating point is used in one place, to choose the matrix Y of Krawczyk's test, which may be any.
+Floating point is used to choose the matrices and weights of Krawczyk's and of Newton's test, which
+may be any, and nowhere else.
 Modules import each other relatively, and nothing else of exactfold, so that they run under any
 name; none is named like a module of the standard library, as their folder is on the import path
 when it is run.

@@ -21,11 +21,11 @@ from .reading import (
     document,
     items,
     keys,
-    natural,
     parse_integer,
     parse_rational,
     require,
 )
+from .reduced import closed, emptied_sheet
 from .sheet import Sheet, read_sheet, turn
 
 
@@ -57,12 +57,12 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     points: dict[int, Any] = {
         v: (int(x * unit), int(y * unit)) for v, (x, y) in given.points.items()
     }
-    sheet, removed = _emptied(given, points, evidence["emptied"])
+    sheet, removed = emptied_sheet(given, points, evidence["emptied"])
     corner = None
     if claims["gauge"] != "rim":
         require(claims["gauge"] == "saddle", "the gauge is neither saddle nor rim")
         require(len(sheet.boundary) == 4, "there are not four boundary vertices")
-        sheet, corner = _closed(sheet)
+        sheet, corner = closed(sheet)
     _check_convex(sheet)
     texts = items(evidence["heights"], "heights", len(points))
     require(all((texts[v] is None) == (v in removed) for v in points), "heights do not fit")
@@ -82,38 +82,6 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
 
 
 # --- the sheet -----------------------------------------------------------------------------------
-
-
-def _emptied(given: Sheet, points: dict[int, Any], evidence: Any) -> tuple[Sheet, set[int]]:
-    """The sheet in integer coordinates without the vertices inside the 3-cycles of the list."""
-    removed: set[int] = set()
-    added: list[tuple[int, ...]] = []
-    edges = set(given.edges)
-    for entry in items(evidence, "emptied"):
-        keys(entry, "corners inside", "3-cycle")
-        a, b, c = (natural(v, "corner") for v in items(entry["corners"], "corners", 3))
-        for i, j in ((a, b), (b, c), (a, c)):
-            require((min(i, j), max(i, j)) in edges, f"{i}-{j} is no edge")
-        for v in (natural(v, "vertex inside") for v in items(entry["inside"], "inside")):
-            sides = [turn(points[i], points[j], points[v]) for i, j in ((a, b), (b, c), (c, a))]
-            require(min(sides) > 0, f"vertex {v} is not inside {(a, b, c)}")
-            removed.add(v)
-        added.append((a, b, c))
-    kept = [given.face(t) for t in given.triangles if removed.isdisjoint(t)]
-    # What is left is verified again: a disk of positive faces with a simple boundary.
-    rest = {v: p for v, p in points.items() if v not in removed}
-    return Sheet(rest, [*kept, *added]), removed
-
-
-def _closed(sheet: Sheet) -> tuple[Sheet, int | None]:
-    """The sheet with the notch at its reflex corner closed, and that corner."""
-    cycle = sheet.boundary
-    for k, v in enumerate(cycle):
-        before, after = cycle[k - 1], cycle[(k + 1) % len(cycle)]
-        if turn(*(sheet.points[u] for u in (before, v, after))) < 0:
-            faces = [sheet.face(t) for t in sheet.triangles]
-            return Sheet(sheet.points, [*faces, (before, after, v)]), v
-    return sheet, None
 
 
 def _check_convex(sheet: Sheet) -> None:

@@ -14,9 +14,9 @@ from os import PathLike
 from types import ModuleType
 from typing import Any
 
-from . import branch, compact, listing, panels
+from . import branch, compact, listing, motion, panels
 from .compact_lines import lines
-from .formats import BRANCH, COMPACT, LISTING, MOST_LINE
+from .formats import BRANCH, COMPACT, LISTING, MOST_LINE, MOTION
 from .reading import CertificateError, FormatError, plain, read_json
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
@@ -60,6 +60,8 @@ def _reader(data: dict[str, Any]) -> ModuleType:
     """The module that reads and checks a JSON object."""
     if data.get("format") == BRANCH:
         return branch
+    if data.get("format") == MOTION:
+        return motion
     if data.get("format") == LISTING and "kind" in data:
         return panels
     return listing
@@ -131,6 +133,8 @@ def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
     if "supports" in claims:
         return panels.summary(claims)
+    if "tubes" in claims:
+        return motion.summary(claims)
     return branch.summary(claims) if "gauge" in claims else listing.summary(claims)
 
 

@@ -14,6 +14,9 @@ BRANCH, BRANCH_VERSION = "exactfold branch", 1
 PANELS, PANELS_VERSION = "panels", 3
 """All motions of a sheet of rigid panels: a kind of the format `LISTING` (docs/certificate.md)."""
 
+MOTION, MOTION_VERSION = "exactfold motion", 1
+"""The motion along a half-branch, as a chain of tubes (docs/motion.md)."""
+
 # Bounds on the memory and the work that one file can ask for.
 MOST_BITS = 1 << 14  # of a box in a listing, and digits of its numbers
 MOST_UNITS = 52  # bits of the boxes in a compact block, and the largest radius byte
@@ -21,6 +24,9 @@ MOST_WIDTH = 8  # bytes of a centre
 MOST_BLOCK = 1 << 16  # roots in a block
 MOST_UNKNOWNS = 40
 MOST_LINE = 1 << 25  # bytes of a line
+MOST_TUBES = 1 << 12  # of a motion
+MOST_WORK = 1 << 34  # of a motion: tubes, times the unknowns cubed, times the words of their bits
+MOTION_BITS = 1 << 11  # of a motion
 MOST_DIGITS = 4000  # of an exact root in a block, and its bits
 
 UNPROVED = 255

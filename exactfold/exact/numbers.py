@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from math import lcm
 from numbers import Rational
@@ -159,6 +159,15 @@ def decimal_above(value: Fraction, digits: int) -> str:
     ('0.4', '3.4e-401')
     """
     return _decimal(value, Context(digits, ROUND_CEILING))
+
+
+def decimal_below(value: Fraction, digits: int) -> str:
+    """The largest decimal number with so many significant digits that is at most `value`.
+
+    >>> decimal_below(Fraction(2, 3), 1), decimal_below(Fraction(-2, 3), 1)
+    ('0.6', '-0.7')
+    """
+    return _decimal(value, Context(digits, ROUND_FLOOR))
 
 
 def decimal_near(value: Fraction, digits: int) -> str:

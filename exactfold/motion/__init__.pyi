@@ -1,7 +1,14 @@
 from exactfold.motion.angles import fold_angles_of as fold_angles_of
+from exactfold.motion.contacts import FirstContact as FirstContact
+from exactfold.motion.contacts import first_contact as first_contact
 from exactfold.motion.events import Event as Event
 from exactfold.motion.following import follow as follow
 from exactfold.motion.framework import Framework as Framework
+from exactfold.motion.half_branches import HalfBranch as HalfBranch
+from exactfold.motion.loops import Loop as Loop
+from exactfold.motion.loops import LoopProof as LoopProof
+from exactfold.motion.matching import Loops as Loops
+from exactfold.motion.matching import find_loops as find_loops
 from exactfold.motion.motion import Motion as Motion
 from exactfold.motion.piece import Ball as Ball
 from exactfold.motion.start import Start as Start

@@ -20,8 +20,10 @@ SCALE = 128
 """Numbers of a `Contraction`, and all arguments, are integers over 2^SCALE."""
 
 ONE = 1 << SCALE
-INVERSE_BITS = 26
+INVERSE_BITS = 40
 """P is rounded to a multiple of 2^-INVERSE_BITS."""
+
+_COARSE = 16  # bits of P that products with small matrices do without
 
 WEIGHT_BITS = 16
 _WORD = 62
@@ -162,16 +164,16 @@ def contraction(
     last: Sequence[int],
     row_bits: int,
     squares: Sequence[Sequence[int]],
-    sums: Sequence[int],
+    sums: BigArray,
     weights: Sequence[int],
 ) -> Contraction:
     """The bounds for P, which is `inverse` rounded. Everything is exact or rounded upwards.
 
     `residuals[k]` is the coefficient of s^k of H(p(s), s), integers over 2^`residual_bits`.
     `rows[k]` are the edge vectors of that of DH(p(s), s) and `last` is its last row, for k = 0
-    only, integers over 2^`row_bits`. With the positive `weights` over 2^WEIGHT_BITS, `sums[e]` is
-    the sum of w_i + w_j over the three places of edge e = (i, j), and `squares[k]` bounds the
-    coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
+    only, integers over 2^`row_bits`. With the positive `weights` over 2^WEIGHT_BITS, `sums` holds
+    w_i + w_j for the three places of every edge (i, j), shape (edges, 3), and `squares[k]` bounds
+    the coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
     """
     n = len(weights)
     p = _whole(inverse)
@@ -183,20 +185,23 @@ def contraction(
         left, right = max(shift, 0), max(-shift, 0)
         return max(-(-(row << left) // (w << right)) for row, w in zip(rows, weights, strict=True))
 
-    off = _above(size[:, :-1], sums)  # what half a unit in every row can do, in half units
-    room = _WORD - _largest(p).bit_length() - places.most.bit_length()
-    slope = []
-    for k, vectors in enumerate(rows):
-        # All but the first, which nearly cancels, are rounded to what machine words hold.
-        drop = max(0, _largest(vectors).bit_length() - room) if k and room > _SHORTEST else 0
-        if drop:
-            vectors = np.asarray((vectors + (1 << (drop - 1))) >> drop)
-        product = _product(p, places, vectors)
-        if k == 0:
-            product = product + _dot(p[:, -1:], np.array([last], dtype=object))
-            product[np.diag_indices(n)] -= 1 << INVERSE_BITS + row_bits
-        above = _above(np.asarray(abs(product)), weights)
-        sizes = [(2 * x + (y if drop else 0)) << drop for x, y in zip(above, off, strict=True)]
+    # The first product nearly cancels and is exact. In the others P and the rows are rounded to
+    # what machine words hold; `off` and `spread` are what half a unit in the rows, and in P, does.
+    coarse = (p + (1 << (_COARSE - 1))) >> _COARSE
+    off = _above(size[:, :-1], [int(x) for x in sums.sum(axis=1)])
+    room = _WORD - _largest(coarse).bit_length() - places.most.bit_length()
+    product = _product(p, places, rows[0]) + _dot(p[:, -1:], np.array([last], dtype=object))
+    product[np.diag_indices(n)] -= 1 << INVERSE_BITS + row_bits
+    slope = [norm(_above(np.asarray(abs(product)), weights), INVERSE_BITS + row_bits + WEIGHT_BITS)]
+    for vectors in rows[1:]:
+        drop = max(0, _largest(vectors).bit_length() - room) if room > _SHORTEST else 0
+        nearest = np.asarray((vectors + (1 << drop >> 1)) >> drop)
+        above = _above(np.asarray(abs(_product(coarse, places, nearest))), weights)
+        spread = int((abs(nearest).astype(object) * sums).sum())
+        sizes = [
+            ((2 * x + spread) << drop + _COARSE) + (y << drop if drop else 0)
+            for x, y in zip(above, off, strict=True)
+        ]
         slope.append(norm(sizes, INVERSE_BITS + row_bits + WEIGHT_BITS + 1))
     quadratic = [
         norm(_above(size[:, :-1], square), INVERSE_BITS + 2 * WEIGHT_BITS) for square in squares

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from math import inf, nextafter
 
 import numpy as np
 
@@ -30,6 +32,8 @@ from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 4000
+_FOLDED_FLAT = 1e-2
+_LOOK_BACK = (1, 3, 5, 8, 12)
 _NEAR_FLAT = 0.8
 """Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
 
@@ -80,25 +84,18 @@ class Passage:
 class Loop:
     """The true configurations from the flat state along `source` back to it along `target`.
 
-    One analytic curve without a gap, proved from end to end where `status` is PROVED: from `start`
-    through `steps` to `landing`. `through` are the nodes that it passes, each by its flat vertices.
-    `length` bounds its length in the unit of the sheet; if UNDECIDED that of the part that is
-    proved, `target` and `landing` are None, and `reason` says what stopped the proof.
+    `through`: the vertices that are flat at each node on the way, in order. `length` bounds the
+    length in the unit of the sheet; where `status` is UNDECIDED that of the part that is proved,
+    `target` is None, and `reason` says what stopped the proof. `tubes`: how many proved it.
     """
 
     source: HalfBranch
     target: HalfBranch | None
+    through: tuple[tuple[int, ...], ...]
     length: Interval
     status: Verdict
     reason: str
-    start: StartTube
-    steps: tuple[Link | Passage, ...]
-    landing: Landing | None
-
-    @property
-    def through(self) -> tuple[tuple[int, ...], ...]:
-        """The vertices that are flat at each node on the way, in order."""
-        return tuple(step.vertices for step in self.steps if isinstance(step, Passage))
+    tubes: int
 
     def to_dict(self) -> dict[str, object]:
         """The loop as `exactfold motions --json` prints it."""
@@ -107,13 +104,48 @@ class Loop:
             "from": self.source.to_dict(),
             "to": None if self.target is None else self.target.to_dict(),
             "through": [{"flat": list(vertices)} for vertices in self.through],
-            "length": [float(low), float(high)],
+            "length": [below(low), above(high)],
             "status": str(self.status),
             "reason": self.reason,
+            "tubes": self.tubes,
         }
 
     def __repr__(self) -> str:
         return f"<Loop: {self.source} to {self.target}, {self.status}>"
+
+
+@dataclass(frozen=True, repr=False)
+class LoopProof:
+    """One analytic curve of configurations from `start` through `steps` to `landing`, no gap.
+
+    Without `landing` it ends after the last step, and `reason` says why.
+    """
+
+    problem: Problem
+    start: StartTube
+    steps: tuple[Link | Passage, ...]
+    landing: Landing | None
+    reason: str
+
+    @property
+    def loop(self) -> Loop:
+        """What is proved."""
+        landing, unit = self.landing, self.start.framework.unit
+        low, high = self.steps[-1].left if self.steps else self.start.length(0, self.start.last)
+        if landing is not None:
+            low, high = _whole_length(self.steps[-1], landing)
+        return Loop(
+            named(self.start),
+            None if landing is None else landing.to,
+            tuple(step.vertices for step in self.steps if isinstance(step, Passage)),
+            (low * unit, high * unit),
+            UNDECIDED if landing is None else PROVED,
+            self.reason,
+            len(self.steps) + 1,
+        )
+
+    def __repr__(self) -> str:
+        return f"<LoopProof: {len(self.steps)} steps, {self.loop!r}>"
 
 
 @dataclass(frozen=True)
@@ -122,32 +154,19 @@ class LoopFinder:
 
     problem: Problem
 
-    def loop(self, branch: Branch, side: int = 1) -> Loop:
+    def follow(self, branch: Branch, side: int = 1) -> LoopProof:
         """The loop that leaves the flat state along a half-branch of a simple, proved branch.
 
         Raises as `half_branch`.
 
         >>> from exactfold.count.find import find_branch
         >>> branch = find_branch("two-vertex", "+-")
-        >>> LoopFinder(Problem.of(branch.pattern)).loop(branch)
-        <Loop: +-, saddle + to --, saddle +, proved>
+        >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
+        <Loop: +-, saddle + to +-, saddle -, proved>
         """
         start = half_branch(branch, side).start
         steps, landing, reason = self._followed(start)
-        unit = start.framework.unit
-        low, high = steps[-1].left if steps else start.length(0, start.last)
-        if landing is not None:
-            low, high = _whole_length(steps[-1], landing)
-        return Loop(
-            _named(start),
-            None if landing is None else landing.to,
-            (low * unit, high * unit),
-            UNDECIDED if landing is None else PROVED,
-            reason,
-            start,
-            tuple(steps),
-            landing,
-        )
+        return LoopProof(self.problem, start, tuple(steps), landing, reason)
 
     def _followed(self, start: StartTube) -> tuple[list[Link | Passage], Landing | None, str]:
         """The steps from a start tube on, to a landing or to what stopped the proof."""
@@ -167,7 +186,7 @@ class LoopFinder:
                 continue
             found = self._passage(steps)
             if found is None:
-                return steps, None, link
+                return steps, None, self._why(steps, link)
             kept, passage = found
             steps = [*steps[:kept], passage]
             tube, at = passage.tube, passage.exit
@@ -177,20 +196,23 @@ class LoopFinder:
 
     def _passage(self, steps: Sequence[Link | Passage]) -> tuple[int, Passage] | None:
         """The passage of a node shortly ahead, and how many of the steps lead up to it."""
-        if not steps or not isinstance(steps[-1], Link):
-            return None
-        last = steps[-1]
-        framework = last.tube.framework
-        crossing = crossing_ahead(
-            framework,
-            last.tube.enclosure(last.exit).floats[0],
-            last.tube.velocity(last.exit).floats[0],
-        )
-        if crossing is None:
-            return None
-        flat = flat_vertices(framework, crossing[0])
+        # The links right before a node are too close to it for floats.
+        back = [steps[-k] for k in _LOOK_BACK if k <= len(steps)]
+        for link in (step for step in back if isinstance(step, Link)):
+            point, velocity = link.tube.enclosure(link.exit), link.tube.velocity(link.exit)
+            crossing = crossing_ahead(link.tube.framework, point.floats[0], velocity.floats[0])
+            if crossing is not None:
+                return self._passage_at(steps, *crossing)
+        return None
+
+    def _passage_at(
+        self, steps: Sequence[Link | Passage], point: FloatArray, tangent: FloatArray
+    ) -> tuple[int, Passage] | None:
+        """The passage of the node near the unknowns `point`, from one of the last links."""
+        framework = steps[-1].tube.framework
+        flat = flat_vertices(framework, point)
         patch = FlatPatch.of(framework, flat)
-        tube = None if patch is None else prove_node_tube(framework, patch, *crossing)
+        tube = None if patch is None else prove_node_tube(framework, patch, point, tangent)
         if tube is None:
             return None
         # The first link that reaches into the tube, so that the short ones before the node go.
@@ -219,6 +241,17 @@ class LoopFinder:
             return k + 1, Passage(tube, vertices, entry, at, entered, left)
         return None
 
+    def _why(self, steps: Sequence[Link | Passage], reason: str) -> str:
+        """Why a loop is not followed further, as floats show the last configuration."""
+        if not steps or not isinstance(steps[-1], Link):
+            return reason
+        framework = steps[-1].tube.framework
+        x = steps[-1].tube.enclosure(steps[-1].exit).floats[0]
+        angles = np.abs(fold_angles_of(framework.positions(x), framework.hinges))
+        if np.minimum(angles, np.pi - angles).max(initial=0.0) < _FOLDED_FLAT:
+            return "all faces come to lie in one plane, folded flat: motions may branch there"
+        return reason
+
     def _landing(self, link: Link) -> Landing | None:
         """The start tube of another half-branch a point of which lies on this tube."""
         tube = link.tube
@@ -239,7 +272,7 @@ class LoopFinder:
         velocity = start.ball_velocity(tau)
         if tube.goes_along(velocity) * (1 if tau > 0 else -1) != -1:
             return None
-        return Landing(_named(start, 1 if tau > 0 else -1), start, tau)
+        return Landing(named(start, 1 if tau > 0 else -1), start, tau)
 
     def _start(self, tube: Tube, heights: FloatArray) -> StartTube | None:
         try:
@@ -248,7 +281,7 @@ class LoopFinder:
             return None
 
 
-def _named(start: StartTube, side: int = 1) -> HalfBranch:
+def named(start: StartTube, side: int = 1) -> HalfBranch:
     """The half-branch of a start tube, or of its mirror image."""
     named = HalfBranch(start.vertex_signs, start.side)
     return named if side > 0 else named.mirrored
@@ -261,3 +294,14 @@ def _whole_length(step: Link | Passage, landing: Landing) -> Interval:
     shortest, longest = landing.start.length(0, abs(landing.tau))
     low = step.time(found[0])[0] if found[0] >= step.entry[1] else step.entered[0]
     return low + shortest, step.time(found[1])[1] + longest
+
+
+def below(value: Fraction) -> float:
+    """The nearest float, or the next one below if that is above the value."""
+    found = float(value)
+    return found if Fraction(found) <= value else nextafter(found, -inf)
+
+
+def above(value: Fraction) -> float:
+    """The nearest float, or the next one above if that is below the value."""
+    return -below(-value)

@@ -21,7 +21,7 @@ import numpy as np
 
 from exactfold.arrays import BoolArray, FloatArray, IndexArray
 from exactfold.motion.framework import Framework
-from exactfold.pattern.crease_pattern import Triangle
+from exactfold.pattern.crease_pattern import Edge, Triangle
 
 _MOST, _MARGIN = 64.0, 1e-11
 _PRODUCTS = 2_000_000
@@ -239,7 +239,31 @@ def _open_folds(swept: Swept, pairs: FacePairs, rows: IndexArray) -> BoolArray:
     )
     error = (np.abs(gap) * (swept.error[left] + swept.error[right])[:, : gap.shape[1]]).sum(axis=1)
     least = (gap * gap).sum(axis=1) - 2 * (drift + error)
-    return np.asarray((least > pairs.closed[rows] + _MARGIN) | (bends(swept, hinges) != 0))
+    far = least > pairs.closed[rows] + _MARGIN
+    if swept.planar:
+        i, j = hinges[:, 0], hinges[:, 1]
+        return np.asarray(far | (_upright(swept, i, j, left) & _upright(swept, j, i, right)))
+    return np.asarray(far | (bends(swept, hinges) != 0))
+
+
+def _upright(swept: Swept, i: IndexArray, j: IndexArray, k: IndexArray) -> BoolArray:
+    """Whether the projections of faces ijk to the plane are proved to stay counter-clockwise.
+
+    Where those of both faces at a fold do, they are on different sides of it: it is not closed.
+    """
+    a, b = (swept.start[v, :2] - swept.start[i, :2] for v in (j, k))
+    u, v = (swept.slope[w, :2] - swept.slope[i, :2] for w in (j, k))
+    e, f = ((swept.error[w, :2] + swept.error[i, :2]).sum(axis=1) for w in (j, k))
+    size_a, size_b = (
+        np.abs(p).max(axis=1) + swept.half * np.abs(q).max(axis=1) for p, q in ((a, u), (b, v))
+    )
+    least = _cross(a, b) - swept.half * np.abs(_cross(a, v) + _cross(u, b))
+    least = least - swept.half**2 * np.abs(_cross(u, v)) - e * size_b - f * size_a - e * f
+    return np.asarray(least > _MARGIN)
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
 def bends(swept: Swept, hinges: IndexArray) -> IndexArray:
@@ -247,14 +271,27 @@ def bends(swept: Swept, hinges: IndexArray) -> IndexArray:
 
     By the sign of det(j - i, left - i, right - i), the volume between the two faces.
     """
-    found = np.zeros(len(hinges), dtype=np.intp)
     if swept.planar:
-        return found
-    i = hinges[:, 0]
-    arms = [swept.start[hinges[:, k]] - swept.start[i] for k in (1, 2, 3)]
+        return np.zeros(len(hinges), dtype=np.intp)
+    # A valley has the left corner above the right face: a positive volume.
+    return _volume_signs(swept, hinges)
+
+
+def through(swept: Swept, edge: Edge, face: Triangle) -> bool:
+    """Whether an edge is proved to run through a face without touching its sides."""
+    (p, q), (a, b, c) = edge, face
+    rows = [(p, a, b, c), (q, a, b, c), (p, q, a, b), (p, q, b, c), (p, q, c, a)]
+    start, end, *sides = _volume_signs(swept, np.array(rows, dtype=np.intp))
+    return bool(start * end == -1 and abs(sum(sides)) == 3)
+
+
+def _volume_signs(swept: Swept, rows: IndexArray) -> IndexArray:
+    """The sign of det(x_j - x_i, x_k - x_i, x_l - x_i) for rows (i, j, k, l); 0 if not certain."""
+    i = rows[:, 0]
+    arms = [swept.start[rows[:, k]] - swept.start[i] for k in (1, 2, 3)]
     spreads = [
-        swept.half * np.abs(swept.slope[hinges[:, k]] - swept.slope[i])
-        + swept.error[hinges[:, k]]
+        swept.half * np.abs(swept.slope[rows[:, k]] - swept.slope[i])
+        + swept.error[rows[:, k]]
         + swept.error[i]
         for k in (1, 2, 3)
     ]
@@ -264,9 +301,7 @@ def bends(swept: Swept, hinges: IndexArray) -> IndexArray:
     # |det(e + de, ...) - det(e, ...)| is at most the product of the larger lengths less the others.
     change = most[0] * most[1] * most[2] - size[0] * size[1] * size[2]
     clear = np.abs(volume) > change * (1 + 1e-9) + _MARGIN
-    # A valley has the left corner above the right face: a positive volume.
-    found[clear] = np.sign(volume[clear]).astype(np.intp)
-    return found
+    return np.where(clear, np.sign(volume), 0).astype(np.intp)
 
 
 def _separated(swept: Swept, one: IndexArray, two: IndexArray, axes: FloatArray) -> BoolArray:

@@ -12,6 +12,8 @@ import numpy as np
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.errors import NotApplicableError, UsageError
+from exactfold.evidence.entries import Document
+from exactfold.evidence.motion import motion_certificate
 from exactfold.motion.arclength import Interval
 from exactfold.motion.framework import Framework
 from exactfold.motion.length_equations import LengthEquations
@@ -23,7 +25,7 @@ from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 1000
-_LEAST = 1e-5  # of a step, in the unit of the framework
+_LEAST = 1e-7  # of a step, in the unit of the framework
 _EXIT = 11, 16  # the part of the reach at which the next tube begins
 
 
@@ -121,6 +123,56 @@ class Track:
     def _started(self) -> Interval:
         return self.start.length(0, self.start.last)
 
+    def certificate(self) -> Document:
+        """The proof as a JSON object for `exactfold.checker` (docs/motion.md, The certificate).
+
+        It claims a length a little smaller than `length`, as far as straight chords show it.
+
+        >>> from exactfold import checker
+        >>> from exactfold.count.find import find_branch
+        >>> from exactfold.pattern.random_squares import random_square
+        >>> track = follow_proved(find_branch(random_square(1, seed=0), "+"), until=0.3)
+        >>> checker.check(track.certificate())["vertex_signs"]
+        [1]
+        """
+        start = self.start
+        pinned = [self.labels[v] for v in self.framework.pinned]
+        held = self.labels[int(self.framework.free[start.held // 3])]
+        return motion_certificate(
+            self.pattern,
+            self.vertex_signs,
+            self.side,
+            self._chords * self.framework.unit,
+            pinned,
+            start.bits,
+            {
+                "centre": list(start.coefficients[0]),
+                "halvings": start.halvings,
+                "held": held,
+                "reach": start.reach,
+                "exit": start.last,
+            },
+            [
+                {
+                    "centre": list(link.tube.coefficients[0]),
+                    "row": list(link.tube.row),
+                    "reach": link.tube.reach,
+                    "exit": link.exit,
+                }
+                for link in self.links
+            ],
+        )
+
+    @property
+    def _chords(self) -> Fraction:
+        """A little less than the lengths of the chords from exit to exit."""
+        balls = [self.start.ball(self.start.last)]
+        balls += [link.tube.enclosure(link.exit) for link in self.links]
+        points = np.array([[x / (1 << self.start.bits) for x in ball.centre] for ball in balls])
+        steps = np.diff(points, axis=0, prepend=np.zeros((1, points.shape[1])))
+        total = float(np.linalg.norm(steps, axis=1).sum())
+        return Fraction(int(total * (1 - 1e-5) * (1 << 30)), 1 << 30)
+
     def frames(self, times: FloatArray | list[float]) -> list[Frame]:
         """Enclosed configurations near given times, in the unit of the sheet.
 
@@ -211,7 +263,7 @@ def follow_proved(
 
     The time is the length of the curve in the unknowns of the framework, in the unit of the sheet.
     `side` and `pinned` as in `half_branch`, whose errors are raised. The track is UNDECIDED if it
-    ends before: where tubes become shorter than 1e-5 of the sheet, as near a configuration where
+    ends before: where tubes become shorter than 1e-7 of the sheet, as near a configuration where
     several curves meet, or after `most` tubes.
 
     >>> from exactfold.count.find import find_branch
@@ -271,7 +323,7 @@ def onwards(
         tube, entry = _next(equations, ball, velocity, step)
         if tube is None or entry is None:
             yield (
-                "no tube longer than 1e-5 of the sheet was proved here: the configuration is "
+                "no tube longer than 1e-7 of the sheet was proved here: the configuration is "
                 "singular or nearly so, or several curves meet"
             )
             return
@@ -280,7 +332,7 @@ def onwards(
         left = time[0] + shortest, time[1] + longest
         yield Link(tube, entry, at, time, left)
         ball, velocity, time = tube.enclosure(at), tube.velocity(at), left
-        step = float(shortest) * _EXIT[1] / _EXIT[0]
+        step = float(shortest + longest) / 2 * _EXIT[1] / _EXIT[0]
 
 
 def _next(

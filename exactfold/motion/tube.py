@@ -17,6 +17,7 @@ from exactfold.motion.contraction import (
     WEIGHT_BITS,
     Contraction,
     contraction,
+    polynomial,
     up,
 )
 from exactfold.motion.framework import Framework
@@ -34,6 +35,7 @@ ROW_BITS = 20
 """The row T is in integers over 2^ROW_BITS."""
 
 _MOST_REACH = 4 << REACH_BITS
+_STEEPEST = 7 << SCALE >> 3
 
 
 @dataclass(frozen=True, repr=False)
@@ -155,7 +157,7 @@ def _bounds(
         [t << (equations.bits - ROW_BITS) for t in row],
         equations.bits,
         [[int(x) for x in (sums**2).sum(axis=1)]],
-        [int(x) for x in sums.sum(axis=1)],
+        sums,
         weights,
     )
 
@@ -218,7 +220,9 @@ def longest(proof: Contraction, thickness: float, most: int = _MOST_REACH) -> in
     def works(reach: int) -> bool:
         h = reach << (SCALE - REACH_BITS)
         radius = proof.radius(h)
-        return radius is not None and radius <= thin and 8 * radius <= proof.uniqueness(h)
+        if radius is None or radius > thin or polynomial(proof.slope, h) > _STEEPEST:
+            return False
+        return 8 * radius <= proof.uniqueness(h)
 
     low, high = 0, most + 1
     while high - low > 1:

@@ -245,6 +245,6 @@ def _bounds(
         [(i == held) << (equations.bits + 2 * m) for i in range(len(weights))],
         equations.bits + 2 * m,
         [[int(x) ** 2 for x in sums[:, 2]], [up(int(x), 2 * m) for x in flat]],
-        [int(x) for x in sums.sum(axis=1)],
+        sums,
         weights,
     )

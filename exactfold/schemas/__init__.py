@@ -16,6 +16,8 @@ VERSIONS: Final = {
     "branch": 1,
     "export": 1,
     "motion": 1,
+    "motions": 1,
+    "actuate": 1,
     "info": 1,
     "convert": 1,
     "check": 1,

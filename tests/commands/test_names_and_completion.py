@@ -16,7 +16,7 @@ from running import BAD_INPUT, PROVED, run
 from exactfold.count import METHODS
 from exactfold.data import EXAMPLES, example_path
 
-COMMANDS = ("count", "check", "branch", "export", "random", "info", "examples")
+COMMANDS = ("count", "check", "branch", "export", "actuate", "random", "info", "examples")
 
 
 @pytest.mark.parametrize("command", [[], *([name] for name in COMMANDS)])

@@ -68,6 +68,7 @@ def test_every_other_command(name: str, tmp_path: Path) -> None:
     if pattern.Ve == 4:
         printed("count-stream", "count", path, "--stream", tmp_path / "s.txt")
         printed("branch", "branch", path, "--up", up)
+        assert printed("actuate", "actuate", path, "--up", up)["status"] == "proved"
         many = run(
             "branch", path, "--up", up, "--neighbours", pattern.foldable_vertices[0], "--json"
         )

@@ -48,6 +48,7 @@ OPENED = exactfold.open_pattern(exactfold.data.example_path("zigzags"))
 MOTIONS = exactfold.decompose(OPENED.sheet)
 SPACES = exactfold.decompose(panels(single_vertex(5)))
 MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
+DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
 VALUES = {
     "pattern": PATTERN,
     "pattern with long coordinates": exactfold.CreasePattern(
@@ -113,6 +114,10 @@ VALUES = {
     "start": exactfold.motion.Start.of(
         MOTION.curve.framework, np.array([0.0, 0.0, 0.0, 1.0, 0.3, -0.1])
     ),
+    "actuation": DRIVEN,
+    "directions": DRIVEN.directions,
+    "orthogonal torques": DRIVEN.orthogonal,
+    "ranked": DRIVEN.ranking()[0],
     "verdict": exactfold.UNDECIDED,
     "streamed": None,  # made for each test, in a folder of its own
 }

@@ -1,0 +1,176 @@
+"""Certificates of motions: a branch followed from the flat state, without a gap (docs/motion.md).
+
+Why it is a proof: the first piece is a curve of zeros of the equations in blown-up coordinates,
+which at the flat state solve the second-order equations with the vertex signs claimed: it belongs
+to the one branch with these signs (docs/theorem.md, 3 and 4). Every tube holds one curve of
+configurations; where it begins, the one before ends on it and goes the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import isqrt
+from typing import Any
+
+from .formats import MOST_TUBES, MOST_WORK, MOTION, MOTION_BITS, MOTION_VERSION
+from .motion_equations import SPARE, LengthEquations
+from .motion_tubes import Ball, Start, Tube
+from .reading import (
+    MALFORMED,
+    CertificateError,
+    counted,
+    document,
+    integer,
+    items,
+    keys,
+    natural,
+    parse_rational,
+    require,
+)
+from .reduced import closed, emptied_sheet
+from .sheet import Sheet, read_sheet, turn
+
+REACH_BITS = 6
+PARAMETER_BITS = 40
+ROOT_BITS = 20
+
+
+def read(data: Any) -> dict[str, Any]:
+    """`data` if it is a certificate of a motion; raises `FormatError`."""
+    return document(data, MOTION, MOTION_VERSION, "format version pattern claims evidence")
+
+
+def check(data: dict[str, Any]) -> dict[str, Any]:
+    """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
+
+    Returns the claims and the SHA-256 of the pattern. The claims are: the half-branch with these
+    vertex signs and this side, 1 or -1, is that of one simple branch, and from the flat state on it
+    is followed by one analytic curve of configurations, all regular, which is at least `length`
+    long in the space of the vertices (unit of the sheet, one triangle held). `side` is the sign of
+    the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch closed.
+    """
+    try:
+        return _check(data)
+    except MALFORMED as error:
+        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
+
+
+def _check(data: dict[str, Any]) -> dict[str, Any]:
+    given, digest = read_sheet(data["pattern"])
+    claims, evidence = data["claims"], data["evidence"]
+    keys(claims, "vertex_signs side length", "claims")
+    keys(evidence, "emptied pinned bits start tubes", "evidence")
+    sheet, removed = emptied_sheet(given, dict(given.points), evidence["emptied"])
+    require(len(sheet.boundary) == 4, "there are not four boundary vertices")
+    require(sheet.interior, "nothing can fold")
+    bits = natural(evidence["bits"], "bits")
+    require(bits <= MOTION_BITS, "bits are out of range")
+    tubes = items(evidence["tubes"], "tubes")
+    require(len(tubes) <= MOST_TUBES, "there are too many tubes")
+    pinned = [natural(v, "pinned vertex") for v in items(evidence["pinned"], "pinned", 3)]
+    equations = LengthEquations(sheet, pinned, bits)
+    work = (len(tubes) + 1) * equations.size**3 * (1 + bits // 256)
+    require(work <= MOST_WORK, "the work is out of range")
+    start, tau = _start(equations, evidence["start"])
+    _check_names(given, removed, start, claims)
+    ball, velocity = start.configuration(tau)
+    length = Fraction(0)
+    before = Ball([0] * equations.size, [0] * equations.size)
+    for entry in tubes:
+        length += _chord(before, ball, bits)
+        keys(entry, "centre row reach exit", "tube")
+        tube = Tube(
+            equations,
+            _vector(entry["centre"], "centre", equations.size, bits),
+            _vector(entry["row"], "row", equations.size, 0),
+            _reach(entry["reach"]),
+        )
+        end = Fraction(natural(entry["exit"], "exit"), 1 << PARAMETER_BITS)
+        require(tube.entered(ball, velocity) <= end, "a motion leaves a tube before it enters")
+        before, ball, velocity = ball, tube.enclosure(end), tube.velocity(end)
+    length += _chord(before, ball, bits)
+    claimed = parse_rational(claims["length"])
+    require(claimed <= length * equations.unit, "the motion is shorter than claimed")
+    return {"sha256": digest, "tubes": len(tubes), **claims}
+
+
+def _vector(value: Any, what: str, size: int, bits: int) -> list[int]:
+    """Integers over 2^bits that are not too large."""
+    found = [integer(x) for x in items(value, what, size)]
+    small = all(abs(x) >> bits + SPARE == 0 for x in found)
+    require(small, f"a number of the {what} is out of range")
+    return found
+
+
+def _reach(value: Any) -> Fraction:
+    """How far a piece reaches."""
+    reach = Fraction(natural(value, "reach"), 1 << REACH_BITS)
+    require(0 < reach <= 16, "the reach is out of range")
+    return reach
+
+
+def _start(equations: LengthEquations, entry: Any) -> tuple[Start, Fraction]:
+    """The first piece, and where the motion leaves it."""
+    keys(entry, "centre halvings held reach exit", "start")
+    centre = _vector(entry["centre"], "centre", equations.size, equations.bits)
+    halvings = natural(entry["halvings"], "halvings")
+    require(halvings <= MOTION_BITS, "halvings are out of range")
+    held = natural(entry["held"], "held vertex")
+    require(held in equations.place, "the vertex held at its height is pinned, or none")
+    place = equations.place[held] + 2
+    start = Start(equations, centre, halvings, place, _reach(entry["reach"]))
+    tau = Fraction(natural(entry["exit"], "exit"), 1 << ROOT_BITS)
+    require(tau > 0, "the motion does not leave the flat state")
+    return start, tau
+
+
+def _chord(a: Ball, b: Ball, bits: int) -> Fraction:
+    """A lower bound of the distance of two points in boxes."""
+    squared = sum((x - y) ** 2 for x, y in zip(a.centre, b.centre, strict=True))
+    off = sum((x + y) ** 2 for x, y in zip(a.radii, b.radii, strict=True))
+    return Fraction(max(0, isqrt(squared) - isqrt(off) - 1), 1 << bits)
+
+
+def _check_names(given: Sheet, removed: set[int], start: Start, claims: Any) -> None:
+    """The vertex signs and the side of the heights at the flat state are those claimed."""
+    box, place = start.enclosure(Fraction(0)), start.equations.place
+
+    def sign(functional: Mapping[int, Fraction]) -> int:
+        """The sign of a functional of the heights, 0 if it is not certain."""
+        terms = [(c, place[v] + 2) for v, c in functional.items() if v in place]
+        middle = sum((c * box.centre[k] for c, k in terms), Fraction(0))
+        spread = sum((abs(c) * box.radii[k] for c, k in terms), Fraction(0))
+        return 0 if abs(middle) <= spread else 1 if middle > 0 else -1
+
+    sheet = start.equations.sheet
+    values = items(claims["vertex_signs"], "vertex_signs", len(given.interior))
+    for v, value in zip(given.interior, values, strict=True):
+        expected = 0 if v in removed else sign(sheet.sign_of_vertex(v))
+        require(expected or v in removed, f"vertex {v} may be flat")
+        require(type(value) is int and value == expected, f"vertex {v} has another sign")
+    whole, corner = closed(sheet)
+    side = sign(saddle_of(sheet) if corner is None else whole.sign_of_vertex(corner))
+    require(side, "the side of the branch is not certain")
+    require(type(claims["side"]) is int and claims["side"] == side, "the side is another")
+
+
+def saddle_of(sheet: Sheet) -> dict[int, Fraction]:
+    """The functional of the boundary heights that vanishes on planes, as docs/conventions.md."""
+    p, q, r, s = (sheet.points[v] for v in sheet.boundary)
+    weights = (turn(q, r, s), -turn(p, r, s), turn(p, q, s), -turn(p, q, r))
+    first = next(w for w in weights if w)
+    return {v: w / first for v, w in zip(sheet.boundary, weights, strict=True)}
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
+    shown = signs if len(signs) <= 60 else signs[:60] + "..."
+    side = "+" if claims["side"] > 0 else "-"
+    tubes = counted(claims["tubes"], "tube", "tubes")
+    length = float(parse_rational(claims["length"]))
+    return (
+        f"VALID: the motion along the half-branch {shown} ({len(signs)}), side {side}, is one "
+        f"curve without a gap of length {length:.6g} or more; {tubes}; sha256 {claims['sha256']}"
+    )

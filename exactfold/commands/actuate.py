@@ -1,0 +1,81 @@
+"""`exactfold actuate`: torques for one branch, or what given torques do, with proof."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from exactfold.actuation.drive import actuate
+from exactfold.commands.branch import given_signs
+from exactfold.commands.patterns import read
+from exactfold.commands.shell import EXIT, Bar, name_of
+from exactfold.count.find import BranchFinder
+from exactfold.drawing.drawing import Snap
+from exactfold.errors import BadTorquesError, NumberError, UnreadableFileError
+from exactfold.exact.numbers import as_rational
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+
+
+@dataclass(frozen=True)
+class Driven:
+    """What was asked for on the command line; exactly one of `signs` and `up` is given."""
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    signs: str | None
+    up: str | None
+    creases: int | None
+    torques: Path | None
+    as_json: bool
+    everything: bool
+
+    def answer(self) -> int:
+        """Find or judge the torques and print; the exit code.
+
+        Raises the errors of `read`, `BranchFinder` and `actuate`, and `BadTorquesError`.
+        """
+        with Bar("reading") as bar:
+            pattern = read(self.file, self.snap, self.sheet, "actuate").pattern
+            torques = None if self.torques is None else torques_in(self.torques, pattern)
+            found = actuate(
+                pattern,
+                given_signs(BranchFinder(pattern), self.signs, self.up),
+                creases=self.creases,
+                torques=torques,
+                progress=bar,
+            )
+        if self.as_json:
+            print(json.dumps(found.to_dict(name_of(self.file))))
+        else:
+            from exactfold import report
+
+            report.show(report.actuation_report(found, everything=self.everything))
+        return EXIT[found.status]
+
+
+def torques_in(path: Path, pattern: CreasePattern) -> dict[Edge, Fraction]:
+    """The torques in a JSON file {"i-j": number}, exactly as they are written.
+
+    A number may be text such as "1/3". Raises `UnreadableFileError` and `BadTorquesError`.
+    """
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"), parse_float=str, parse_constant=str)
+    except OSError as error:
+        raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
+    except (ValueError, RecursionError):
+        raise BadTorquesError(f'{path} is not JSON: write {{"0-4": 0.5, ...}}') from None
+    if not isinstance(data, dict):
+        raise BadTorquesError(f'{path} holds no torques by crease: write {{"0-4": 0.5, ...}}')
+    names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
+    found: dict[Edge, Fraction] = {}
+    for name, value in data.items():
+        if name not in names:
+            raise BadTorquesError(f"{path}: {name} is not a fold i-j, i < j, of the pattern")
+        try:
+            found[names[name]] = as_rational(value)
+        except NumberError as error:
+            raise BadTorquesError(f"{path}: {name}: {error}") from None
+    return found

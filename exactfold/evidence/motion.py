@@ -1,0 +1,48 @@
+"""Certificates of motions, for `exactfold.checker`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from exactfold.checker.formats import MOTION, MOTION_VERSION
+from exactfold.evidence.entries import Document, pattern_document
+from exactfold.exact.numbers import format_rational
+from exactfold.pattern.crease_pattern import CreasePattern
+
+
+def motion_certificate(
+    pattern: CreasePattern,
+    signs: Mapping[int, int],
+    side: int,
+    length: Fraction,
+    pinned: Sequence[int],
+    bits: int,
+    start: Document,
+    tubes: Sequence[Document],
+) -> Document:
+    """The proof of a motion as a JSON object (docs/motion.md, The certificate).
+
+    `signs`: those of the foldable vertices on the half-branch, by vertex of the pattern; `pinned`
+    and the vertex `held` of `start` are vertices of the pattern, too. `Track.certificate` calls it.
+    """
+    return {
+        "format": MOTION,
+        "version": MOTION_VERSION,
+        "pattern": pattern_document(pattern),
+        "claims": {
+            "vertex_signs": [signs.get(v, 0) for v in pattern.interior],
+            "side": side,
+            "length": format_rational(length),
+        },
+        "evidence": {
+            "emptied": [
+                {"corners": list(corners), "inside": list(inside)}
+                for corners, inside in pattern.triangulated_triangles
+            ],
+            "pinned": list(pinned),
+            "bits": bits,
+            "start": start,
+            "tubes": list(tubes),
+        },
+    }

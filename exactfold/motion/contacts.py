@@ -1,0 +1,227 @@
+"""The first contact of two faces along a track, enclosed: clear before, touching after, proved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+import numpy as np
+
+from exactfold.arrays import FloatArray
+from exactfold.branches.branch import Branch
+from exactfold.motion.contraction import SCALE, WEIGHT_BITS
+from exactfold.motion.crossings import Crossing, Crossings
+from exactfold.motion.events import CONTACT, FLAT_FOLD, Event
+from exactfold.motion.loops import above, below
+from exactfold.motion.piece import PARAMETER_BITS, Piece
+from exactfold.motion.separation import FacePairs, Open, Swept, bends, clear_until, through
+from exactfold.motion.tracks import Link, Track, follow_proved
+from exactfold.motion.tube_start import ROOT_BITS, StartTube
+from exactfold.pattern.crease_pattern import Triangle
+from exactfold.verdict import PROVED, UNDECIDED, Verdict
+
+_FINEST = 2.0**-22
+_STEPS = 40
+
+
+@dataclass(frozen=True)
+class FirstContact:
+    """What is proved of the first contact of a motion, ignoring thickness.
+
+    No two faces touch, but for the folds and corners they share, before the time `clear`, in the
+    unit of the sheet. `event`: a contact or a closed fold that is proved to happen, in `event.time`
+    = (not before, at the latest); the first one where its lower end is `clear`. None if the track
+    ended before, or nothing was proved to touch; `open_faces` are the pairs then that are not
+    proved to stay apart after `clear`. `status` is PROVED if the first contact is enclosed.
+    """
+
+    status: Verdict
+    clear: Fraction
+    event: Event | None
+    open_faces: tuple[tuple[Triangle, Triangle], ...]
+    reason: str
+
+
+def first_contact(branch: Branch, side: int = 1, *, most: int = 1000) -> tuple[Track, FirstContact]:
+    """Follow a branch, with proof, to its first contact, and enclose that in time.
+
+    Raises as `follow_proved`. An UNDECIDED contact says that nothing touches before `clear`.
+
+    >>> from exactfold.count.find import find_branch
+    >>> track, contact = first_contact(find_branch("two-vertex", "+-"))
+    >>> print(contact.status, contact.event.kind, contact.event.faces)
+    proved contact ((0, 1, 4), (2, 3, 5))
+    """
+    watch = ContactWatch()
+    track = follow_proved(branch, side, stop=watch, most=most)
+    return track, watch.result(track)
+
+
+@dataclass
+class ContactWatch:
+    """Looks for the first contact on one link of a track after the other.
+
+    Times are in the unit of the framework.
+    """
+
+    clear: Fraction = Fraction(0)
+    touching: _Touching | None = None
+    open_pairs: Open | None = None
+    _pairs: FacePairs | None = field(default=None, repr=False)
+
+    def __call__(self, link: Link) -> str | None:
+        """Why the track may end: a contact, or pairs that are not separated; None to go on."""
+        pairs = self._pairs = self._pairs or FacePairs(link.tube.framework)
+        coefficients, radius = positions_of(link.tube)
+        low, high, longest = (
+            x / (1 << PARAMETER_BITS) for x in (link.entry[0], link.exit, link.tube.longest)
+        )
+        at, left = clear_until(pairs, coefficients, radius, low, high, finest=_FINEST)
+        if not left:
+            self.clear = link.left[0]
+            return None
+        self.open_pairs = left
+        # The clear part ends at `at`, a float; one unit less is below it.
+        parameter = max(link.entry[1], int(at * (1 << PARAMETER_BITS)) - 1)
+        self.clear = link.time(parameter)[0] if parameter > link.entry[1] else link.entered[0]
+        found = _touching(pairs, coefficients, radius, left, at, longest)
+        if found is None:
+            return "some faces are not proved to stay apart, nor to touch"
+        parameter = min(link.tube.longest, int(found.parameter * (1 << PARAMETER_BITS)) + 1)
+        self.touching = replace(found, latest=link.time(parameter)[1])
+        return "the first contact"
+
+    def result(self, track: Track) -> FirstContact:
+        """What was found on a track that was followed with this as its `stop`."""
+        pairs = self._pairs = self._pairs or FacePairs(track.framework)
+        coefficients, radius = planar_positions_of(track.start)
+        reach = (track.start.last / (1 << ROOT_BITS)) ** 2
+        _, left = clear_until(pairs, coefficients, radius, 0.0, reach, planar=True, finest=_FINEST)
+        if left:
+            reason = "some faces are not proved to stay apart near the flat state"
+            return FirstContact(UNDECIDED, Fraction(0), None, _named(track, pairs, left), reason)
+        clear = self.clear * track.framework.unit
+        if self.touching is None:
+            left = self.open_pairs or left
+            return FirstContact(UNDECIDED, clear, None, _named(track, pairs, left), track.reason)
+        event = _event(track, self.touching, clear)
+        return FirstContact(PROVED, clear, event, (), "")
+
+
+@dataclass(frozen=True)
+class _Touching:
+    """Faces that touch at a parameter or before, and at the latest at a time."""
+
+    parameter: float
+    crossing: Crossing | None = None
+    fold: int | None = None
+    latest: Fraction = Fraction(0)
+
+
+def positions_of(tube: Piece) -> tuple[FloatArray, FloatArray]:
+    """The vertices on a tube: coefficients (order + 1, V, 3), and how far they may be, (V, 3)."""
+    framework = tube.framework
+    one = float(1 << tube.bits)
+    rows = np.array([[x / one for x in row] for row in tube.coefficients])
+    coefficients = framework.displacement(rows)
+    coefficients[0, :, :2] += framework.flat
+    return coefficients, framework.displacement(_radii(tube))
+
+
+def planar_positions_of(start: StartTube) -> tuple[FloatArray, FloatArray]:
+    """The same on a start tube, as polynomials in s = tau^2: only x and y are bounded."""
+    framework, scale = start.framework, 0.25**start.halvings
+    one = float(1 << start.bits)
+    rows = np.array([[scale * (x / one) for x in row] for row in start.coefficients])
+    coefficients = np.concatenate(
+        [np.zeros((1, len(framework.points), 3)), framework.displacement(rows)]
+    )
+    coefficients[0, :, :2] = framework.flat
+    reach = (start.last / (1 << ROOT_BITS)) ** 2
+    radius = framework.displacement(_radii(start)) * scale * reach
+    coefficients[..., 2] = 0.0
+    return coefficients, radius
+
+
+def _radii(piece: Piece) -> FloatArray:
+    radius = piece.radius / float(1 << SCALE)
+    weights = np.array([w / float(1 << WEIGHT_BITS) for w in piece.weights])
+    return np.asarray(radius * weights * (1 + 1e-9) + 1e-15)
+
+
+def _touching(
+    pairs: FacePairs,
+    coefficients: FloatArray,
+    radius: FloatArray,
+    left: Open,
+    low: float,
+    high: float,
+) -> _Touching | None:
+    """A parameter after `low` by which faces are proved to touch, and how; None if none is found.
+
+    A fold is closed at some time between two at which it is a valley and a mountain, if its other
+    corners are near each other all the while. Or an edge runs through a face.
+    """
+    crossings = Crossings(pairs.framework)
+    step = 1e-9 * (high - low)
+    for _ in range(_STEPS):
+        s = min(high, low + step)
+        for fold in left.folds:
+            if _closes(pairs, coefficients, radius, int(fold), max(0.0, low - step), s):
+                return _Touching(s, fold=int(fold))
+        point = Swept.of(coefficients, radius, s, s)
+        for crossing in map(crossings.named, crossings.pairs(point.start)):
+            if through(point, crossing.edge, crossing.face):
+                return _Touching(s, crossing)
+        if s >= high:
+            return None
+        step *= 2.0
+    return None
+
+
+def _closes(
+    pairs: FacePairs, coefficients: FloatArray, radius: FloatArray, fold: int, a: float, b: float
+) -> bool:
+    """Whether a fold is proved to reach 180 degrees between two parameters."""
+    hinge = pairs.framework.hinges[fold : fold + 1]
+    ends = [bends(Swept.of(coefficients, radius, s, s), hinge)[0] for s in (a, b)]
+    if ends[0] * ends[1] != -1:
+        return False
+    swept = Swept.of(coefficients, radius, a, b)
+    left, right = hinge[0, 2], hinge[0, 3]
+    gap = np.abs(swept.start[left] - swept.start[right])
+    gap = gap + swept.half * np.abs(swept.slope[left] - swept.slope[right])
+    gap = gap + swept.error[left] + swept.error[right]
+    # At 90 degrees the square is the mean of those of the closed and of the open fold.
+    flat = pairs.framework.flat[left] - pairs.framework.flat[right]
+    mean = 0.5 * (pairs.closed[fold] + float(flat @ flat))
+    return bool((gap * gap).sum() < mean * (1 - 1e-9) - 1e-11)
+
+
+def _event(track: Track, touching: _Touching, clear: Fraction) -> Event:
+    framework = track.framework
+    time = below(clear), above(touching.latest * framework.unit)
+    if touching.fold is not None:
+        i, j, left, right = (track.labels[v] for v in framework.hinges[touching.fold])
+        return Event(FLAT_FOLD, time, ((i, j, left), (i, right, j)), ((i, j),))
+    if touching.crossing is None:
+        raise ArithmeticError("a contact without faces")
+    edge, face = touching.crossing.edge, touching.crossing.face
+    faces = [t for t in framework.sheet.triangles if set(edge) <= set(t)]
+    own = min(faces, key=lambda t: len(set(t) & set(face)))
+    return Event(CONTACT, time, (_labelled(track, own), _labelled(track, face)))
+
+
+def _labelled(track: Track, face: Triangle) -> Triangle:
+    a, b, c = (track.labels[v] for v in face)
+    return a, b, c
+
+
+def _named(track: Track, pairs: FacePairs, left: Open) -> tuple[tuple[Triangle, Triangle], ...]:
+    """The pairs of faces that are left, with the vertices of the pattern."""
+    found = [pairs.names(int(k), "apart") for k in left.apart]
+    found += [pairs.names(int(k), "corner") for k in left.corner]
+    for fold in left.folds:
+        i, j, a, b = (int(v) for v in track.framework.hinges[fold])
+        found.append(((i, j, a), (i, b, j)))
+    return tuple((_labelled(track, one), _labelled(track, two)) for one, two in found)

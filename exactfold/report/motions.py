@@ -1,0 +1,79 @@
+"""What `exactfold motions` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from exactfold.report.terminal import facts_table, status_text
+from exactfold.wording import counted
+
+if TYPE_CHECKING:
+    from exactfold.motion.half_branches import HalfBranch
+    from exactfold.motion.loops import Loop
+    from exactfold.motion.matching import Loops
+
+_LISTED = 40
+
+
+def motions_report(found: Loops) -> Group:
+    """The matching of the half-branches, loop by loop."""
+    halves = 2 ** (len(found.pattern.foldable_vertices) + 1)
+    matched = f"{len(found.matching)} of {counted(halves, 'half-branch')}"
+    rows: list[tuple[str, RenderableType]] = [
+        ("matched", Text.assemble(matched, ", ", status_text(found.status))),
+    ]
+    if found.reason:
+        rows.append(("left", found.reason))
+    return Group(facts_table(rows), Text(""), _table(found.loops), *_notes(found))
+
+
+def _table(loops: Iterable[Loop]) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for name in ("from", "to", "changes", "length", "through flat"):
+        table.add_column(name)
+    for loop in list(loops)[:_LISTED]:
+        low, high = loop.length
+        nodes = ", ".join("+".join(map(str, flat)) for flat in loop.through)
+        if loop.target is None:
+            table.add_row(str(loop.source), "undecided", "", f"{float(low):.6g}...", nodes)
+            continue
+        changes = _changes(loop.source, loop.target)
+        table.add_row(str(loop.source), str(loop.target), changes, _within(low, high), nodes)
+    return table
+
+
+def _changes(source: HalfBranch, target: HalfBranch) -> str:
+    """How many signs differ, and whether the saddle does."""
+    signs = zip(source.vertex_signs, target.vertex_signs, strict=True)
+    number = sum(a != b for a, b in signs)
+    parts = [counted(number, "sign")] if number else []
+    if source.saddle != target.saddle:
+        parts.append("saddle")
+    return ", ".join(parts)
+
+
+def _within(low: Fraction, high: Fraction) -> str:
+    """The digits of a number that both of its bounds share."""
+    a, b = float(low), float(high)
+    for digits in range(12, 0, -1):
+        if f"{a:.{digits}g}" == f"{b:.{digits}g}":
+            return f"{a:.{digits}g}"
+    return f"{a:.3g} to {b:.3g}"
+
+
+def _notes(found: Loops) -> list[RenderableType]:
+    notes = [
+        "",
+        "One of each pair of mirror images, in one of its two directions; contact is ignored.",
+    ]
+    if len(found.loops) > _LISTED:
+        notes.append(f"{counted(len(found.loops) - _LISTED, 'more loop')}: --json lists all.")
+    reasons = {loop.reason for loop in found.loops if loop.reason}
+    notes += [f"undecided: {reason}" for reason in sorted(reasons)]
+    return [Text(note) for note in notes]

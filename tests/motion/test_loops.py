@@ -1,0 +1,235 @@
+"""Loops: the matching of half-branches, by symmetries, by known rules, and at nodes."""
+
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+
+from exactfold import CreasePattern, find_branch, random_square
+from exactfold.motion import find_loops
+from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
+from exactfold.motion.flat_patches import FlatPatch
+from exactfold.motion.following import follow
+from exactfold.motion.framework import Framework
+from exactfold.motion.half_branches import HeightSigns
+from exactfold.motion.loops import LoopFinder, Passage, above, below
+from exactfold.motion.node_tube import prove_node_tube
+from exactfold.motion.piece import PARAMETER_BITS
+from exactfold.problem.problem import Problem
+from exactfold.verdict import PROVED, UNDECIDED
+
+NODE_SHEET, NODE_SIGNS = random_square(8, seed=1), "------++"
+
+
+def sectors(pattern):
+    """The angles between neighbouring folds at the one interior vertex, in floats."""
+    (v,) = pattern.interior
+    x, y = pattern.vertices[v]
+    ring = [pattern.vertices[w] for w in pattern.star(v)]
+    angles = [np.arctan2(float(b - y), float(a - x)) for a, b in ring]
+    return np.diff([*angles, angles[0] + 2 * np.pi]) % (2 * np.pi)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_one_vertex_is_a_spherical_four_bar_linkage(seed):
+    """Grashof's rule: the vertex pops through iff smallest and largest sector exceed pi."""
+    pattern = random_square(1, seed=seed)
+    found = find_loops(pattern)
+    assert found.status is PROVED
+    angles = sectors(pattern)
+    pops = angles.min() + angles.max() > np.pi
+    for loop in found.loops:
+        assert (loop.source.vertex_signs != loop.target.vertex_signs) == pops
+        assert (loop.source.saddle != loop.target.saddle) == (not pops)
+
+
+def test_the_matching_is_an_involution_that_commutes_with_the_mirror():
+    found = find_loops(random_square(3, seed=2))
+    matching = found.matching
+    assert found.status is PROVED
+    assert len(matching) == 16
+    for a, b in matching.items():
+        assert a != b
+        assert matching[b] == a
+        assert matching[a.mirrored] == b.mirrored
+        flips = sum(x != y for x, y in zip(a.vertex_signs, b.vertex_signs, strict=True))
+        assert flips + (a.saddle != b.saddle) == 1
+
+
+def test_a_reflected_and_renumbered_sheet_has_the_same_loops():
+    sheet = random_square(2, seed=5)
+    order = [3, 5, 0, 4, 1, 2]  # the vertex k of the sheet is order[k] of the other
+    points = dict(zip(order, sheet.vertices, strict=True))
+    other = CreasePattern(
+        [(-points[k][0], points[k][1]) for k in range(6)],
+        [tuple(order[v] for v in t) for t in sheet.triangles],
+    )
+    place = [other.interior.index(order[v]) for v in sheet.interior]
+    lengths = []
+    named = []
+    for pattern in (sheet, other):
+        found = find_loops(pattern)
+        places = range(2) if pattern is sheet else place
+        matching = {
+            (tuple(a.vertex_signs[p] for p in places), a.saddle): (
+                tuple(b.vertex_signs[p] for p in places),
+                b.saddle,
+            )
+            for a, b in found.matching.items()
+        }
+        named.append(matching)
+        lengths.append(sorted(float(loop.length[0]) for loop in found.loops))
+    flipped = {  # the saddle may be counted from the other diagonal
+        (a, -s): (b, -t) for (a, s), (b, t) in named[1].items()
+    }
+    assert named[0] in (named[1], flipped)
+
+
+def test_the_loop_in_floats_ends_at_the_proved_half_branch():
+    pattern = random_square(3, seed=1)
+    branch = find_branch(pattern, "+--")
+    loop = LoopFinder(Problem.of(pattern)).follow(branch).loop
+    motion = follow(branch, until="return", through_nodes=True)
+    low, high = loop.length
+    assert low <= Fraction(motion.duration) <= high
+    near = motion.at(motion.duration * 0.999)
+    signs = HeightSigns(pattern).of(near[:, 2])
+    assert signs == loop.target
+
+
+def test_a_sheet_that_folds_flat_is_undecided_there():
+    found = find_loops("single-vertex-4")
+    assert found.status is UNDECIDED
+    assert found.matching == {}
+    assert all("folded flat" in loop.reason for loop in found.loops)
+
+
+def test_a_branch_with_a_flat_vertex_is_skipped():
+    found = find_loops("flat-vertex")
+    assert found.status is UNDECIDED
+    assert found.skipped
+    assert "not simple" in found.reason
+
+
+@pytest.fixture(scope="module")
+def passage():
+    """The first passage of a node of a loop that has two."""
+    proof = LoopFinder(Problem.of(NODE_SHEET)).follow(find_branch(NODE_SHEET, NODE_SIGNS))
+    assert proof.loop.through == ((9,), (9,))
+    assert proof.loop.status is PROVED
+    return next(step for step in proof.steps if isinstance(step, Passage))
+
+
+def test_a_node_holds_the_configuration_with_60_digits(passage):
+    """The framework with a rigid patch, written down anew and solved by mpmath."""
+    patch, box = passage.tube.patch, passage.tube.node
+    framework = patch.framework
+    with mpmath.workdps(60):
+        one = mpmath.mpf(1 << framework.bits)
+        flat = [
+            (mpmath.mpf(x) / one, mpmath.mpf(y) / one, mpmath.mpf(0)) for x, y in framework.points
+        ]
+        moving = list(patch.moving)
+        weights = {
+            v: [mpmath.mpf(w.numerator) / w.denominator for w in row]
+            for v, row in patch.weights.items()
+        }
+
+        def places(unknowns):
+            x = {v: flat[v] for v in framework.pinned}
+            for k, v in enumerate(moving):
+                x[v] = tuple(flat[v][a] + unknowns[3 * k + a] for a in range(3))
+            for v, row in weights.items():
+                x[v] = tuple(
+                    sum(w * x[b][a] for w, b in zip(row, patch.base, strict=True)) for a in range(3)
+                )
+            return x
+
+        def equations(*unknowns):
+            x = places(unknowns)
+            return [
+                sum((x[i][a] - x[j][a]) ** 2 - (flat[i][a] - flat[j][a]) ** 2 for a in range(3))
+                for i, j in patch.bars.tolist()
+            ]
+
+        free = {int(v): k for k, v in enumerate(framework.free)}
+        centre = [mpmath.mpf(c) / (1 << box.bits) for c in box.centre]
+        start = [centre[3 * free[v] + a] for v in moving for a in range(3)]
+        root = list(mpmath.findroot(equations, start, tol=1e-100))
+        x = places(root)
+        for v, k in free.items():
+            for a in range(3):
+                off = abs(x[v][a] - flat[v][a] - centre[3 * k + a])
+                assert off <= mpmath.mpf(box.radii[3 * k + a]) / (1 << box.bits)
+        # All edges, those of the patch included, have their lengths.
+        for i, j in framework.sheet.edges:
+            change = sum(
+                (x[i][a] - x[j][a]) ** 2 - (flat[i][a] - flat[j][a]) ** 2 for a in range(3)
+            )
+            assert abs(change) < mpmath.mpf(10) ** -50
+
+
+def test_an_arc_through_a_node_keeps_all_lengths(passage):
+    tube = passage.tube
+    framework = tube.framework
+    for k in (-6, -3, -1, 1, 3, 6):
+        ball = tube.ball(tube.longest * k // 8)
+        centre, radii = ball.floats
+        assert np.abs(framework.stretch(centre)).max() <= 4 * radii.max() + 1e-15
+        assert radii.max() < 1e-7
+    # Both velocities at the node are along one line: the arc goes straight on.
+    before, after = (tube.ball_velocity(s << (PARAMETER_BITS - 20)).floats[0] for s in (-1, 1))
+    assert np.abs(before - after).max() < 1e-5
+
+
+def test_the_other_arc_through_a_node_has_another_direction(passage):
+    """The kernel of the Jacobian at the node is a plane; two lines of it are tangent to arcs."""
+    tube = passage.tube
+    framework = tube.framework
+    node = tube.node.floats[0]
+    jacobian = framework.jacobian(node).toarray()
+    _, sizes, rows = np.linalg.svd(jacobian)
+    assert sizes[-1] < 1e-12 < 1e-4 < sizes[-2]
+    plane = rows[-2:]
+    first = tube.ball_velocity(0).floats[0]
+    assert np.linalg.norm(plane @ first) > 0.999999 * np.linalg.norm(first)
+    found = []
+    for angle in np.linspace(0, np.pi, 40, endpoint=False):
+        along = np.cos(angle) * plane[0] + np.sin(angle) * plane[1]
+        arc = prove_node_tube(framework, tube.patch, node, along)
+        if arc is not None:
+            found.append(arc.ball_velocity(0).floats[0])
+    lines = [v / np.linalg.norm(v) for v in found]
+    apart = [abs(u @ (first / np.linalg.norm(first))) for u in lines]
+    assert {a > 1 - 1e-9 for a in apart} == {True, False}
+    others = [u for u, a in zip(lines, apart, strict=True) if a < 1 - 1e-9]
+    assert all(abs(u @ others[0]) > 1 - 1e-9 for u in others)
+
+
+def test_a_patch_that_does_not_span_its_equations_is_refused():
+    framework = Framework.of(NODE_SHEET)
+    degrees = {v: NODE_SHEET.degree(v) for v in NODE_SHEET.interior}
+    assert set(degrees.values()) > {4}
+    for v, degree in degrees.items():
+        assert (FlatPatch.of(framework, [v]) is not None) == (degree == 4)
+    assert FlatPatch.of(framework, []) is None
+
+
+def test_nodes_are_found_from_a_distance(passage):
+    proof = LoopFinder(Problem.of(NODE_SHEET)).follow(find_branch(NODE_SHEET, NODE_SIGNS))
+    first = next(k for k, step in enumerate(proof.steps) if isinstance(step, Passage))
+    link = proof.steps[first - 1]
+    framework = link.tube.framework
+    crossing = crossing_ahead(
+        framework, link.tube.enclosure(link.exit).floats[0], link.tube.velocity(link.exit).floats[0]
+    )
+    assert crossing is not None
+    assert flat_vertices(framework, crossing[0]) == (9,)
+    assert np.abs(crossing[0] - passage.tube.node.floats[0]).max() < 1e-6
+
+
+def test_bounds_in_floats_are_bounds():
+    third = Fraction(1, 3)
+    assert Fraction(below(third)) < third < Fraction(above(third))
+    assert below(Fraction(1, 4)) == above(Fraction(1, 4)) == 0.25
