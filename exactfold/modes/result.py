@@ -182,7 +182,7 @@ class Part:
         if self.true is not None:
             return self.true
         shown = zip(self.spaces, self.spaces_fold, strict=True)
-        known = _counted(leaf.dimension or 0 for leaf, folds in shown if folds)
+        known = _counted(leaf.dimension for leaf, folds in shown if folds)
         found = _by_dimension(one for one in self.found if one.folds)
         return {d: max(known.get(d, 0), found.get(d, 0)) for d in {**known, **found}} or None
 
