@@ -51,7 +51,7 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
             f"{MOST_DIMENSION}"
         )
         found, ended = _found(pattern, moving, small, left)
-        if not ended or any(len(one.leaf.vertices) > 1 for one in found):
+        if not ended:
             return _partial(moving, size, small, found, reason)
     try:
         most = MOST_STEPS if found is None else MOST_STEPS_BEYOND
