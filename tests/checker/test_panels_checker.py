@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from forge import refused, verified
 from forge_panels import SHEETS, Document, certified, drawn, matched, stopped
-from panel_sheets import grid, outlined
+from panel_sheets import grid, ring_of_fives
 
 from exactfold import checker
 from exactfold.checker import panel_components, panel_loops, panel_modes, panel_sheet, panels
@@ -68,14 +68,9 @@ def test_folds_held_flat() -> None:
 
 
 def test_no_certificate_of_what_is_not_decided() -> None:
-    """Two vertices with six folds that share one: two forms are left."""
-    points = [(0, 0), (9, 0), (3, -5), (6, -5), (12, -4), (14, 0), (12, 4), (6, 5), (3, 5)]
-    points += [(-3, 4), (-5, 0), (-3, -4)]
-    folds = [(0, 1), (0, 2), (0, 8), (0, 9), (0, 10), (0, 11)]
-    folds += [(1, 3), (1, 4), (1, 5), (1, 6), (1, 7)]
-    sheet = outlined([(Fraction(x), Fraction(y)) for x, y in points], folds, 2)
+    """Three vertices with five folds round a panel: their forms are left."""
     with pytest.raises(NotApplicableError, match="the decomposition is undecided"):
-        certificate_of_panels(decompose(sheet))
+        certificate_of_panels(decompose(ring_of_fives()))
 
 
 def test_an_undecided_extension_claims_nothing() -> None:
