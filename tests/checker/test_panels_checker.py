@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from forge import refused, verified
 from forge_panels import SHEETS, Document, certified, drawn, matched, stopped
-from panel_sheets import grid, ring_of_fives
+from panel_sheets import grid, joined_twists, ring_of_fives
 
 from exactfold import checker
 from exactfold.checker import panel_components, panel_loops, panel_modes, panel_sheet, panels
@@ -472,3 +472,16 @@ def test_matched_changes_facts_only() -> None:
 def test_a_free_fold_is_in_every_component() -> None:
     sheet = grid(2, 2, lambda i, j: (i, j))
     assert verified(certificate_of_panels(decompose(sheet)))["second_order"] == {"1": 2}
+
+
+def test_what_lies_on_no_loop_does_not_say_how_a_mode_extends() -> None:
+    """Two loops joined by folds, with a transmission between them that is not linear."""
+    result = decompose(joined_twists())
+    assert result.true == {1: 6 * 2 * 6}
+    made = certificate_of_panels(result)
+    [support] = supports_of(made)
+    assert (support["by"], support["extending"]) == ("linear", 72)
+    assert verified(made)["true"] == {"1": 72}
+    where = "-".join(map(str, support["vertices"]))
+    support["by"] = "loops"
+    stopped(made, f"the support of vertices {where} extends by linear, not by 'loops'")

@@ -154,3 +154,20 @@ def ring_of_fives() -> PanelPattern:
     points += [(13, 3), (8, 10), (3, 13)]
     folds = [(0, 1), (1, 2), (0, 2), (0, 4), (0, 5), (0, 6), (1, 7), (1, 8), (1, 9)]
     return whole(points, [*folds, (2, 10), (2, 11), (2, 3)], 3)
+
+
+def joined_twists() -> PanelPattern:
+    """A square twist and its mirror image, a pleat of each meeting at a vertex that both move.
+
+    The vertex between them cannot be folded flat, and lies on no loop.
+    """
+    square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    ends = [(0, (6, -14)), (1, (14, -14)), (1, (15, 3)), (7, (29, 3)), (7, (30, -14))]
+    ends += [(6, (38, -14)), (6, (58, -6)), (5, (58, 2)), (5, (50, 22)), (4, (42, 22))]
+    ends += [(8, (26, 24)), (8, (20, 24)), (2, (2, 22)), (3, (-6, 22)), (3, (-14, 2))]
+    ends += [(0, (-14, -6))]
+    points = [*square, *((18 + x, 4 - y) for x, y in square), (11, 7)]
+    rim = [(Fraction(x, 2), Fraction(y, 2)) for _, (x, y) in ends]
+    folds = [(0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (5, 6), (6, 7), (4, 7), (2, 8), (4, 8)]
+    folds += [(corner, 9 + k) for k, (corner, _) in enumerate(ends)]
+    return outlined([*((Fraction(x), Fraction(y)) for x, y in points), *rim], folds, 9)
