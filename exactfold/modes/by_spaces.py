@@ -35,8 +35,9 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
     """The motions of a part with vertices of any degree: linear spaces, and which of them fold.
 
     The dimension of the first-order motions is exact. Where the part is not decomposed, because
-    several forms are left, the spaces are too many or that dimension is too large, the result has
-    the components that were found and the folds that stay flat to second order.
+    several forms are left that are not shown to be one component, the spaces are too many or that
+    dimension is too large, the result has the components that were found and the folds that stay
+    flat to second order.
     """
     rows, size = first_order(moving)
     small, left = reduced(moving, rows, size, MOST_REDUCTION)

@@ -44,6 +44,8 @@ def cone_motion(
         forms = Forms(stars)
         points: list[Balls] = [{edge: arb(0) for edge in rows}]
         for number, (v, room) in enumerate(_ordered(stars, rows, size, vertices)):
+            if number == 0 and len(squares_of(stars[v], rows, size)) < 3:
+                return None
             for u in islice(_directions(forms, v, room), _DIRECTIONS):
                 above, below = _sides(forms, v, points, room, u)
                 if above and (below or number == 0):

@@ -14,9 +14,10 @@ from test_oracles import by_singular, degrees
 from exactfold.modes import cones
 from exactfold.modes.cones import cone_motion, is_one_family
 from exactfold.modes.decomposition import decompose
-from exactfold.modes.kernel import first_order
+from exactfold.modes.kernel import first_order, imposed
 from exactfold.modes.regular import Balls, Forms, in_balls, rank_at_least, truly_folds
 from exactfold.modes.stars import bracket, stars
+from exactfold.modes.subspaces import squares_of
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
@@ -109,6 +110,17 @@ def test_both_signs_of_the_discriminant_are_needed(monkeypatch: pytest.MonkeyPat
     sides = cones._sides
     monkeypatch.setattr(cones, "_sides", lambda *args: (sides(*args)[0], False))
     assert motion_of(two_stars()) is None
+
+
+def test_a_form_of_rank_two_is_no_cone() -> None:
+    """It is a product of two linear forms, although it has both signs."""
+    moving = stars(two_stars())
+    rows, size = first_order(moving)
+    squares = squares_of(moving[0], rows, size)
+    plane = imposed(rows, size, *(functional for _, functional in squares[2:]))
+    assert len(squares_of(moving[0], *plane)) == 2
+    assert cone_motion(moving, *plane, [0]) is None
+    assert cone_motion(moving, rows, size, [0]) is not None
 
 
 # --- Singular ------------------------------------------------------------------------------------
