@@ -17,8 +17,8 @@ def faces_of(text):
 
 
 def is_blue(colour):
-    r, g, b = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
-    return b > r
+    red, blue = (int(colour[k : k + 2], 16) for k in (1, 5))
+    return blue > red
 
 
 def test_every_still_has_every_face_and_a_caption():
@@ -44,7 +44,7 @@ def test_the_upper_side_is_blue_and_the_lower_side_yellow():
 
 def test_nearer_faces_are_drawn_later():
     low = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype=float)
-    both = np.vstack([low, low + [0, 0, 1]])
+    both = np.vstack([low, low + np.array([0, 0, 1])])
     for faces in ([(0, 1, 2), (3, 5, 4)], [(3, 5, 4), (0, 1, 2)]):
         drawn = faces_of(stills([both], faces, [""], "t"))
         assert [is_blue(face["fill"]) for face in drawn] == [True, False]
