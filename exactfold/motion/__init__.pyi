@@ -11,10 +11,10 @@ from exactfold.motion.matching import Loops as Loops
 from exactfold.motion.matching import find_loops as find_loops
 from exactfold.motion.motion import Motion as Motion
 from exactfold.motion.panel_following import follow_panels as follow_panels
-from exactfold.motion.panel_modes import PanelComponent as PanelComponent
-from exactfold.motion.panel_modes import PanelMode as PanelMode
-from exactfold.motion.panel_modes import panel_components as panel_components
-from exactfold.motion.panel_modes import panel_modes as panel_modes
+from exactfold.motion.followable import PanelComponent as PanelComponent
+from exactfold.motion.followable import PanelMode as PanelMode
+from exactfold.motion.followable import panel_components as panel_components
+from exactfold.motion.followable import panel_modes as panel_modes
 from exactfold.motion.panel_motion import PanelMotion as PanelMotion
 from exactfold.motion.piece import Ball as Ball
 from exactfold.motion.start import Start as Start

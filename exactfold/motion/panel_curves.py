@@ -19,7 +19,7 @@ from exactfold.exact.surds import Number, ball, simple
 from exactfold.modes.local import LocalMode
 from exactfold.modes.stars import Star, dot
 from exactfold.modes.transmission import Transmission
-from exactfold.motion.panel_modes import PanelMode
+from exactfold.motion.followable import PanelMode
 from exactfold.pattern.panel_pattern import Edge
 
 CLOSED: Final = float(np.tan(pi / 2))

@@ -16,7 +16,7 @@ from exactfold.modes.result import Decomposition
 from exactfold.motion.events import ANGLE, CONTACT, FLAT_FOLD, TURNING, Event
 from exactfold.motion.panel_contacts import PanelContacts
 from exactfold.motion.panel_curves import FollowedCurve, LinearCurve, curve_of
-from exactfold.motion.panel_modes import (
+from exactfold.motion.followable import (
     PanelMode,
     open_reason,
     panel_components,

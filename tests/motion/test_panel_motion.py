@@ -22,7 +22,7 @@ from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import RATIONALS
 from exactfold.modes.decomposition import decompose
 from exactfold.motion.panel_following import follow_panels
-from exactfold.motion.panel_modes import panel_components, panel_modes
+from exactfold.motion.followable import panel_components, panel_modes
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
