@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, Final, NamedTuple, cast
 
 import numpy as np
 
@@ -18,7 +18,9 @@ from exactfold.pattern.triangulating import triangulating_edges
 if TYPE_CHECKING:
     from exactfold.motion.framework import Framework
 
-_CHUNK = 16
+_CHUNK: Final = 16
+_CLOSE: Final = 1e-13
+"""Radians within which a contact is enclosed."""
 
 
 class Contact(NamedTuple):
@@ -66,9 +68,16 @@ class PanelContacts:
 
     @cached_property
     def _crossings(self) -> Crossings:
-        triangles = np.array(self._cut.faces, dtype=np.intp)
-        framework = SimpleNamespace(sheet=self._cut, triangles=triangles)
-        return Crossings(cast("Framework", framework))  # it takes edges and triangles from it
+        # It takes no more of a framework than these.
+        framework = SimpleNamespace(
+            sheet=self._cut, triangles=np.array(self._cut.faces, dtype=np.intp), flat=self._flat
+        )
+        return Crossings(cast("Framework", framework))
+
+    @cached_property
+    def _flat(self) -> FloatArray:
+        points = np.array([(float(x), float(y)) for x, y in self.pattern.vertices])
+        return np.asarray(points / self._unit)
 
     @cached_property
     def _unit(self) -> float:
@@ -86,25 +95,24 @@ class PanelContacts:
         """
         for start in range(1, len(times), _CHUNK):
             some = np.asarray(times[start : start + _CHUNK], dtype=np.float64)
-            hits = self._crossings.any_of(places(some) / self._unit)
-            if hits.any():
-                k = start + int(np.argmax(hits))
-                return self._enclosed(float(times[k - 1]), float(times[k]), places)
+            for k, there in enumerate(places(some) / self._unit, start):
+                if len(self._crossings.pairs(there)):
+                    return self._enclosed(float(times[k - 1]), float(times[k]), places)
         return None
 
     def _enclosed(
         self, low: float, high: float, places: Callable[[FloatArray], FloatArray]
     ) -> Contact:
-        def found(time: float) -> list[Crossing]:
-            return self._crossings.found(places(np.array([time]))[0] / self._unit)
+        def place(time: float) -> FloatArray:
+            return np.asarray(places(np.array([time]))[0] / self._unit)
 
-        while low < (middle := 0.5 * (low + high)) < high and high - low > 1e-13:
-            if found(middle):
+        while low < (middle := 0.5 * (low + high)) < high and high - low > _CLOSE:
+            if len(self._crossings.pairs(place(middle))):
                 high = middle
             else:
                 low = middle
-        crossing = found(high)[0]
-        there = places(np.array([high]))[0] / self._unit
+        there = place(high)
+        crossing = self._crossings.named(self._crossings.pairs(there)[0])
         return Contact(low, high, self._who(crossing), self._crossings.kind(crossing, there))
 
     def _who(self, crossing: Crossing) -> tuple[int, int]:

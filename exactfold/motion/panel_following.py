@@ -14,14 +14,14 @@ from exactfold.errors import NotApplicableError, UsageError
 from exactfold.modes.decomposition import decompose
 from exactfold.modes.result import Decomposition
 from exactfold.motion.events import ANGLE, CONTACT, FLAT_FOLD, TURNING, Event
-from exactfold.motion.panel_contacts import PanelContacts
-from exactfold.motion.panel_curves import FollowedCurve, LinearCurve, curve_of
 from exactfold.motion.followable import (
     PanelMode,
     open_reason,
     panel_components,
     panel_modes,
 )
+from exactfold.motion.panel_contacts import PanelContacts
+from exactfold.motion.panel_curves import FollowedCurve, LinearCurve, curve_of
 from exactfold.motion.panel_motion import AnglesAt, PanelMotion, all_angles, sampled_times
 from exactfold.motion.panel_places import Placing
 from exactfold.pattern.panel_pattern import Edge, PanelPattern

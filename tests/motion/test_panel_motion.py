@@ -21,8 +21,8 @@ from panel_sheets import (
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import RATIONALS
 from exactfold.modes.decomposition import decompose
-from exactfold.motion.panel_following import follow_panels
 from exactfold.motion.followable import panel_components, panel_modes
+from exactfold.motion.panel_following import follow_panels
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
@@ -403,6 +403,36 @@ def test_the_panel_that_is_held_does_not_move():
         corners = list(motion.pinned)
         assert corners == list(pattern.faces[held])
         assert np.allclose(motion.coords[:, corners], motion.coords[0][corners], rtol=0, atol=1e-12)
+
+
+def test_vertices_with_five_folds_on_a_line_that_closes():
+    """A Miura-ori with a diagonal in its middle panel: modes that leave the diagonal flat."""
+    pattern = miura(2, 2)
+    result = decompose(PanelPattern(pattern.vertices, [*pattern.edges, (5, 10)]))
+    assert result.theory == "subspaces"
+    assert result.modes == ()
+    found = panel_modes(result)
+    assert len(found) == 2
+    without = decompose(pattern)
+    for mode in found:
+        assert mode.extends.verdict is PROVED
+        motion = checked(follow_panels(result, modes=[mode.number], until="150deg", frames=7))
+        assert motion.closes is PROVED
+        assert lengths_kept(result.pattern, motion.exactly(Fraction(2, 3)))
+        same = [
+            other
+            for other in panel_modes(without)
+            if other.letters == dict(mode.letters)
+            or all(mode.letters.get(f) != a for f, a in other.letters.items())
+        ]
+        assert same
+    cone = outlined(
+        [(0, 0), (2, 0), (1, 2), (-1, 2), (-2, 0), (-1, -2), (1, -2)],
+        [(0, k) for k in range(1, 7)],
+        1,
+    )
+    with pytest.raises(NotApplicableError, match="more than four folds"):
+        follow_panels(cone)
 
 
 # --- where it ends -------------------------------------------------------------------------------
