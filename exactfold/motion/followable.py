@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from fractions import Fraction
 from functools import cached_property
 from itertools import islice
@@ -99,6 +99,10 @@ class PanelMode:
                     known[other] = known[fold].times(gain)
         return MappingProxyType(dict(sorted(known.items())))
 
+    def __reduce__(self) -> tuple[object, ...]:
+        # What is cached stays behind.
+        return PanelMode, tuple(getattr(self, field.name) for field in fields(self))
+
     def __repr__(self) -> str:
         return (
             f"<PanelMode: {self.number}, {counted(len(self.stars), 'vertex')}, "
@@ -145,7 +149,7 @@ def panel_modes(result: Decomposition) -> tuple[PanelMode, ...]:
     ) -> PanelMode:
         around = tuple(moving[mode.vertex].only(mode.folds) for mode in choice)
         number = len(found) + 1
-        return PanelMode(result.pattern, number, around, tuple(choice), letters, extends)
+        return PanelMode(result.pattern, number, around, tuple(choice), dict(letters), extends)
 
     for mode in result.modes:
         found.append(add(mode.choice, mode.assignment, mode.extends))

@@ -65,6 +65,9 @@ class LinearCurve:
 
     mode: PanelMode
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return LinearCurve, (self.mode,)  # what is cached stays behind
+
     @property
     def folds(self) -> tuple[Edge, ...]:
         """The active folds, sorted."""
@@ -121,6 +124,9 @@ class FollowedCurve:
     """
 
     mode: PanelMode
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return FollowedCurve, (self.mode,)  # what is cached stays behind
 
     @property
     def folds(self) -> tuple[Edge, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from math import inf, pi
 from types import MappingProxyType
@@ -29,7 +29,7 @@ _DEGREES = 2.0
 _MOST_SAMPLES = 4000
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class PanelMotion:
     """A sheet of rigid panels as it folds along a component of its true motions.
 
@@ -59,6 +59,22 @@ class PanelMotion:
     events: tuple[Event, ...]
     end: str
     gap: float
+    seconds: float = field(default=0.0, compare=False)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, PanelMotion):
+            return NotImplemented
+        same = ("pattern", "curves", "rates", "free_rates", "held", "events", "end")
+        arrays = ("times", "coords", "angles")
+        return all(getattr(self, name) == getattr(other, name) for name in same) and all(
+            np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # arrays have none
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # What is cached stays behind.
+        return PanelMotion, tuple(getattr(self, field.name) for field in fields(self))
 
     @property
     def modes(self) -> tuple[int, ...]:

@@ -1,8 +1,10 @@
 """Motions of rigid panels against formulas that know nothing of this code."""
 
+import copy
+import pickle
 import random
 from fractions import Fraction
-from itertools import pairwise, product
+from itertools import combinations, pairwise, product
 from math import acos, cos, inf, pi, radians, sin, sqrt, tan
 
 import numpy as np
@@ -17,6 +19,7 @@ from panel_sheets import (
     shifted_columns,
     tiling,
 )
+from scipy.optimize import linprog
 
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import RATIONALS
@@ -452,6 +455,41 @@ def test_first_contact_of_two_flaps():
     on = follow_panels(strip([3, 1, 3]), until="180deg")
     assert [event.kind for event in on.events] == ["contact", "flat-fold"]
     assert on.events[0].time == contact.time
+
+
+def meet(one, other):
+    """Whether two convex hulls have a common point, by linear programming."""
+    n, m = len(one), len(other)
+    equal = np.block([[one.T, -other.T], [np.ones(n), np.zeros(m)], [np.zeros(n), np.ones(m)]])
+    found = linprog(np.zeros(n + m), A_eq=equal, b_eq=[0, 0, 0, 1, 1])
+    return found.status == 0
+
+
+def test_contacts_agree_with_linear_programming():
+    """Convex panels without a common corner: separated before the contact, not after it."""
+    pattern = tiling(2, 2)
+    [contact] = follow_panels(pattern).events
+    motion = follow_panels(pattern, until="180deg")
+    apart = [
+        (one, other) for one, other in combinations(pattern.faces, 2) if set(one).isdisjoint(other)
+    ]
+
+    def meeting(time):
+        coords = motion.at(time)
+        return {(a, b) for a, b in apart if meet(coords[list(a)], coords[list(b)])}
+
+    assert not any(meeting(x * contact.time[0]) for x in np.linspace(0.05, 1 - 1e-6, 25))
+    assert meeting(contact.time[1] + 1e-4) == {tuple(sorted(contact.faces))}
+
+
+def test_motions_are_values():
+    for pattern in (miura(2, 2), mesh(1, 2, seed=3), strip([3, 7, 3])):
+        motion = follow_panels(pattern, until="100deg", frames=4)
+        assert motion.ratios is None or motion.exactly(0)
+        for other in (pickle.loads(pickle.dumps(motion)), copy.deepcopy(motion)):
+            assert other == motion
+            assert np.array_equal(other.at(1.0), motion.at(1.0))
+        assert motion != follow_panels(pattern, until="100deg", frames=5)
 
 
 def test_motions_end_at_an_angle():
