@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import math
+import pickle
 import random
 from dataclasses import replace
 from fractions import Fraction
@@ -405,6 +407,14 @@ def test_certificates_are_verified(track: Track) -> None:
     assert claims["tubes"] == len(track.links)
     length = Fraction(claims["length"])
     assert track.length[0] * Fraction(98, 100) < length <= track.length[1]
+
+
+def test_tracks_pickle_and_copy(track: Track) -> None:
+    other = pickle.loads(pickle.dumps(track))
+    assert other == track
+    assert copy.copy(track) == track
+    assert other.links[-1].tube.enclosure(0) == track.links[-1].tube.enclosure(0)
+    assert repr(other) == repr(track)
 
 
 def test_the_start_tube_is_left_within_its_reach() -> None:
