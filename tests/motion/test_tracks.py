@@ -203,6 +203,17 @@ def test_parameters_are_located(track: Track) -> None:
         assert high - low < 10**4
 
 
+def test_candidates_are_those_that_are_located(track: Track) -> None:
+    balls = [sharpened(link.tube, at) for link in track.links for at in (0, link.exit)]
+    balls += [reflected(ball) for ball in balls]
+    points = np.array([ball.floats[0] for ball in balls])
+    for link in track.links[:4]:
+        found = [k for k, ball in enumerate(balls) if link.tube.lies_in(ball)]
+        assert link.tube.candidates(points).tolist() == found
+        assert len(found) >= 2
+    assert track.links[0].tube.candidates(points[:0]).tolist() == []
+
+
 def test_nothing_is_proved_beyond_the_reach(track: Track) -> None:
     tube = track.links[0].tube
     with pytest.raises(ArithmeticError, match="beyond the reach"):
