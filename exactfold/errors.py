@@ -214,6 +214,14 @@ class NotApplicableError(ExactfoldError):
     """A construction or method does not apply to this pattern; the message says why."""
 
 
+class FlatVertexError(NotApplicableError):
+    """A branch with a vertex that is proved flat is a multiple root: no curve is known there."""
+
+
+class NotProvedAtTheFlatStateError(NotApplicableError):
+    """No tube was proved from the flat state, or not which branch it belongs to."""
+
+
 class NotCountedError(NotApplicableError):
     """The sheet is in order, but of a kind whose branches are not listed or named (exit code 4)."""
 

@@ -25,7 +25,7 @@ MOST_BLOCK = 1 << 16  # roots in a block
 MOST_UNKNOWNS = 40
 MOST_LINE = 1 << 25  # bytes of a line
 MOST_TUBES = 1 << 12  # of a motion
-MOST_WORK = 1 << 34  # of a motion: tubes, times the unknowns cubed, times the words of their bits
+MOST_WORK = 1 << 33  # of a motion: products of numbers of 256 bits, nearly; under an hour
 MOTION_BITS = 1 << 11  # of a motion
 MOST_DIGITS = 4000  # of an exact root in a block, and its bits
 

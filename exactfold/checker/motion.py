@@ -70,7 +70,7 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     require(len(tubes) <= MOST_TUBES, "there are too many tubes")
     pinned = [natural(v, "pinned vertex") for v in items(evidence["pinned"], "pinned", 3)]
     equations = LengthEquations(sheet, pinned, bits)
-    work = (len(tubes) + 1) * equations.size**3 * (1 + bits // 256)
+    work = (len(tubes) + 1) * equations.size**2 * (equations.size + 200) * (1 + bits // 256)
     require(work <= MOST_WORK, "the work is out of range")
     start, tau = _start(equations, evidence["start"])
     _check_names(given, removed, start, claims)

@@ -17,6 +17,7 @@ from .reading import require
 
 INVERSE_BITS = 40
 WEIGHT_BITS = 16
+LEAST_WEIGHT = (1 << WEIGHT_BITS) // 100
 ROUND = 128  # places after the point of bounds
 Vector = list[int]
 Columns = list[list[tuple[int, int]]]
@@ -34,8 +35,8 @@ class Bounds:
         b, q, kappa = value(self.b, h), value(self.q, h), value(self.kappa, h)
         require(q < 1, "a matrix is not near the inverse of the Jacobian along a tube")
         r = rounded(b / (1 - q) * (1 + 2 * b * kappa / (1 - q) ** 2), 60) + Fraction(1, 1 << ROUND)
-        require(b + q * r + kappa * r * r / 2 < r, "a tube does not hold a zero")
-        require(q + kappa * r < 1, "zeros in a tube may be several")
+        one = b + q * r + kappa * r * r / 2 < r and q + kappa * r < 1
+        require(one, "a tube does not hold one zero for each parameter")
         return r
 
     def uniqueness(self, h: Fraction) -> Fraction:
@@ -129,4 +130,4 @@ def weights_of(matrix: list[list[float]]) -> Vector:
         vector = [x + y / top for x, y in zip(vector, image, strict=True)]
         top = max(vector)
         vector = [x / top for x in vector]
-    return [max(1, int(x * 2**WEIGHT_BITS)) for x in vector]
+    return [max(LEAST_WEIGHT, int(x * 2**WEIGHT_BITS)) for x in vector]

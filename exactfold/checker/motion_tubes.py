@@ -115,7 +115,7 @@ class Start(Piece):
             squares,
             weights,
         )
-        super().__init__(equations, curve, weights, proof, reach)
+        Piece.__init__(self, equations, curve, weights, proof, reach)
 
     def configuration(self, tau: Fraction) -> tuple[Ball, Ball]:
         """Boxes that hold d and its derivative by tau."""
@@ -177,7 +177,7 @@ class Tube(Piece):
             squares,
             weights,
         )
-        super().__init__(equations, curve, weights, proof, reach)
+        Piece.__init__(self, equations, curve, weights, proof, reach)
         self.apart = proof.uniqueness(reach)
 
     def entered(self, ball: Ball, velocity: Ball) -> Fraction:

@@ -8,6 +8,7 @@ from math import isqrt, lcm
 
 import numpy as np
 
+from exactfold.arrays import FloatArray
 from exactfold.motion.length_equations import Row, squared
 
 _DEGREE = 10
@@ -95,6 +96,30 @@ def length_between(
     )
     whole = Fraction(integral, _COMMON << unit + places * (_DEGREE + 1))
     return max(Fraction(0), rounded(whole - slack, -1)), rounded(whole + slack, 1)
+
+
+def parameter_after(velocity: FloatArray, length: float, places: int, low: int, high: int) -> int:
+    """A parameter nearly `length` after `low`, over 2^`places`, in floats: nothing is proved.
+
+    `velocity` are the coefficients of p'(s), shape (coefficients, unknowns).
+
+    >>> parameter_after(np.array([[3.0, 4.0]]), 2.5, 1, 0, 4)
+    1
+    """
+    begin, end = low / 2.0**places, high / 2.0**places
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+
+    def speed(s: FloatArray) -> FloatArray:
+        powers = s[:, None] ** np.arange(len(velocity))
+        return np.asarray(np.linalg.norm(powers @ velocity, axis=1))
+
+    at = begin
+    for _ in range(6):
+        half = (at - begin) / 2
+        there = float(half * (weights @ speed(begin + half * (1 + nodes))))
+        step = (length - there) / float(speed(np.array([at]))[0])
+        at = min(max(at + step, begin), end)
+    return min(max(round(at * 2.0**places), low), high)
 
 
 def shifted(curve: Sequence[Row], at: int, places: int) -> tuple[list[Row], int]:

@@ -13,6 +13,7 @@ from exactfold.motion.contraction import WEIGHT_BITS, Places
 from exactfold.motion.framework import Framework
 
 Row = tuple[int, ...]
+_LEAST = (1 << WEIGHT_BITS) // 100
 Curve = tuple[Row, ...]
 """sum_k a_k s^k: row k is a_k, integers over a power of two, one for each unknown."""
 
@@ -123,10 +124,13 @@ def corrected(
 
 
 def weights_of(matrix: FloatArray) -> Row:
-    """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a matrix with entries >= 0."""
+    """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a matrix with entries >= 0.
+
+    None is below 1/100: where the motion leaves an unknown at rest, its room must not vanish.
+    """
     vector = np.ones(len(matrix))
     for _ in range(30):
         image = matrix @ vector
         vector = vector + image / max(float(image.max()), 1e-300)
         vector = vector / vector.max()
-    return tuple(max(1, int(x)) for x in vector * 2.0**WEIGHT_BITS)
+    return tuple(max(_LEAST, int(x)) for x in vector * 2.0**WEIGHT_BITS)

@@ -11,6 +11,7 @@ import numpy as np
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
+from exactfold.errors import NotProvedAtTheFlatStateError
 from exactfold.motion.angles import fold_angles_of
 from exactfold.motion.arclength import Interval
 from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
@@ -24,7 +25,6 @@ from exactfold.motion.tracks import Link, half_branch, onwards
 from exactfold.motion.tube import Tube
 from exactfold.motion.tube_start import (
     ROOT_BITS,
-    NotProvedAtTheFlatStateError,
     StartTube,
     prove_start,
 )

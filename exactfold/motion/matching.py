@@ -12,10 +12,14 @@ from typing import Any
 from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder
 from exactfold.count.pools import Pool, process_pool
-from exactfold.errors import NotCountedError, UsageError, WorkerDiedError
+from exactfold.errors import (
+    NotCountedError,
+    NotProvedAtTheFlatStateError,
+    UsageError,
+    WorkerDiedError,
+)
 from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.loops import Loop, LoopFinder
-from exactfold.motion.tube_start import NotProvedAtTheFlatStateError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
 from exactfold.pattern.loading import PatternLike, as_pattern

@@ -107,18 +107,38 @@ class Piece:
         Raises `ArithmeticError` beyond the reach.
         """
         centre = evaluated(self.coefficients, parameter)
-        return Ball(self.bits, centre, self._lengths(self.radius_within(abs(parameter))))
+        return Ball(self.bits, centre, self.lengths(self.radius_within(abs(parameter))))
 
     def velocity(self, parameter: int) -> Ball:
         """A box that holds x'(s)."""
         most = abs(parameter)
-        slope = tuple(tuple(k * a for a in row) for k, row in enumerate(self.coefficients) if k)
         error = self.contraction.velocity(
             most << (SCALE - PARAMETER_BITS), self.radius_within(most)
         )
-        return Ball(self.bits, evaluated(slope, parameter), self._lengths(error))
+        return Ball(self.bits, evaluated(self.slope, parameter), self.lengths(error))
 
-    def _lengths(self, radius: int) -> Row:
+    def unique_near(self, point: Row, radius: int, middle: Row) -> bool:
+        """Whether the ball about a point lies where zeros are unique for the parameter of `middle`.
+
+        `middle` is p(s), rounded down.
+        """
+        room = self.uniqueness
+        return all(
+            ((abs(x - y) + 1) << (SCALE + WEIGHT_BITS)) + (radius * w << self.bits)
+            < room * w << self.bits
+            for x, y, w in zip(point, middle, self.weights, strict=True)
+        )
+
+    @cached_property
+    def slope(self) -> Curve:
+        """The coefficients of p'(s) over 2^bits."""
+        return tuple(tuple(k * a for a in row) for k, row in enumerate(self.coefficients) if k)
+
+    def _floats(self, row: Row) -> FloatArray:
+        one = 1 << self.bits
+        return np.array([x / one for x in row])
+
+    def lengths(self, radius: int) -> Row:
         """radius w_i over 2^bits, and one unit for the centre that was rounded."""
         down = SCALE + WEIGHT_BITS - self.bits
         left, right = max(-down, 0), max(down, 0)

@@ -6,12 +6,13 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
-from exactfold.errors import NotApplicableError, UsageError
+from exactfold.errors import FlatVertexError, UsageError
 from exactfold.evidence.entries import Document
 from exactfold.evidence.motion import motion_certificate
 from exactfold.motion.arclength import Interval
@@ -25,12 +26,9 @@ from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 1000
+_FAR_ENOUGH = "the length that was asked for"
 _LEAST = 1e-7  # of a step, in the unit of the framework
 _EXIT = 11, 16  # the part of the reach at which the next tube begins
-
-
-class FlatVertexError(NotApplicableError):
-    """A branch with a vertex that is proved flat is a multiple root: no curve is known there."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -116,11 +114,12 @@ class Track:
     @property
     def length(self) -> Interval:
         """Bounds of the length of the whole track, in the unit of the sheet."""
-        low, high = self.links[-1].left if self.links else self._started
+        low, high = self.links[-1].left if self.links else self.started
         return low * self.framework.unit, high * self.framework.unit
 
-    @property
-    def _started(self) -> Interval:
+    @cached_property
+    def started(self) -> Interval:
+        """Bounds of the length of the start tube, in the unit of the framework."""
         return self.start.length(0, self.start.last)
 
     def certificate(self) -> Document:
@@ -176,9 +175,8 @@ class Track:
     def frames(self, times: FloatArray | list[float]) -> list[Frame]:
         """Enclosed configurations near given times, in the unit of the sheet.
 
-        Each is one point of the curve, in a box of about 14 digits (8 within the start tube),
-        at a time near the one asked for, which `Frame.time` bounds. Raises `UsageError` for times
-        that the track does not reach.
+        Each is one point of the curve, in a box of about 14 digits, at a time near the one asked
+        for, which `Frame.time` bounds. Raises `UsageError` for times that the track does not reach.
         """
         return [self.frame(float(time)) for time in times]
 
@@ -186,17 +184,16 @@ class Track:
         """One enclosed configuration near a time; as `frames`."""
         unit = self.framework.unit
         wanted = Fraction(time) / unit
-        if not 0 <= wanted <= (self.links[-1].left if self.links else self._started)[1]:
+        if not 0 <= wanted <= (self.links[-1].left if self.links else self.started)[1]:
             raise UsageError(f"the track does not reach the time {time:g}")
         k = bisect_left([link.left[1] for link in self.links], wanted)
-        if wanted <= self._started[1]:
-            tau = _solve(lambda x: self.start.length(0, x)[0] - wanted, 0, self.start.last)
+        if wanted <= self.started[1]:
+            tau = self.start.near(float(wanted), 0, self.start.last)
             low, high = self.start.length(0, tau)
-            ball = self.start.ball(tau)
+            ball = self.start.sharpened(tau)
         else:
             link = self.links[k]
-            first = max(0, link.entry[1])
-            parameter = _solve(lambda x: link.time(x)[0] - wanted, first, link.exit)
+            parameter = link.tube.near(float(wanted - link.entered[0]), max(link.entry), link.exit)
             low, high = link.time(parameter)
             ball = sharpened(link.tube, parameter)
         return Frame((Fraction(low * unit), Fraction(high * unit)), ball)
@@ -275,7 +272,9 @@ def follow_proved(
     track = half_branch(branch, side, pinned, bits=bits)
     goal = None if until is None else Fraction(until) / track.framework.unit
     links: list[Link] = []
-    status, reason = UNDECIDED, "the curve was not followed further"
+    if goal is not None and track.started[0] >= goal:
+        return replace(track, reason=_FAR_ENOUGH)
+    status, reason = UNDECIDED, ""
     for link in continued(track, bits=bits):
         if isinstance(link, str):
             reason = link
@@ -286,7 +285,7 @@ def follow_proved(
             status, reason = PROVED, said
             break
         if goal is not None and link.left[0] >= goal:
-            status, reason = PROVED, "the length that was asked for"
+            status, reason = PROVED, _FAR_ENOUGH
             break
         if len(links) >= most:
             reason = f"{most} tubes were not enough"
@@ -307,7 +306,7 @@ def continued(track: Track, *, bits: int = 64) -> Iterator[Link | str]:
             before.left,
             float(before.tube.length(before.entry, before.exit)[0]),
         )
-    last, time = track.start.last, track._started
+    last, time = track.start.last, track.started
     ball, velocity = track.start.ball(last), track.start.ball_velocity(last)
     return onwards(equations, ball, velocity, time, float(time[0]) / 2)
 
@@ -348,20 +347,3 @@ def _next(
                 return tube, entry
         step /= 4
     return None, None
-
-
-def _solve(function: Callable[[int], Fraction], low: int, high: int) -> int:
-    """Nearly where an increasing function that is not far from linear is 0."""
-    bottom, top = function(low), function(high)
-    for _ in range(8):
-        if high - low < 2 or bottom >= 0 or top <= 0:
-            break
-        middle = low + int((high - low) * -bottom / (top - bottom))
-        value = function(middle)
-        if abs(value) < Fraction(1, 1 << 40):
-            return middle
-        if value > 0:
-            high, top, bottom = middle, value, bottom / 2
-        else:
-            low, bottom, top = middle, value, top / 2
-    return high if top <= 0 else low

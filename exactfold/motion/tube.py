@@ -11,7 +11,7 @@ from math import isqrt
 import numpy as np
 
 from exactfold.arrays import FloatArray
-from exactfold.motion.arclength import Interval, length_between
+from exactfold.motion.arclength import Interval, length_between, parameter_after
 from exactfold.motion.contraction import (
     SCALE,
     WEIGHT_BITS,
@@ -77,13 +77,18 @@ class Tube(Piece):
 
         In the framework's unit; parameters over 2^PARAMETER_BITS, `entry[1]` <= `end`.
         """
-        rows = [tuple(k * a for a in row) for k, row in enumerate(self.coefficients) if k]
+        rows = self.slope
         middle = (entry[0] + entry[1]) // 2
         error = self.velocity(max(abs(middle), abs(end))).radii
         unit = 1 << PARAMETER_BITS
         low, high = length_between(rows, self.bits, error, PARAMETER_BITS, middle, end)
         slack = Fraction((entry[1] - entry[0] + 1) * self._fastest, unit << self.bits)
         return max(low - slack, Fraction(0)), high + slack
+
+    def near(self, length: float, low: int, high: int) -> int:
+        """A parameter between `low` and `high` that is nearly this length after `low`."""
+        rows = np.array([self._floats(row) for row in self.slope])
+        return parameter_after(rows, length, PARAMETER_BITS, low, high)
 
     @cached_property
     def _fastest(self) -> int:
@@ -258,14 +263,9 @@ def sharpened(tube: Tube, parameter: int) -> Ball:
         (point,) = corrected(inverse, [point], [residual()], bits + 1)
     proof = _bounds(equations, (point,), [residual()], tube.row, tube.weights, inverse)
     radius = proof.radius(0)
-    if radius is None:
+    if radius is None or not tube.unique_near(point, radius, whole.centre):
         return whole
-    down = SCALE + WEIGHT_BITS - bits
-    found = Ball(bits, point, tuple(up(radius * w, down) for w in tube.weights))
-    for x, y, r, w in zip(point, whole.centre, found.radii, tube.weights, strict=True):
-        if (abs(x - y) + 1 + r) << (SCALE + WEIGHT_BITS) >= (tube.uniqueness * w) << bits:
-            return whole
-    return found
+    return Ball(bits, point, tube.lengths(radius))
 
 
 def _stretch(equations: LengthEquations, centre: Row) -> list[int]:

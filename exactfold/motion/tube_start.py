@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from math import isqrt, log2
 
 import numpy as np
 
 from exactfold.arrays import BigArray, FloatArray
-from exactfold.errors import NotApplicableError
-from exactfold.motion.arclength import Interval, length_between
+from exactfold.errors import NotApplicableError, NotProvedAtTheFlatStateError
+from exactfold.motion.arclength import Interval, length_between, parameter_after
 from exactfold.motion.contraction import (
     Contraction,
     contraction,
@@ -34,10 +35,6 @@ from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functi
 
 ROOT_BITS = PARAMETER_BITS // 2
 """The parameter tau of a start tube, whose square is s, is an integer over 2^ROOT_BITS."""
-
-
-class NotProvedAtTheFlatStateError(NotApplicableError):
-    """No tube was proved from the flat state, or not which branch it belongs to."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -68,7 +65,61 @@ class StartTube(Piece):
 
         `tau` is over 2^ROOT_BITS, its square at most the reach.
         """
-        inner, m = self.enclosure(tau * tau), self.halvings
+        return self._blown_down(self.enclosure(tau * tau), tau)
+
+    def sharpened(self, tau: int) -> Ball:
+        """`ball` with about 14 digits: a step of Newton's method for this tau, and Theorem 1 there.
+
+        The zero is that of the tube, because it lies where zeros are unique. Where that fails, the
+        answer is `ball`.
+        """
+        whole, up_to = self.enclosure(tau * tau), PARAMETER_BITS + 2 * self.halvings
+        equations = LengthEquations(self.framework, self.bits)
+        point, s = whole.centre, tau * tau  # over 2^up_to, the factor of |u|^2
+
+        def terms() -> tuple[BigArray, list[int]]:
+            """U + (s u, h) over 2^(bits + up_to), and the residual over 2^(2 bits + up_to + 1)."""
+            e = equations.along([point])[0]
+            flat = equations.flat_edges
+            bent = np.concatenate([s * e[:, :2], e[:, 2:] * (1 << up_to)], axis=1)
+            residual = (((2 << up_to) * flat + bent) * e).sum(axis=1)
+            held = point[self.held] - self.coefficients[0][self.held]
+            last = held << self.bits + up_to + 1
+            return flat * (1 << up_to) + bent, [*(int(x) for x in residual), last]
+
+        rows, _ = terms()
+        one = 1 << self.bits + up_to
+        last = np.zeros(self.framework.size)
+        last[self.held] = 1.0
+        edges = np.array([[x / one for x in row] for row in rows])
+        try:
+            inverse = np.linalg.inv(np.vstack([equations.places.dense(edges), last]))
+        except np.linalg.LinAlgError:
+            return self._blown_down(whole, tau)
+        for _ in range(2):
+            (point,) = corrected(inverse, [point], [terms()[1]], self.bits + up_to + 1)
+        rows, residual = terms()
+        sums = equations.weight_sums(self.weights)
+        proof = contraction(
+            inverse,
+            [residual],
+            2 * self.bits + up_to + 1,
+            equations.places,
+            [rows],
+            [one * (i == self.held) for i in range(len(point))],
+            self.bits + up_to,
+            [[up(int(s * (x * x + y * y)), up_to) + int(z * z) for x, y, z in sums]],
+            sums,
+            self.weights,
+        )
+        radius = proof.radius(0)
+        if radius is None or not self.unique_near(point, radius, whole.centre):
+            return self._blown_down(whole, tau)
+        return self._blown_down(Ball(self.bits, point, self.lengths(radius)), tau)
+
+    def _blown_down(self, inner: Ball, tau: int) -> Ball:
+        """The box of unknowns of the length equations for a box of (u, h)."""
+        m = self.halvings
         shifts, factors = (PARAMETER_BITS + 2 * m, ROOT_BITS + m), (tau * tau, tau)
         centre, radii = [], []
         for i, (x, r) in enumerate(zip(inner.centre, inner.radii, strict=True)):
@@ -99,14 +150,26 @@ class StartTube(Piece):
 
         `low` and `high` are over 2^ROOT_BITS.
         """
+        m, rows = self.halvings, self._slope_in_tau
+        error = [(r + 1) << 2 * m for r in self.ball_velocity(high).radii]
+        return length_between(rows, self.bits + 2 * m, error, ROOT_BITS, low, high)
+
+    @cached_property
+    def _slope_in_tau(self) -> list[Row]:
+        """The coefficients of the derivative of d by tau, over 2^(bits + 2 halvings)."""
         m = self.halvings
         rows = []
         for k, row in enumerate(self.coefficients):
             heights = [(2 * k + 1) * x << m if i % 3 == 2 else 0 for i, x in enumerate(row)]
             plane = [0 if i % 3 == 2 else (2 * k + 2) * x for i, x in enumerate(row)]
             rows += [tuple(heights), tuple(plane)]
-        error = [(r + 1) << 2 * m for r in self.ball_velocity(high).radii]
-        return length_between(rows, self.bits + 2 * m, error, ROOT_BITS, low, high)
+        return rows
+
+    def near(self, length: float, low: int, high: int) -> int:
+        """A tau between `low` and `high` that is nearly this length after `low`."""
+        scale = 2.0 ** (-2 * self.halvings)
+        rows = np.array([self._floats(row) for row in self._slope_in_tau]) * scale
+        return parameter_after(rows, length, ROOT_BITS, low, high)
 
 
 def prove_start(
