@@ -23,6 +23,7 @@ ANGLE, LENGTH = "angle", "length"
 _SAMPLES = 8
 _NEAR_FLAT = 0.3
 _FLAT = 1e-5
+_STILL = 1e-9
 
 
 @dataclass(frozen=True)
@@ -141,7 +142,10 @@ class Watch:
         framework = self.framework
         rates = angle_rates(positions, framework.displacement(piece.speed(grid)), framework.hinges)
         found = []
-        for k, e in np.argwhere(rates[1:] * rates[:-1] < 0):
+        # Folds that stay flat have rates that are rounding errors.
+        sizes = np.abs(rates)
+        moving = np.maximum(sizes[1:], sizes[:-1]) > _STILL * sizes.max(initial=0.0)
+        for k, e in np.argwhere((rates[1:] * rates[:-1] < 0) & moving):
 
             def rate(s: float, e: int = e) -> float:
                 return float(
