@@ -14,7 +14,7 @@ MOTION_KEY: Final = "frame_exactfold:motion"
 TIME_KEY: Final = "frame_exactfold:time"
 HEIGHTS_KEY: Final = "vertices_exactfold:heights"
 _NOISE: Final = 1e-7
-"""Degrees: a smaller angle against its letter is a rounding error."""
+"""Degrees: a smaller angle is flat."""
 
 
 def branch_document(
@@ -72,7 +72,7 @@ def motion_document(
 
     The first frame is that of `branch_document`, with `facts` under `frame_exactfold:motion`. Each
     frame of `frames` inherits it, and has coordinates and fold angles of its own; letters too where
-    an angle has the other sign than the letter says. Raises what `fold_document` raises.
+    they differ, as readers want letters and angles to agree. Raises what `fold_document` raises.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> frame = MotionFrame(0.5, [(0, 0, 0)] * 4, {(0, 3): -1.0})
@@ -134,10 +134,9 @@ def _flat_frame(
 
 def _frame(frame: MotionFrame, letters: Mapping[Edge, str], title: str) -> dict[str, Any]:
     angles = dict.fromkeys(letters, 0.0)
-    angles.update({fold: _principal(angle) for fold, angle in frame.angles.items()})
+    for fold, angle in frame.angles.items():
+        angles[fold] = 0.0 if abs(turned := _principal(angle)) <= _NOISE else turned
     own = {edge: _letter(letter, angles[edge]) for edge, letter in letters.items()}
-    for edge, letter in own.items():
-        angles[edge] = _agreeing(letter, angles[edge])
     return {
         "frame_title": title,
         TIME_KEY: frame.time,
@@ -156,11 +155,7 @@ def _principal(angle: float) -> float:
 
 
 def _letter(letter: str, angle: float) -> str:
-    """The letter of a fold at an angle: its own unless the angle has another sign."""
-    if abs(angle) <= _NOISE or letter == "B":
+    """The letter of an edge at an angle, B for one of the boundary."""
+    if letter == "B":
         return letter
-    return "V" if angle > 0 else "M"
-
-
-def _agreeing(letter: str, angle: float) -> float:
-    return angle if letter == ("V" if angle > 0 else "M") else 0.0
+    return "F" if not angle else "V" if angle > 0 else "M"

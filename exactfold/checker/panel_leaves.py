@@ -8,14 +8,15 @@ from fractions import Fraction
 from typing import Any
 
 from .intervals import Interval
+from .panel_cones import Place, cone_motion
 from .panel_loops import Loops
 from .panel_modes import Modes, Support
 from .panel_reduction import BITS, enclosed, reduced
 from .panel_sheet import Edge, PanelSheet, pair
-from .panel_spaces import Leaf, Motion, Spaces, folds_of, tower_of
+from .panel_spaces import Leaf, Motion, Spaces, folds_of
 from .reading import integer, items, keys, natural, require
 
-Kind = tuple[tuple[Edge, ...], int, int | None]
+Kind = tuple[tuple[Edge, ...], int, tuple[int, ...]]
 
 
 @dataclass
@@ -33,14 +34,15 @@ class Verified:
 def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) -> Verified:
     """The components of a part, found again and compared with what the file says of it.
 
-    The file gives the leaves by their folds, dimension and cone, with how many there are, and how
+    The file gives the leaves by their folds, dimension and cones, with how many there are, and how
     many of these are said to fold; "complete" says that all true motions are among them.
     """
     what = f"the part of vertex {next(iter(near))}"
     spaces = Spaces(sheet, near)
     found: dict[Kind, list[Leaf]] = {}
     for leaf in spaces.leaves():
-        found.setdefault((leaf.folds, leaf.dimension, leaf.cone), []).append(leaf)
+        _check_component(spaces, leaf)
+        found.setdefault((leaf.folds, leaf.dimension, leaf.cones), []).append(leaf)
     claimed = dict(_kinds(given["leaves"]))
     require(len(claimed) == len(given["leaves"]), f"{what} has leaves of one kind twice")
     require(claimed.keys() == found.keys(), f"{what} has other leaves than those listed")
@@ -68,12 +70,26 @@ def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) 
 
 def _kinds(given: Any) -> Iterable[tuple[Kind, tuple[int, int]]]:
     for entry in items(given, "leaves"):
-        keys(entry, "folds dimension cone number extending", "a leaf")
+        keys(entry, "folds dimension cones number extending", "a leaf")
         ends = [items(fold, "a fold", 2) for fold in items(entry["folds"], "folds")]
         folds = tuple((integer(i), integer(j)) for i, j in ends)
-        cone = None if entry["cone"] is None else natural(entry["cone"], "a vertex")
+        cones = tuple(natural(v, "a vertex") for v in items(entry["cones"], "cones"))
         numbers = natural(entry["number"], "number"), natural(entry["extending"], "extending")
-        yield (folds, natural(entry["dimension"], "dimension"), cone), numbers
+        yield (folds, natural(entry["dimension"], "dimension"), cones), numbers
+
+
+def _check_component(spaces: Spaces, leaf: Leaf) -> None:
+    """Refuse a leaf with several forms of one part that are not shown to be one component."""
+    for part in spaces.parts(leaf.basis):
+        cones = _cones(part, leaf)
+        shown = len(cones) < 2 or cone_motion(spaces, part, cones) is not None
+        require(shown, f"the forms of vertices {', '.join(map(str, cones))} stay")
+
+
+def _cones(part: list[Motion], leaf: Leaf) -> list[int]:
+    """The vertices of a part whose forms are left."""
+    active = {v for fold in folds_of(part) for v in fold}
+    return [v for v in leaf.cones if v in active]
 
 
 def extends(spaces: Spaces, leaf: Leaf) -> bool:
@@ -84,20 +100,20 @@ def extends(spaces: Spaces, leaf: Leaf) -> bool:
     parameter, at whose vertices two or four folds are active, is a mode, which folds if its loops
     close.
     """
-    return all(_folds(spaces, part, leaf.cone) for part in spaces.parts(leaf.basis))
+    return all(_folds(spaces, part, _cones(part, leaf)) for part in spaces.parts(leaf.basis))
 
 
-def _folds(spaces: Spaces, part: list[Motion], cone: int | None) -> bool:
+def _folds(spaces: Spaces, part: list[Motion], cones: list[int]) -> bool:
     folds = set(folds_of(part))
     near = {v: [u for u in around if pair(v, u) in folds] for v, around in spaces.near.items()}
     near = {v: around for v, around in near.items() if around}
     if len(near) == 1 and len(part) == len(folds) - 2:
         return True
     inner = Spaces(spaces.sheet, near, spaces.work)
-    point = _point(inner, part, cone if cone in near else None)
+    point = cone_motion(inner, part, cones) if cones else enclosed(_sum(inner, part))
     if point is not None and _independent(inner, point):
         return True
-    if cone in near:
+    if cones:
         return False
     if len(part) != 1 or any(len(around) > 4 for around in near.values()):
         return False
@@ -128,52 +144,53 @@ def _agrees(modes: Modes, support: Support, row: dict[int, int], motion: Motion)
 def complete(spaces: Spaces, leaves: list[Leaf]) -> bool:
     """Whether true motions are shown to be no more than the leaves that extend.
 
-    So it is for one vertex alone, and where each leaf is a line at which the derivatives of all
-    forms leave, in the space of first-order motions, that line alone.
+    So it is for one vertex alone; where each leaf is a line at which the derivatives of all forms
+    leave, in the space of first-order motions, that line alone; and where all first-order motions
+    are one leaf, with the form of every vertex that has one, and their conditions are independent.
     """
-    return len(spaces.near) == 1 or all(_regular(spaces, leaf) for leaf in leaves)
+    if len(spaces.near) == 1 or all(_regular(spaces, leaf) for leaf in leaves):
+        return True
+    whole = [leaf for leaf in leaves if len(leaf.basis) == len(spaces.first_order)]
+    full = [v for v, around in spaces.near.items() if len(around) > 2]
+    return bool(whole) and sorted(whole[0].cones) == sorted(full) and _all_count(spaces)
+
+
+def _all_count(spaces: Spaces) -> bool:
+    """Whether the conditions of first order are independent.
+
+    They are two for each vertex, and one for a straight pair, which has no form.
+    """
+    folds = {pair(v, u) for v, around in spaces.near.items() for u in around}
+    full = [v for v, around in spaces.near.items() if len(around) > 2]
+    return len(spaces.first_order) == len(folds) - len(spaces.near) - len(full)
 
 
 def _regular(spaces: Spaces, leaf: Leaf) -> bool:
     if len(leaf.basis) != 1:
         return False
-    return _rank(spaces, leaf.basis[0]) >= len(spaces.first_order) - 1
+    return _rank(spaces, enclosed(leaf.basis[0])) >= len(spaces.first_order) - 1
 
 
-def _point(spaces: Spaces, part: list[Motion], cone: int | None) -> Motion | None:
-    """A motion of a part; for a cone one with K = 0 on a line through it that K changes sign on."""
-    start: Motion = {}
+def _sum(spaces: Spaces, part: list[Motion]) -> Motion:
+    """A motion of a part: once the first of its basis, twice the second, and so on."""
+    found: Motion = {}
     for weight, motion in enumerate(part, 1):
-        start = spaces.plus(start, spaces.sheet.tower.number(weight), motion)
-    if cone is None:
-        return start
-    first = spaces.form(cone, start, start)
-    for motion in part:
-        last = spaces.form(cone, motion, motion)
-        if first.sign() * last.sign() < 0:
-            middle = spaces.form(cone, start, motion)
-            _, root = tower_of(part).adjoined(middle * middle - first * last)
-            return spaces.plus(start, (root - middle) / last, motion)
-    return None
+        found = spaces.plus(found, spaces.sheet.tower.number(weight), motion)
+    return found
 
 
-def _independent(spaces: Spaces, point: Motion) -> bool:
-    """Whether the conditions of first order are independent, and all forms at a motion.
-
-    Those of first order are two for each vertex, and one for a straight pair, which has no form.
-    """
-    folds = {pair(v, u) for v, around in spaces.near.items() for u in around}
+def _independent(spaces: Spaces, point: Place) -> bool:
+    """Whether the conditions of first order are independent, and all forms at a motion."""
     full = [v for v, around in spaces.near.items() if len(around) > 2]
-    if len(spaces.first_order) != len(folds) - len(spaces.near) - len(full):
+    if not _all_count(spaces):
         return False
     if any(len(spaces.near[v]) < 4 for v in full):
         return False
     return _rank(spaces, point) == len(full)
 
 
-def _rank(spaces: Spaces, point: Motion) -> int:
+def _rank(spaces: Spaces, place: Place) -> int:
     """A lower bound of the rank of the derivatives of all forms at a point, by intervals."""
-    place = enclosed(point)
     basis = [enclosed(motion) for motion in spaces.first_order]
     rows = []
     for v in spaces.near:

@@ -2,7 +2,8 @@
 
 A space of first-order motions is given by a basis; a basis vector holds its densities by fold. On a
 space a form that is semidefinite leaves its kernel, a form of inertia (1, 1) two spaces, and one
-of inertia (1, q) with q > 1, left alone, a cone that spans the space (docs/panels.md, 5).
+of inertia (1, q) with q > 1, left alone, a cone that spans the space (docs/panels.md, 5). Where
+several are left, `panel_cones` is to show that they are one component.
 """
 
 from __future__ import annotations
@@ -28,15 +29,15 @@ Squares = list[tuple[Number, list[Number]]]
 
 @dataclass
 class Leaf:
-    """A space on which all forms vanish, or where that of the vertex `cone` does not."""
+    """A space on which all forms vanish but those of the vertices `cones`."""
 
     basis: Space
-    cone: int | None
+    cones: tuple[int, ...]
 
     @property
     def dimension(self) -> int:
-        """Of the motions."""
-        return len(self.basis) - (self.cone is not None)
+        """Of the motions, if they are one component, which is to be shown of several forms."""
+        return len(self.basis) - len(self.cones)
 
     @property
     def folds(self) -> tuple[Edge, ...]:
@@ -90,7 +91,7 @@ class Spaces:
         for v, around in self.near.items():
             for axis in (0, 1):
                 weights = {pair(v, u): self.sheet.vector(v, u)[axis] for u in around}
-                space = self._vanishing(space, [[self._value(weights, m) for m in space]])
+                space = self.vanishing(space, [[self._value(weights, m) for m in space]])
         return space
 
     def _value(self, weights: Mapping[Edge, Number], motion: Motion) -> Number:
@@ -100,7 +101,7 @@ class Spaces:
             total = total + weights[fold] * motion[fold]
         return total
 
-    def _vanishing(self, space: Space, rows: Sequence[Sequence[Number]]) -> Space:
+    def vanishing(self, space: Space, rows: Sequence[Sequence[Number]]) -> Space:
         """Where linear functions are 0 that have these values on the basis."""
         todo = [list(row) for row in rows]
         for n, row in enumerate(todo):
@@ -136,7 +137,7 @@ class Spaces:
 
     def _leaves(self, space: Space) -> list[Leaf]:
         """The leaves of a space: sums of those of its parts that share no fold."""
-        total = [Leaf([], None)]
+        total = [Leaf([], ())]
         for part in self.parts(space):
             leaves = self._maximal(self._split(part))
             number = len(total) * len(leaves)
@@ -147,14 +148,13 @@ class Spaces:
     def _maximal(self, found: list[Leaf]) -> list[Leaf]:
         """The leaves that are in no other; what is in the space of one is in the leaf as well."""
         kept: list[Leaf] = []
-        for leaf in sorted(found, key=lambda leaf: (-len(leaf.basis), leaf.cone is not None)):
+        for leaf in sorted(found, key=lambda leaf: (-len(leaf.basis), len(leaf.cones))):
             if not any(inside(leaf.basis, other.basis) for other in kept):
                 kept.append(leaf)
         return kept
 
     def _sum(self, a: Leaf, b: Leaf) -> Leaf:
-        require(a.cone is None or b.cone is None, f"the forms of vertices {a.cone}, {b.cone} stay")
-        return Leaf([*a.basis, *b.basis], b.cone if a.cone is None else a.cone)
+        return Leaf([*a.basis, *b.basis], tuple(sorted(a.cones + b.cones)))
 
     def parts(self, space: Space) -> list[Space]:
         """The space as a direct sum: one part for each set of folds joined by vertices.
@@ -186,26 +186,25 @@ class Spaces:
         products: list[Squares] = []
         left: list[int] = []
         for v in sorted({v for fold in folds_of(space) for v in fold if v in self.near}):
-            squares = self._squares(v, space)
+            squares = self.squares(v, space)
             signs = [d.sign() for d, _ in squares]
             if signs and abs(sum(signs)) == len(signs):
-                return self._leaves(self._vanishing(space, [values for _, values in squares]))
+                return self._leaves(self.vanishing(space, [values for _, values in squares]))
             if len(signs) == 2:
                 products.append(squares)
             elif signs:
                 left.append(v)
         if not products:
-            require(len(left) < 2, f"the forms of vertices {', '.join(map(str, left))} stay")
-            return [Leaf(space, left[0] if left else None)]
+            return [Leaf(space, tuple(left))]
         found = []
         for values in self._factors(products, space):
-            found += self._leaves(self._vanishing(space, [values]))
+            found += self._leaves(self.vanishing(space, [values]))
             require(
                 len(found) <= MOST_LEAVES, f"there are more than {MOST_LEAVES} spaces of motions"
             )
         return found
 
-    def _squares(self, v: int, space: Space) -> Squares:
+    def squares(self, v: int, space: Space) -> Squares:
         """The form of a vertex as sum d_k l_k^2, with the values of the l_k on the basis."""
         gradients = [self.gradient(v, motion, lambda x: x) for motion in space]
         work = [[self._value(weights, motion) for motion in space] for weights in gradients]

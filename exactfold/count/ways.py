@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from dataclasses import replace
+from functools import partial
 from os import PathLike
 from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
@@ -20,6 +21,8 @@ from exactfold.pattern.opening import Opened, from_drawing, has_branches, open_p
 from exactfold.progress import Progress
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from exactfold.branches.result import BranchCount
     from exactfold.drawing.drawing import Snap
     from exactfold.modes.result import Decomposition
@@ -47,7 +50,8 @@ def count_ways(
     A triangulated sheet with four boundary vertices (D = 1), with three, or with one interior
     vertex has branches: `count_branches`. Every other sheet has motions of rigid panels:
     `decompose`. Files of all formats are read (`open_pattern`), drawings repaired and made exact;
-    `number`, from 1, chooses among the sheets of a drawing with several.
+    `number`, from 1, chooses among the sheets of a drawing with several. Where loops nearly close,
+    the sheet is read again with other values of `snap`, and the first that closes each is named.
 
     Raises the errors of `open_pattern` and `count_branches`.
 
@@ -74,7 +78,23 @@ def count_opened(
     from exactfold.modes.decomposition import decompose  # here, as branches do without
 
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
-    return replace(decompose(pattern, progress=progress), read=opened.read)
+    ways = replace(decompose(pattern, progress=progress), read=opened.read)
+    if not ways.near_misses or opened.again is None:
+        return ways
+    from exactfold.modes.near_misses import snapped_misses
+
+    misses = snapped_misses(ways.near_misses, pattern, partial(_reopened, opened.again))
+    return replace(ways, near_misses=misses)
+
+
+def _reopened(again: Callable[[Snap], Opened], snap: Snap) -> tuple[PanelPattern, float]:
+    """A sheet as it is read with another snap, and the largest move by the size."""
+    found = again(snap)
+    sheet = panels(found.sheet) if isinstance(found.sheet, CreasePattern) else found.sheet
+    if not found.snapped:
+        return sheet, found.largest_move
+    size = max(float(max(c) - min(c)) for c in zip(*sheet.vertices, strict=True))
+    return sheet, float(found.snapped) / size
 
 
 def open_sheet(sheet: Sheet, snap: Snap | None = None, number: int | None = None) -> Opened:

@@ -87,20 +87,19 @@ def _pattern(pattern: PanelPattern) -> Document:
 
 
 def _spaces(part: Part) -> Document:
-    """The leaves of a part by their folds, dimension and cone, and how many of each kind fold."""
-    kinds: dict[tuple[tuple[Edge, ...], int, int | None], list[bool]] = {}
+    """The leaves of a part by their folds, dimension and cones, and how many of each kind fold."""
+    kinds: dict[tuple[tuple[Edge, ...], int, tuple[int, ...]], list[bool]] = {}
     for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True):
-        cone = leaf.vertices[0] if leaf.vertices else None
-        kinds.setdefault((leaf.folds, leaf.dimension or 0, cone), []).append(folds)
+        kinds.setdefault((leaf.folds, leaf.dimension, leaf.vertices), []).append(folds)
     leaves = [
         {
             "folds": _pairs(folds),
             "dimension": dimension,
-            "cone": cone,
+            "cones": list(cones),
             "number": len(each),
             "extending": sum(each),
         }
-        for (folds, dimension, cone), each in kinds.items()
+        for (folds, dimension, cones), each in kinds.items()
     ]
     complete = part.true is not None
     return {"vertices": list(part.vertices), "complete": complete, "leaves": leaves}

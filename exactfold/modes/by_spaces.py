@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from exactfold.errors import TooManyModesError
+from exactfold.modes.cones import cone_motion, is_one_family
 from exactfold.modes.extension import extension
 from exactfold.modes.found import FoundComponent, found_components
 from exactfold.modes.kernel import Rows, entry, first_order, number
 from exactfold.modes.local import LocalMode
 from exactfold.modes.regular import (
     Forms,
-    cone_point,
     in_balls,
     is_component,
     point,
@@ -35,8 +35,9 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
     """The motions of a part with vertices of any degree: linear spaces, and which of them fold.
 
     The dimension of the first-order motions is exact. Where the part is not decomposed, because
-    several forms are left, the spaces are too many or that dimension is too large, the result has
-    the components that were found and the folds that stay flat to second order.
+    several forms are left that are not shown to be one component, the spaces are too many or that
+    dimension is too large, the result has the components that were found and the folds that stay
+    flat to second order.
     """
     rows, size = first_order(moving)
     small, left = reduced(moving, rows, size, MOST_REDUCTION)
@@ -51,7 +52,7 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
             f"{MOST_DIMENSION}"
         )
         found, ended = _found(pattern, moving, small, left)
-        if not ended or any(len(one.leaf.vertices) > 1 for one in found):
+        if not ended:
             return _partial(moving, size, small, found, reason)
     try:
         most = MOST_STEPS if found is None else MOST_STEPS_BEYOND
@@ -81,11 +82,7 @@ def _complete(
     spaces = leaves(moving, small, left, most)
     counts: dict[int, int] = {}
     for leaf in spaces:
-        if leaf.dimension is None:
-            raise TooManyModesError(
-                f"in a space of dimension {leaf.size} the conditions of vertices "
-                f"{', '.join(map(str, leaf.vertices))} are left, and are not solved yet"
-            )
+        _check_component(moving, leaf)
         counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
     still = _still(moving, (edge for leaf in spaces for edge in leaf.rows))
     if not counts:
@@ -93,6 +90,8 @@ def _complete(
     ordered = dict(sorted(counts.items()))
     folding = [_extends(pattern, moving, leaf) for leaf in spaces]
     alone = len(moving) == 1 or all(_is_regular(moving, rows, size, leaf) for leaf in spaces)
+    if len(spaces) == 1:
+        alone = alone or is_one_family(moving, size, spaces[0].size, spaces[0].vertices)
     known = all(folding) and alone
     if all(folding):
         found = []
@@ -110,6 +109,17 @@ def _complete(
         still=still,
         reason=_open(known, all(folding)),
     )
+
+
+def _check_component(moving: Mapping[int, Star], leaf: Leaf) -> None:
+    """Raise `TooManyModesError` unless the motions of a leaf are shown to be one component."""
+    for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
+        cones = [v for v in leaf.vertices if set(moving[v].folds) & set(rows)]
+        if len(cones) > 1 and cone_motion(moving, rows, size, cones) is None:
+            raise TooManyModesError(
+                f"in a space of dimension {size} the conditions of vertices "
+                f"{', '.join(map(str, cones))} are left, and are not solved yet"
+            )
 
 
 def _open(known: bool, fold: bool) -> str:
@@ -155,7 +165,7 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
 
     One vertex alone has true motions near the flat state as its motions to second order, by Morse's
     lemma. A part extends if all its conditions are independent at one of its points (`truly_folds`;
-    for a cone at a point where its form vanishes), or if it is a mode that does. Other folds are
+    for cones at a point where their forms vanish), or if it is a mode that does. Other folds are
     held flat, so this can prove that a space extends and never that it does not: a motion might use
     them at a higher order.
     """
@@ -164,9 +174,7 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
         if len(active) == 1 and size == len(rows) - 2:
             continue
         cones = [v for v in active if v in leaf.vertices]
-        if len(cones) > 1:
-            return False
-        w = cone_point(moving[cones[0]], rows, size) if cones else point(rows, size)
+        w = cone_motion(moving, rows, size, cones) if cones else point(rows, size)
         if w is not None and truly_folds(moving, w):
             continue
         if cones:

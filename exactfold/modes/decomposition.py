@@ -80,7 +80,7 @@ def decompose(
         modes=tuple(mode for part in found for mode in part.modes),
         modes_count=_modes_count(found),
         parts=tuple(found),
-        near_misses={edge: x for part in found for edge, x in part.near_misses.items()},
+        near_misses=tuple(miss for part in found for miss in part.near_misses),
         held=tuple(sorted(held)),
         still=tuple(sorted(edge for part in found for edge in part.still)),
         seconds=time.perf_counter() - start,
@@ -176,7 +176,7 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
         components(extending, 0) if decided else None,
         supports=tuple(supports),
         modes=tuple(modes),
-        near_misses=search.near_misses,
+        near_misses=tuple(search.near_misses.values()),
         reason="" if decided else "for some modes it is not known whether they truly fold",
     )
 

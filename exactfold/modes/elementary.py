@@ -11,6 +11,7 @@ from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import SurdField
 from exactfold.modes.densities import Density, Roots
 from exactfold.modes.local import LocalMode, local_modes
+from exactfold.modes.near_misses import NEAR, NearMiss, near_miss
 from exactfold.modes.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 from exactfold.wording import counted
@@ -19,7 +20,6 @@ Choice: TypeAlias = "tuple[LocalMode, Choice] | None"
 Known: TypeAlias = "Mapping[Edge, Density | None]"
 """Folds that lead to vertices without a local mode yet: their density, None if they are flat."""
 
-_NEAR: Final = 1e-6
 _MOST_STATES: Final = 20_000
 """Most states that are carried along at once before a search is given up."""
 _MOST_STEPS: Final = 60_000
@@ -77,15 +77,14 @@ class ModeSearch:
     folds known, so that what is forced is done first and loops close early. States that agree are
     one from then on, with their numbers added: modes are counted without being listed. Floats only
     propose which states agree; every comparison of densities is exact. `near_misses` holds folds
-    where a loop closed to within 1e-6 and not exactly, with the quotient of the two densities: the
-    drawing may be rounded.
+    where a loop closed to within 1e-6 and not exactly: the drawing may be rounded.
     """
 
     def __init__(self, stars: Mapping[int, Star], ground: SurdField) -> None:
         self.roots = Roots(ground)
         self.stars = stars
         self.modes = {v: local_modes(star) for v, star in stars.items()}
-        self.near_misses: dict[Edge, float] = {}
+        self.near_misses: dict[Edge, NearMiss] = {}
         self._bit = {v: 1 << k for k, v in enumerate(sorted(stars))}
         self._gains: dict[tuple[int, int, Edge, Edge], Density] = {}
         self._steps = 0
@@ -188,8 +187,9 @@ class ModeSearch:
                 continue
             ratio = densities[edge].over(density)
             if not ratio.is_one():
-                if abs(ratio.approx - 1) < _NEAR:
-                    self.near_misses.setdefault(edge, ratio.approx)
+                if abs(ratio.approx - 1) < NEAR and edge not in self.near_misses:
+                    chosen = _chosen(state.choice)
+                    self.near_misses[edge] = near_miss(chosen, mode, root, edge, ratio)
                 return None
         assigned = state.assigned | self._bit[mode.vertex]
         star = self.stars[mode.vertex].folds

@@ -16,7 +16,7 @@ from exactfold.modes.stars import Star, bracket
 from exactfold.modes.subspaces import Leaf
 from exactfold.pattern.panel_pattern import Edge
 
-_BITS: Final = 128
+BITS: Final = 128
 _RADIUS: Final = Fraction(1, 10**9)
 
 Balls: TypeAlias = Mapping[Edge, Any]
@@ -38,7 +38,7 @@ class Forms:
             star = self.stars[v]
             pairs = list(zip(star.folds, star.directions, strict=True))
             self._brackets[v] = [
-                (e, f, ball(bracket(d, c), _BITS))
+                (e, f, ball(bracket(d, c), BITS))
                 for k, (f, c) in enumerate(pairs)
                 for e, d in pairs[:k]
             ]
@@ -75,44 +75,18 @@ class Forms:
 def in_balls(rows: Mapping[Edge, Sequence[Any]]) -> BallRows:
     """The rows of a space, enclosed."""
     return {
-        edge: [(k, ball(x, _BITS)) for k, x in enumerate(row) if x] for edge, row in rows.items()
+        edge: [(k, ball(x, BITS)) for k, x in enumerate(row) if x] for edge, row in rows.items()
     }
 
 
 def point(rows: Mapping[Edge, Sequence[Any]], size: int) -> Balls:
     """A motion of a space, enclosed: the one with the parameters 1, 2, 3, ..."""
     before = ctx.prec
-    ctx.prec = _BITS
+    ctx.prec = BITS
     try:
         return _motion(in_balls(rows), [arb(k + 1) for k in range(size)])
     finally:
         ctx.prec = before
-
-
-def cone_point(star: Star, rows: Mapping[Edge, Sequence[Any]], size: int) -> Balls | None:
-    """A motion of a space where the form of a vertex vanishes, enclosed; None if none is seen.
-
-    It is taken on a line from the motion with the parameters 1, 2, 3, ... along one parameter, if
-    the form has one sign there and the other in the direction of the line.
-    """
-    before = ctx.prec
-    ctx.prec = _BITS
-    try:
-        forms, inner = Forms({star.vertex: star}), in_balls(rows)
-        start = _motion(inner, [arb(k + 1) for k in range(size)])
-        gradient = forms.gradient(star.vertex, start)
-        first = forms.value(star.vertex, start)
-        for chosen in range(size):
-            along = _motion(inner, [arb(int(k == chosen)) for k in range(size)])
-            last = forms.value(star.vertex, along)
-            if not first * last < 0:
-                continue
-            middle = sum((x * along[e] for e, x in gradient.items() if e in along), arb(0)) / 2
-            step = ((middle * middle - first * last).sqrt() - middle) / last
-            return {e: x + step * along.get(e, arb(0)) for e, x in start.items()}
-    finally:
-        ctx.prec = before
-    return None
 
 
 def parameter_folds(rows: Mapping[Edge, Sequence[Any]], size: int) -> list[Edge]:
@@ -134,7 +108,7 @@ def regular_point(forms: Forms, leaf: Leaf, near: Mapping[Edge, float]) -> Balls
     with no forms left consists of such points. None if this is not shown.
     """
     before = ctx.prec
-    ctx.prec = _BITS
+    ctx.prec = BITS
     try:
         rows = in_balls(leaf.rows)
         start = [arb(near[edge]) for edge in parameter_folds(leaf.rows, leaf.size)]
@@ -188,7 +162,7 @@ def rank_at_least(matrix: Sequence[Sequence[Any]], wanted: int) -> bool:
     if np.linalg.matrix_rank(square) < wanted:
         return False
     before = ctx.prec
-    ctx.prec = _BITS
+    ctx.prec = BITS
     try:
         # |1 - Y M| < 1 in the norm of row sums shows that M is not singular
         minor = arb_mat([[matrix[int(i)][int(j)] for j in columns] for i in rows])
@@ -209,7 +183,7 @@ def is_component(forms: Forms, rows: BallRows, size: int, w: Balls, dimension: i
     (docs/panels.md, 6).
     """
     before = ctx.prec
-    ctx.prec = _BITS
+    ctx.prec = BITS
     try:
         derivatives = forms.derivatives(forms.stars, w, rows, size)
     finally:
@@ -232,7 +206,7 @@ def truly_folds(stars: Mapping[int, Star], w: Balls) -> bool:
     if any(len(active[v].folds) < 4 for v in full):
         return False
     before = ctx.prec
-    ctx.prec = _BITS
+    ctx.prec = BITS
     try:
         found = Forms(active).derivatives(full, w, in_balls(rows), size)
     finally:
@@ -245,13 +219,13 @@ def outside(w: Balls, leaf: Leaf) -> bool:
     if any(edge not in leaf.rows and not x.contains(0) for edge, x in w.items()):
         return True
     before = ctx.prec
-    ctx.prec = _BITS
+    ctx.prec = BITS
     try:
         folds = parameter_folds(leaf.rows, leaf.size)
         parameters = [w.get(edge, arb(0)) for edge in folds]
         for edge, row in leaf.rows.items():
             here = sum(
-                (ball(x, _BITS) * a for x, a in zip(row, parameters, strict=True) if x), arb(0)
+                (ball(x, BITS) * a for x, a in zip(row, parameters, strict=True) if x), arb(0)
             )
             if not (w.get(edge, arb(0)) - here).contains(0):
                 return True

@@ -11,6 +11,7 @@ from exactfold.modes.elementary import Support
 from exactfold.modes.extension import Extension
 from exactfold.modes.found import FoundComponent
 from exactfold.modes.local import LocalMode
+from exactfold.modes.near_misses import NearMiss
 from exactfold.modes.subspaces import Leaf
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
@@ -58,7 +59,8 @@ class Decomposition:
     four folds, else "subspaces". Where `second_order` is None, `found` is {dimension: number} of
     components that were found and proved, so that there are at least so many. `found_true` is the
     same for those that are known to fold truly, where `true` is None. `still` are folds that are
-    flat in every motion to second order, beside those in `flat`.
+    flat in every motion to second order, beside those in `flat`. `near_misses` are loops that
+    nearly close.
     """
 
     pattern: PanelPattern
@@ -73,7 +75,7 @@ class Decomposition:
     modes_count: int | None = None
     reason: str = ""
     parts: tuple[Part, ...] = ()
-    near_misses: Mapping[Edge, float] = field(default_factory=dict)
+    near_misses: tuple[NearMiss, ...] = ()
     held: tuple[Edge, ...] = ()
     read: Mapping[str, Any] | None = None
     found: Counts | None = None
@@ -116,9 +118,7 @@ class Decomposition:
             "flat_folds": [f"{i}-{j}" for i, j in self.flat],
             "still_folds": [f"{i}-{j}" for i, j in self.still],
             "free_folds": [f"{i}-{j}" for i, j in self.free],
-            "near_misses": [
-                {"fold": f"{i}-{j}", "quotient": x} for (i, j), x in self.near_misses.items()
-            ],
+            "near_misses": [miss.to_dict() for miss in self.near_misses],
             "read": None if self.read is None else dict(self.read),
         }
 
@@ -134,11 +134,8 @@ class Decomposition:
         """What to know of the drawing before the result is read: a loop that nearly closes."""
         if not self.near_misses:
             return None
-        (i, j), quotient = next(iter(self.near_misses.items()))
-        return (
-            f"a loop of folds nearly closes at {i}-{j}, off by {abs(quotient - 1):.1e}: the "
-            "drawing may be rounded (try --snap auto)"
-        )
+        more = len(self.near_misses) - 1
+        return self.near_misses[0].text + (f"; {more} more with --json" if more else "")
 
     def __repr__(self) -> str:
         counts = "" if self.second_order is None else f", {dict(self.second_order)}"
@@ -164,7 +161,7 @@ class Part:
     spaces_fold: tuple[bool, ...] = ()
     modes: tuple[Mode, ...] = ()
     dimension: int | None = None
-    near_misses: Mapping[Edge, float] = field(default_factory=dict)
+    near_misses: tuple[NearMiss, ...] = ()
     reason: str = ""
     found: tuple[FoundComponent, ...] = ()
     still: tuple[Edge, ...] = ()
@@ -182,7 +179,7 @@ class Part:
         if self.true is not None:
             return self.true
         shown = zip(self.spaces, self.spaces_fold, strict=True)
-        known = _counted(leaf.dimension or 0 for leaf, folds in shown if folds)
+        known = _counted(leaf.dimension for leaf, folds in shown if folds)
         found = _by_dimension(one for one in self.found if one.folds)
         return {d: max(known.get(d, 0), found.get(d, 0)) for d in {**known, **found}} or None
 

@@ -30,8 +30,8 @@ class Leaf:
 
     `rows` gives each active fold's density as a linear function of `size` parameters. `vertices`
     are those whose form does not vanish on the space; all of these forms have one sign once and the
-    other at least twice. `dimension` is that of the real solutions: `size` if no form is left,
-    `size - 1` for one form, None if there are more.
+    other at least twice. `dimension` is that of the real solutions, if they are one component: with
+    two forms or more that is to be shown (`cones`).
     """
 
     rows: Mapping[Edge, tuple[Number, ...]]
@@ -43,9 +43,9 @@ class Leaf:
         return f"<Leaf: {counted(len(self.rows), 'fold')}, dimension {self.size}{left}>"
 
     @property
-    def dimension(self) -> int | None:
-        """The dimension, None where several forms are left."""
-        return {0: self.size, 1: self.size - 1}.get(len(self.vertices))
+    def dimension(self) -> int:
+        """One less than that of the space for each form."""
+        return self.size - len(self.vertices)
 
     @property
     def folds(self) -> tuple[Edge, ...]:

@@ -2,6 +2,10 @@ from exactfold.motion.angles import fold_angles_of as fold_angles_of
 from exactfold.motion.contacts import FirstContact as FirstContact
 from exactfold.motion.contacts import first_contact as first_contact
 from exactfold.motion.events import Event as Event
+from exactfold.motion.followable import PanelComponent as PanelComponent
+from exactfold.motion.followable import PanelMode as PanelMode
+from exactfold.motion.followable import panel_components as panel_components
+from exactfold.motion.followable import panel_modes as panel_modes
 from exactfold.motion.following import follow as follow
 from exactfold.motion.framework import Framework as Framework
 from exactfold.motion.half_branches import HalfBranch as HalfBranch
@@ -10,6 +14,8 @@ from exactfold.motion.loops import LoopProof as LoopProof
 from exactfold.motion.matching import Loops as Loops
 from exactfold.motion.matching import find_loops as find_loops
 from exactfold.motion.motion import Motion as Motion
+from exactfold.motion.panel_following import follow_panels as follow_panels
+from exactfold.motion.panel_motion import PanelMotion as PanelMotion
 from exactfold.motion.piece import Ball as Ball
 from exactfold.motion.start import Start as Start
 from exactfold.motion.tracks import Frame as Frame

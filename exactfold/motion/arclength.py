@@ -14,6 +14,7 @@ from exactfold.motion.length_equations import Row, squared
 _DEGREE = 10
 _COMMON = lcm(*range(1, _DEGREE + 2))
 _ROUND = 80
+_CLOSE = 24
 Interval = tuple[Fraction, Fraction]
 
 
@@ -69,7 +70,8 @@ def length_between(
     least = 2 * root[0] - largest(root)
     off = isqrt(sum(r * r for r in error)) + 1 if any(error) else 0
     span = Fraction(high - low, 1 << places)
-    if 2 * least < root[0] and depth:  # the speed changes much: both halves from their middles
+    poor = 2 * least < root[0] or -(-largest(misfit) // least) > root[0] >> _CLOSE
+    if poor and depth:  # the speed changes much: both halves from their middles
         total = [Fraction(0), Fraction(0)]
         middle = (low + high) // 2
         for begin, end in ((low, middle), (middle, high)):

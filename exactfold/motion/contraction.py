@@ -206,15 +206,20 @@ def contraction(
     quadratic = [
         norm(_above(size[:, :-1], square), INVERSE_BITS + 2 * WEIGHT_BITS) for square in squares
     ]
-    spare = max(_WORD - _largest(p).bit_length() - n.bit_length(), _SHORTEST)
+    # Residuals likewise: floor instead of the nearest, and P to _COARSE bits less.
+    spare = max(_WORD - _largest(coarse).bit_length() - n.bit_length(), _SHORTEST)
     shifts = [max(0, max(map(int.bit_length, g)) - spare) for g in residuals]
     short = [[x >> shift for x in g] for g, shift in zip(residuals, shifts, strict=True)]
-    images = np.asarray(abs(_dot(p, np.array(short, dtype=object).T))).T.tolist()
+    images = np.asarray(abs(_dot(coarse, np.array(short, dtype=object).T))).T.tolist()
     rest = _above(size, [1] * n)
     residual = []
-    for image, shift in zip(images, shifts, strict=True):
-        bounds = [(x + (y if shift else 0)) << shift for x, y in zip(image, rest, strict=True)]
-        residual.append(norm(bounds, INVERSE_BITS + residual_bits))
+    for image, g, shift in zip(images, short, shifts, strict=True):
+        spread = sum(map(abs, g))
+        bounds = [
+            (((2 * x + spread) << _COARSE) + (2 * y if shift else 0)) << shift
+            for x, y in zip(image, rest, strict=True)
+        ]
+        residual.append(norm(bounds, INVERSE_BITS + residual_bits + 1))
     return Contraction(tuple(residual), tuple(slope), tuple(quadratic))
 
 

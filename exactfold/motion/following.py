@@ -33,6 +33,8 @@ from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 
 _MOST_PIECES = 20_000
+_AT_ONCE = 1e-9
+"""Events that are closer than this, in parts of the whole, happen at one time."""
 
 
 def follow(
@@ -87,7 +89,7 @@ def follow(
         times,
         coords,
         angles_at(problem, curve, times, coords, side),
-        tuple(_named(event, problem, unit) for event in sorted(events, key=lambda e: e.time)),
+        tuple(_named(event, problem, unit) for event in _in_order(events, end)),
         end,
         clock.perf_counter() - began,
     )
@@ -157,26 +159,26 @@ def _followed(
             stop: tuple[float, str] | None = None
             if limit is not None and piece.time + piece.length >= limit:
                 stop = piece.parameter(limit - piece.time), LENGTH
-            for parameter, event in watch.events(piece):
-                if stop is not None and stop[1] == LENGTH and parameter > stop[0]:
-                    break
-                events.append(event)
-                if event.kind in goal.kinds:
-                    stop = parameter, event.kind
-                    break
-            if stop is not None and stop[1] == RETURN:
+            found = watch.events(piece)
+            last = None
+            if any(event.kind == RETURN for _, event in found):
                 last = landing(framework, piece)
                 if last is None:  # the flat sheet is close, but out of reach of its series
-                    events = [event for event in events if event.kind != RETURN]
-                    stop = None
-                else:
-                    piece, stop = last, (last.reach, RETURN)
+                    found = [item for item in found if item[1].kind != RETURN]
+            ending = _first(piece, found, goal)
+            if ending is not None and (stop is None or ending[0] <= stop[0]):
+                stop = ending
+            if stop is not None:
+                found = [item for item in found if item[0] <= stop[0] + _AT_ONCE * piece.reach]
+            events += [event for _, event in found]
+            if last is not None and stop is not None and stop[1] == RETURN:
+                piece, stop = last, (last.reach, RETURN)
             if stop is None:
                 pieces.append(piece)
                 continue
             if stop[1] == NODE:  # found when the next piece begins
                 before = pieces.pop()
-                time = events[-1].time[0]
+                time = next(event.time[0] for event in reversed(events) if event.kind == NODE)
                 pieces.append(before.cut(before.parameter(time - before.time)))
                 events = [event for event in events if event.time[0] <= time]
             elif stop[0] or not pieces:
@@ -191,6 +193,31 @@ def _followed(
     curve = Curve(framework, tuple(pieces))
     events.append(Event(SINGULAR, (curve.duration, curve.duration), detail=reason))
     return curve, events, SINGULAR
+
+
+def _first(piece: Piece, found: list[tuple[float, Event]], goal: Goal) -> tuple[float, str] | None:
+    """The parameter and the kind of the first event that ends a motion.
+
+    A fold that closes brings its faces into contact: of both at once, that is named.
+    """
+    ending = [(parameter, event.kind) for parameter, event in found if event.kind in goal.kinds]
+    at_once = [item for item in ending if item[0] <= ending[0][0] + _AT_ONCE * piece.reach]
+    return min(at_once, key=lambda item: item[1] == CONTACT, default=None)
+
+
+def _in_order(events: list[Event], end: str) -> list[Event]:
+    """Events by time; those at one time, up to rounding, in an order without chance."""
+    events = sorted(events, key=lambda event: event.time)
+    span = max((event.time[1] for event in events), default=0.0)
+    groups: list[list[Event]] = []
+    for event in events:
+        if groups and event.time[0] - groups[-1][-1].time[0] <= _AT_ONCE * span:
+            groups[-1].append(event)
+        else:
+            groups.append([event])
+    for group in groups:
+        group.sort(key=lambda event: (event.kind == end, event.kind, event.folds))
+    return [event for group in groups for event in group]
 
 
 def landing(framework: Framework, piece: Piece) -> Piece | None:

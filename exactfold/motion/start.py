@@ -17,7 +17,7 @@ from exactfold.solve.least_squares import least_squares
 _NEWTON = 30
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Start:
     """The blown-up series at the flat state: d = (t^2 u_x, t^2 u_y, t h) with u, h series in t^2.
 
@@ -76,6 +76,14 @@ class Start:
             whole[2 * k + 1, heights] = row[heights]
             whole[2 * k + 2, ~heights] = row[~heights]
         return whole
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Start):
+            return NotImplemented
+        same = (self.framework, self.held) == (other.framework, other.held)
+        return same and np.array_equal(self.coefficients, other.coefficients)
+
+    __hash__ = None  # type: ignore[assignment]  # arrays have none
 
     def __repr__(self) -> str:
         return f"<Start: order {len(self.coefficients) - 1}, {self.framework!r}>"

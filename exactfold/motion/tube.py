@@ -10,7 +10,7 @@ from math import isqrt
 
 import numpy as np
 
-from exactfold.arrays import FloatArray
+from exactfold.arrays import FloatArray, IndexArray
 from exactfold.motion.arclength import Interval, length_between, parameter_after
 from exactfold.motion.contraction import (
     SCALE,
@@ -95,6 +95,20 @@ class Tube(Piece):
         """A bound of |x'(s)| over the whole reach, over 2^bits."""
         error = self.velocity(self.longest).radii
         return isqrt(sum((v + r) ** 2 for v, r in zip(self._speeds, error, strict=True))) + 1
+
+    def candidates(self, points: FloatArray) -> IndexArray:
+        """Which of many points, shape (points, unknowns), `located` may find here: by floats.
+
+        A proposal, to be proved by `located`: other points lie outside but for rounding errors.
+        """
+        curve = np.array([self._floats(row) for row in self.coefficients])
+        row = np.array([t / (1 << ROW_BITS) for t in self.row])
+        parameters = (points - curve[0]) @ row
+        near = np.flatnonzero(np.abs(parameters) <= self.reach / (1 << REACH_BITS) * (1 + 1e-9))
+        powers = parameters[near, None] ** np.arange(len(curve))
+        gaps = np.abs(points[near] - powers @ curve) * (1 << WEIGHT_BITS) / np.array(self.weights)
+        room = self.uniqueness / (1 << SCALE) * (1 + 1e-9)
+        return np.asarray(near[gaps.max(axis=1, initial=0.0) <= room], dtype=np.intp)
 
     def lies_in(self, ball: Ball) -> bool:
         """Whether the configuration in a box is proved to lie on this tube."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
@@ -56,6 +57,7 @@ class Opened:
     `PanelPattern`. `assignment` holds the letters of the file by edge. `lines` says what was read,
     how coordinates were made exact, and each repair, one sentence each; it is empty for a file
     that needed nothing. `snapped` is the largest move of a coordinate that `snap` asked for.
+    `again` reads the sheet with another `snap`; None for a sheet that was not read.
     """
 
     sheet: CreasePattern | PanelPattern
@@ -64,6 +66,7 @@ class Opened:
     snapped: Fraction = Fraction(0)
     largest_move: float = 0.0
     field_name: str = "Q"
+    again: Callable[[Snap], Opened] | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return f"<Opened: {self.sheet!r}, in {self.field_name}>"
@@ -137,7 +140,9 @@ def opened(
         except (NotJSONError, FoldError, PatternError) as error:
             strict = error
         else:
-            return Opened(file.pattern, file.assignment, _meant(file, name), file.snapped)
+            again = partial(opened, raw, name, number=number)
+            lines = _meant(file, name)
+            return Opened(file.pattern, file.assignment, lines, file.snapped, again=again)
     from exactfold.drawing.read import parse_drawing
 
     try:
@@ -201,7 +206,8 @@ def from_drawing(
     for k, chosen in enumerate(attempts, 1):
         try:
             found = exact_sheets(drawing, snap=rule, merge=merge, steps=chosen)
-            return _chosen(drawing, found, number)
+            again = partial(from_drawing, drawing, number=number, steps=steps, merge=merge)
+            return replace(_chosen(drawing, found, number), again=again)
         except (FoldError, PatternError):
             if k == len(attempts):
                 raise

@@ -50,6 +50,16 @@ function rabbitEar(document) {
     classes: frames.map((frame) => frame.frame_classes),
     isFoldedForm: frames.map((frame) => ear.graph.isFoldedForm(frame)),
     angles: ear.graph.makeEdgesFoldAngleFromFaces(copy(frames[1])),
+    motion: Array.from({ length: ear.graph.countFrames(document) - 1 }, (_, k) => {
+      const frame = ear.graph.flattenFrame(copy(document), k + 1);
+      return {
+        problems: ear.graph.validate(copy(frame)),
+        coords: frame.vertices_coords,
+        edges: frame.edges_vertices.length,
+        letters: frame.edges_assignment.join(""),
+        angles: ear.graph.makeEdgesFoldAngleFromFaces(copy(frame)),
+      };
+    }),
   };
 }
 

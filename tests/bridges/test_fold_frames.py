@@ -15,11 +15,13 @@ from exactfold import (
     export_branch,
     families,
     find_branch,
+    follow,
     random_square,
     write_fold,
 )
 from exactfold.bridges.fold_frames import BRANCH_KEY, HEIGHTS_KEY, branch_document
 from exactfold.errors import UsageError
+from exactfold.motion import write_motion
 from exactfold.pattern import load_fold
 
 READERS = Path(__file__).with_name("fold_readers.mjs")
@@ -241,6 +243,27 @@ def test_fold_and_rabbit_ear_read_flat_folds(tmp_path, readers):
     (programs,) = readers(path)
     _check_fold_library(pattern, branch, read(path), programs["fold"])
     _check_rabbit_ear(pattern, branch, read(path), programs["ear"])
+
+
+@pytest.mark.parametrize("until", ["contact", "return"])
+def test_rabbit_ear_reads_every_frame_of_a_motion(tmp_path, readers, until):
+    pattern = random_square(3, seed=0)
+    motion = follow(find_branch(pattern, "+-+"), until=until, through_nodes=True, frames=12)
+    path = tmp_path / "motion.fold"
+    write_motion(motion, path)
+    document = read(path)
+    (programs,) = readers(path)
+    frames = programs["ear"]["motion"]
+    assert len(frames) == 12
+    for seen, frame, coords in zip(frames, document["file_frames"], motion.coords, strict=True):
+        assert seen["problems"] == []
+        assert seen["edges"] == len(pattern.edges)
+        assert seen["coords"] == coords.tolist()
+        own = frame.get("edges_assignment", document["edges_assignment"])
+        assert seen["letters"] == "".join(own)
+        inner = [letter != "B" for letter in own]
+        turned = np.radians(np.array(seen["angles"]) - frame["edges_foldAngle"])[inner]
+        assert np.cos(turned) == pytest.approx(np.ones(len(turned)), abs=1e-9)
 
 
 def _check_fold_library(pattern, branch, document, seen):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from forge import refused, verified
 from forge_panels import SHEETS, Document, certified, drawn, matched, stopped
-from panel_sheets import grid, outlined
+from panel_sheets import grid, joined_twists, ring_of_fives
 
 from exactfold import checker
 from exactfold.checker import panel_components, panel_loops, panel_modes, panel_sheet, panels
@@ -68,14 +68,9 @@ def test_folds_held_flat() -> None:
 
 
 def test_no_certificate_of_what_is_not_decided() -> None:
-    """Two vertices with six folds that share one: two forms are left."""
-    points = [(0, 0), (9, 0), (3, -5), (6, -5), (12, -4), (14, 0), (12, 4), (6, 5), (3, 5)]
-    points += [(-3, 4), (-5, 0), (-3, -4)]
-    folds = [(0, 1), (0, 2), (0, 8), (0, 9), (0, 10), (0, 11)]
-    folds += [(1, 3), (1, 4), (1, 5), (1, 6), (1, 7)]
-    sheet = outlined([(Fraction(x), Fraction(y)) for x, y in points], folds, 2)
+    """Three vertices with five folds round a panel: their forms are left."""
     with pytest.raises(NotApplicableError, match="the decomposition is undecided"):
-        certificate_of_panels(decompose(sheet))
+        certificate_of_panels(decompose(ring_of_fives()))
 
 
 def test_an_undecided_extension_claims_nothing() -> None:
@@ -477,3 +472,16 @@ def test_matched_changes_facts_only() -> None:
 def test_a_free_fold_is_in_every_component() -> None:
     sheet = grid(2, 2, lambda i, j: (i, j))
     assert verified(certificate_of_panels(decompose(sheet)))["second_order"] == {"1": 2}
+
+
+def test_what_lies_on_no_loop_does_not_say_how_a_mode_extends() -> None:
+    """Two loops joined by folds, with a transmission between them that is not linear."""
+    result = decompose(joined_twists())
+    assert result.true == {1: 6 * 2 * 6}
+    made = certificate_of_panels(result)
+    [support] = supports_of(made)
+    assert (support["by"], support["extending"]) == ("linear", 72)
+    assert verified(made)["true"] == {"1": 72}
+    where = "-".join(map(str, support["vertices"]))
+    support["by"] = "loops"
+    stopped(made, f"the support of vertices {where} extends by linear, not by 'loops'")

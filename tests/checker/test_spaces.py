@@ -11,9 +11,11 @@ from panel_sheets import shifted_columns, tiling
 from test_forged_spaces import certified, cone, leaves_of, sheet, spaces_of, triangle
 
 from exactfold.checker import check, load, panel_reduction, panel_spaces
-from exactfold.checker.panel_leaves import _folds, _independent, _point, _rank, extends
-from exactfold.checker.panel_reduction import Joined, enclosed, inside, reduced, rest_of
-from exactfold.checker.panel_spaces import Leaf, Motion, Spaces
+from exactfold.checker.intervals import Interval
+from exactfold.checker.panel_cones import cone_motion
+from exactfold.checker.panel_leaves import _folds, _independent, _rank, _sum, extends
+from exactfold.checker.panel_reduction import BITS, Joined, enclosed, inside, reduced, rest_of
+from exactfold.checker.panel_spaces import Motion, Spaces
 from exactfold.checker.reading import CertificateError
 from exactfold.checker.towers import Number, Tower
 from exactfold.evidence.panels import _pattern, certificate_of_panels
@@ -60,7 +62,7 @@ def test_what_is_left_where_functions_vanish(seed: int) -> None:
     rows = [[number(rng.randint(-2, 2)) for _ in basis] for _ in range(3)]
     twice = [a + a + b for a, b in zip(rows[0], rows[1], strict=True)]
     todo = [rows[0], [number(0)] * 5, rows[1], twice, rows[2]]
-    left = found._vanishing(basis, todo)
+    left = found.vanishing(basis, todo)
     for motion in left:
         for row in todo:
             terms = (row[k - 1] * x for (_, k), x in motion.items())
@@ -115,16 +117,20 @@ def test_the_point_of_a_cone_is_on_it() -> None:
         found = spaces(pattern)
         for leaf in found.leaves():
             [part] = [part for part in found.parts(leaf.basis) if len(part) > 1]
-            plain, point = _point(found, part, None), _point(found, part, at)
-            assert plain is not None
-            assert point is not None
+            plain, place = _sum(found, part), cone_motion(found, part, [at])
+            assert place is not None
             assert found.form(at, plain, plain).sign() != 0
-            assert found.form(at, point, point).sign() == 0
-            assert inside([point], part)
+            assert inside([plain], part)
+            slopes = found.gradient(at, place, lambda x: x.enclosed(BITS))
+            terms = (slopes[e] * place[e] for e in slopes.keys() & place.keys())
+            value = sum(terms, start=Interval(0, 0, BITS))
+            assert value.low <= 0 <= value.high
+            assert value.high - value.low < 1 << 40  # of 2^256
+            assert any(weight.sign() for weight in slopes.values())
+            rows = reduced(map(enclosed, part))
+            assert not any(x.sign() for x in rest_of(place, rows).values())
             positive = [motion for motion in part if found.form(at, motion, motion).sign() > 0]
-            assert _point(found, positive[:1], at) is None
-            weights = [found.form(at, point, motion).sign() for motion in part]
-            assert any(weights)
+            assert cone_motion(found, positive[:1], [at]) is None  # of rank 1
 
 
 def test_a_cone_beside_a_line() -> None:
@@ -132,8 +138,11 @@ def test_a_cone_beside_a_line() -> None:
     document = certificate_of_panels(result)
     claims = check(load(json.dumps(document)))
     assert claims["second_order"] == {"3": 2}
-    kinds = [(leaf["dimension"], leaf["cone"], len(leaf["folds"])) for leaf in leaves_of(document)]
-    assert sorted(kinds) == [(3, 0, 7), (3, 0, 7)]
+    kinds = [
+        (leaf["dimension"], tuple(leaf["cones"]), len(leaf["folds"]))
+        for leaf in leaves_of(document)
+    ]
+    assert sorted(kinds) == [(3, (0,), 7), (3, (0,), 7)]
 
 
 def test_rigid_parts_have_no_leaves() -> None:
@@ -180,7 +189,13 @@ def test_conditions_that_depend_on_each_other_prove_nothing() -> None:
             for v, around in found.near.items()
         }
         inner = Spaces(found.sheet, {v: around for v, around in near.items() if around})
-        shown.append((_rank(found, motion), _independent(inner, motion), extends(found, leaf)))
+        shown.append(
+            (
+                _rank(found, enclosed(motion)),
+                _independent(inner, enclosed(motion)),
+                extends(found, leaf),
+            )
+        )
     assert sorted(shown)[0][0] < 3 == sorted(shown)[-1][0]
     assert all(folds for *_, folds in shown)
 
@@ -190,8 +205,9 @@ def test_what_is_not_shown_to_fold() -> None:
     found = spaces(cone())
     [leaf] = found.leaves()
     [part] = found.parts(leaf.basis)
-    assert _folds(found, part, leaf.cone)
-    assert not _folds(found, part, 0 if leaf.cone != 0 else 4)  # its form does not vanish
+    assert leaf.cones == (4,)
+    assert _folds(found, part, [4])
+    assert not _folds(found, part, [0])  # its form vanishes, and that of 4 does not
 
 
 def test_conditions_of_first_order_that_depend_on_each_other() -> None:
@@ -202,12 +218,12 @@ def test_conditions_of_first_order_that_depend_on_each_other() -> None:
     folds += [(1, 2), (2, 3), (3, 4), (4, 5), (1, 5)]
     found = spaces(sheet(points, folds, 6))
     assert len(found.first_order) == 15 - 2 * 6 + 1
-    assert not _independent(found, found.first_order[0])
+    assert not _independent(found, enclosed(found.first_order[0]))
     # Three folds that are no straight pair have no motions, and are not counted on.
     [star] = spaces_of(certified("star")["pattern"])
     three = Spaces(star.sheet, {6: star.near[6][::2]})
     assert len(three.first_order) == 1
-    assert not _independent(three, three.first_order[0])
+    assert not _independent(three, enclosed(three.first_order[0]))
 
 
 @pytest.mark.parametrize(("pattern", "folds"), [(tiling(2, 2), True), (shifted_columns(1), False)])
@@ -218,15 +234,13 @@ def test_a_part_with_two_parameters_is_no_mode(pattern: PanelPattern, folds: boo
     assert whole
     for [motion] in whole:
         twice = {fold: x + x for fold, x in motion.items()}
-        assert not _independent(found, motion)
-        assert not _folds(found, [motion, twice], None)
-        assert _folds(found, [motion], None) is folds
+        assert not _independent(found, enclosed(motion))
+        assert not _folds(found, [motion, twice], [])
+        assert _folds(found, [motion], []) is folds
 
 
-def test_two_cones_and_spaces_that_are_no_sums_are_refused() -> None:
+def test_spaces_that_are_no_sums_are_refused() -> None:
     found = spaces(half_crossed())
     one = number(1)
-    with pytest.raises(CertificateError, match="the forms of vertices 0, 1 stay"):
-        found._sum(Leaf([{(0, 2): one}], 0), Leaf([{(1, 3): one}], 1))
     with pytest.raises(CertificateError, match="the parts of a space do not add up"):
         found.parts([{(0, 2): one, (1, 3): one}])

@@ -177,9 +177,9 @@ def test_modules_are_small() -> None:
 
 
 def test_formulas_of_single_branches_are_their_own() -> None:
-    """Of the geometry they share the verified sheet and what K_v = 0 leaves to folds, no more."""
+    """Of the geometry they share the verified sheet, reduced, and what K_v = 0 leaves to folds."""
     found = set()
-    for name in ("branch", "branch_proof"):
+    for name in ("branch", "branch_proof", "reduced"):
         for node in ast.walk(ast.parse((PACKAGE / f"{name}.py").read_text())):
             if isinstance(node, ast.ImportFrom) and node.level:
                 found |= {(node.module, alias.name) for alias in node.names}
@@ -190,8 +190,10 @@ def test_formulas_of_single_branches_are_their_own() -> None:
         ("sheet", "turn"),
         ("sheet", "read_sheet"),
         ("flat_folds", "close_flat"),
+        ("reduced", "closed"),
+        ("reduced", "emptied_sheet"),
     }
-    for name in ("branch", "branch_proof"):
+    for name in ("branch", "branch_proof", "reduced"):
         text = (PACKAGE / f"{name}.py").read_text()
         assert ".curvature(" not in text
         assert ".sign_of_vertex(" not in text

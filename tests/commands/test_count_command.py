@@ -81,8 +81,8 @@ def test_verbose_also_says_how(two_vertex):
             "vertices count double, not decided whether each continues to a true motion",
         ),
         (
-            scrambled(1, HEXAGON, 2, loose=True),
-            r"the number of ways to fold is UNDECIDED \(.*\): the part of 2 vertices with "
+            scrambled(5, HEXAGON, 4, loose=True),
+            r"the number of ways to fold is UNDECIDED \(.*\): the part of 4 vertices with "
             "vertex 6: ",
         ),
     ],
@@ -170,7 +170,7 @@ def test_rigid_sheet_has_no_branches(tmp_path):
 
 def test_undecided_exits_4(tmp_path):
     path, out = tmp_path / "hexagon.fold", tmp_path / "out.json"
-    write_fold(scrambled(1, HEXAGON, 2, loose=True), path)
+    write_fold(scrambled(5, HEXAGON, 4, loose=True), path)
     result = run("count", path, "--json", "--certificate", out)
     assert result.exit_code == UNDECIDED
     data = json.loads(result.stdout)
@@ -180,7 +180,7 @@ def test_undecided_exits_4(tmp_path):
     assert data["theory"] == "subspaces"
     found = {"found": {"3": 1}, "found_true": {"3": 1}}
     assert data["components"] == {"second_order": None, "true": None, **found}
-    assert data["reason"].startswith("the part of 2 vertices with vertex 6: ")
+    assert data["reason"].startswith("the part of 4 vertices with vertex 6: ")
     assert "no certificate was written" in result.stderr
     assert not out.exists()
 

@@ -80,7 +80,7 @@ def test_every_other_command(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "pattern",
-    [scrambled(1, HEXAGON, 2, loose=True), scrambled(1, TRIANGLE, 3), nested_triangles()],
+    [scrambled(5, HEXAGON, 4, loose=True), scrambled(1, TRIANGLE, 3), nested_triangles()],
     ids=["undecided", "rigid", "nested"],
 )
 def test_other_counts(tmp_path: Path, pattern: CreasePattern) -> None:
@@ -120,6 +120,7 @@ def test_errors_and_invalid_certificates(tmp_path: Path) -> None:
     printed("error", "count", tmp_path / "none.fold")
     printed("examples", "examples")
     printed("export", "export", "two-vertex", "--branch", "1", "-o", tmp_path / "b.fold")
+    printed("motion", "fold", "two-vertex", "--up", "4", "--frames", "3")
     printed("error", "info", written(tmp_path, "{"))
     assert run("count", example_path("two-vertex"), "--certificate", out).exit_code == PROVED
     out.write_text(out.read_text().replace('"distinct":4', '"distinct":5'))
@@ -163,7 +164,7 @@ def test_schemas_refuse_what_is_not_documented() -> None:
 
 
 def test_an_undecided_count_has_no_numbers(tmp_path: Path) -> None:
-    write_fold(scrambled(1, HEXAGON, 2, loose=True), tmp_path / "p.fold")
+    write_fold(scrambled(5, HEXAGON, 4, loose=True), tmp_path / "p.fold")
     result = run("count", tmp_path / "p.fold", "--json")
     assert result.exit_code == UNDECIDED
     with pytest.raises(ValidationError):

@@ -120,7 +120,7 @@ def test_a_library_that_ends_the_process_is_seen(files: Path, tmp_path: Path, co
 
 
 def test_answers_and_errors_pass_through_the_guard(files: Path, tmp_path: Path) -> None:
-    write_fold(scrambled(1, HEXAGON, 2, loose=True), tmp_path / "open.fold")
+    write_fold(scrambled(5, HEXAGON, 4, loose=True), tmp_path / "open.fold")
     (files / "bad.json").write_text(
         (files / "c.json").read_text().replace('"distinct":4', '"distinct":5')
     )

@@ -47,6 +47,7 @@ SHEETS = exactfold.drawing.exact_sheets(DRAWING)
 OPENED = exactfold.open_pattern(exactfold.data.example_path("zigzags"))
 MOTIONS = exactfold.decompose(OPENED.sheet)
 SPACES = exactfold.decompose(panels(single_vertex(5)))
+MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
 DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
 VALUES = {
     "pattern": PATTERN,
@@ -107,6 +108,12 @@ VALUES = {
     "solver": exactfold.solvers()["newton"],
     "finder": exactfold.count.BranchFinder(PATTERN),
     "signed branch": exactfold.find_branch(PATTERN, "+-"),
+    "motion": MOTION,
+    "event": MOTION.events[-1],
+    "framework": MOTION.curve.framework,
+    "start": exactfold.motion.Start.of(
+        MOTION.curve.framework, np.array([0.0, 0.0, 0.0, 1.0, 0.3, -0.1])
+    ),
     "actuation": DRIVEN,
     "directions": DRIVEN.directions,
     "orthogonal torques": DRIVEN.orthogonal,

@@ -115,3 +115,59 @@ def chicken_wire(columns: int, rows: int) -> PanelPattern:
             ends = [number.setdefault(point, len(number)) for point in ring]
             edges |= {(min(e), max(e)) for e in pairwise([*ends, ends[0]])}
     return PanelPattern([(Fraction(x), root * y) for x, y in number], sorted(edges))
+
+
+def whole(points: Sequence[tuple[int, int]], folds: Sequence[Edge], inner: int) -> PanelPattern:
+    """`outlined` with whole numbers."""
+    return outlined([(Fraction(x), Fraction(y)) for x, y in points], folds, inner)
+
+
+def two_stars() -> PanelPattern:
+    """Two vertices with six folds that share one."""
+    points = [(0, 0), (9, 0), (3, -5), (6, -5), (12, -4), (14, 0), (12, 4), (6, 5), (3, 5)]
+    points += [(-3, 4), (-5, 0), (-3, -4)]
+    folds = [(0, 1), (0, 2), (0, 8), (0, 9), (0, 10), (0, 11)]
+    folds += [(1, 3), (1, 4), (1, 5), (1, 6), (1, 7)]
+    return whole(points, folds, 2)
+
+
+def row_of_stars() -> PanelPattern:
+    """Three vertices in a row, of five, six and five folds."""
+    points = [(0, 0), (9, 1), (18, 0), (2, -5), (7, -5), (11, -5), (16, -5), (22, -3), (22, 3)]
+    points += [(17, 5), (12, 5), (6, 5), (2, 5), (-5, 3), (-4, -3)]
+    folds = [(0, 1), (1, 2), (0, 3), (0, 12), (0, 13), (0, 14), (1, 4), (1, 5), (1, 10), (1, 11)]
+    folds += [(2, 6), (2, 7), (2, 8), (2, 9)]
+    return whole(points, folds, 3)
+
+
+def crossed_stars() -> PanelPattern:
+    """Two vertices with six folds, and between them one where two straight creases cross."""
+    points = [(0, 0), (6, 0), (12, 0), (2, -5), (6, -5), (10, -5), (15, -4), (17, 0), (15, 4)]
+    points += [(10, 5), (6, 5), (2, 5), (-3, 4), (-5, 0), (-3, -4)]
+    folds = [(0, 1), (1, 2), (1, 4), (1, 10), (0, 3), (0, 11), (0, 12), (0, 13), (0, 14)]
+    return whole(points, [*folds, (2, 5), (2, 6), (2, 7), (2, 8), (2, 9)], 3)
+
+
+def ring_of_fives() -> PanelPattern:
+    """A triangle at each of whose corners three more folds end."""
+    points = [(0, 0), (8, 0), (3, 7), (-2, 6), (-6, 2), (-4, -4), (2, -6), (6, -6), (12, -4)]
+    points += [(13, 3), (8, 10), (3, 13)]
+    folds = [(0, 1), (1, 2), (0, 2), (0, 4), (0, 5), (0, 6), (1, 7), (1, 8), (1, 9)]
+    return whole(points, [*folds, (2, 10), (2, 11), (2, 3)], 3)
+
+
+def joined_twists() -> PanelPattern:
+    """A square twist and its mirror image, a pleat of each meeting at a vertex that both move.
+
+    The vertex between them cannot be folded flat, and lies on no loop.
+    """
+    square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    ends = [(0, (6, -14)), (1, (14, -14)), (1, (15, 3)), (7, (29, 3)), (7, (30, -14))]
+    ends += [(6, (38, -14)), (6, (58, -6)), (5, (58, 2)), (5, (50, 22)), (4, (42, 22))]
+    ends += [(8, (26, 24)), (8, (20, 24)), (2, (2, 22)), (3, (-6, 22)), (3, (-14, 2))]
+    ends += [(0, (-14, -6))]
+    points = [*square, *((18 + x, 4 - y) for x, y in square), (11, 7)]
+    rim = [(Fraction(x, 2), Fraction(y, 2)) for _, (x, y) in ends]
+    folds = [(0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (5, 6), (6, 7), (4, 7), (2, 8), (4, 8)]
+    folds += [(corner, 9 + k) for k, (corner, _) in enumerate(ends)]
+    return outlined([*((Fraction(x), Fraction(y)) for x, y in points), *rim], folds, 9)

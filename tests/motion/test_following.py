@@ -199,8 +199,7 @@ def test_one_vertex_of_degree_four_is_a_spherical_four_bar(seed, sign):
         for row in tangents:
             assert abs(four_bar(turned, row[k], row[(k + 1) % 4])) < 1e-11
     # The test sees a wrong angle.
-    middle = tangents[20]
-    assert abs(four_bar(sectors, middle[0], -middle[1])) > 1e-6 or not bent[20, :2].all()
+    assert max(abs(four_bar(sectors, row[0], -row[1])) for row in tangents) > 1e-3
 
 
 # --- events --------------------------------------------------------------------------------------
@@ -235,36 +234,32 @@ def crossing_exactly(pattern, coords):
     return found
 
 
-def contacts():
-    """Motions that end in a contact."""
-    for seed in range(40):
-        branch = find_branch(random_square(4, seed=seed), drawn_signs(4, seed))
-        motion = follow(branch, frames=9)
-        if motion.end == "contact":
-            yield motion
-
-
-def test_contacts_are_those_of_exact_rationals():
-    motions = list(contacts())[:6]
-    assert len(motions) == 6
-    kinds = set()
-    for motion in motions:
-        pattern, event = motion.branch.pattern, motion.events[-1]
-        assert event.time[0] <= event.time[1] == motion.duration
-        later = follow(motion.branch, until=motion.duration * (1 + 1e-5), frames=9)
-        assert [e.kind for e in later.events].count("contact") == 1
-        for time in np.linspace(0, event.time[0] * (1 - 1e-6), 12):
-            assert crossing_exactly(pattern, later.at(time)) == []
-        found = crossing_exactly(pattern, later.at(event.time[1] * (1 + 1e-6)))
-        one, two = (set(face) for face in event.faces)
-        assert any(
-            (set(edge) <= one and set(face) == two) or (set(edge) <= two and set(face) == one)
-            for edge, face in found
-        )
-        assert not len(one & two) > 1
-        kinds.add(event.detail)
-    assert kinds <= {"edge on edge", "vertex on face"}
-    assert kinds
+@pytest.mark.parametrize(
+    ("n", "seed", "kind"),
+    [
+        (4, 0, "vertex on face"),
+        (4, 5, "edge on edge"),
+        (5, 5, "edge on edge"),
+        (5, 11, "edge on edge"),
+    ],
+)
+def test_contacts_are_those_of_exact_rationals(n, seed, kind):
+    motion = follow(find_branch(random_square(n, seed=seed), drawn_signs(n, seed)), frames=9)
+    assert motion.end == "contact"
+    pattern, event = motion.branch.pattern, motion.events[-1]
+    assert event.time[0] <= event.time[1] == motion.duration
+    later = follow(motion.branch, until=motion.duration * (1 + 1e-5), frames=9)
+    assert [e.kind for e in later.events].count("contact") == 1
+    for time in np.linspace(0, event.time[0] * (1 - 1e-6), 12):
+        assert crossing_exactly(pattern, later.at(time)) == []
+    found = crossing_exactly(pattern, later.at(event.time[1] * (1 + 1e-6)))
+    one, two = (set(face) for face in event.faces)
+    assert any(
+        (set(edge) <= one and set(face) == two) or (set(edge) <= two and set(face) == one)
+        for edge, face in found
+    )
+    assert not len(one & two) > 1
+    assert event.detail == kind
 
 
 def test_a_fold_that_closes_has_180_degrees():
@@ -290,8 +285,7 @@ def test_where_a_crease_turns_back_its_angle_is_extreme(seed):
         step = 1e-4 * motion.duration
         if not step < time < motion.duration - step:
             continue
-        near = follow(branch, until=time + step, through_nodes=True, frames=2)
-        before, there, after = (near.at(t) for t in (time - step, time, near.duration))
+        before, there, after = (motion.at(t) for t in (time - step, time, time + step))
         values = [angle_of(branch.pattern, at, x) for x in (before, there, after)]
         bent = np.unwrap(values)
         assert (bent[1] - bent[0]) * (bent[2] - bent[1]) <= 1e-12
@@ -360,7 +354,7 @@ def test_frames_at_equal_steps_of_an_angle():
     at = branch.pattern.folds.index((3, 5))
     steps = np.diff(motion.angles[:, at])
     assert steps == pytest.approx(np.full(6, steps[0]), abs=1e-9)
-    assert np.std(np.diff(motion.times)) > 1e-4
+    assert np.std(np.diff(motion.times)) > 1e-5
     with pytest.raises(UsageError, match="turns back"):
         follow(find_branch(random_square(2, seed=1), "+-"), until="return", by=(1, 4))
 
@@ -422,8 +416,8 @@ def test_branches_that_are_not_followed():
 
 
 def test_the_tree_of_boxes_finds_what_all_pairs_find():
-    branch = find_branch(random_square(60, seed=3), drawn_signs(60, 3))
-    motion = follow(branch, until="90deg", frames=6)
+    branch = find_branch(random_square(100, seed=3), drawn_signs(100, 3))
+    motion = follow(branch, until="90deg", frames=3)
     framework = motion.curve.framework
     source = np.random.default_rng(1)
     seen = []

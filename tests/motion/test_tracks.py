@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import math
+import pickle
 import random
 from dataclasses import replace
 from fractions import Fraction
@@ -199,6 +201,17 @@ def test_parameters_are_located(track: Track) -> None:
         low, high = tube.located(sharpened(tube, parameter))
         assert low <= parameter <= high
         assert high - low < 10**4
+
+
+def test_candidates_are_those_that_are_located(track: Track) -> None:
+    balls = [sharpened(link.tube, at) for link in track.links for at in (0, link.exit)]
+    balls += [reflected(ball) for ball in balls]
+    points = np.array([ball.floats[0] for ball in balls])
+    for link in track.links[:4]:
+        found = [k for k, ball in enumerate(balls) if link.tube.lies_in(ball)]
+        assert link.tube.candidates(points).tolist() == found
+        assert len(found) >= 2
+    assert track.links[0].tube.candidates(points[:0]).tolist() == []
 
 
 def test_nothing_is_proved_beyond_the_reach(track: Track) -> None:
@@ -405,6 +418,14 @@ def test_certificates_are_verified(track: Track) -> None:
     assert claims["tubes"] == len(track.links)
     length = Fraction(claims["length"])
     assert track.length[0] * Fraction(98, 100) < length <= track.length[1]
+
+
+def test_tracks_pickle_and_copy(track: Track) -> None:
+    other = pickle.loads(pickle.dumps(track))
+    assert other == track
+    assert copy.copy(track) == track
+    assert other.links[-1].tube.enclosure(0) == track.links[-1].tube.enclosure(0)
+    assert repr(other) == repr(track)
 
 
 def test_the_start_tube_is_left_within_its_reach() -> None:

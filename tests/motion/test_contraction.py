@@ -1,0 +1,230 @@
+"""The bounds behind tubes, against exact rationals and known curves."""
+
+from __future__ import annotations
+
+import math
+import random
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from exactfold.count.find import find_branch
+from exactfold.motion import contraction as module
+from exactfold.motion.arclength import length_between, shifted
+from exactfold.motion.contraction import (
+    INVERSE_BITS,
+    ONE,
+    SCALE,
+    WEIGHT_BITS,
+    Contraction,
+    polynomial,
+)
+from exactfold.motion.length_equations import LengthEquations, squared
+from exactfold.motion.tracks import follow_proved
+from exactfold.motion.tube import _bounds, _residuals
+from exactfold.pattern.random_squares import random_square
+
+
+def exact_bounds(equations, curve, row, weights, inverse):  # type: ignore[no-untyped-def]
+    """b_k, q_k and kappa of Theorem 1 in rationals, from dense matrices."""
+    framework, one = equations.framework, 1 << equations.bits
+    n = framework.size
+    p = [[Fraction(round(x * 2.0**INVERSE_BITS), 1 << INVERSE_BITS) for x in r] for r in inverse]
+    w = [Fraction(x, 1 << WEIGHT_BITS) for x in weights]
+    place = {int(v): 3 * k for k, v in enumerate(framework.free)}
+    flat = [[Fraction(x, 1 << framework.bits) for x in (*q, 0)] for q in framework.points]
+
+    def along(a):  # type: ignore[no-untyped-def]
+        d = {v: a[k : k + 3] for v, k in place.items()}
+        zero = [Fraction(0)] * 3
+        pairs = framework.edges.tolist()
+        return [
+            [x - y for x, y in zip(d.get(i, zero), d.get(j, zero), strict=True)] for i, j in pairs
+        ]
+
+    def matrix(rows, last):  # type: ignore[no-untyped-def]
+        found = [[Fraction(0)] * n for _ in range(n)]
+        for e, (i, j) in enumerate(framework.edges.tolist()):
+            for v, sign in ((i, 1), (j, -1)):
+                for a in range(3):
+                    if v in place:
+                        found[e][place[v] + a] += sign * rows[e][a]
+        found[n - 1] = last
+        return found
+
+    def norm(values):  # type: ignore[no-untyped-def]
+        return max(abs(x) / y for x, y in zip(values, w, strict=True))
+
+    a = [[Fraction(x, one) for x in r] for r in curve]
+    t = [Fraction(x, 1 << 20) for x in row]
+    e = [along(x) for x in a]
+    u = [
+        [x - y for x, y in zip(flat[i], flat[j], strict=True)] for i, j in framework.edges.tolist()
+    ]
+    residual, slope = [], []
+    for k in range(2 * len(a) - 1):
+        g = []
+        for m in range(len(u)):
+            value = sum(
+                (
+                    x * y / 2
+                    for i in range(len(a))
+                    if 0 <= k - i < len(a)
+                    for x, y in zip(e[i][m], e[k - i][m], strict=True)
+                ),
+                Fraction(0),
+            )
+            if k < len(a):
+                value += sum(x * y for x, y in zip(u[m], e[k][m], strict=True))
+            g.append(value)
+        last = sum(x * y for x, y in zip(t, a[k], strict=True)) if 0 < k < len(a) else Fraction(0)
+        g.append(last - (k == 1))
+        residual.append(norm([sum(x * y for x, y in zip(r, g, strict=True)) for r in p]))
+    for k in range(len(a)):
+        rows = [
+            [x + (y if k == 0 else 0) for x, y in zip(*q, strict=True)]
+            for q in zip(e[k], u, strict=True)
+        ]
+        m = matrix(rows, t if k == 0 else [Fraction(0)] * n)
+        values = []
+        for i in range(n):
+            total = Fraction(0)
+            for j in range(n):
+                x = sum(p[i][q] * m[q][j] for q in range(n)) - (k == 0 and i == j)
+                total += abs(x) * w[j]
+            values.append(total)
+        slope.append(norm(values))
+    sums = [
+        sum(
+            (
+                sum((w[place[v] + c] for v in pair if v in place), Fraction(0)) ** 2
+                for c in range(3)
+            ),
+            Fraction(0),
+        )
+        for pair in framework.edges.tolist()
+    ]
+    kappa = norm([sum(abs(x) * y for x, y in zip(r, sums, strict=False)) for r in p])
+    return residual, slope, kappa
+
+
+@pytest.mark.parametrize(("n", "bits"), [(1, 64), (2, 64), (2, 90)])
+def test_bounds_are_above_the_exact_values_and_close(n: int, bits: int) -> None:
+    track = follow_proved(find_branch(random_square(n, seed=n), "+-"[:n]), most=3, bits=bits)
+    equations = LengthEquations.of(track.framework, bits)
+    for tube in (track.links[0].tube, track.links[-1].tube):
+        curve = tube.coefficients
+        edges = track.framework.flat_edges + track.framework.along(equations.floats(curve[0]))
+        row = np.array([float(t) for t in tube.row]) / (1 << 20)
+        inverse = np.linalg.inv(np.vstack([equations.places.dense(edges), row]))
+        # A poor P makes all terms large.
+        for off in (0.0, 1e-4):
+            p = inverse * (1 + off)
+            found = _bounds(
+                equations, curve, _residuals(equations, curve, tube.row), tube.row, tube.weights, p
+            )
+            residual, slope, kappa = exact_bounds(equations, curve, tube.row, tube.weights, p)
+            for above, true in (
+                *zip(found.residual, residual, strict=True),
+                *zip(found.slope, slope, strict=True),
+                (found.quadratic[0], kappa),
+            ):
+                assert true <= Fraction(above, ONE)
+                assert Fraction(above, ONE) <= true * Fraction(101, 100) + Fraction(1, 10**6) * max(
+                    residual[-1], Fraction(1, 10**4)
+                )
+
+
+def test_radii_and_uniqueness_are_those_of_the_theorem() -> None:
+    source = random.Random(1)
+    held = 0
+    for _ in range(300):
+        b = source.randrange(1, ONE >> source.randrange(1, 60))
+        q = source.randrange(0, ONE * 5 // 4)
+        kappa = source.randrange(1, ONE << source.randrange(1, 20))
+        proof = Contraction((b,), (q,), (kappa,))
+        r = proof.radius(ONE)
+        room, exact = Fraction(ONE - q, ONE), [Fraction(x, ONE) for x in (b, q, kappa)]
+        if r is None:
+            # No radius, or hardly any.
+            assert room <= 0 or room**2 < 2 * exact[0] * exact[2] * Fraction(1001, 1000)
+            continue
+        held += 1
+        radius = Fraction(r, ONE)
+        assert exact[0] + exact[1] * radius + exact[2] * radius**2 / 2 < radius
+        assert exact[1] + exact[2] * radius < 1
+        unique = Fraction(proof.uniqueness(ONE), ONE)
+        assert unique == 0 or exact[1] + exact[2] * unique < 1
+    assert held > 30
+
+
+def test_polynomials_are_rounded_up() -> None:
+    source = random.Random(2)
+    for _ in range(50):
+        coefficients = [source.randrange(ONE) for _ in range(6)]
+        h = source.randrange(4 * ONE)
+        true = sum(Fraction(c, ONE) * Fraction(h, ONE) ** k for k, c in enumerate(coefficients))
+        assert 0 <= Fraction(polynomial(coefficients, h), ONE) - true < Fraction(10**4, ONE)
+
+
+def test_products_are_exact_in_words_and_beyond() -> None:
+    source = random.Random(3)
+    for size in (20, 31, 45, 80):
+        a, b = (
+            np.array(
+                [[source.randrange(-(1 << size), 1 << size) for _ in range(5)] for _ in range(5)],
+                dtype=object,
+            )
+            for _ in range(2)
+        )
+        assert (module._dot(a, b) == a @ b).all()
+        v = [source.randrange(1 << size) for _ in range(5)]
+        true = abs(a) @ np.array(v, dtype=object)
+        for above, x in zip(module._above(abs(a), v), true, strict=True):
+            assert x <= above <= x + max(true) / 1000 + 1
+
+
+def test_squares_of_curves() -> None:
+    source = random.Random(4)
+    e = np.array(
+        [[[source.randrange(-99, 99) for _ in range(3)] for _ in range(2)] for _ in range(4)],
+        dtype=object,
+    )
+    for s in (1, -2, 7):
+        value = sum(part * s**k for k, part in enumerate(e))
+        total = sum(part * s**k for k, part in enumerate(squared(e)))
+        assert (total == (value**2).sum(axis=1)).all()
+
+
+def test_lengths_of_known_curves() -> None:
+    """A straight line, a parabola, and a curve that stands still at one point."""
+    one = 1 << 40
+
+    def parabola(x: float) -> float:
+        return x * math.sqrt(1 + 4 * x * x) / 2 + math.asinh(2 * x) / 4
+
+    for low, high in ((0.0, 0.25), (-0.5, 0.75), (-3.0, 3.0)):
+        ends = int(low * one), int(high * one)
+        least, most = length_between([(one, 0), (0, 2 * one)], 40, (0, 0), 40, *ends)
+        true = parabola(high) - parabola(low)
+        assert float(least) - 1e-12 <= true <= float(most) + 1e-12
+        assert most - least < (1e-6 if high - low < 2 else 1e-4) * true
+    least, most = length_between([(0,), (2 * one,)], 40, (0,), 40, -one, one)
+    assert least <= 2 <= most
+    least, most = length_between([(3 * one, 4 * one)], 40, (one // 100, 0), 40, 0, one)
+    assert least <= Fraction(499, 100)
+    assert Fraction(501, 100) <= most < Fraction(502, 100)
+
+
+def test_shifted_polynomials_are_the_same() -> None:
+    curve = [(3, 5), (7, -2), (1, 9)]
+    rows, more = shifted(curve, 5, 3)
+    for s in (Fraction(1, 7), Fraction(-3)):
+        for axis in range(2):
+            one = sum(c[axis] * (s + Fraction(5, 8)) ** k for k, c in enumerate(curve))
+            assert one == sum(Fraction(r[axis], 1 << more) * s**k for k, r in enumerate(rows))
+
+
+def test_the_scale_leaves_room() -> None:
+    assert SCALE >= 2 * INVERSE_BITS

@@ -1,0 +1,206 @@
+"""Files of motions, read back with other programs."""
+
+from __future__ import annotations
+
+import io
+import json
+
+import numpy as np
+import pygltflib
+import pytest
+import trimesh
+
+from exactfold import find_branch, follow, random_square
+from exactfold.bridges import meshes
+from exactfold.errors import GltfMissingError, UnwritableFileError, UsageError
+from exactfold.motion import write_motion
+from exactfold.pattern import load_fold
+
+PATTERN = random_square(4, seed=1)
+BRANCH = find_branch(PATTERN, "+-++")
+MOTION = follow(BRANCH, frames=6)
+BACK = follow(BRANCH, frames=6, side=-1)
+CLOSED = follow(find_branch("two-vertex", "+-"), until="return", frames=5)
+
+
+# --- FOLD ----------------------------------------------------------------------------------------
+
+
+def written(motion, tmp_path, **options):
+    path = tmp_path / "motion.fold"
+    assert write_motion(motion, path, **options) == (path,)
+    return json.loads(path.read_text()), load_fold(path)
+
+
+@pytest.mark.parametrize("motion", [MOTION, BACK, CLOSED], ids=["motion", "mirror", "closed"])
+def test_the_flat_frame_is_exact_and_all_others_follow(motion, tmp_path):
+    document, file = written(motion, tmp_path, title="sheet")
+    pattern = motion.branch.pattern
+    assert file.pattern == pattern
+    assert file.exact
+    turn = str.maketrans("MV", "MV" if motion.side > 0 else "VM")
+    letters = "".join(file.assignment[fold] for fold in pattern.folds)
+    assert letters == motion.branch.assignment_text.translate(turn)
+    assert document["file_title"].startswith("sheet, motion along branch ")
+    facts = document["frame_exactfold:motion"]
+    assert facts["vertex_signs"] == motion.branch.sign_text
+    assert (facts["side"], facts["end"]) == (motion.side, motion.end)
+    assert facts["status"] == "followed"
+    assert facts["pattern"] == pattern.sha256
+    assert max(map(abs, document["edges_foldAngle"])) == 30
+    frames = document["file_frames"]
+    assert np.array([f["vertices_coords"] for f in frames]).tolist() == motion.coords.tolist()
+    assert [f["frame_exactfold:time"] for f in frames] == motion.times.tolist()
+    edges = [tuple(edge) for edge in document["edges_vertices"]]
+    for k, frame in enumerate(frames):
+        assert (frame["frame_parent"], frame["frame_inherit"]) == (0, True)
+        assert f"frame {k + 1} of {len(frames)}, time" in frame["frame_title"]
+        angles = dict(zip(edges, frame["edges_foldAngle"], strict=True))
+        signs = dict(
+            zip(edges, frame.get("edges_assignment", document["edges_assignment"]), strict=True)
+        )
+        assert all(-180 <= angle <= 180 for angle in angles.values())
+        assert not any(angles[edge] for edge in pattern.boundary_edges)
+        for fold, angle in zip(pattern.folds, np.degrees(motion.angles[k]), strict=True):
+            assert np.cos(np.radians(angles[fold] - angle)) == pytest.approx(1, abs=1e-12)
+            letter = "V" if angles[fold] > 0 else "M" if angles[fold] < 0 else "F"
+            assert signs[fold] == letter
+            assert letter != "F" or k in (0, len(frames) - 1)
+
+
+def test_letters_change_where_an_angle_does(tmp_path):
+    document, _ = written(CLOSED, tmp_path)
+    assert np.max(np.abs(CLOSED.angles)) > np.pi
+    changed = [f for f in document["file_frames"] if "edges_assignment" in f]
+    assert 2 < len(changed) < 5
+    assert set(changed[0]["edges_assignment"]) == {"F", "B"}
+    for frame in changed:
+        assert frame["edges_assignment"] != document["edges_assignment"]
+
+
+# --- glTF ----------------------------------------------------------------------------------------
+
+
+class Reader:
+    """What an animation shows, from the accessors of a file."""
+
+    def __init__(self, path):
+        self.model = pygltflib.GLTF2().load(str(path))
+        if path.suffix == ".gltf":
+            [buffer] = self.model.buffers
+            self.blob = self.model.get_data_from_buffer_uri(buffer.uri)
+        else:
+            self.blob = self.model.binary_blob()
+
+    def rows(self, number):
+        accessor = self.model.accessors[number]
+        view = self.model.bufferViews[accessor.bufferView]
+        kind = {5126: "<f4", 5125: "<u4"}[accessor.componentType]
+        width = {"SCALAR": 1, "VEC3": 3}[accessor.type]
+        raw = self.blob[view.byteOffset : view.byteOffset + view.byteLength]
+        rows = np.frombuffer(raw, dtype=kind).reshape(-1, width)
+        assert len(rows) == accessor.count
+        if accessor.min:
+            assert rows.min(axis=0).tolist() == accessor.min
+            assert rows.max(axis=0).tolist() == accessor.max
+        return rows.astype(np.float64)
+
+    def keys(self):
+        [animation] = self.model.animations
+        [sampler] = animation.samplers
+        assert sampler.interpolation == "LINEAR"
+        times = self.rows(sampler.input)[:, 0]
+        return times, self.rows(sampler.output).reshape(len(times), -1)
+
+    def shown(self, primitive, name, time):
+        times, weights = self.keys()
+        weight = [np.interp(time, times, column) for column in weights.T]
+        base = self.rows(getattr(primitive.attributes, name))
+        moved = [self.rows(target[name]) for target in primitive.targets]
+        return base + sum(w * rows for w, rows in zip(weight, moved, strict=True))
+
+
+@pytest.mark.parametrize("ending", ["glb", "gltf"])
+def test_the_animation_shows_the_frames(tmp_path, ending):
+    path = tmp_path / f"motion.{ending}"
+    assert write_motion(MOTION, path, title="sheet") == (path,)
+    reader = Reader(path)
+    model = reader.model
+    assert model.asset.extras["vertex_signs"] == "+-++"
+    assert [m.name for m in model.materials] == ["front", "back"]
+    assert not any(m.doubleSided for m in model.materials)
+    [mesh] = model.meshes
+    assert mesh.name == model.nodes[0].name == "sheet"
+    assert mesh.extras["targetNames"] == [f"frame {k}" for k in range(1, 6)]
+    times, _ = reader.keys()
+    assert times.tolist() == pytest.approx(np.arange(11) * 0.8)  # there and back
+    triangles = np.array(PATTERN.triangles)
+    for key, frame in [(0, 0), (3, 3), (5, 5), (7, 3), (10, 0)]:
+        corners = MOTION.coords[frame][triangles]
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        up = across / np.linalg.norm(across, axis=1, keepdims=True)
+        for side, primitive in zip((1, -1), mesh.primitives, strict=True):
+            points = reader.shown(primitive, "POSITION", times[key])
+            normals = reader.shown(primitive, "NORMAL", times[key])
+            faces = reader.rows(primitive.indices)[:, 0].astype(int).reshape(-1, 3)
+            assert sorted(faces.ravel()) == list(range(3 * len(triangles)))
+            assert points.reshape(-1, 3, 3) == pytest.approx(corners, abs=1e-6)
+            for k, (a, b, c) in enumerate(faces):
+                seen = np.cross(points[b] - points[a], points[c] - points[a])
+                assert seen @ normals[a] > 0
+                assert normals[a] == pytest.approx(side * up[k], abs=1e-6)
+                assert normals[a].tolist() == normals[b].tolist() == normals[c].tolist()
+
+
+def test_a_motion_that_returns_goes_one_way(tmp_path):
+    write_motion(CLOSED, tmp_path / "loop.glb")
+    reader = Reader(tmp_path / "loop.glb")
+    times, weights = reader.keys()
+    assert times.tolist() == [0, 1, 2, 3, 4]
+    assert weights.tolist() == [[0] * 4, *np.eye(4).tolist()]
+
+
+def test_another_reader_sees_the_flat_sheet_with_y_up(tmp_path):
+    write_motion(MOTION, tmp_path / "motion.glb")
+    scene = trimesh.load(tmp_path / "motion.glb")
+    front, back = scene.geometry.values()
+    assert len(front.faces) == len(back.faces) == len(PATTERN.triangles)
+    assert front.area == pytest.approx(1) == pytest.approx(back.area)
+    assert scene.bounds == pytest.approx(np.array([[0, 0, -1], [1, 0, 0]]), abs=1e-6)
+
+
+def test_without_pygltflib_it_is_said(tmp_path, monkeypatch):
+    monkeypatch.setattr(meshes, "find_spec", lambda name: None)
+    with pytest.raises(GltfMissingError, match=r"pip install 'exactfold\[motion\]'"):
+        write_motion(MOTION, tmp_path / "motion.glb")
+    assert not list(tmp_path.iterdir())
+
+
+# --- OBJ -----------------------------------------------------------------------------------------
+
+
+def test_a_file_for_each_frame(tmp_path):
+    files = write_motion(MOTION, tmp_path / "m.obj")
+    assert [file.name for file in files] == [f"m_000{k}.obj" for k in range(6)]
+    assert sorted(tmp_path.iterdir()) == list(files)
+    for file, coords in zip(files, MOTION.coords, strict=True):
+        mesh = trimesh.load(
+            io.StringIO(file.read_text()), file_type="obj", process=False, maintain_order=True
+        )
+        assert mesh.faces.tolist() == [list(face) for face in PATTERN.triangles]
+        assert mesh.vertices == pytest.approx(coords, abs=1e-7)
+
+
+# --- what is refused -----------------------------------------------------------------------------
+
+
+def test_refusals(tmp_path):
+    for name in ("motion", "motion.stl", "fold"):
+        with pytest.raises(UsageError, match=r"\.fold, \.glb, \.gltf, \.obj"):
+            write_motion(MOTION, tmp_path / name)
+    with pytest.raises(UsageError, match="is not a motion"):
+        write_motion(BRANCH, tmp_path / "motion.fold")
+    for name in ("none/m.fold", "none/m.glb", "none/m.obj"):
+        with pytest.raises(UnwritableFileError):
+            write_motion(MOTION, tmp_path / name)
+    assert not list(tmp_path.iterdir())
