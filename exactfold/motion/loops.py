@@ -236,7 +236,20 @@ class LoopFinder:
         >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
         <Loop: +-, saddle + to +-, saddle -, proved>
         """
-        start = half_branch(branch, side).start
+        return self._proof(half_branch(branch, side).start)
+
+    def follow_from(self, branch: Branch, source: HalfBranch) -> LoopProof:
+        """The loop that leaves the flat state along `source`, one of the halves of a branch.
+
+        Raises as `half_branch`, and `NotProvedAtTheFlatStateError` if it is neither half.
+        """
+        for side in (1, -1):
+            start = half_branch(branch, side).start
+            if named(start) == source:
+                return self._proof(start)
+        raise NotProvedAtTheFlatStateError(f"the branch has not the half-branch {source}")
+
+    def _proof(self, start: StartTube) -> LoopProof:
         steps, landing, reason = self._followed(start)
         return LoopProof(self.problem, start, tuple(steps), landing, reason)
 
