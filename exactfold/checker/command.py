@@ -74,14 +74,13 @@ def verify(
     """Verify every claim of a certificate of any kind; returns the claims.
 
     `workers` processes share the blocks of a compact certificate, which `engine` verifies, and the
-    loops of a certificate of these. Raises
-    `CertificateError` if a claim is not supported, `FormatError` if the file is no certificate,
-    `OSError`, `BrokenExecutor` if a worker process died.
+    loops of a certificate of these. Raises `CertificateError` if a claim is not supported,
+    `FormatError` if the file is no certificate, `OSError`, `BrokenExecutor` if a process died.
     """
     with open(path, "rb") as stream:
         first = stream.readline(MOST_LINE)
         if _LOOPS.search(first[:4096]):
-            return motion_loops.check_lines(lines(stream, first), workers)
+            return motion_loops.check_lines(lines(stream, first), workers, engine.share)
         if _is_compact(first):
             return compact.check_lines(lines(stream, first), workers, engine)
         try:

@@ -1,4 +1,4 @@
-"""Certificates of loops, line by line: true motions from the flat state back to it (docs/motions.md).
+"""Certificates of loops, line by line: motions from the flat state back to it (docs/motions.md).
 
 Why it is a proof: a loop leaves the flat state as the motions of `motion` do. It passes from tube
 to tube, and through nodes on arcs that are analytic there (`motion_nodes`). On its last tube lies a
@@ -14,7 +14,7 @@ from contextlib import closing
 from fractions import Fraction
 from typing import Any
 
-from .compact import Engine, on_processes
+from .compact import Engine, Share, on_processes
 from .compact_lines import read_object
 from .formats import LOOPS, LOOPS_VERSION, NODE_WORK
 from .motion import (
@@ -194,12 +194,14 @@ class Matching:
         self.matched |= ends
 
 
-def check_lines(found: Iterator[str], workers: int = 1) -> dict[str, Any]:
+def check_lines(
+    found: Iterator[str], workers: int = 1, share: Share = on_processes
+) -> dict[str, Any]:
     """Verify every claim, given the lines of a file; returns the claims.
 
-    With several workers, loops are checked in that many processes. The claims are: so many loops as
-    `LoopSheet.check_loop` says, which match so many of the half-branches, none twice, none with
-    itself; and whether these are all.
+    With several workers, loops are checked in that many processes, which `share` starts. The claims
+    are: so many loops, as `LoopSheet.check_loop` says, which match so many of the half-branches,
+    none twice, none with itself; and whether these are all.
     """
     first = next(found, None)
     if first is None:
@@ -227,7 +229,7 @@ def check_lines(found: Iterator[str], workers: int = 1) -> dict[str, Any]:
         except (CertificateError, FormatError) as error:
             late.append(error)
 
-    said = on_processes(ENGINE, workers, first, loops()) if workers > 1 else _here(first, loops())
+    said = share(ENGINE, workers, first, loops()) if workers > 1 else _here(first, loops())
     with closing(said):
         for reason in said:
             if reason is not None:
@@ -261,4 +263,5 @@ def summary(claims: dict[str, Any]) -> str:
     loops = counted(claims["loops"], "loop", "loops")
     matched, all_of_them = claims["matched"], claims["half_branches"]
     how = f"all {all_of_them}" if claims["complete"] else f"{matched} of {all_of_them}"
-    return f"VALID: {loops} of true motions, which match {how} half-branches; sha256 {claims['sha256']}"
+    digest = claims["sha256"]
+    return f"VALID: {loops} of true motions, which match {how} half-branches; sha256 {digest}"

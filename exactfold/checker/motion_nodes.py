@@ -141,7 +141,7 @@ class NodeTube(Piece):
         sizes = [[abs(a) * m for a, m in zip(line, kept, strict=False)] for line in p]
 
         def off(rows: list[tuple[int, ...]], places: int) -> Fraction:
-            """A bound of |P v| with v_e = spread_e . rows_e for the edges whose equation is kept."""
+            """A bound of |P v| with v_e = spread_e . rows_e where the equation of e is kept."""
             most = [dot(r, map(abs, a)) for r, a in zip(spread, rows, strict=True)]
             return norm([dot(line, most) for line in sizes], weights, INVERSE_BITS + places)
 

@@ -55,8 +55,9 @@ class Journal:
         """The file with its blocks as far as they are whole and verified, ready for more.
 
         `refusal(body, number)` is None for a block that holds; a block begins with `opening`. What
-        follows the last such block is cut off. A file that does not exist is begun. Raises `ForeignJournalError` if the file is
-        not that of this pattern, `JournalInUseError`, `UnwritableFileError`.
+        follows the last such block is cut off. A file that does not exist is begun. Raises
+        `ForeignJournalError` if the file is not that of this pattern, `JournalInUseError`,
+        `UnwritableFileError`.
         """
         journal = cls.__new__(cls)
         journal._open(path)

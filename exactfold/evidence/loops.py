@@ -1,4 +1,4 @@
-"""Certificates of loops of motions: a header, a line for each loop, the claims (docs/motions.md)."""
+"""Certificates of loops: a header, a line for each loop, the claims (docs/motions.md)."""
 
 from __future__ import annotations
 

@@ -6,6 +6,7 @@ import json
 import os
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 from exactfold.evidence.journal import Journal
 from exactfold.evidence.loops import OPENING, claims_line, header_line
@@ -95,7 +96,7 @@ def _loop_of(text: str, problem: Problem) -> Loop | None:
     return Loop(source, target, through, (low, high), PROVED, "", len(steps) + 1)
 
 
-def _half_branch(data: dict[str, list[int]], problem: Problem) -> HalfBranch:
+def _half_branch(data: dict[str, Any], problem: Problem) -> HalfBranch:
     signs = dict(zip(problem.pattern.interior, data["vertex_signs"], strict=True))
     side = data["side"]
     if side not in (1, -1) or any(signs[v] not in (1, -1) for v in problem.foldable):

@@ -198,7 +198,7 @@ def _followed(
     number = len(problem.foldable)
 
     def left() -> Iterator[Job]:
-        for k, signs in enumerate(product((1, -1), repeat=number)):
+        for k, signs in enumerate(product((-1, 1), repeat=number)):
             if progress is not None:
                 progress("half-branches", k, 1 << number)
             if (named := HalfBranch(signs, 1)) not in ended:
