@@ -182,7 +182,7 @@ def check(
         typer.Argument(
             callback=standard_input,
             metavar="CERTIFICATE",
-            help="A certificate written by `count` or `branch`, of any kind.",
+            help="A certificate written by `count`, `branch` or `motions`, of any kind.",
         ),
     ],
     as_json: Json = False,
@@ -191,7 +191,8 @@ def check(
         typer.Option(
             parser=whole(1),
             metavar="N",
-            help="Processes for a compact certificate (`count --stream`). Default: all cores.",
+            help="Processes for a compact certificate (`count --stream`) or one of `motions`. "
+            "Default: all cores.",
         ),
     ] = None,
 ) -> None:
@@ -388,6 +389,17 @@ def motions(
             "here.",
         ),
     ] = None,
+    certificate: Annotated[
+        Path | None,
+        typer.Option(
+            callback=not_a_dash,
+            metavar="FILE",
+            help="Write the proof of each loop to FILE as it is found, for `check`.",
+        ),
+    ] = None,
+    resume: Annotated[
+        bool, flag("--resume", text="Continue the FILE that an interrupted run left.")
+    ] = False,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
@@ -399,7 +411,8 @@ def motions(
     """
     from exactfold.commands.motions import Wanted
 
-    raise typer.Exit(Wanted(pattern, snap, sheet, workers, dask, as_json).answer())
+    wanted = Wanted(pattern, snap, sheet, workers, dask, certificate, resume, as_json)
+    raise typer.Exit(wanted.answer())
 
 
 @app.command(cls=Command)

@@ -14,14 +14,15 @@ from os import PathLike
 from types import ModuleType
 from typing import Any
 
-from . import branch, compact, listing, motion, panels
+from . import branch, compact, listing, motion, motion_loops, panels
 from .compact_lines import lines
-from .formats import BRANCH, COMPACT, LISTING, MOST_LINE, MOTION
+from .formats import BRANCH, COMPACT, LISTING, LOOPS, MOST_LINE, MOTION
 from .reading import CertificateError, FormatError, plain, read_json
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
 
 _COMPACT = re.compile(rb'"format"\s*:\s*"' + COMPACT.encode() + b'"')
+_LOOPS = re.compile(rb'"format"\s*:\s*"' + LOOPS.encode() + b'"')
 
 _PRINTED = re.compile("exactfold ([a-z-]+) result")
 
@@ -72,12 +73,14 @@ def verify(
 ) -> dict[str, Any]:
     """Verify every claim of a certificate of any kind; returns the claims.
 
-    `workers` processes share the blocks of a compact certificate, which `engine` verifies. Raises
-    `CertificateError` if a claim is not supported, `FormatError` if the file is no certificate,
-    `OSError`, `BrokenExecutor` if a worker process died.
+    `workers` processes share the blocks of a compact certificate, which `engine` verifies, and the
+    loops of a certificate of these. Raises `CertificateError` if a claim is not supported,
+    `FormatError` if the file is no certificate, `OSError`, `BrokenExecutor` if a process died.
     """
     with open(path, "rb") as stream:
         first = stream.readline(MOST_LINE)
+        if _LOOPS.search(first[:4096]):
+            return motion_loops.check_lines(lines(stream, first), workers, engine.share)
         if _is_compact(first):
             return compact.check_lines(lines(stream, first), workers, engine)
         try:
@@ -97,6 +100,8 @@ def _is_compact(first: bytes) -> bool:
     """By its format, else by its digest."""
     if _COMPACT.search(first[:4096]):
         return True
+    if _LOOPS.search(first[:4096]):
+        return False
     with suppress(FormatError):
         return b"\t" in first and next(lines(BytesIO(first)), None) is not None
     return False
@@ -133,6 +138,8 @@ def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
     if "supports" in claims:
         return panels.summary(claims)
+    if "loops" in claims:
+        return motion_loops.summary(claims)
     if "tubes" in claims:
         return motion.summary(claims)
     return branch.summary(claims) if "gauge" in claims else listing.summary(claims)

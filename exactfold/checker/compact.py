@@ -58,6 +58,9 @@ def on_processes(
             yield waiting.popleft().result()
 
 
+Share = Callable[["Engine", int, str, Iterator[tuple[str, int]]], Said]
+
+
 class Engine(NamedTuple):
     """What verifies the blocks: `start(header)` in each process, then `work(text, number)`.
 
@@ -68,7 +71,7 @@ class Engine(NamedTuple):
     start: Callable[[str], None]
     work: Callable[[str, int], str | None]
     least: int
-    share: Callable[[Engine, int, str, Iterator[tuple[str, int]]], Said] = on_processes
+    share: Share = on_processes
 
 
 def _here(engine: Engine, header: str, blocks: Iterator[tuple[str, int]]) -> Said:

@@ -67,37 +67,25 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     keys(claims, " ".join(["vertex_signs side length", *more]), "claims")
     names = "emptied pinned bits start tubes"
     keys(evidence, f"{names} contacts" if more else names, "evidence")
-    sheet, removed = emptied_sheet(given, dict(given.points), evidence["emptied"])
-    require(len(sheet.boundary) == 4, "there are not four boundary vertices")
-    require(sheet.interior, "nothing can fold")
-    bits = natural(evidence["bits"], "bits")
-    require(bits <= MOTION_BITS, "bits are out of range")
+    equations, removed = framework(given, evidence)
+    bits = equations.bits
     tubes = items(evidence["tubes"], "tubes")
-    require(len(tubes) <= MOST_TUBES, "there are too many tubes")
-    pinned = [natural(v, "pinned vertex") for v in items(evidence["pinned"], "pinned", 3)]
-    equations = LengthEquations(sheet, pinned, bits)
-    work = (len(tubes) + 1) * equations.size**2 * (equations.size + 200) * (1 + bits // 256)
-    require(work <= MOST_WORK, "the work is out of range")
-    start, tau = _start(equations, evidence["start"])
+    check_work(equations, len(tubes))
+    start, tau = first_piece(equations, evidence["start"])
     _check_names(given, removed, start, claims)
     ball, velocity = start.configuration(tau)
     length = Fraction(0)
     before = Ball([0] * equations.size, [0] * equations.size)
     links: list[Link] = []
     for entry in tubes:
-        length += _chord(before, ball, bits)
+        length += chord(before, ball, bits)
         keys(entry, "centre row reach exit", "tube")
-        tube = Tube(
-            equations,
-            _vector(entry["centre"], "centre", equations.size, bits),
-            _vector(entry["row"], "row", equations.size, 0),
-            _reach(entry["reach"]),
-        )
+        tube = tube_of(equations, entry)
         end = Fraction(natural(entry["exit"], "exit"), 1 << PARAMETER_BITS)
         require(tube.entered(ball, velocity) <= end, "a motion leaves a tube before it enters")
         links.append((tube, ball, end))
         before, ball, velocity = ball, tube.enclosure(end), tube.velocity(end)
-    length += _chord(before, ball, bits)
+    length += chord(before, ball, bits)
     claimed = parse_rational(claims["length"])
     require(claimed <= length * equations.unit, "the motion is shorter than claimed")
     if more:
@@ -105,7 +93,37 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     return {"sha256": digest, "tubes": len(tubes), **claims}
 
 
-def _vector(value: Any, what: str, size: int, bits: int) -> list[int]:
+def framework(given: Sheet, evidence: Any) -> tuple[LengthEquations, set[int]]:
+    """The equations of what can fold, and the vertices that were removed."""
+    sheet, removed = emptied_sheet(given, dict(given.points), evidence["emptied"])
+    require(len(sheet.boundary) == 4, "there are not four boundary vertices")
+    require(sheet.interior, "nothing can fold")
+    bits = natural(evidence["bits"], "bits")
+    require(bits <= MOTION_BITS, "bits are out of range")
+    pinned = [natural(v, "pinned vertex") for v in items(evidence["pinned"], "pinned", 3)]
+    return LengthEquations(sheet, pinned, bits), removed
+
+
+def check_work(equations: LengthEquations, tubes: int) -> None:
+    """Raise if so many tubes are too much work."""
+    require(tubes <= MOST_TUBES, "there are too many tubes")
+    size, digits = equations.size, 1 + equations.bits // 256
+    work = (tubes + 1) * size**2 * (size + 200) * digits
+    require(work <= MOST_WORK, "the work is out of range")
+
+
+def tube_of(equations: LengthEquations, entry: Any) -> Tube:
+    """A tube of its keys."""
+    size = equations.size
+    return Tube(
+        equations,
+        vector(entry["centre"], "centre", size, equations.bits),
+        vector(entry["row"], "row", size, 0),
+        reach_of(entry["reach"]),
+    )
+
+
+def vector(value: Any, what: str, size: int, bits: int) -> list[int]:
     """Integers over 2^bits that are not too large."""
     found = [integer(x) for x in items(value, what, size)]
     small = all(abs(x) >> bits + SPARE == 0 for x in found)
@@ -113,29 +131,34 @@ def _vector(value: Any, what: str, size: int, bits: int) -> list[int]:
     return found
 
 
-def _reach(value: Any) -> Fraction:
+def reach_of(value: Any) -> Fraction:
     """How far a piece reaches."""
     reach = Fraction(natural(value, "reach"), 1 << REACH_BITS)
     require(0 < reach <= 16, "the reach is out of range")
     return reach
 
 
-def _start(equations: LengthEquations, entry: Any) -> tuple[Start, Fraction]:
+def first_piece(equations: LengthEquations, entry: Any) -> tuple[Start, Fraction]:
     """The first piece, and where the motion leaves it."""
     keys(entry, "centre halvings held reach exit", "start")
-    centre = _vector(entry["centre"], "centre", equations.size, equations.bits)
-    halvings = natural(entry["halvings"], "halvings")
-    require(halvings <= MOTION_BITS, "halvings are out of range")
-    held = natural(entry["held"], "held vertex")
-    require(held in equations.place, "the vertex held at its height is pinned, or none")
-    place = equations.place[held] + 2
-    start = Start(equations, centre, halvings, place, _reach(entry["reach"]))
+    start = start_of(equations, entry)
     tau = Fraction(natural(entry["exit"], "exit"), 1 << ROOT_BITS)
     require(tau > 0, "the motion does not leave the flat state")
     return start, tau
 
 
-def _chord(a: Ball, b: Ball, bits: int) -> Fraction:
+def start_of(equations: LengthEquations, entry: Any) -> Start:
+    """A start tube of its keys."""
+    centre = vector(entry["centre"], "centre", equations.size, equations.bits)
+    halvings = natural(entry["halvings"], "halvings")
+    require(halvings <= MOTION_BITS, "halvings are out of range")
+    held = natural(entry["held"], "held vertex")
+    require(held in equations.place, "the vertex held at its height is pinned, or none")
+    place = equations.place[held] + 2
+    return Start(equations, centre, halvings, place, reach_of(entry["reach"]))
+
+
+def chord(a: Ball, b: Ball, bits: int) -> Fraction:
     """A lower bound of the distance of two points in boxes."""
     squared = sum((x - y) ** 2 for x, y in zip(a.centre, b.centre, strict=True))
     off = sum((x + y) ** 2 for x, y in zip(a.radii, b.radii, strict=True))
@@ -144,6 +167,18 @@ def _chord(a: Ball, b: Ball, bits: int) -> Fraction:
 
 def _check_names(given: Sheet, removed: set[int], start: Start, claims: Any) -> None:
     """The vertex signs and the side of the heights at the flat state are those claimed."""
+    signs, side = names(given, removed, start)
+    values = items(claims["vertex_signs"], "vertex_signs", len(given.interior))
+    for v, value, expected in zip(given.interior, values, signs, strict=True):
+        require(type(value) is int and value == expected, f"vertex {v} has another sign")
+    require(type(claims["side"]) is int and claims["side"] == side, "the side is another")
+
+
+def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int]:
+    """The vertex signs, 0 for vertices that were removed, and the side of a half-branch.
+
+    They are those of the heights at the flat state.
+    """
     box, place = start.enclosure(Fraction(0)), start.equations.place
 
     def sign(functional: Mapping[int, Fraction]) -> int:
@@ -154,15 +189,13 @@ def _check_names(given: Sheet, removed: set[int], start: Start, claims: Any) -> 
         return 0 if abs(middle) <= spread else 1 if middle > 0 else -1
 
     sheet = start.equations.sheet
-    values = items(claims["vertex_signs"], "vertex_signs", len(given.interior))
-    for v, value in zip(given.interior, values, strict=True):
-        expected = 0 if v in removed else sign(sheet.sign_of_vertex(v))
-        require(expected or v in removed, f"vertex {v} may be flat")
-        require(type(value) is int and value == expected, f"vertex {v} has another sign")
+    signs = [0 if v in removed else sign(sheet.sign_of_vertex(v)) for v in given.interior]
+    for v, found in zip(given.interior, signs, strict=True):
+        require(found or v in removed, f"vertex {v} may be flat")
     whole, corner = closed(sheet)
     side = sign(saddle_of(sheet) if corner is None else whole.sign_of_vertex(corner))
     require(side, "the side of the branch is not certain")
-    require(type(claims["side"]) is int and claims["side"] == side, "the side is another")
+    return signs, side
 
 
 def saddle_of(sheet: Sheet) -> dict[int, Fraction]:

@@ -90,24 +90,30 @@ def bounds(
     for i in range(n):
         matrices[0][i][i] -= one
 
-    def norm(rows: Sequence[int], bits: int) -> Fraction:
-        most = max(-(-(x << 64) // w) for x, w in zip(rows, weights, strict=True))
-        return Fraction(most << WEIGHT_BITS, 1 << bits + 64)
-
     sizes = [[abs(x) for x in row] for row in p]
-    b = [norm([abs(dot(row, g)) for row in p], INVERSE_BITS + residual_bits) for g in residuals]
+    b = [
+        norm([abs(dot(row, g)) for row in p], weights, INVERSE_BITS + residual_bits)
+        for g in residuals
+    ]
     q = [
         norm(
             [dot(map(abs, row), weights) for row in matrix],
+            weights,
             INVERSE_BITS + matrix_bits + WEIGHT_BITS,
         )
         for matrix in matrices
     ]
     kappa = [
-        norm([dot(row, [*square, 0]) for row in sizes], INVERSE_BITS + 2 * WEIGHT_BITS)
+        norm([dot(row, [*square, 0]) for row in sizes], weights, INVERSE_BITS + 2 * WEIGHT_BITS)
         for square in squares
     ]
     return Bounds(*([rounded(x, ROUND) for x in part] for part in (b, q, kappa)))
+
+
+def norm(rows: Sequence[int], weights: Vector, bits: int) -> Fraction:
+    """The maximum norm with weights of rows >= 0 over 2^bits, rounded up."""
+    most = max(-(-(x << 64) // w) for x, w in zip(rows, weights, strict=True))
+    return Fraction(most << WEIGHT_BITS, 1 << bits + 64)
 
 
 def dot(a: Iterable[int], b: Iterable[int]) -> int:

@@ -81,14 +81,20 @@ class LengthEquations:
 
     def approximate_inverse(self, columns: Columns, bits: int) -> list[Vector]:
         """P for a matrix over 2^bits: any would do, as it is tested."""
-        matrix = [[0.0] * self.size for _ in range(self.size)]
-        for k, column in enumerate(columns):
-            for e, x in column:
-                matrix[e][k] = x / (1 << bits)
-        found = [[round(x * 2**INVERSE_BITS) for x in row] for row in inverse(matrix)]
-        largest = max(abs(x) for row in found for x in row)
-        require(largest >> INVERSE_BITS + SPARE == 0, "a Jacobian is nearly singular")
-        return found
+        return approximate_inverse(columns, bits)
+
+
+def approximate_inverse(columns: Columns, bits: int) -> list[Vector]:
+    """A square matrix over 2^bits, nearly inverted, over 2^INVERSE_BITS."""
+    size = len(columns)
+    matrix = [[0.0] * size for _ in range(size)]
+    for k, column in enumerate(columns):
+        for e, x in column:
+            matrix[e][k] = x / (1 << bits)
+    found = [[round(x * 2**INVERSE_BITS) for x in row] for row in inverse(matrix)]
+    largest = max(abs(x) for row in found for x in row)
+    require(largest >> INVERSE_BITS + SPARE == 0, "a Jacobian is nearly singular")
+    return found
 
 
 def convolved(parts: Parts, axes: slice, k: int) -> Vector:

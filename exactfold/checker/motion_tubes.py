@@ -181,7 +181,11 @@ class Tube(Piece):
         self.apart = proof.uniqueness(reach)
 
     def entered(self, ball: Ball, velocity: Ball) -> Fraction:
-        """An upper bound of s where a motion enters: it lies on this tube, and s increases.
+        """An upper bound of s where a motion enters: it lies on this tube, and s increases."""
+        return self.met(ball, velocity)[1]
+
+    def met(self, ball: Ball, velocity: Ball) -> tuple[Fraction, Fraction]:
+        """Bounds of s where a motion lies on this tube, which it follows in the same direction.
 
         The box holds some configuration x, and another its velocity. s = T(x - c) lies in the
         reach, and x as near to p(s) as only x(s) does.
@@ -200,7 +204,7 @@ class Tube(Piece):
         forwards = dot(self.row, velocity.centre)
         against = dot(map(abs, self.row), velocity.radii)
         require(forwards > against, "a motion may enter a tube backwards")
-        return middle + spread
+        return middle - spread, middle + spread
 
 
 def slopes(matrices: list[list[Vector]], bits: int) -> list[list[float]]:

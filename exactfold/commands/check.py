@@ -9,7 +9,7 @@ from typing import Any
 from exactfold import checker
 from exactfold.checker.reading import plain
 from exactfold.commands.shell import Bar, name_of, regular, said
-from exactfold.errors import CertificateFormatError, UnreadableFileError
+from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.schemas import headed
 
 LONG = ("branches", "vertex_signs", "assignment", "supports", "flat")
@@ -48,9 +48,16 @@ def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, st
 
 
 def _claims(file: Path, workers: int | None, name: Path) -> dict[str, Any]:
-    if not checker.is_compact(file):
-        return checker.verify(file)
-    from exactfold.evidence.check import check_compact  # needs NumPy, as no other kind does
+    from exactfold.checker.compact import INTEGERS
+    from exactfold.evidence.sharing import shared
     from exactfold.workers import available_cores
 
-    return check_compact(file, workers=workers or available_cores(), name=name)
+    workers = workers or available_cores()
+    if not checker.is_compact(file):
+        try:
+            return checker.verify(file, workers, INTEGERS._replace(share=shared))
+        except WorkerDiedError as error:
+            raise type(error)(f"{error}; nothing is known of the file") from None
+    from exactfold.evidence.check import check_compact  # needs NumPy, as no other kind does
+
+    return check_compact(file, workers=workers, name=name)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-from contextlib import nullcontext
+import shlex
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.commands.patterns import read
-from exactfold.commands.shell import EXIT, Bar, name_of
+from exactfold.commands.resuming import require_file, resumable
+from exactfold.commands.shell import EXIT, Bar, apart, interruptible, name_of
 from exactfold.count.on_dask import LOCAL
 from exactfold.count.pools import dask_pool, process_pool
 from exactfold.drawing.drawing import Snap
@@ -26,22 +28,51 @@ class Wanted:
     sheet: int | None
     workers: int | None
     dask: str | None
+    certificate: Path | None
+    resume: bool
     as_json: bool
+
+    @property
+    def again(self) -> str:
+        """The command that continues the certificate."""
+        words = ["exactfold", "motions", str(self.file), "--certificate", str(self.certificate)]
+        words.append("--resume")
+        for name in ("workers", "dask", "snap", "sheet"):
+            if value := getattr(self, name):
+                words += [f"--{name}", str(value)]
+        return shlex.join(words)
 
     def answer(self) -> int:
         """Follow all half-branches and print; the exit code.
 
-        Raises the errors of `read`, `find_loops` and `dask_pool`.
+        Raises the errors of `read`, `find_loops` and `dask_pool`, and `UsageError`.
         """
         from exactfold import report
 
         if self.workers is not None and self.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --workers goes with --dask local")
+        if self.resume and self.certificate is None:
+            raise UsageError("--resume continues a file: it goes with --certificate")
+        apart(self.certificate, self.file)
         ready = nullcontext(process_pool(self.workers or os.cpu_count() or 1))
         with Bar("reading") as bar:
             pattern = read(self.file, self.snap, self.sheet, "motions").pattern
-            with ready if self.dask is None else dask_pool(self.dask, self.workers) as pool:
-                found = find_loops(pattern, pool=pool, progress=bar)
+            with ExitStack() as stack:
+                if self.certificate is not None:
+                    require_file(self.certificate, self.resume)
+                    stack.enter_context(resumable(self.certificate, self.again))
+                stack.enter_context(interruptible())
+                pool = stack.enter_context(
+                    ready if self.dask is None else dask_pool(self.dask, self.workers)
+                )
+                found = find_loops(
+                    pattern,
+                    pool=pool,
+                    progress=bar,
+                    certificate=self.certificate,
+                    resume=self.resume,
+                    replace=False,
+                )
         if self.as_json:
             print(json.dumps(found.report(name_of(self.file))))
         else:

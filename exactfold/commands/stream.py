@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from exactfold.commands.patterns import read
-from exactfold.commands.shell import Bar, apart, interruptible, stopped
+from exactfold.commands.resuming import require_file, resumable
+from exactfold.commands.shell import Bar, apart, interruptible
 from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
 from exactfold.count.collect import check_countable
 from exactfold.count.on_dask import LOCAL, dask_engine
@@ -18,12 +18,8 @@ from exactfold.drawing.drawing import Snap
 from exactfold.errors import (
     NotApplicableError,
     NotCountedError,
-    NotEnoughMemoryError,
-    UnwritableFileError,
     UsageError,
-    WorkerDiedError,
 )
-from exactfold.memory import is_shortage, shortage
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.workers import available_cores
 
@@ -63,14 +59,12 @@ class Streaming:
         if self.workers is not None and self.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --workers goes with --dask local")
         apart(self.file, self.pattern)
-        if self.file.exists() and not self.file.is_file():
-            raise UsageError(f"{self.file} is not a file")
+        require_file(self.file, resume=True)
         with Bar("reading") as bar:
             file = read(self.pattern, self.snap, self.sheet, "--stream")
             _require_streamable(file.pattern)
-            if self.file.exists() and not self.resume:
-                raise UsageError(f"{self.file} is there already; --resume continues it")
-            with self._resumable(), interruptible():
+            require_file(self.file, self.resume)
+            with resumable(self.file, self.again), interruptible():
                 result = self._streamed(file.pattern, bar)
                 return replace(result, snapped=file.opened.snapped, read=file.opened.read)
 
@@ -87,22 +81,6 @@ class Streaming:
                 progress=bar,
                 engine=engine,
             )
-
-    @contextmanager
-    def _resumable(self) -> Iterator[None]:
-        """Say how to go on when the run stops early."""
-        try:
-            yield
-        except KeyboardInterrupt:
-            stopped(f"go on with\n  {self.again}")
-        except (WorkerDiedError, UnwritableFileError) as error:
-            if not self.file.is_file():
-                raise
-            raise type(error)(f"{error}; go on with\n  {self.again}") from None
-        except Exception as error:
-            if not is_shortage(error) or not self.file.is_file():
-                raise
-            raise NotEnoughMemoryError(f"{shortage(error)}; go on with\n  {self.again}") from None
 
 
 def advice(pattern: CreasePattern) -> str | None:

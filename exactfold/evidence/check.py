@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,8 +14,8 @@ from exactfold.checker.compact_blocks import Block, CompactSheet
 from exactfold.checker.compact_lines import read_header
 from exactfold.checker.formats import MOST_UNITS
 from exactfold.checker.reading import MALFORMED, CertificateError, FormatError, plain
-from exactfold.crew import in_order
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
+from exactfold.evidence.sharing import shared
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.dense_newton import sign_vectors
 
@@ -42,7 +42,7 @@ def check_compact(
     Raises `checker.CertificateError` if a claim is not supported, `CertificateFormatError` if the
     file is not a compact certificate or was altered, `UnreadableFileError`, `WorkerDiedError`.
     """
-    engine = _FLOATS if fast else compact.INTEGERS._replace(share=_shared)
+    engine = _FLOATS if fast else compact.INTEGERS._replace(share=shared)
     name = path if name is None else name
     try:
         return compact.check(os.fspath(path), workers, engine)
@@ -124,23 +124,4 @@ def check_line_fast(text: str, number: int) -> str | None:
     return _fast.refusal(text, number)
 
 
-class _Started:
-    """What each process does with blocks: the start once, then the work."""
-
-    def __init__(self, engine: compact.Engine, header: str) -> None:
-        self.engine, self.header, self.started = engine, header, False
-
-    def __call__(self, block: tuple[str, int]) -> str | None:
-        if not self.started:
-            self.engine.start(self.header)
-            self.started = True
-        return self.engine.work(*block)
-
-
-def _shared(
-    engine: compact.Engine, workers: int, header: str, blocks: Iterator[tuple[str, int]]
-) -> compact.Said:
-    return in_order(workers, _Started(engine, header), blocks, 3)
-
-
-_FLOATS = compact.Engine(start_fast_worker, check_line_fast, LEAST, _shared)
+_FLOATS = compact.Engine(start_fast_worker, check_line_fast, LEAST, shared)

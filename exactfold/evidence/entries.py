@@ -53,6 +53,14 @@ def pattern_document(pattern: CreasePattern) -> Document:
     }
 
 
+def emptied_evidence(pattern: CreasePattern) -> list[Document]:
+    """The 3-cycles with vertices inside, and these vertices, without further evidence."""
+    return [
+        {"corners": list(corners), "inside": list(inside)}
+        for corners, inside in pattern.triangulated_triangles
+    ]
+
+
 def triangle_evidence(triangles: Iterable[RigidTriangle]) -> list[Document]:
     """The triangulated triangles with their definite stresses."""
     return [

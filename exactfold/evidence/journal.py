@@ -1,4 +1,4 @@
-"""A compact certificate as a journal: written block by block, resumed after an interruption."""
+"""Certificates as journals: written block by block, resumed after an interruption."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from exactfold.checker import FormatError
-from exactfold.checker.compact_lines import digest, lines, read_header
+from exactfold.checker.compact_lines import digest, lines, read_object
 from exactfold.errors import ForeignJournalError, UnwritableFileError, UsageError
 from exactfold.evidence.durable import locked, synced, synced_entry, unwritable
 
@@ -48,23 +48,27 @@ class Journal:
         path: str | os.PathLike[str],
         header: str,
         refusal: Callable[[str, int], str | None],
+        *,
+        opening: str = '{"block"',
+        kind: str = "compact certificate",
     ) -> Journal:
         """The file with its blocks as far as they are whole and verified, ready for more.
 
-        `refusal(body, number)` is None for a block that holds. What follows the last such block is
-        cut off. A file that does not exist is begun. Raises `ForeignJournalError` if the file is
-        not that of this pattern, `JournalInUseError`, `UnwritableFileError`.
+        `refusal(body, number)` is None for a block that holds; a block begins with `opening`. What
+        follows the last such block is cut off. A file that does not exist is begun. Raises
+        `ForeignJournalError` if the file is not that of this pattern, `JournalInUseError`,
+        `UnwritableFileError`.
         """
         journal = cls.__new__(cls)
         journal._open(path)
         try:
-            if length := journal._verified(header, refusal):
+            if length := journal._verified(header, refusal, opening):
                 journal._cut(length)
             else:  # not even a header: begin anew, but not over a file of another kind
                 line = f"{header}\t{digest('', header)}\n".encode("ascii")
                 journal._file.seek(0)
                 if not line.startswith(journal._file.read(len(line) + 1)):
-                    raise ForeignJournalError(f"{path} is not a compact certificate")
+                    raise ForeignJournalError(f"{path} is not a {kind}")
                 journal._begin(header)
         except BaseException:
             journal._file.close()
@@ -121,7 +125,9 @@ class Journal:
         self.sync()
         synced_entry(self.path)
 
-    def _verified(self, header: str, refusal: Callable[[str, int], str | None]) -> int:
+    def _verified(
+        self, header: str, refusal: Callable[[str, int], str | None], opening: str
+    ) -> int:
         """Bytes of the header and the blocks that hold, 0 without a header."""
         length = 0
         self._file.seek(0)
@@ -133,7 +139,7 @@ class Journal:
                         raise ForeignJournalError(
                             f"{self.path} belongs to another pattern or version"
                         )
-                elif not body.startswith('{"block"') or refusal(body, number):
+                elif not body.startswith(opening) or refusal(body, number):
                     break  # claims are written anew
                 else:
                     self.blocks += 1
@@ -163,7 +169,7 @@ class Journal:
 def _same(body: str, header: str) -> bool:
     """Whether two headers agree in all but their provenance, to the type of every number."""
     try:
-        found, wanted = (read_header(text) for text in (body, header))
+        found, wanted = (read_object(text, "a header") for text in (body, header))
     except FormatError:
         return False
     return _canonical(found) == _canonical(wanted)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from exactfold.checker.formats import MOTION, MOTION_VERSION
-from exactfold.evidence.entries import Document, pattern_document
+from exactfold.evidence.entries import Document, emptied_evidence, pattern_document
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 
@@ -36,10 +36,7 @@ def motion_certificate(
             "length": format_rational(length),
         },
         "evidence": {
-            "emptied": [
-                {"corners": list(corners), "inside": list(inside)}
-                for corners, inside in pattern.triangulated_triangles
-            ],
+            "emptied": emptied_evidence(pattern),
             "pinned": list(pinned),
             "bits": bits,
             "start": start,

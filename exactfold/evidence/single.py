@@ -9,7 +9,7 @@ from exactfold.branches.branch import Branch
 from exactfold.branches.roots import EnclosedRoot
 from exactfold.checker.formats import BRANCH, BRANCH_VERSION
 from exactfold.errors import UsageError
-from exactfold.evidence.entries import pattern_document
+from exactfold.evidence.entries import emptied_evidence, pattern_document
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.problem.gauge import RIM, SADDLE
 from exactfold.verdict import PROVED
@@ -44,10 +44,7 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
             "squared_distance": format_rational(root.squared_distance),
         },
         "evidence": {
-            "emptied": [
-                {"corners": list(corners), "inside": list(inside)}
-                for corners, inside in pattern.triangulated_triangles
-            ],
+            "emptied": emptied_evidence(pattern),
             "heights": [
                 None if h is None else format_integer(h.numerator * (denominator // h.denominator))
                 for h in heights

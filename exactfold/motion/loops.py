@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import zip_longest
 from math import inf, nextafter
 
 import numpy as np
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
-from exactfold.errors import NotProvedAtTheFlatStateError
+from exactfold.errors import NotCountedError, NotProvedAtTheFlatStateError
+from exactfold.evidence.entries import Document
+from exactfold.evidence.loops import loop_line
+from exactfold.exact.numbers import format_rational
 from exactfold.motion.angles import fold_angles_of
 from exactfold.motion.arclength import Interval
 from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
@@ -144,6 +148,74 @@ class LoopProof:
             len(self.steps) + 1,
         )
 
+    def line(self) -> str:
+        """The line of a loop that is proved to its end, for `exactfold.checker` (docs/motions.md).
+
+        It claims a length a little smaller than that of the loop, as far as straight chords show
+        it. Raises `NotCountedError` for a loop without a landing.
+        """
+        if self.landing is None:
+            raise NotCountedError(f"the loop is not proved to its end: {self.reason}")
+        landing, loop, unit = self.landing, self.loop, self.start.framework.unit
+        steps = [self._entry(a, b) for a, b in zip_longest(self.steps, self.steps[1:])]
+        return loop_line(
+            self._named(loop.source),
+            self._named(landing.to),
+            format_rational(self._chords * unit),
+            {
+                "start": {**self._flat_end(self.start), "exit": self.start.last},
+                "steps": steps,
+                "landing": {**self._flat_end(landing.start), "tau": landing.tau},
+            },
+            {"length": [format_rational(x) for x in loop.length]},
+        )
+
+    def _named(self, half_branch: HalfBranch) -> Document:
+        """A half-branch by the signs of all interior vertices of the pattern."""
+        signs = dict(zip(self.problem.foldable, half_branch.vertex_signs, strict=True))
+        interior = self.problem.pattern.interior
+        return {"vertex_signs": [signs.get(v, 0) for v in interior], "side": half_branch.saddle}
+
+    def _flat_end(self, start: StartTube) -> Document:
+        held = int(start.framework.free[start.held // 3])
+        return {
+            "centre": list(start.coefficients[0]),
+            "halvings": start.halvings,
+            "held": self.problem.labels[held],
+            "reach": start.reach,
+        }
+
+    def _entry(self, step: Link | Passage, after: Link | Passage | None) -> Document:
+        tube = step.tube
+        found: Document = {
+            "centre": list(tube.coefficients[0]),
+            "row": list(tube.row),
+            "reach": tube.reach,
+        }
+        if isinstance(step, Passage):
+            node = step.tube.node.centre
+            found = {"flat": list(step.vertices), "node": list(node), **found, "entry": step.entry}
+        if isinstance(step, Passage) or isinstance(after, Link):
+            found["exit"] = step.exit
+        return found
+
+    @property
+    def _chords(self) -> Fraction:
+        """A little less than the lengths of the chords between the points where pieces meet."""
+        balls = [self.start.ball(self.start.last)]
+        for step, after in zip_longest(self.steps, self.steps[1:]):
+            if isinstance(step, Passage):
+                balls += [step.tube.ball(at) for at in (step.entry, 0, step.exit)]
+            elif isinstance(after, Link):
+                balls.append(step.tube.enclosure(step.exit))
+        if self.landing is not None:
+            balls.append(self.landing.ball)
+        none = np.zeros((1, self.start.framework.size))
+        points = np.array([ball.floats[0] for ball in balls])
+        steps = np.diff(points, axis=0, prepend=none, append=none)
+        total = float(np.linalg.norm(steps, axis=1).sum())
+        return Fraction(int(total * (1 - 1e-5) * (1 << 30)), 1 << 30)
+
     def __repr__(self) -> str:
         return f"<LoopProof: {len(self.steps)} steps, {self.loop!r}>"
 
@@ -164,7 +236,20 @@ class LoopFinder:
         >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
         <Loop: +-, saddle + to +-, saddle -, proved>
         """
-        start = half_branch(branch, side).start
+        return self._proof(half_branch(branch, side).start)
+
+    def follow_from(self, branch: Branch, source: HalfBranch) -> LoopProof:
+        """The loop that leaves the flat state along `source`, one of the halves of a branch.
+
+        Raises as `half_branch`, and `NotProvedAtTheFlatStateError` if it is neither half.
+        """
+        for side in (1, -1):
+            start = half_branch(branch, side).start
+            if named(start) == source:
+                return self._proof(start)
+        raise NotProvedAtTheFlatStateError(f"the branch has not the half-branch {source}")
+
+    def _proof(self, start: StartTube) -> LoopProof:
         steps, landing, reason = self._followed(start)
         return LoopProof(self.problem, start, tuple(steps), landing, reason)
 
@@ -267,7 +352,10 @@ class LoopFinder:
         held = start.coefficients[0][start.held] / (1 << start.bits)
         # The height that is held is the same along the whole start tube: it gives t, and tau.
         tau = round(float(x[start.held]) / held * (1 << (ROOT_BITS + start.halvings)))
-        if not 0 < abs(tau) <= start.last or not tube.lies_in(start.ball(tau)):
+        if not 0 < abs(tau) <= start.last:
+            return None
+        found = tube.located(start.ball(tau))
+        if found is None or found[0] < link.entry[1]:
             return None
         velocity = start.ball_velocity(tau)
         if tube.goes_along(velocity) * (1 if tau > 0 else -1) != -1:
@@ -289,11 +377,11 @@ def named(start: StartTube, side: int = 1) -> HalfBranch:
 
 def _whole_length(step: Link | Passage, landing: Landing) -> Interval:
     """Bounds of the length of a loop, whose last tube is met by the start tube of the landing."""
-    if not isinstance(step, Link) or (found := step.tube.located(landing.ball)) is None:
+    found = step.tube.located(landing.ball) if isinstance(step, Link) else None
+    if not isinstance(step, Link) or found is None or found[0] < step.entry[1]:
         raise ArithmeticError("the landing is not on the tube")
     shortest, longest = landing.start.length(0, abs(landing.tau))
-    low = step.time(found[0])[0] if found[0] >= step.entry[1] else step.entered[0]
-    return low + shortest, step.time(found[1])[1] + longest
+    return step.time(found[0])[0] + shortest, step.time(found[1])[1] + longest
 
 
 def below(value: Fraction) -> float:

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import closing
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
+from itertools import product
 from typing import Any
 
 from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder
 from exactfold.count.pools import Pool, process_pool
 from exactfold.errors import (
+    FlatVertexError,
     NotCountedError,
     NotProvedAtTheFlatStateError,
     UsageError,
     WorkerDiedError,
 )
 from exactfold.motion.half_branches import HalfBranch
+from exactfold.motion.loop_file import LoopFile
 from exactfold.motion.loops import Loop, LoopFinder
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
@@ -91,14 +96,23 @@ def find_loops(
     processes: int = 1,
     pool: Pool | None = None,
     progress: Progress | None = None,
+    certificate: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    replace: bool = True,
 ) -> Loops:
     """Follow every half-branch of a sheet through true configurations back to the flat state.
 
     Each loop is one analytic curve, proved from end to end by tubes (docs/motion.md), through nodes
     as well; of mirror images and of the two directions one is followed. Four boundary vertices.
 
+    The file `certificate` takes the proof of each loop as it is found, and at last the claims, for
+    `exactfold.checker` (docs/motions.md). With `resume`, a file left by an interrupted run is
+    continued: the loops in it are taken over, as far as its digests show that they are whole, and
+    are not verified anew. Otherwise it is replaced, or refused without `replace`.
+
     Raises `NotCountedError` for sheets that are not counted or have no branches, `ArithmeticError`
-    if two proofs contradict each other, which is a defect.
+    if two proofs contradict each other, which is a defect; for the file `ForeignJournalError`,
+    `JournalInUseError`, `UnwritableFileError`, `UsageError`; `WorkerDiedError`.
 
     >>> found = find_loops("two-vertex")
     >>> found
@@ -116,21 +130,19 @@ def find_loops(
         for branch in ways.branches
         if any(not branch.vertex_signs[v] for v in problem.foldable)
     }
-    sources = [branch.sign_text for branch in ways.branches if branch.sign_text not in skipped]
-    found = sorted(
-        _followed(sheet, problem, sources, pool or process_pool(processes), progress),
-        key=lambda loop: loop.source,
-    )
-    _check(found)
-    found = _once(found)
+    runs = pool or process_pool(processes)
+    if certificate is None:
+        found = _matching(_followed(sheet, problem, runs, progress, None))
+    else:
+        with closing(LoopFile.opened(certificate, problem, resume, replace)) as file:
+            found = _matching([*file.known, *_followed(sheet, problem, runs, progress, file)])
+            file.finish()
     reasons = []
-    if skipped:
-        reasons.append(
-            f"{counted(len(skipped), 'branch')} {agreeing(len(skipped), 'is')} not simple"
-        )
+    if many := len(skipped):
+        reasons.append(f"{counted(many, 'branch')} {agreeing(many, 'is')} not simple")
     if left := sum(loop.target is None for loop in found):
         reasons.append(f"{counted(left, 'loop')} {agreeing(left, 'is')} not proved to the end")
-    return Loops(
+    loops = Loops(
         sheet,
         tuple(found),
         skipped,
@@ -138,24 +150,36 @@ def find_loops(
         "; ".join(reasons),
         time.perf_counter() - begun,
     )
+    if not reasons and len(loops.matching) != 2 ** (len(problem.foldable) + 1):
+        raise ArithmeticError("half-branches are missing from a matching that should be whole")
+    return loops
+
+
+Job = tuple[HalfBranch, bool]
+"""A half-branch on which the saddle, or the reflex corner, is positive; and whether to certify."""
 
 
 @dataclass(frozen=True)
 class _Follow:
-    """The loop from the half-branch with given signs, as `find_branch` shows it."""
+    """The loop from a half-branch, and its line in a certificate; None if a vertex is flat on it.
+
+    The line is empty for a loop that is not proved to its end.
+    """
 
     pattern: CreasePattern
 
-    def __call__(self, signs: str) -> Loop:
+    def __call__(self, job: Job) -> tuple[Loop, str] | None:
         """Follow it; run in a worker process."""
-        finder, loops = _finders(self.pattern)
-        branch = finder.find(finder.signs(signs, None))
+        (source, certified), (finder, loops) = job, _finders(self.pattern)
+        signs = dict(zip(loops.problem.foldable, source.vertex_signs, strict=True))
         try:
-            return loops.follow(branch).loop
+            proof = loops.follow_from(finder.find(finder.signs(signs, None)), source)
+        except FlatVertexError:
+            return None
         except (NotProvedAtTheFlatStateError, UsageError) as error:
-            source = HalfBranch(tuple(branch.vertex_signs[v] for v in loops.problem.foldable), 1)
             nothing = Fraction(0), Fraction(0)
-            return Loop(source, None, (), nothing, UNDECIDED, str(error), 0)
+            return Loop(source, None, (), nothing, UNDECIDED, str(error), 0), ""
+        return proof.loop, proof.line() if certified and proof.landing else ""
 
 
 @lru_cache(maxsize=4)
@@ -166,41 +190,54 @@ def _finders(pattern: CreasePattern) -> tuple[BranchFinder, LoopFinder]:
 def _followed(
     sheet: CreasePattern,
     problem: Problem,
-    sources: list[str],
     pool: Pool,
     progress: Progress | None,
+    file: LoopFile | None,
 ) -> Iterator[Loop]:
     """The loops; a half-branch at which one has ended, or its mirror image, is not followed."""
-    ended: set[HalfBranch] = set()
-    places = [k for k, v in enumerate(problem.pattern.interior) if v in problem.foldable]
+    ended: set[HalfBranch] = set() if file is None else set(file.matched)
+    number = len(problem.foldable)
 
-    def left() -> Iterator[str]:
-        for k, signs in enumerate(sources):
+    def left() -> Iterator[Job]:
+        for k, signs in enumerate(product((-1, 1), repeat=number)):
             if progress is not None:
-                progress("half-branches", k, len(sources))
-            named = HalfBranch(tuple(1 if signs[p] == "+" else -1 for p in places), 1)
-            if named not in ended:
-                yield signs
+                progress("half-branches", k, 1 << number)
+            if (named := HalfBranch(signs, 1)) not in ended:
+                yield named, file is not None
 
-    for _, loop in pool(_Follow(sheet), left()):
-        if isinstance(loop, WorkerDiedError):
-            raise loop
-        if loop.target is not None:
-            ended |= {loop.target, loop.target.mirrored}
-        yield loop
+    with closing(pool(_Follow(sheet), left())) as results:
+        for _, result in results:
+            if isinstance(result, WorkerDiedError):
+                raise result
+            if result is None:
+                continue
+            loop, line = result
+            if loop.target is not None:
+                ended |= {loop.target, loop.target.mirrored}
+                if file is not None:
+                    file.add(loop, line)
+            yield loop
+
+
+def _matching(found: Iterable[Loop]) -> list[Loop]:
+    """The loops, each once, in the order of their sources; raises as `_check`."""
+    ordered = sorted(found, key=lambda loop: loop.source)
+    _check(ordered)
+    return _once(ordered)
 
 
 def _once(found: Iterable[Loop]) -> list[Loop]:
     """Of loops that are the same, run through backwards or mirrored, the first one."""
     seen: set[HalfBranch] = set()
     kept = []
-    for loop in found:
+    # First those that are proved: one that is not may be the end of another.
+    for loop in sorted(found, key=lambda loop: loop.target is None):
         if loop.source not in seen:
             kept.append(loop)
         seen |= {loop.source, loop.source.mirrored}
         if loop.target is not None:
             seen |= {loop.target, loop.target.mirrored}
-    return kept
+    return sorted(kept, key=lambda loop: loop.source)
 
 
 def _check(found: Iterable[Loop]) -> None:

@@ -24,7 +24,8 @@ class MotionProof:
 
     `track`: the chain of tubes, None for a motion until its return. `contact`: how far no two faces
     touch, and the first contact if the motion meets one; None until the return. `passed`: the
-    motion goes on after that contact, through the paper. `loop`: of a motion until its return. `length` bounds how far it is proved, in the unit of the sheet.
+    motion goes on after that contact, through the paper. `loop`: of a motion until its return.
+    `length` bounds how far it is proved, in the unit of the sheet.
 
     `status` is PROVED if all of the motion is, and its contact where it ends at one; else `reason`
     says what is missing.

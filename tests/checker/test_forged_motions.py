@@ -372,10 +372,10 @@ def test_a_length_that_is_too_long_is_refused() -> None:
 
 def test_chords_are_lower_bounds() -> None:
     a, b = Ball([0, 0], [0, 0]), Ball([3 << 20, 4 << 20], [0, 0])
-    assert 0 <= 5 - motion._chord(a, b, 20) < Fraction(1, 10**5)
+    assert 0 <= 5 - motion.chord(a, b, 20) < Fraction(1, 10**5)
     wide = Ball([3 << 20, 4 << 20], [1 << 20, 0])
-    assert 0 <= 4 - motion._chord(a, wide, 20) < Fraction(1, 10**5)
-    assert motion._chord(a, Ball([1, 0], [5, 5]), 20) == 0
+    assert 0 <= 4 - motion.chord(a, wide, 20) < Fraction(1, 10**5)
+    assert motion.chord(a, Ball([1, 0], [5, 5]), 20) == 0
 
 
 def test_the_start_is_that_of_its_branch() -> None:

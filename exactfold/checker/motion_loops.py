@@ -1,0 +1,267 @@
+"""Certificates of loops, line by line: motions from the flat state back to it (docs/motions.md).
+
+Why it is a proof: a loop leaves the flat state as the motions of `motion` do. It passes from tube
+to tube, and through nodes on arcs that are analytic there (`motion_nodes`). On its last tube lies a
+point of the start tube of another half-branch, which passes it in the opposite direction: so it
+ends in the flat state along this one. Every half-branch is the beginning of one curve only, which
+makes loops that are given a matching, complete if all 2^(n + 1) names occur in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from contextlib import closing
+from fractions import Fraction
+from typing import Any
+
+from .compact import Engine, Share, on_processes
+from .compact_lines import read_object
+from .formats import LOOPS, LOOPS_VERSION, NODE_WORK
+from .motion import (
+    PARAMETER_BITS,
+    ROOT_BITS,
+    check_work,
+    first_piece,
+    framework,
+    names,
+    reach_of,
+    start_of,
+    tube_of,
+    vector,
+)
+from .motion_nodes import NodeTube
+from .motion_patches import Patch
+from .motion_paths import Path
+from .motion_tubes import Ball, Start
+from .reading import (
+    MALFORMED,
+    CertificateError,
+    FormatError,
+    counted,
+    document,
+    integer,
+    items,
+    keys,
+    natural,
+    parse_rational,
+    read_json,
+    require,
+)
+from .sheet import read_sheet
+
+HalfBranch = tuple[tuple[int, ...], int]
+"""The signs of the interior vertices, 0 for those that cannot fold, and the side."""
+
+
+def read_header(text: str) -> dict[str, Any]:
+    """The first line, if it is that of a certificate of loops."""
+    names_of = "format version pattern emptied pinned bits"
+    return document(read_json(text), LOOPS, LOOPS_VERSION, names_of)
+
+
+class LoopSheet:
+    """The sheet of a file, and what checks its loops."""
+
+    def __init__(self, header: dict[str, Any]) -> None:
+        self.given, self.sha256 = read_sheet(header["pattern"])
+        self.equations, self.removed = framework(self.given, header)
+
+    @property
+    def half_branches(self) -> int:
+        """How many there are."""
+        return 2 << len(self.equations.sheet.interior)
+
+    def half_branch(self, entry: Any) -> HalfBranch:
+        """A half-branch of its keys."""
+        keys(entry, "vertex_signs side", "half-branch")
+        signs = items(entry["vertex_signs"], "vertex_signs", len(self.given.interior))
+        return tuple(map(integer, signs)), integer(entry["side"])
+
+    def check_loop(self, entry: dict[str, Any]) -> None:
+        """Raise unless a loop is proved by its evidence.
+
+        The claims are: from the flat state on, the half-branch `from` is followed by one analytic
+        curve of configurations that ends in the flat state along the half-branch `to`. All of them
+        are regular but the nodes it passes. It is at least `length` long, as in `motion`.
+        """
+        keys(entry, "from to length evidence provenance", "loop")
+        evidence = entry["evidence"]
+        keys(evidence, "start steps landing", "evidence")
+        steps = items(evidence["steps"], "steps")
+        nodes = sum(_is_node(step) for step in steps)
+        check_work(self.equations, len(steps) + (NODE_WORK - 1) * nodes)
+        start, tau = first_piece(self.equations, evidence["start"])
+        require(self._named(start) == self.half_branch(entry["from"]), "it begins along another")
+        path = Path(start.configuration(tau), self.equations.bits)
+        for step, after in zip(steps, [*steps[1:], None], strict=True):
+            if _is_node(step):
+                self._pass_node(path, step)
+            else:
+                onwards = after is not None and not _is_node(after)
+                keys(step, "centre row reach exit" if onwards else "centre row reach", "tube")
+                path.enter(tube_of(self.equations, step))
+                if onwards:
+                    path.leave(_parameter(step["exit"]))
+        landing = evidence["landing"]
+        keys(landing, "centre halvings held reach tau", "landing")
+        end, side = start_of(self.equations, landing), 1
+        tau = Fraction(integer(landing["tau"]), 1 << ROOT_BITS)
+        require(tau, "a loop does not land before the flat state")
+        point, velocity = end.configuration(tau)
+        if tau > 0:
+            velocity = Ball([-x for x in velocity.centre], velocity.radii)
+        else:
+            side = -1
+        path.meet(point, velocity)
+        signs, saddle = self._named(end)
+        target = tuple(side * s for s in signs), side * saddle
+        require(target == self.half_branch(entry["to"]), "it ends along another")
+        claimed = parse_rational(entry["length"])
+        require(claimed <= path.land() * self.equations.unit, "it is shorter than claimed")
+
+    def _pass_node(self, path: Path, entry: Any) -> None:
+        keys(entry, "flat node centre row reach entry exit", "node")
+        size, bits = self.equations.size, self.equations.bits
+        flat = [natural(v, "flat vertex") for v in items(entry["flat"], "flat")]
+        patch = Patch(self.equations, flat)
+        arc = NodeTube(
+            patch,
+            patch.node(vector(entry["node"], "node", size, bits)),
+            vector(entry["centre"], "centre", size, bits),
+            vector(entry["row"], "row", size, 0),
+            reach_of(entry["reach"]),
+        )
+        begin, end = _parameter(entry["entry"]), _parameter(entry["exit"])
+        require(begin < 0 < end, "an arc does not go through its node")
+        path.meet(*arc.configuration(begin))
+        path.go(*arc.configuration(Fraction(0)))
+        path.go(*arc.configuration(end))
+
+    def _named(self, start: Start) -> HalfBranch:
+        signs, side = names(self.given, self.removed, start)
+        return tuple(signs), side
+
+
+def _is_node(step: Any) -> bool:
+    return isinstance(step, dict) and "flat" in step
+
+
+def _parameter(value: Any) -> Fraction:
+    return Fraction(integer(value), 1 << PARAMETER_BITS)
+
+
+# --- files ---------------------------------------------------------------------------------------
+
+_sheet: LoopSheet | None = None  # of a worker process
+
+
+def start_worker(header: str) -> None:
+    """Rebuild the sheet in a worker process."""
+    global _sheet
+    _sheet = LoopSheet(read_header(header))
+
+
+def check_line(text: str, number: int) -> str | None:
+    """Verify one loop in a worker process: None, or why it does not hold."""
+    if _sheet is None:
+        raise RuntimeError("the worker was not started")
+    try:
+        _sheet.check_loop(read_object(text, "a loop"))
+    except CertificateError as error:
+        return f"loop {number}: {error}"
+    except MALFORMED as error:
+        return f"loop {number}: malformed: {type(error).__name__}"
+    return None
+
+
+ENGINE = Engine(start_worker, check_line, 1)
+
+
+class Matching:
+    """Which half-branches are matched: there and back, and in the mirror image."""
+
+    def __init__(self) -> None:
+        self.loops, self.matched = 0, set[HalfBranch]()
+
+    def add(self, source: HalfBranch, target: HalfBranch) -> None:
+        """A loop; raises if one of its half-branches is matched already, or with itself."""
+        require(source != target, f"loop {self.loops}: a half-branch is matched with itself")
+        ends = {source, target}
+        ends |= {(tuple(-s for s in signs), -side) for signs, side in ends}
+        new = self.matched.isdisjoint(ends)
+        require(new, f"loop {self.loops}: a half-branch is matched twice")
+        self.loops += 1
+        self.matched |= ends
+
+
+def check_lines(
+    found: Iterator[str], workers: int = 1, share: Share = on_processes
+) -> dict[str, Any]:
+    """Verify every claim, given the lines of a file; returns the claims.
+
+    With several workers, loops are checked in that many processes, which `share` starts. The claims
+    are: so many loops, as `LoopSheet.check_loop` says, which match so many of the half-branches,
+    none twice, none with itself; and whether these are all.
+    """
+    first = next(found, None)
+    if first is None:
+        raise FormatError("the file is empty")
+    header = read_header(first)
+    try:
+        sheet = LoopSheet(header)
+    except MALFORMED as error:
+        raise CertificateError(f"malformed: {type(error).__name__}") from error
+    matching, last, late = Matching(), list[Any](), list[Exception]()
+
+    def loops() -> Iterator[tuple[str, int]]:
+        try:
+            for text in found:
+                entry = read_object(text, "a line")
+                require(not last, "something follows the claims")
+                if "claims" in entry:
+                    keys(entry, "claims", "the last line")
+                    last.append(entry["claims"])
+                    continue
+                keys(entry, "from to length evidence provenance", "loop")
+                ends = (sheet.half_branch(entry[key]) for key in ("from", "to"))
+                matching.add(*ends)
+                yield text, matching.loops - 1
+        except (CertificateError, FormatError) as error:
+            late.append(error)
+
+    said = share(ENGINE, workers, first, loops()) if workers > 1 else _here(first, loops())
+    with closing(said):
+        for reason in said:
+            if reason is not None:
+                raise CertificateError(reason)
+    if late:  # a loop before it that does not hold comes first
+        raise late[0]
+    require(last, "the claims are missing")
+    facts: dict[str, Any] = {
+        "sha256": sheet.sha256,
+        "loops": matching.loops,
+        "matched": len(matching.matched),
+        "half_branches": sheet.half_branches,
+        "complete": len(matching.matched) == sheet.half_branches,
+    }
+    (claims,) = last
+    keys(claims, " ".join(facts), "claims")
+    for key, fact in facts.items():
+        claim = claims[key]
+        require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
+    return facts
+
+
+def _here(header: str, lines: Iterator[tuple[str, int]]) -> Generator[str | None, None, None]:
+    start_worker(header)
+    for text, number in lines:
+        yield check_line(text, number)
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    loops = counted(claims["loops"], "loop", "loops")
+    matched, all_of_them = claims["matched"], claims["half_branches"]
+    how = f"all {all_of_them}" if claims["complete"] else f"{matched} of {all_of_them}"
+    digest = claims["sha256"]
+    return f"VALID: {loops} of true motions, which match {how} half-branches; sha256 {digest}"

@@ -1,0 +1,104 @@
+"""Files of proved loops, written as they are found and continued after an interruption."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+from exactfold.evidence.journal import Journal
+from exactfold.evidence.loops import OPENING, claims_line, header_line
+from exactfold.motion.framework import Framework
+from exactfold.motion.half_branches import HalfBranch
+from exactfold.motion.length_equations import LengthEquations
+from exactfold.motion.loops import Loop
+from exactfold.problem.problem import Problem
+from exactfold.verdict import PROVED
+
+
+@dataclass(repr=False)
+class LoopFile:
+    """A certificate of loops under way: no half-branch is in it twice.
+
+    `known` are the loops that an earlier run has left in it.
+    """
+
+    journal: Journal
+    problem: Problem
+    known: tuple[Loop, ...]
+    matched: set[HalfBranch] = field(default_factory=set)
+
+    @classmethod
+    def opened(
+        cls, path: str | os.PathLike[str], problem: Problem, resume: bool, replace: bool
+    ) -> LoopFile:
+        """A new file, or with `resume` one that is continued; raises the errors of `Journal`."""
+        framework = Framework.of(problem.sheet)
+        pinned = [problem.labels[v] for v in framework.pinned]
+        bits = LengthEquations.of(framework).bits
+        header = header_line(problem.pattern, pinned, bits)
+        if not resume:
+            return cls(Journal(path, header, replace=replace), problem, ())
+        known: list[Loop] = []
+        matched: set[HalfBranch] = set()
+
+        def refusal(text: str, _: int) -> str | None:
+            loop = _loop_of(text, problem)
+            if loop is None or not matched.isdisjoint(_ends(loop)):
+                return "it is no loop of this sheet, or the same as one before"
+            known.append(loop)
+            matched.update(_ends(loop))
+            return None
+
+        journal = Journal.resumed(
+            path, header, refusal, opening=OPENING, kind="certificate of loops"
+        )
+        return cls(journal, problem, tuple(known), matched)
+
+    def add(self, loop: Loop, line: str) -> None:
+        """Write a loop, unless it is there, perhaps run through backwards or mirrored."""
+        ends = _ends(loop)
+        if self.matched.isdisjoint(ends):
+            self.journal.append(line)
+            self.matched |= ends
+
+    def finish(self) -> None:
+        """Write the claims; raises `UnwritableFileError`."""
+        pattern = self.problem.pattern
+        self.journal.finish(claims_line(pattern, self.journal.blocks, len(self.matched)))
+
+    def close(self) -> None:
+        """Close the file; what was written stays."""
+        self.journal.close()
+
+    def __repr__(self) -> str:
+        return f"<LoopFile: {self.journal.path}, {self.journal.blocks} loops>"
+
+
+def _ends(loop: Loop) -> set[HalfBranch]:
+    """The half-branches that a loop and its mirror image match."""
+    ends = {loop.source, loop.source.mirrored}
+    return ends if loop.target is None else ends | {loop.target, loop.target.mirrored}
+
+
+def _loop_of(text: str, problem: Problem) -> Loop | None:
+    """The loop of a line; None if this program did not write it."""
+    try:
+        data = json.loads(text)
+        source, target = (_half_branch(data[key], problem) for key in ("from", "to"))
+        steps = data["evidence"]["steps"]
+        low, high = (Fraction(x) for x in data["provenance"]["length"])
+        through = tuple(tuple(step["flat"]) for step in steps if "flat" in step)
+    except (ValueError, LookupError, TypeError, ZeroDivisionError):
+        return None
+    return Loop(source, target, through, (low, high), PROVED, "", len(steps) + 1)
+
+
+def _half_branch(data: dict[str, Any], problem: Problem) -> HalfBranch:
+    signs = dict(zip(problem.pattern.interior, data["vertex_signs"], strict=True))
+    side = data["side"]
+    if side not in (1, -1) or any(signs[v] not in (1, -1) for v in problem.foldable):
+        raise ValueError("this is no half-branch")
+    return HalfBranch(tuple(signs[v] for v in problem.foldable), 1 if side == 1 else -1)
