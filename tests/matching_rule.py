@@ -1,0 +1,111 @@
+"""The rule of docs/matching.md for fans, and H1 sheets, in exact arithmetic."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import atan2, pi
+
+from exactfold.pattern.crease_pattern import CreasePattern
+
+
+def turned(sheet: CreasePattern, a: int, b: int, c: int) -> Fraction:
+    """Twice the signed area of the triangle a, b, c."""
+    (ax, ay), (bx, by), (cx, cy) = (sheet.vertices[v] for v in (a, b, c))
+    return Fraction((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
+
+
+@dataclass(frozen=True)
+class Fan:
+    """`chain` from boundary to boundary, x_0 to x_(n+1), and the poles p, q joined to all of it."""
+
+    sheet: CreasePattern
+    poles: tuple[int, int]
+    chain: tuple[int, ...]
+
+    def closing(self, j: int) -> Fraction:
+        """c_j: a quarter of |p q|^2 in the flat sheet less |p q|^2 where fold j is closed."""
+        (p, q), (x, y) = self.poles, self.chain[j - 1 : j + 1]
+        dx, dy = (a - b for a, b in zip(*(self.sheet.vertices[v] for v in (x, y)), strict=True))
+        product = turned(self.sheet, x, y, p) * turned(self.sheet, y, x, q)
+        return product / (dx * dx + dy * dy)
+
+    def signs(self) -> tuple[int, ...] | None:
+        """For folds 1 to n + 1 the place of the sign they carry, or None at a straight angle."""
+        p, q = self.poles
+        n = len(self.chain) - 2
+        carried: dict[int, int] = {}
+        for i in range(1, n + 1):
+            x, after = self.chain[i : i + 2]
+            star = self.sheet.star(x)
+            at = star.index(after)
+            a, b = star[at - 1], star[(at + 1) % 4]  # the poles, in their order around x
+            side = turned(self.sheet, x, a, b)
+            if {a, b} != {p, q} or not side:
+                return None
+            carried[i if side > 0 else i + 1] = self.sheet.interior.index(x)
+        return tuple(carried.get(j, n) for j in range(1, n + 2)) if len(carried) == n else None
+
+    def flipped(self) -> int | None:
+        """The place of the sign that flips on every loop, n for the last; None for a tie."""
+        signs = self.signs()
+        values = [self.closing(j) for j in range(1, len(self.chain))]
+        least = min(values)
+        if signs is None or values.count(least) > 1:
+            return None
+        return signs[values.index(least)]
+
+
+def fan(sheet: CreasePattern) -> Fan | None:
+    """The sheet as a fan, if it is one; for one vertex one of the two ways."""
+    inside = sheet.interior_set
+    if not inside or any(sheet.degree(v) != 4 for v in inside):
+        return None
+    common = set.intersection(*(set(sheet.star(v)) for v in inside)) - inside
+    for p in sorted(common):
+        for q in sorted(common - {p}):
+            ends = [v for v in sheet.boundary if v not in (p, q)]
+            chain, seen = [ends[0]], {ends[0], p, q}
+            while True:
+                after = [v for v in sheet.star(chain[-1]) if v not in seen]
+                if len(after) != 1:
+                    break
+                chain.append(after[0])
+                seen.add(after[0])
+            if len(chain) == len(inside) + 2 and chain[-1] == ends[1]:
+                return Fan(sheet, (p, q), tuple(chain))
+    return None
+
+
+def is_h1(sheet: CreasePattern) -> bool:
+    """Whether boundary vertices of degree 3 can be removed one by one until two faces are left."""
+    faces, rim = set(map(tuple, sheet.triangles)), list(sheet.boundary)
+
+    def removable() -> int | None:
+        for v in rim:
+            mine = [t for t in faces if v in t]
+            neighbours = {u for t in mine for u in t} - {v}
+            if len(mine) == 2 and len(neighbours - set(rim)) == 1:
+                return v
+        return None
+
+    while len(faces) > 2:
+        v = removable()
+        if v is None:
+            return False
+        mine = [t for t in faces if v in t]
+        faces -= set(mine)
+        (new,) = {u for t in mine for u in t} - set(rim)
+        rim[rim.index(v)] = new
+    return True
+
+
+def sectors(sheet: CreasePattern) -> list[float]:
+    """The sector angles of a sheet with one interior vertex, in floats."""
+    (hub,) = sheet.interior
+    hx, hy = sheet.vertices[hub]
+    around = [
+        atan2(float(sheet.vertices[v][1] - hy), float(sheet.vertices[v][0] - hx))
+        for v in sheet.star(hub)
+    ]
+    return [(b - a) % (2 * pi) for a, b in zip(around, around[1:] + around[:1], strict=True)]
