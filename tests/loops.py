@@ -105,7 +105,7 @@ class Tracker:
             step = lu_solve(factors, np.append(-f.stretch(x), 0.0))
             x = x + step
             last, size = size, float(np.max(np.abs(step)))
-            if not size < 1e-3:
+            if not size < 1e-6:
                 raise LostError("Newton's method fails")
             if size < 1e-14 or (size < 1e-11 and size > last / 4):
                 break
@@ -124,8 +124,11 @@ class Tracker:
         reach = min(bounds, default=1.0)
         if not reach > 1e-8:
             raise LostError("steps become too short")
-        orientation = int(self.orientation(x, series[1]))
-        return Piece(series, reach, time, orientation)
+        piece = Piece(series, reach, time, int(self.orientation(x, series[1])))
+        # Close to another strand the last terms do not show how short the step must be.
+        while np.abs(f.stretch(piece.at(piece.reach))).max() > TOLERANCE:
+            piece = piece.cut(0.7 * piece.reach)
+        return piece
 
     def _landing(self, x: FloatArray) -> tuple[Signs, float] | None:
         """The signs of the half-branch on which x lies, if its series reaches x; and its length."""

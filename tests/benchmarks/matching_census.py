@@ -11,7 +11,8 @@ loops by the number of signs that flip; `H1 >1` loops of H1 sheets without nodes
 one sign; `odd` loops against the parity law; `fans` loops of fans, and `missed` those not as the
 rule says; `winding` the total number of folds that wind; `uneven` vertices of loops with an odd
 number of winding folds; `flip = 2` and `flip other` loops that flip one vertex sign only, by whether
-exactly two folds wind at that vertex. `--kinds` lists loops by size, flips, nodes and flat vertices.
+exactly two folds wind at that vertex; `kinds` loops by flips and, in brackets, the number of flat
+vertices of each node.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ from exactfold import CreasePattern, count_branches, random_square
 from exactfold.pattern.families import h1_sequence
 
 COLUMNS = (
-    "sheets", "H1", "loops", "lost", "clash", "nodes", "1", "2", "3", "4+", "H1 >1", "odd",
+    "sheets", "H1", "loops", "lost", "clash", "nodes", "other", "1", "2", "3", "4+", "plain >1",
+    "H1 >1", "odd",
     "fans", "missed", "winding", "uneven", "flip = 2", "flip other",
 )  # fmt: skip
 
@@ -43,8 +45,11 @@ def seen(tracker: Tracker, loop: Loop) -> Counter[str]:
         v: sum(w for w, fold in zip(winding, sheet.folds, strict=True) if v in fold)
         for v in sheet.interior
     }
+    if not all(loop.crossings):
+        return Counter({"loops": 1, "other": 1})
     found = Counter({"loops": 1, str(flips) if flips < 4 else "4+": 1, "winding": sum(winding)})
-    found["nodes"] += bool(loop.flat_stars or loop.crossings)
+    found["nodes"] += bool(loop.flat_stars)
+    found["plain >1"] += not loop.flat_stars and flips > 1
     found["odd"] += (flips + 1 + sum(map(len, loop.flat_stars))) % 2
     found["uneven"] += sum(
         sum(t for t, fold in zip(loop.turns, sheet.folds, strict=True) if v in fold) % 2 for v in at
@@ -55,7 +60,7 @@ def seen(tracker: Tracker, loop: Loop) -> Counter[str]:
     return found
 
 
-def sheet_census(pattern: CreasePattern, kinds: Counter[tuple[int, ...]]) -> Counter[str] | None:
+def sheet_census(pattern: CreasePattern, kinds: Counter[str]) -> Counter[str] | None:
     """The columns of one sheet, None if some branch is not simple or a vertex cannot fold."""
     if pattern.without_rigid_parts()[0].Vi != pattern.Vi:
         return None
@@ -79,14 +84,15 @@ def sheet_census(pattern: CreasePattern, kinds: Counter[tuple[int, ...]]) -> Cou
             total["clash"] += partner.get(b, a) != a or a == b
             partner[a], partner[b] = b, a
         one = seen(tracker, loop)
-        simple = not (loop.flat_stars or loop.crossings)
-        one["H1 >1"] += total["H1"] and simple and len(loop.flipped) > 1
-        if whole is not None:
+        one["H1 >1"] += total["H1"] * one["plain >1"]
+        if whole is not None and not one["other"]:
             one["fans"] += 1
             one["missed"] += loop.flipped != (whole.flipped(),)
         # A loop and its mirror image are two loops, unless the mirror image is the loop itself.
         times = 1 if loop.end == mirrored[0] else 2
-        kinds[pattern.Vi, len(loop.flipped), len(loop.flat_stars), sum(map(len, loop.flat_stars))] += times
+        if not one["other"]:
+            nodes = "".join(f"[{len(vertices)}]" for vertices in loop.flat_stars)
+            kinds[f"{len(loop.flipped)}{nodes}"] += times
         total.update({key: times * value for key, value in one.items()})
     return total
 
@@ -97,25 +103,22 @@ def main() -> None:
     parser.add_argument("--sizes", type=int, nargs="+", default=[1, 2, 3])
     parser.add_argument("--sheets", type=int, nargs="+", default=[10], help="for each size")
     parser.add_argument("--family", choices=["square", "h1"], default="square")
-    parser.add_argument("--kinds", action="store_true")
     options = parser.parse_args()
     warnings.simplefilter("ignore")
     build = random_square if options.family == "square" else h1_sequence
     numbers = options.sheets * (len(options.sizes) if len(options.sheets) == 1 else 1)
-    kinds: Counter[tuple[int, ...]] = Counter()
-    print("| n | " + " | ".join(COLUMNS) + " |")
-    print("|--:" * (len(COLUMNS) + 1) + "|")
+    print("| n | " + " | ".join((*COLUMNS, "kinds")) + " |")
+    print("|--:" * (len(COLUMNS) + 2) + "|")
     for n, wanted in zip(options.sizes, numbers, strict=True):
         total: Counter[str] = Counter()
+        kinds: Counter[str] = Counter()
         seed = 0
         while total["sheets"] < wanted:
             total.update(sheet_census(build(n, seed), kinds) or {})
             seed += 1
-        print(f"| {n} | " + " | ".join(str(total[c]) for c in COLUMNS) + " |", flush=True)
-    if options.kinds:
-        print("\n| n | flips | nodes | flat vertices | loops |\n|--:|--:|--:|--:|--:|")
-        for kind in sorted(kinds):
-            print("| " + " | ".join(map(str, (*kind, kinds[kind]))) + " |")
+        cells = [str(total[c]) for c in COLUMNS]
+        cells.append(", ".join(f"{kind}: {kinds[kind]}" for kind in sorted(kinds)))
+        print(f"| {n} | " + " | ".join(cells) + " |", flush=True)
 
 
 if __name__ == "__main__":
