@@ -234,6 +234,4 @@ class Tracker:
             else:
                 high = middle
         sizes = self._star_sizes(self._angles(piece.at(high)))[0]
-        return tuple(
-            v for v, size in zip(self.sheet.interior, sizes, strict=True) if size < 1e-4
-        )
+        return tuple(v for v, size in zip(self.sheet.interior, sizes, strict=True) if size < 1e-4)
