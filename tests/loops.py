@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
 from scipy.optimize import brentq, minimize_scalar
 
 from exactfold.arrays import FloatArray
@@ -23,7 +22,9 @@ from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functi
 
 Signs = tuple[int, ...]
 
-ORDER, TOLERANCE, MOST = 12, 1e-11, 3000
+ORDER, TOLERANCE, MOST = 16, 1e-11, 3000
+NEAR = 0.3
+"""Fold angles below which the flat state is looked for."""
 
 
 class LostError(Exception):
@@ -89,7 +90,7 @@ class Tracker:
 
     def jacobian(self, x: FloatArray) -> FloatArray:
         """Of the stretches, dense."""
-        along = self.framework.flat_edges + self.framework.along(x)
+        along = self.framework.flat_edges + self.incidence @ x.reshape(-1, 3)
         return np.asarray((self.incidence[:, :, None] * along[:, None, :]).reshape(len(along), -1))
 
     def orientation(self, x: FloatArray, direction: FloatArray) -> float:
@@ -100,25 +101,24 @@ class Tracker:
         """The Taylor polynomial at the configuration next to x, by the parameter direction . d."""
         f = self.framework
         size = np.inf
+        inverse = np.zeros((f.size, f.size))
         for _ in range(8):
-            factors = lu_factor(np.vstack([self.jacobian(x), direction]))
-            step = lu_solve(factors, np.append(-f.stretch(x), 0.0))
+            inverse = np.linalg.inv(np.vstack([self.jacobian(x), direction]))
+            step = -inverse[:, :-1] @ f.stretch(x)
             x = x + step
             last, size = size, float(np.max(np.abs(step)))
             if not size < 1e-6:
                 raise LostError("Newton's method fails")
-            if size < 1e-14 or (size < 1e-11 and size > last / 4):
+            if size < 1e-12 or (size < 1e-10 and size > last / 4):
                 break
-        right = np.zeros(f.size)
-        right[-1] = 1.0
         series = np.zeros((ORDER + 1, f.size))
         along = np.zeros((ORDER + 1, len(f.edges), 3))
-        series[0], series[1] = x, lu_solve(factors, right)
-        along[1] = f.along(series[1])
+        series[0], series[1] = x, inverse[:, -1]
+        along[1] = self.incidence @ series[1].reshape(-1, 3)
         for k in range(2, ORDER + 1):
-            products = np.einsum("mec,mec->e", along[1:k], along[k - 1 : 0 : -1])
-            series[k] = lu_solve(factors, np.append(-0.5 * products, 0.0))
-            along[k] = f.along(series[k])
+            products = (along[1:k] * along[k - 1 : 0 : -1]).sum(axis=(0, 2))
+            series[k] = -0.5 * (inverse[:, :-1] @ products)
+            along[k] = self.incidence @ series[k].reshape(-1, 3)
         sizes = np.max(np.abs(series), axis=1)
         bounds = [(TOLERANCE / sizes[k]) ** (1 / k) for k in (ORDER - 1, ORDER) if sizes[k]]
         reach = min(bounds, default=1.0)
@@ -157,40 +157,33 @@ class Tracker:
         crossings: list[tuple[int, ...]] = []
         flat_stars: list[tuple[int, ...]] = []
         before: Piece | None = None
-        far = False
         for _ in range(MOST):
             if before is not None and before.orientation * piece.orientation < 0:
                 crossings.append(self._crossing(before))
             grid = np.linspace(0, piece.reach, 17)
             raw = fold_angles_of(f.positions(piece.at(grid)), f.hinges)
-            angles = np.unwrap(np.vstack([angles, raw]), axis=0)[-1]
             largest = np.abs(raw).max(axis=1)
-            far = far or bool(largest.max() > 0.5)
+            unwrapped = np.unwrap(np.vstack([angles, raw]), axis=0)[1:]
+            for k in range(16):
+                if not piece.orientation or largest[k] > NEAR or largest[k + 1] > largest[k]:
+                    continue
+                landed = self._landing(piece.at(grid[k]))
+                if landed is None:
+                    continue
+                flat_stars += self._flat_stars(piece, grid[: k + 1], raw[: k + 1], largest)
+                whole = unwrapped[k] / (2 * np.pi)
+                turns = tuple(round(w) for w in whole)
+                if np.abs(whole - turns).max() > NEAR:
+                    raise LostError("fold angles jump")
+                length = (piece.time + piece.length_to(grid[k]) + landed[1]) * float(f.unit)
+                return Loop(start, landed[0], tuple(crossings), tuple(flat_stars), turns, length)
             flat_stars += self._flat_stars(piece, grid, raw, largest)
+            angles = unwrapped[-1]
             before = piece if piece.orientation else None
             x, direction = piece.at(piece.reach), piece.speed(piece.reach)
             direction = direction / np.linalg.norm(direction)
             piece = self._piece(x, direction, piece.time + piece.length)
-            if largest[-1] < 0.5:
-                landed = self._landing(piece.at(0.0))
-                inward = landed is not None and self._approaches(piece)
-                if landed is not None and inward:
-                    end, rest = landed
-                    turns = tuple(round(a) for a in angles / (2 * np.pi))
-                    if np.abs(angles - 2 * np.pi * np.array(turns)).max() > 0.6:
-                        raise LostError("angles at the return are not small")
-                    length = (piece.time + rest) * float(f.unit)
-                    return Loop(start, end, tuple(crossings), tuple(flat_stars), turns, length)
         raise LostError("too many pieces")
-
-    def _approaches(self, piece: Piece) -> bool:
-        size = np.abs(
-            fold_angles_of(
-                self.framework.positions(piece.at(np.array([0.0, 1e-3 * piece.reach]))),
-                self.framework.hinges,
-            )
-        ).max(axis=1)
-        return bool(size[1] < size[0])
 
     def _star_sizes(self, raw: FloatArray) -> FloatArray:
         """The largest fold angle at each interior vertex, shape (times, n)."""

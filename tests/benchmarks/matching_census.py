@@ -3,17 +3,17 @@
     python tests/benchmarks/matching_census.py --sizes 1 2 3 4 --sheets 300 250 200 100
 
 Floats throughout: evidence, not proof. Sheets are `random_square(n, seed)` (or `h1_sequence`) for
-the seeds 0, 1, ..., without those on which a branch is not simple or a vertex cannot fold. Each loop
+the seeds 0, 1, ..., without those on which a branch is not simple or a vertex cannot fold. A loop
 is followed once, together with its mirror image, so that it is seen whether the ends of loops are
 all different, as they must be in a perfect matching: `clash` counts those that are not. Columns:
 `sheets`, `H1` of them, `loops`, `lost` ones that could not be followed; `nodes` loops that pass
 nodes, `other` those that pass crossings where no star is flat, which count nowhere below; `1`, `2`,
 `3`, `4+` loops by the number of signs that flip; `plain >1` loops without nodes that flip more than
 one sign, `H1 >1` those of H1 sheets; `odd` loops against the parity law; `fans` loops of fans,
-`missed` those not as the rule says; `winding` the total number of folds that wind; `uneven` vertices
-of loops with an odd number of winding folds; `flip = 2` and `flip other` loops that flip one vertex
-sign only, by whether exactly two folds wind at that vertex; `kinds` loops by the number of flips
-and, in brackets, of flat vertices at each node.
+`missed` those not as the rule says; `winding` the number of folds that wind, in all; `uneven` the
+vertices of loops with an odd number of winding folds; `flip = 2` and `flip other` loops that flip
+one vertex sign only, by whether exactly two folds wind at that vertex; `kinds` loops by the number
+of flips and, in brackets, of flat vertices at each node.
 """
 
 from __future__ import annotations
