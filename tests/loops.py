@@ -6,6 +6,7 @@ the flat state.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -147,8 +148,11 @@ class Tracker:
         tangent = self.framework.displacement(leaving.coefficients[1])[:, 2]
         return self.signs(tangent), leaving.cut(t).length
 
-    def follow(self, heights: FloatArray) -> Loop:
-        """The loop that leaves the flat state with these heights. Raises `LostError`."""
+    def follow(self, heights: FloatArray, seen: Callable[[FloatArray], None] | None = None) -> Loop:
+        """The loop that leaves the flat state with these heights. Raises `LostError`.
+
+        `seen` is called with the positions, shape (times, V, 3), of each step after the first.
+        """
         f = self.framework
         begin = Start.of(f, heights)
         piece = leaving_piece(begin)
@@ -161,7 +165,10 @@ class Tracker:
             if before is not None and before.orientation * piece.orientation < 0:
                 crossings.append(self._crossing(before))
             grid = np.linspace(0, piece.reach, 17)
-            raw = fold_angles_of(f.positions(piece.at(grid)), f.hinges)
+            positions = f.positions(piece.at(grid))
+            if seen is not None and piece.orientation:
+                seen(positions * float(f.unit))
+            raw = fold_angles_of(positions, f.hinges)
             largest = np.abs(raw).max(axis=1)
             unwrapped = np.unwrap(np.vstack([angles, raw]), axis=0)[1:]
             for k in range(16):

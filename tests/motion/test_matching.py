@@ -210,3 +210,64 @@ def _in_the_gauge(sheet: CreasePattern, h: dict[int, Fraction]) -> dict[int, Fra
     return {
         v: h[v] - h[a] - gx * (x - ax) - gy * (y - ay) for v, (x, y) in enumerate(sheet.vertices)
     }
+
+
+# --- nodes ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("seed", "most"), [(9, 2), (19, 1)])
+def test_loops_through_nodes_obey_the_parity_law(seed: int, most: int) -> None:
+    """And flip the signs of the vertices that are flat on the way, and one more."""
+    sheet = random_square(4, seed)
+    assert not is_h1(sheet)
+    found = set()
+    for loop in loops_of(sheet):
+        flat = [v for node in loop.flat_stars for v in node]
+        assert loop.crossings == loop.flat_stars
+        assert len(loop.flipped) % 2 == (1 + len(flat)) % 2
+        assert {sheet.interior.index(v) for v in flat} < set(loop.flipped)
+        assert len(loop.flipped) == 1 + len(flat)
+        found.add(len(flat))
+    assert {0, most} <= found
+
+
+def test_a_node_with_two_flat_stars_does_not_change_the_orientation() -> None:
+    sheet = random_square(5, 0)
+    tracker = Tracker(sheet)
+    start = (1, -1, -1, -1, -1, 1)
+    (heights,) = (h for h in heights_of(sheet) if tracker.signs(h) == start)
+    loop = tracker.follow(heights)
+    assert loop.flat_stars == ((5, 7),)
+    assert loop.crossings == ()
+    assert loop.flipped == (1, 2, 3)
+
+
+def test_an_even_number_of_folds_winds_at_every_vertex() -> None:
+    sheet = random_square(3, 2)
+    for loop in loops_of(sheet, 4):
+        assert any(loop.turns)
+        for v in sheet.interior:
+            around = [t for t, f in zip(loop.turns, sheet.folds, strict=True) if v in f]
+            assert sum(around) % 2 == 0
+
+
+def test_opposite_corners_of_a_fan_come_closer() -> None:
+    """The distance of the poles is that of the closed fold half-way, and never the flat one."""
+    sheet = random_square(2, 0)
+    whole = fan(sheet)
+    assert whole is not None
+    (p, q), tracker = whole.poles, Tracker(sheet)
+    place = whole.flipped()
+    signs = whole.signs()
+    assert place is not None
+    assert signs is not None
+    closed = whole.closing(signs.index(place) + 1)
+    flat = sum((a - b) ** 2 for a, b in zip(sheet.vertices[p], sheet.vertices[q], strict=True))
+    squares: list[float] = []
+
+    def seen(positions: np.ndarray) -> None:
+        squares.extend(((positions[:, p] - positions[:, q]) ** 2).sum(axis=1))
+
+    tracker.follow(heights_of(sheet)[0], seen)
+    assert min(squares) == pytest.approx(float(flat - 4 * closed), rel=1e-3)
+    assert max(squares) < float(flat)
