@@ -219,7 +219,9 @@ class Tracker:
 
             least = minimize_scalar(size, bounds=ends, method="bounded", options={"xatol": 1e-10})
             inside = 0 <= least.x < piece.reach * (1 - 1e-8)
-            if inside and least.fun < 1e-5:
+            # A star that is only nearly flat, along a nearly straight path of folds, is no node.
+            around = sizes[max(at - 1, 0) : at + 2, k].max()
+            if inside and least.fun < 1e-4 * around:
                 near = next((t for t in found if abs(t - least.x) < 1e-6), float(least.x))
                 found.setdefault(near, set()).add(v)
         return [tuple(sorted(found[t])) for t in sorted(found)]
