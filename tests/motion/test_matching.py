@@ -217,7 +217,7 @@ def _in_the_gauge(sheet: CreasePattern, h: dict[int, Fraction]) -> dict[int, Fra
 
 @pytest.mark.parametrize(("seed", "most"), [(9, 2), (19, 1)])
 def test_loops_through_nodes_obey_the_parity_law(seed: int, most: int) -> None:
-    """And flip the signs of the vertices that are flat on the way, and one more."""
+    """Here each flat vertex adds a flip; on other sheets only the parity is the same."""
     sheet = random_square(4, seed)
     assert not is_h1(sheet)
     found = set()
@@ -271,3 +271,17 @@ def test_opposite_corners_of_a_fan_come_closer() -> None:
     tracker.follow(heights_of(sheet)[0], seen)
     assert min(squares) == pytest.approx(float(flat - 4 * closed), rel=1e-3)
     assert max(squares) < float(flat)
+
+
+def test_a_loop_without_nodes_can_flip_three_signs_on_a_sheet_that_is_not_h1() -> None:
+    sheet = random_square(4, 48)
+    assert not is_h1(sheet)
+    tracker = Tracker(sheet)
+    ends = [(-1, 1, 1, -1, 1), (1, -1, -1, -1, 1)]
+    loops = [tracker.follow(h) for h in heights_of(sheet) if tracker.signs(h) in ends]
+    assert sorted((loop.start, loop.end) for loop in loops) == sorted(
+        [(ends[0], ends[1]), (ends[1], ends[0])]
+    )
+    for loop in loops:
+        assert loop.flat_stars == loop.crossings == ()
+        assert loop.length == pytest.approx(9.871, abs=1e-3)
