@@ -10,7 +10,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from exactfold.arrays import FloatArray
 from exactfold.motion.angles import angle_rates, fold_angles_of
-from exactfold.motion.crossing_curves import crossing_in, flat_vertices
+from exactfold.motion.crossing_curves import crossing_in, flat_star_in, flat_vertices
 from exactfold.motion.crossings import Crossings
 from exactfold.motion.curve import Piece
 from exactfold.motion.framework import Framework
@@ -98,11 +98,14 @@ class Watch:
         return high, Event(kind, times, **more)  # type: ignore[arg-type]
 
     def _node(self, piece: Piece) -> list[tuple[float, Event]]:
-        """A change of orientation since the start of the piece before, found by bisection."""
+        """A crossing of curves on the piece before: its orientation changes, or a star is flat."""
         before, self._before = self._before, piece
-        if before is None or before.orientation * piece.orientation >= 0:
+        if before is None or not before.orientation:
             return []
-        ends = crossing_in(self.framework, before)
+        turns = before.orientation * piece.orientation < 0
+        ends = (crossing_in if turns else flat_star_in)(self.framework, before)
+        if ends is None:
+            return []
         low, high = (before.time + before.length_to(s) for s in ends)
         flat = flat_vertices(self.framework, before.at(ends[1]))
         return [(0.0, Event(NODE, (low, high), vertices=flat))]
