@@ -47,7 +47,7 @@ def assert_rigid(motion):
     assert not held[..., 2].any()
 
 
-@pytest.mark.parametrize("n", range(1, 7))
+@pytest.mark.parametrize("n", [1, 2, 3])
 def test_lengths_are_kept_on_random_squares(n):
     for branch in squares(n, 4):
         motion = follow(branch, until="return", through_nodes=True, frames=9)
@@ -62,7 +62,7 @@ def test_lengths_are_kept_on_fifty_random_squares(n):
         assert_rigid(follow(branch, frames=9))
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2))])
 def test_lengths_are_kept_on_reflex_sheets_and_in_triangulated_triangles(seed):
     sheet = scrambled(seed, reflex_corners(seed), 3, loose=True)
     for branch in count_branches(sheet).branches[::3]:
@@ -180,7 +180,7 @@ def four_bar(sectors, one, two):
     return outer @ other - np.cos(c)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("sign", "+-")
 def test_one_vertex_of_degree_four_is_a_spherical_four_bar(seed, sign):
     pattern = random_wheel(seed, 4)
@@ -239,8 +239,8 @@ def crossing_exactly(pattern, coords):
     [
         (4, 0, "vertex on face"),
         (4, 5, "edge on edge"),
-        (5, 5, "edge on edge"),
-        (5, 11, "edge on edge"),
+        pytest.param(5, 5, "edge on edge", marks=pytest.mark.slow),
+        pytest.param(5, 11, "edge on edge", marks=pytest.mark.slow),
     ],
 )
 def test_contacts_are_those_of_exact_rationals(n, seed, kind):
@@ -272,7 +272,7 @@ def test_a_fold_that_closes_has_180_degrees():
     assert all(set(event.folds[0]) <= set(face) for face in event.faces)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_where_a_crease_turns_back_its_angle_is_extreme(seed):
     branch = find_branch(random_square(5, seed=seed), drawn_signs(5, seed))
     motion = follow(branch, until="return", through_nodes=True, frames=5)
@@ -415,6 +415,7 @@ def test_branches_that_are_not_followed():
 # --- which faces meet ----------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_tree_of_boxes_finds_what_all_pairs_find():
     branch = find_branch(random_square(100, seed=3), drawn_signs(100, 3))
     motion = follow(branch, until="90deg", frames=3)

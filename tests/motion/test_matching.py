@@ -84,7 +84,7 @@ def test_both_ways_to_see_a_vertex_as_a_fan_agree() -> None:
         assert one.flipped() == other.flipped() is not None
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_loops_of_one_vertex_are_as_the_rule_says(seed: int) -> None:
     sheet = random_wheel(seed, 4, 12)
     bar = FourBar.of(sheet)
@@ -152,7 +152,7 @@ def reflex(n: int, seed: int) -> CreasePattern:
 
 
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("n", [2, 3])
+@pytest.mark.parametrize("n", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_loops_of_reflex_sheets_flip_one_sign(n: int, seed: int) -> None:
     """The last sign is that of the corner in the closed sheet; the saddle is no label there."""
     sheet = reflex(n, 5 * seed)
@@ -161,7 +161,7 @@ def test_loops_of_reflex_sheets_flip_one_sign(n: int, seed: int) -> None:
         assert not loop.flat_stars
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0])
 def test_loops_of_three_vertices_flip_one_sign(seed: int) -> None:
     sheet = random_square(3, seed)
     assert is_h1(sheet)
@@ -215,6 +215,7 @@ def _in_the_gauge(sheet: CreasePattern, h: dict[int, Fraction]) -> dict[int, Fra
 # --- nodes ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "most"), [(9, 2), (19, 1)])
 def test_loops_through_nodes_obey_the_parity_law(seed: int, most: int) -> None:
     """Here each flat vertex adds a flip; on other sheets only the parity is the same."""
@@ -231,6 +232,7 @@ def test_loops_through_nodes_obey_the_parity_law(seed: int, most: int) -> None:
     assert {0, most} <= found
 
 
+@pytest.mark.slow
 def test_a_node_with_two_flat_stars_does_not_change_the_orientation() -> None:
     sheet = random_square(5, 0)
     tracker = Tracker(sheet)
@@ -273,6 +275,7 @@ def test_opposite_corners_of_a_fan_come_closer() -> None:
     assert max(squares) < float(flat)
 
 
+@pytest.mark.slow
 def test_a_loop_without_nodes_can_flip_three_signs_on_a_sheet_that_is_not_h1() -> None:
     sheet = random_square(4, 48)
     assert not is_h1(sheet)

@@ -214,7 +214,9 @@ def test_a_vertex_with_four_folds_is_a_spherical_four_bar_linkage(seed):
             assert pattern.folds[opposite] in closing.folds
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(1, 6))]
+)
 def test_all_folds_of_a_strip_grow_until_the_first_closes(seed):
     result = decompose(mesh(1, 3, seed=seed))
     assert len(result.modes) == 8
@@ -229,7 +231,7 @@ def test_all_folds_of_a_strip_grow_until_the_first_closes(seed):
         assert all(motion.assignment[fold] == letter for fold, letter in letters.items())
 
 
-@pytest.mark.parametrize("size", [2, 4])
+@pytest.mark.parametrize("size", [2, pytest.param(4, marks=pytest.mark.slow)])
 def test_a_tiling_closes_round_its_loops(size):
     result = decompose(tiling(size, size))
     for number in (1, 2):
@@ -465,6 +467,7 @@ def meet(one, other):
     return found.status == 0
 
 
+@pytest.mark.slow
 def test_contacts_agree_with_linear_programming():
     """Convex panels without a common corner: separated before the contact, not after it."""
     pattern = tiling(2, 2)
