@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from exactfold.exact.surds import sign
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
 
@@ -23,6 +24,24 @@ def triangulating_edges(pattern: PanelPattern) -> tuple[Edge, ...]:
     points = pattern.scaled_vertices
     found = [edge for face in pattern.faces for edge in _diagonals(points, face)]
     return tuple(sorted(found))
+
+
+def triangles_of(pattern: CreasePattern | PanelPattern) -> tuple[tuple[int, ...], ...]:
+    """The triangles of a sheet, panels cut along `triangulating_edges`, counter-clockwise.
+
+    >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)])
+    >>> triangles_of(square)
+    ((0, 1, 3), (1, 2, 3))
+    """
+    if isinstance(pattern, CreasePattern):
+        return pattern.triangles
+    return cut_panels(pattern).faces
+
+
+def cut_panels(pattern: PanelPattern) -> PanelPattern:
+    """The sheet with all panels cut into triangles."""
+    joins = triangulating_edges(pattern)
+    return PanelPattern(pattern.vertices, (*pattern.edges, *joins)) if joins else pattern
 
 
 def _diagonals(points: Sequence[Point], face: Sequence[int]) -> list[Edge]:
