@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from exactfold.arrays import FloatArray
-from exactfold.motion.events import Event
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.panel_pattern import PanelPattern
+
+if TYPE_CHECKING:
+    from exactfold.motion.events import Event
+    from exactfold.pattern.crease_pattern import CreasePattern, Edge
+    from exactfold.pattern.panel_pattern import PanelPattern
 
 
 class SheetInMotion(Protocol):

@@ -22,8 +22,8 @@ def triangulating_edges(pattern: PanelPattern) -> tuple[Edge, ...]:
     ((1, 3),)
     """
     points = pattern.scaled_vertices
-    found = [edge for face in pattern.faces for edge in _diagonals(points, face)]
-    return tuple(sorted(found))
+    ears = [ear for face in pattern.faces for ear in _triangles(points, face)[:-1]]
+    return tuple(sorted((min(i, j), max(i, j)) for i, _, j in ears))
 
 
 def triangles_of(pattern: CreasePattern | PanelPattern) -> tuple[tuple[int, ...], ...]:
@@ -31,11 +31,19 @@ def triangles_of(pattern: CreasePattern | PanelPattern) -> tuple[tuple[int, ...]
 
     >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)])
     >>> triangles_of(square)
-    ((0, 1, 3), (1, 2, 3))
+    ((3, 0, 1), (1, 2, 3))
     """
+    return tuple(triangle for piece in triangles_by_face(pattern) for triangle in piece)
+
+
+def triangles_by_face(
+    pattern: CreasePattern | PanelPattern,
+) -> tuple[tuple[tuple[int, ...], ...], ...]:
+    """The same, those of each face together."""
     if isinstance(pattern, CreasePattern):
-        return pattern.triangles
-    return cut_panels(pattern).faces
+        return tuple((triangle,) for triangle in pattern.triangles)
+    points = pattern.scaled_vertices
+    return tuple(tuple(_triangles(points, face)) for face in pattern.faces)
 
 
 def cut_panels(pattern: PanelPattern) -> PanelPattern:
@@ -44,16 +52,16 @@ def cut_panels(pattern: PanelPattern) -> PanelPattern:
     return PanelPattern(pattern.vertices, (*pattern.edges, *joins)) if joins else pattern
 
 
-def _diagonals(points: Sequence[Point], face: Sequence[int]) -> list[Edge]:
+def _triangles(points: Sequence[Point], face: Sequence[int]) -> list[tuple[int, ...]]:
+    """Ears cut off one after the other, each with the corner in the middle, and what is left."""
     ring = list(face)
-    found = []
+    found: list[tuple[int, ...]] = []
     while len(ring) > 3:
         ears = [k for k in range(len(ring)) if _is_ear(points, ring, k)]
         k = min(ears, key=lambda k: _length(points[ring[k - 1]], points[ring[(k + 1) % len(ring)]]))
-        i, j = ring[k - 1], ring[(k + 1) % len(ring)]
-        found.append((min(i, j), max(i, j)))
+        found.append((ring[k - 1], ring[k], ring[(k + 1) % len(ring)]))
         del ring[k]
-    return found
+    return [*found, tuple(ring)]
 
 
 def _is_ear(points: Sequence[Point], ring: Sequence[int], k: int) -> bool:
