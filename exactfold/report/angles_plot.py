@@ -203,7 +203,9 @@ def _direction(angles: FloatArray) -> str:
     return svg.VALLEY if first > 0 else svg.MOUNTAIN
 
 
-def _labels(motion: SheetInMotion, degrees: FloatArray, shown: list[int], down: svg.Scale) -> list[str]:
+def _labels(
+    motion: SheetInMotion, degrees: FloatArray, shown: list[int], down: svg.Scale
+) -> list[str]:
     """The name of each fold beside the end of its line."""
     right, folds = _WIDTH - _RIGHT, motion.pattern.folds
     # Lines that end in one place are named in the order in which they come there.

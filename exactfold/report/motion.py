@@ -100,7 +100,9 @@ def event_text(event: Event) -> str:
         return f"faces {' and '.join(map(_face, event.faces))} meet{detail}"
     several = len(event.folds) > 1
     words = {
-        FLAT_FOLD: f"{folds} close: faces meet" if several else f"{folds} closes: its two faces meet",
+        FLAT_FOLD: f"{folds} close: faces meet"
+        if several
+        else f"{folds} closes: its two faces meet",
         TURNING: f"{folds} {'turn' if several else 'turns'} back{detail}",
         ANGLE: f"{folds} {'have' if several else 'has'} the angle that was asked for",
         NODE: f"another motion crosses here{detail}",

@@ -84,7 +84,9 @@ def stills(
         flat = np.column_stack(
             [left + (view[:, 0] - low[0]) * scale, _MARGIN + (high[1] - view[:, 1]) * scale]
         )
-        parts.append(element("g", _drawn(np.asarray(shape), flat, [faces[k] for k in order]), stroke=INK))
+        parts.append(
+            element("g", _drawn(np.asarray(shape), flat, [faces[k] for k in order]), stroke=INK)
+        )
         centre = (k + 0.5) * _PANEL
         parts.append(text(caption, centre, height + 12, anchor="middle", size=12))
     return picture(len(shapes) * _PANEL, height + _CAPTION, parts, title)
