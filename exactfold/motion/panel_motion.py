@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from math import degrees, inf, pi, radians
+from math import inf, pi, radians
 from types import MappingProxyType
 from typing import Any, Final, TypeAlias
 
@@ -135,19 +135,18 @@ class PanelMotion:
     @property
     def time_name(self) -> str:
         """What time is."""
-        return "radians, the angle of the folds that lead"
+        return "the angle of the folds that drive it, in radians"
 
     @property
     def leading_angles(self) -> Mapping[Edge, float]:
-        """The fold angles in degrees when the folds that lead have 30 degrees, or at the end."""
+        """The fold angles in degrees when the driving folds have 30 degrees, or at the end."""
         [angles] = self.angles_at(np.array([min(radians(_LEADING), self.duration)]))
         return dict(zip(self.pattern.folds, np.degrees(angles).tolist(), strict=True))
 
     @property
     def leading_angles_are(self) -> str:
         """What these are, in words."""
-        time = min(radians(_LEADING), self.duration)
-        return f"the fold angles at {degrees(time):.3g} degrees of the folds that lead"
+        return f"the fold angles at time {min(radians(_LEADING), self.duration):.3g}"
 
     @property
     def reason(self) -> str:
