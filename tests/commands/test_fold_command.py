@@ -119,7 +119,7 @@ def test_a_drawing_folds_along_the_component_with_most_folds():
 
 
 def test_modes_that_are_linear_are_proved(tmp_path):
-    sheet, path = miura_file(tmp_path)
+    _, path = miura_file(tmp_path)
     result = run("fold", path, "--component", 1)
     assert result.exit_code == OK
     assert "no component was named" not in result.stderr
