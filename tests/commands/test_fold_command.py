@@ -100,10 +100,9 @@ def test_frames_by_a_fold_until_an_angle():
 
 def miura_file(folder):
     """Straight creases crossed by zigzags: vertices that can be folded flat."""
-    sheet = miura(2, 2)
     path = folder / "miura.fold"
-    path.write_text(json.dumps(converted(Opened(sheet)).document()))
-    return sheet, path
+    path.write_text(json.dumps(converted(Opened(miura(2, 2))).document()))
+    return path
 
 
 def test_a_drawing_folds_along_the_component_with_most_folds():
@@ -119,8 +118,7 @@ def test_a_drawing_folds_along_the_component_with_most_folds():
 
 
 def test_modes_that_are_linear_are_proved(tmp_path):
-    _, path = miura_file(tmp_path)
-    result = run("fold", path, "--component", 1)
+    result = run("fold", miura_file(tmp_path), "--component", 1)
     assert result.exit_code == OK
     assert "no component was named" not in result.stderr
     assert "motion           PROVED: all vertices close exactly" in result.stdout
