@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from exactfold import find_branch, follow, load
-from exactfold.report.stills import motion_stills
+from exactfold import count_ways, find_branch, follow, load
+from exactfold.motion import follow_panels
+from exactfold.report import motion_stills
 
 FOLDER = Path(__file__).with_name("pictures")
 MOTIONS = {
@@ -15,16 +16,23 @@ MOTIONS = {
     "flat-octahedron": ("flat-octahedron", "+-+"),
 }
 """The name of the picture; the shipped pattern, and the signs of the branch."""
+PANELS = {"zigzags": ("zigzags", 1), "zigzags-strips": ("zigzags", 3)}
+"""The same of sheets of panels, with the number of the component."""
 
 
 def pictures() -> dict[str, str]:
     """Each picture by the name of its file."""
-    return {
+    branches = {
         f"{name}.svg": motion_stills(
             follow(find_branch(load(pattern), signs)), 5, f"{pattern}, branch {signs}"
         )
         for name, (pattern, signs) in MOTIONS.items()
     }
+    panels = {}
+    for name, (pattern, component) in PANELS.items():
+        motion = follow_panels(count_ways(pattern), component=component)
+        panels[f"{name}.svg"] = motion_stills(motion, 5, f"{pattern}, component {component}")
+    return branches | panels
 
 
 if __name__ == "__main__":

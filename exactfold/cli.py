@@ -25,6 +25,7 @@ from exactfold.commands.parameters import (
     flag,
     fold_name,
     method_name,
+    numbers,
     one_side,
     whole,
 )
@@ -297,15 +298,39 @@ def fold(
     side: Annotated[
         Any,
         typer.Option(
-            parser=one_side, metavar="+|-", help="-: the mirror image, with all signs reversed."
+            parser=one_side,
+            metavar="+|-",
+            help="Of a branch. -: the mirror image, with all signs reversed.",
         ),
-    ] = "+",
+    ] = None,
+    through_nodes: Annotated[
+        bool,
+        flag("--through-nodes", text="Of a branch: go straight on where another motion crosses."),
+    ] = False,
+    component: Annotated[
+        int | None,
+        typer.Option(
+            parser=whole(1),
+            metavar="K",
+            help="Of panels: the K-th component of their motions, those with most folds first. "
+            "Default: 1.",
+        ),
+    ] = None,
+    modes: Annotated[
+        Any,
+        typer.Option(
+            parser=numbers,
+            metavar="1,3",
+            help="Instead: modes that share no vertex, as `count` numbers them.",
+        ),
+    ] = None,
     until: Annotated[
         str,
         typer.Option(
             metavar="WHERE",
-            help="Where to stop: `contact`, when faces meet or a fold closes; `return`, when the "
-            "sheet is flat again; a fold angle such as 90deg; or a number, the time.",
+            help="Where to stop: `contact`, when faces meet or a fold closes; a fold angle such as "
+            "90deg; of a branch also `return`, when the sheet is flat again, or a number, the "
+            "time.",
         ),
     ] = "contact",
     frames: Annotated[
@@ -319,9 +344,6 @@ def fold(
             help="Frames at equal steps of the angle of this fold, not of time.",
         ),
     ] = None,
-    through_nodes: Annotated[
-        bool, flag("--through-nodes", text="Go straight on where another motion crosses.")
-    ] = False,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -339,21 +361,32 @@ def fold(
             callback=not_a_dash, metavar="FILE.svg", help="Draw all fold angles along the motion."
         ),
     ] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(
+            callback=not_a_dash, metavar="FILE.svg", help="Draw the sheet at five times, in space."
+        ),
+    ] = None,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
 ) -> None:
-    """Follow one branch in space, faces rigid, until something happens.
+    """Fold a sheet in space, faces rigid, until something happens.
 
-    Without --signs, --up and --branch, the branch on which all vertices pop up.
-    The branch is proved; the motion is followed in floating point.
+    A triangulated sheet with four corners follows a branch: the one named by
+    --signs, --up or --branch, else that on which all vertices pop up. Any other
+    sheet follows modes of rigid panels: --component or --modes. That the branch
+    or mode exists is proved; what of the motion is proved is said.
     """
     from exactfold.commands.fold import Wanted
 
     if (signs is not None) + (up is not None) + (place is not None) > 1:
         raise UsageError("give one of --signs, --up and --branch")
-    apart(output, pattern, plot)
-    apart(plot, pattern)
+    if component is not None and modes is not None:
+        raise UsageError("give one of --component and --modes")
+    apart(output, pattern, plot, picture)
+    apart(plot, pattern, picture)
+    apart(picture, pattern)
     asked = Wanted(
         pattern,
         snap,
@@ -362,12 +395,15 @@ def fold(
         up,
         place,
         side,
+        through_nodes,
+        component,
+        modes,
         until,
         frames,
         by,
-        through_nodes,
         output,
         plot,
+        picture,
         as_json,
     )
     raise typer.Exit(asked.answer())

@@ -243,7 +243,7 @@ class UnprovedRivalsError(NotCountedError):
 
 
 class NotFollowedError(NotApplicableError):
-    """A branch whose motion is not followed, as it is not simple or as floats do not suffice."""
+    """A sheet that is not followed: a branch that is not simple, or no mode that truly folds."""
 
 
 class UndecidedBranchError(ExactfoldError):

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.fold_writing import fold_document
+from exactfold.pattern.opening import Opened
+
+if TYPE_CHECKING:
+    from exactfold.pattern.panel_pattern import PanelPattern
 
 BRANCH_KEY: Final = "frame_exactfold:branch"
 MOTION_KEY: Final = "frame_exactfold:motion"
@@ -44,8 +48,10 @@ def branch_document(
     >>> document["file_frames"][0]["frame_classes"], document["frame_classes"]
     (['foldedForm'], ['creasePattern'])
     """
-    document = _flat_frame(
-        pattern, assignment, angles, name=name, title=title, facts={BRANCH_KEY: dict(facts)}
+    document = _headed(
+        fold_document(pattern, assignment, _titled(name, title), angles),
+        f"flat sheet, with the first-order fold angles of {name}",
+        {BRANCH_KEY: dict(facts)},
     )
     document[HEIGHTS_KEY] = [list(row) for row in heights]
     document["file_frames"] = [
@@ -59,7 +65,7 @@ def branch_document(
 
 
 def motion_document(
-    pattern: CreasePattern,
+    pattern: CreasePattern | PanelPattern,
     assignment: Mapping[Edge, str],
     angles: Mapping[Edge, float],
     frames: Sequence[MotionFrame],
@@ -67,12 +73,15 @@ def motion_document(
     name: str,
     title: str | None = None,
     facts: Mapping[str, Any],
+    angles_are: str = "the first-order fold angles",
 ) -> dict[str, Any]:
     """The FOLD 1.2 object of a motion: the flat sheet, and after it every frame in space.
 
-    The first frame is that of `branch_document`, with `facts` under `frame_exactfold:motion`. Each
-    frame of `frames` inherits it, and has coordinates and fold angles of its own; letters too where
-    they differ, as readers want letters and angles to agree. Raises what `fold_document` raises.
+    The first frame is that of `branch_document`, with `facts` under `frame_exactfold:motion`; of
+    panels it has the exact coordinates and the polygons of `Converted.document`. Each frame of
+    `frames` inherits it, and has coordinates and fold angles of its own; letters too where they
+    differ, as readers want letters and angles to agree. `angles_are` says what `angles` are. Raises
+    what `fold_document` raises.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> frame = MotionFrame(0.5, [(0, 0, 0)] * 4, {(0, 3): -1.0})
@@ -83,8 +92,13 @@ def motion_document(
     >>> document["file_frames"][0]["edges_foldAngle"]
     [0.0, 0.0, -1.0, 0.0, 0.0, 0.0]
     """
-    document = _flat_frame(
-        pattern, assignment, angles, name=name, title=title, facts={MOTION_KEY: dict(facts)}
+    whole = _titled(name, title)
+    document = _headed(
+        fold_document(pattern, assignment, whole, angles)
+        if isinstance(pattern, CreasePattern)
+        else _panels_document(pattern, assignment, angles, whole),
+        f"flat sheet, with {angles_are} of {name}",
+        {MOTION_KEY: dict(facts)},
     )
     letters = dict(zip(pattern.edges, document["edges_assignment"], strict=True))
     document["file_frames"] = [
@@ -113,21 +127,26 @@ def _in_space() -> dict[str, Any]:
     }
 
 
-def _flat_frame(
-    pattern: CreasePattern,
-    assignment: Mapping[Edge, str],
-    angles: Mapping[Edge, float],
-    *,
-    name: str,
-    title: str | None,
-    facts: Mapping[str, Any],
+def _titled(name: str, title: str | None) -> str:
+    return name if title is None else f"{title}, {name}"
+
+
+def _panels_document(
+    pattern: PanelPattern, assignment: Mapping[Edge, str], angles: Mapping[Edge, float], title: str
 ) -> dict[str, Any]:
-    """The first frame, the exact flat sheet."""
-    whole = name if title is None else f"{title}, {name}"
-    flat = fold_document(pattern, assignment, whole, angles)
+    """A flat sheet of panels, with these angles."""
+    from exactfold.pattern.panel_writing import converted  # here, as branches do without
+
+    flat = converted(Opened(pattern, assignment)).document(title)
+    flat["edges_foldAngle"] = [float(angles.get(edge, 0)) for edge in pattern.edges]
+    return flat
+
+
+def _headed(flat: dict[str, Any], frame_title: str, facts: Mapping[str, Any]) -> dict[str, Any]:
+    """The first frame, the exact flat sheet, with what is said of it."""
     # The keys of the file come first, then those of the frame, as people read it.
     document = {key: value for key, value in flat.items() if key.startswith("file_")}
-    document["frame_title"] = f"flat sheet, with the first-order fold angles of {name}"
+    document["frame_title"] = frame_title
     document["frame_unit"] = "unit"
     return document | dict(facts) | flat
 

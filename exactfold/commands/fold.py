@@ -1,28 +1,39 @@
-"""`exactfold fold`: a branch followed in space, with frames for other programs and a plot."""
+"""`exactfold fold`: a sheet followed in space, with frames for other programs and pictures."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 from exactfold.branches.branch import Branch
 from exactfold.commands.branch import chosen
-from exactfold.commands.patterns import read
+from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import UndecidedBranchError
+from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.motion.following import follow
 from exactfold.motion.motion import Motion
 from exactfold.motion.writing import checked_ending, write_motion
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.fold_writing import write_text
+from exactfold.pattern.opening import Opened, has_branches
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import counted
+
+if TYPE_CHECKING:  # branches are followed without what panels need
+    from exactfold.modes.result import Decomposition
+    from exactfold.motion.panel_motion import PanelMotion
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """What was asked for on the command line; at most one of `signs`, `up`, `place` is given."""
+    """What was asked for on the command line; `side` is None where it was not.
+
+    At most one of `signs`, `up`, `place` is given, and one of `component` and `modes`.
+    """
 
     file: Path
     snap: Snap | None
@@ -30,51 +41,67 @@ class Wanted:
     signs: str | None
     up: str | None
     place: int | None
-    side: int
+    side: int | None
+    through_nodes: bool
+    component: int | None
+    modes: Sequence[int] | None
     until: str
     frames: int
     by: Edge | None
-    through_nodes: bool
     output: Path | None
     plot: Path | None
+    picture: Path | None
     as_json: bool
 
     def answer(self) -> int:
-        """Follow the branch, write what was asked for and print; the exit code.
+        """Follow the sheet, write what was asked for and print; the exit code.
 
-        0 where the branch is proved, wherever its motion ends. Raises the errors of `read`,
-        `chosen`, `follow` and `write_motion`, but for `UndecidedBranchError`, which is said.
+        0 where the branch is proved or modes truly fold, wherever the motion ends. Raises the
+        errors of `read_any`, `chosen`, `follow`, `follow_panels` and `write_motion`, but for
+        `UndecidedBranchError`, which is said, and `UsageError` for options of the other kind of
+        sheet.
         """
         from exactfold import report
 
         if self.output is not None:
             checked_ending(self.output)  # before the work
         with Bar("reading") as bar:
-            pattern = read(self.file, self.snap, self.sheet, "fold").pattern
-            branch = self._branch(pattern, bar)
-            try:
-                motion = self._motion(branch, bar)
-            except UndecidedBranchError as error:
-                say(f"not followed: {error}; {branch.reason}".rstrip("; "))
-                return EXIT[UNDECIDED]
+            opened = read_any(self.file, self.snap, self.sheet)
+            sheet = opened.sheet
+            motion: Motion | PanelMotion
+            if isinstance(sheet, CreasePattern) and has_branches(sheet):
+                branch = self._branch(sheet, bar)
+                try:
+                    motion = self._along(branch, bar)
+                except UndecidedBranchError as error:
+                    say(f"not followed: {error}; {branch.reason}".rstrip("; "))
+                    return EXIT[UNDECIDED]
+            else:
+                motion = self._panels(opened, bar)
             bar("writing")
             written = self._written(motion)
-            if self.plot is not None:
-                write_text(self.plot, report.angles_plot(motion, self._title or ""))
-                written = [*written, str(self.plot)]
         if self.as_json:
             print(json.dumps(motion.report(name_of(self.file), written)))
         else:
             report.show(report.motion_report(motion, written))
-        if branch.status is not PROVED:
-            say(f"the branch is not proved: {branch.reason}")
-        return EXIT[branch.status]
+        if isinstance(motion, Motion) and motion.branch.status is not PROVED:
+            say(f"the branch is not proved: {motion.branch.reason}")
+            return EXIT[motion.branch.status]
+        return EXIT[PROVED]
 
     @property
     def _title(self) -> str | None:
         return None if str(self.file) == "/dev/stdin" else self.file.stem
 
+    # --- branches --------------------------------------------------------------------------------
+
     def _branch(self, pattern: CreasePattern, bar: Bar) -> Branch:
+        given = {"--component": self.component, "--modes": self.modes}
+        _refuse(
+            given,
+            "motions of rigid panels, and this sheet of triangles folds along branches: name one "
+            "by --signs, --up or --branch",
+        )
         if (self.signs, self.up, self.place) != (None, None, None):
             return chosen(pattern, self.signs, self.up, self.place, bar)
         say(
@@ -83,10 +110,10 @@ class Wanted:
         )
         return chosen(pattern, None, ",".join(map(str, pattern.foldable_vertices)), None, bar)
 
-    def _motion(self, branch: Branch, bar: Bar) -> Motion:
+    def _along(self, branch: Branch, bar: Bar) -> Motion:
         return follow(
             branch,
-            side=self.side,
+            side=self.side or 1,
             until=self.until,
             frames=self.frames,
             by=self.by,
@@ -94,7 +121,73 @@ class Wanted:
             progress=bar,
         )
 
-    def _written(self, motion: Motion) -> list[str]:
-        if self.output is None:
-            return []
-        return [str(file) for file in write_motion(motion, self.output, title=self._title)]
+    # --- panels ----------------------------------------------------------------------------------
+
+    def _panels(self, opened: Opened, bar: Bar) -> PanelMotion:
+        from exactfold.count.ways import count_opened
+        from exactfold.motion.panel_following import follow_panels
+
+        given = {
+            "--signs": self.signs,
+            "--up": self.up,
+            "--branch": self.place,
+            "--side": self.side,
+            "--through-nodes": self.through_nodes or None,
+        }
+        _refuse(
+            given,
+            "branches of triangulated sheets with four corners, and this sheet folds along modes "
+            "of rigid panels: name them by --component or --modes",
+        )
+        ways = cast("Decomposition", count_opened(opened, progress=bar))
+        if ways.warning is not None:
+            say(f"warning: {ways.warning}")
+        bar("following")
+        motion = follow_panels(
+            ways,
+            component=self.component,
+            modes=self.modes,
+            until=self.until,
+            frames=self.frames,
+            by=self.by,
+        )
+        if motion.component is not None and self.component is None:
+            say(_first(ways, motion))
+        return motion
+
+    # --- files -----------------------------------------------------------------------------------
+
+    def _written(self, motion: Motion | PanelMotion) -> list[str]:
+        from exactfold import report
+
+        title, written = self._title or "", []
+        if self.output is not None:
+            written = [str(f) for f in write_motion(motion, self.output, title=self._title)]
+        if self.plot is not None:
+            write_text(self.plot, report.angles_plot(motion, title))
+            written.append(str(self.plot))
+        if self.picture is not None:
+            name = f"{title}, {motion.name}" if title else motion.name
+            write_text(self.picture, report.motion_stills(motion, title=name))
+            written.append(str(self.picture))
+        return written
+
+
+def _refuse(given: Mapping[str, object], why: str) -> None:
+    """Raise `UsageError` for the first option that was given."""
+    for option, value in given.items():
+        if value is not None:
+            raise UsageError(f"{option} is for {why}")
+
+
+def _first(ways: Decomposition, motion: PanelMotion) -> str:
+    """That a component was chosen, and of how many."""
+    from exactfold.motion.followable import panel_components
+
+    number = len(panel_components(ways))
+    if number == 1:
+        return f"the only component that can be followed: {motion.name}"
+    return (
+        f"no component was named (--component, --modes): this is the first of "
+        f"{counted(number, 'component')} that can be followed, with most folds: {motion.name}"
+    )

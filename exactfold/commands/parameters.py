@@ -82,6 +82,11 @@ def fold_name(text: object) -> tuple[int, int]:
     return min(i, j), max(i, j)
 
 
+def numbers(text: object) -> tuple[int, ...]:
+    """Numbers from 1 on, such as 1,3."""
+    return tuple(whole(1)(part.strip()) for part in str(text).split(","))
+
+
 def distance(text: object) -> Fraction:
     """A positive number, such as 1e-6, exactly as it is written."""
     try:

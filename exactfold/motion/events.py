@@ -34,12 +34,13 @@ class Event:
     angle has a critical point, so that the crease turns back; "node", another curve of
     configurations crosses, often where the stars of `vertices` are flat; "singular", the curve
     could not be followed further; "return", the sheet is flat again; "angle", the angle that was
-    asked for is reached. `time`: arclength, lower and upper bound. `detail` says more in words.
+    asked for is reached. `time`: of the motion, lower and upper bound. `faces`: by their corners.
+    `detail` says more in words.
     """
 
     kind: str
     time: tuple[float, float]
-    faces: tuple[Triangle, ...] = ()
+    faces: tuple[tuple[int, ...], ...] = ()
     folds: tuple[Edge, ...] = ()
     vertices: tuple[int, ...] = ()
     detail: str = ""

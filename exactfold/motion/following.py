@@ -28,7 +28,7 @@ from exactfold.motion.events import (
 from exactfold.motion.framework import Framework
 from exactfold.motion.motion import Motion, angles_at, in_space
 from exactfold.motion.start import Start
-from exactfold.pattern.crease_pattern import Edge, Triangle
+from exactfold.pattern.crease_pattern import Edge
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 
@@ -271,18 +271,13 @@ def _at_equal_angles(problem: Problem, curve: Curve, by: Edge, frames: int) -> F
 
 def _named(event: Event, problem: Problem, unit: float) -> Event:
     """The event with the vertices and the unit of the pattern."""
-
-    def face(t: Triangle) -> Triangle:
-        a, b, c = (problem.labels[v] for v in t)
-        return a, b, c
-
     low, high = event.time
     folds = tuple((problem.labels[i], problem.labels[j]) for i, j in event.folds)
     vertices = tuple(problem.labels[v] for v in event.vertices)
     return replace(
         event,
         time=(low * unit, high * unit),
-        faces=tuple(face(t) for t in event.faces),
+        faces=tuple(tuple(problem.labels[v] for v in face) for face in event.faces),
         folds=folds,
         vertices=vertices,
         detail=f"flat at vertex {', '.join(map(str, vertices))}" if vertices else event.detail,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
@@ -11,11 +11,14 @@ import numpy as np
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
+from exactfold.branches.export import AMOUNT
+from exactfold.branches.letters import UPSIDE_DOWN
 from exactfold.errors import UsageError
+from exactfold.motion import in_motion
 from exactfold.motion.angles import fold_angles_of, hinges_of
 from exactfold.motion.curve import Curve
 from exactfold.motion.events import Event
-from exactfold.pattern.crease_pattern import Triangle
+from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
 from exactfold.problem.problem import Problem
@@ -26,6 +29,8 @@ FOLLOWED: Final = "followed"
 """The status of a motion that was followed in floats along a proved branch."""
 
 _SAMPLES = 4
+_LONGEST: Final = 40
+"""Characters of signs in a name."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -72,6 +77,45 @@ class Motion:
         return FOLLOWED if self.branch.status is PROVED else str(self.branch.status)
 
     @property
+    def pattern(self) -> CreasePattern:
+        """The flat sheet."""
+        return self.branch.pattern
+
+    @property
+    def name(self) -> str:
+        """ "branch" and its signs, cut where there are many, and whether it is the mirror side."""
+        signs = self.branch.sign_text
+        short = signs if len(signs) <= _LONGEST else f"{signs[: _LONGEST - 3]}..."
+        return f"branch {short}" if self.side > 0 else f"branch {short}, mirror side"
+
+    @property
+    def time_name(self) -> str:
+        """What time is."""
+        return "arclength"
+
+    @property
+    def assignment(self) -> Mapping[Edge, str]:
+        """The letters of the branch on the side that is followed: "M", "V", "F" or "U" by fold."""
+        letters = self.branch.assignment
+        if self.side > 0:
+            return letters
+        return {fold: letter.translate(UPSIDE_DOWN) for fold, letter in letters.items()}
+
+    @property
+    def leading_angles(self) -> Mapping[Edge, float]:
+        """The first-order fold angles of the branch in degrees, the largest 30 (docs/export.md)."""
+        letters = self.assignment
+        return {
+            fold: self.side * angle if letters[fold] in "MV" else 0.0
+            for fold, angle in self.branch.fold_angles.degrees(AMOUNT).items()
+        }
+
+    @property
+    def leading_angles_are(self) -> str:
+        """What these are, in words."""
+        return "the first-order fold angles"
+
+    @property
     def pinned(self) -> Triangle:
         """The triangle that is held."""
         a, b, c = (self._problem.labels[v] for v in self.curve.framework.pinned)
@@ -105,9 +149,7 @@ class Motion:
     @property
     def length_error(self) -> float:
         """The largest relative change of the length of an edge in any frame."""
-        i, j = np.array(self.branch.pattern.edges, dtype=np.intp).T
-        lengths = np.linalg.norm(self.coords[:, i] - self.coords[:, j], axis=2)
-        return float(np.max(np.abs(lengths / lengths[0] - 1)))
+        return in_motion.length_error(self)
 
     def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
         """Times and all fold angles in radians at `least` points or more, for plots.
@@ -122,14 +164,12 @@ class Motion:
 
     def table(self) -> tuple[tuple[str, ...], FloatArray]:
         """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
-        names = ("time", *(f"{i}-{j}" for i, j in self.branch.pattern.folds))
-        return names, np.column_stack([self.times, np.degrees(self.angles)])
+        return in_motion.table(self)
 
     @property
     def largest_angles(self) -> FloatArray:
         """For each fold its largest angle in any frame in degrees, with its sign."""
-        rows = np.argmax(np.abs(self.angles), axis=0)
-        return np.asarray(np.degrees(self.angles[rows, np.arange(self.angles.shape[1])]))
+        return in_motion.largest_angles(self)
 
     def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
         """The object printed by `exactfold fold --json`: `schema("motion")`.
@@ -137,26 +177,29 @@ class Motion:
         `name`: of the pattern; `written`: the files that hold the motion.
         """
         branch = self.branch
-        folds = [f"{i}-{j}" for i, j in branch.pattern.folds]
         return {
             **headed("motion"),
             "pattern": described(branch.pattern, name),
-            "status": self.status,
+            "theory": "branches",
             "reason": branch.reason,
             "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
             "side": self.side,
-            "pinned": list(self.pinned),
-            "frames": {"number": len(self.times), "times": self.times.tolist()},
-            "angles": dict(zip(folds, np.degrees(self.angles).T.tolist(), strict=True)),
-            "largest_angles": dict(zip(folds, self.largest_angles.tolist(), strict=True)),
-            "events": [event.to_dict() for event in self.events],
-            "end": self.end,
-            "duration": self.duration,
-            "length_error": self.length_error,
-            "written": list(written),
+            "modes": None,
+            "component": None,
+            **in_motion.frames_reported(self, written),
             "warnings": warnings(branch.pattern),
             "seconds": round(self.seconds, 3),
+        }
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What files say of the motion, as JSON."""
+        return {
+            "vertex_signs": self.branch.sign_text,
+            "vertices": list(self.pattern.interior),
+            "side": self.side,
+            **in_motion.facts_of_frames(self),
         }
 
     def __repr__(self) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from exactfold.arrays import FloatArray
 from exactfold.motion.crossings import Crossing, Crossings
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.pattern.triangulating import triangulating_edges
+from exactfold.pattern.triangulating import cut_panels
 
 if TYPE_CHECKING:
     from exactfold.motion.framework import Framework
@@ -44,9 +44,7 @@ class PanelContacts:
 
     @cached_property
     def _cut(self) -> PanelPattern:
-        return PanelPattern(
-            self.pattern.vertices, [*self.pattern.edges, *triangulating_edges(self.pattern)]
-        )
+        return cut_panels(self.pattern)
 
     @cached_property
     def _panel_of(self) -> dict[int, int]:

@@ -5,13 +5,12 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Mapping, Sequence
 from math import isfinite, pi, radians
-from typing import Any, cast
 
 import numpy as np
 from scipy.optimize import brentq
 
 from exactfold.arrays import BoolArray, FloatArray
-from exactfold.errors import NotApplicableError, UsageError
+from exactfold.errors import NotFollowedError, UsageError
 from exactfold.modes.decomposition import decompose
 from exactfold.modes.result import Decomposition
 from exactfold.motion.events import ANGLE, CONTACT, FLAT_FOLD, TURNING, Event
@@ -30,6 +29,7 @@ from exactfold.verdict import PROVED
 
 _LEAST_SAMPLES = 180
 _AT_180 = 1e-9
+_REASONS = 3
 
 
 def follow_panels(
@@ -60,7 +60,7 @@ def follow_panels(
     fold angle of that size, up to "180deg". `frames`: their number, at equal steps of time, or of
     the angle of the fold `by`. `held`: the number of the panel that does not move.
 
-    Raises `NotApplicableError` for a sheet that is rigid or has no mode that can be followed, which
+    Raises `NotFollowedError` for a sheet that is rigid or has no mode that can be followed, which
     does not mean that it cannot fold; `UsageError` for what does not exist or does not fit.
 
     >>> from exactfold.pattern.families import single_vertex
@@ -97,7 +97,7 @@ def follow_panels(
     samples = sampled_times(angles_at, duration, _LEAST_SAMPLES)
     contact = PanelContacts(pattern).first(samples.tolist(), places)
     if contact is not None:
-        faces = cast("Any", tuple(pattern.faces[panel] for panel in contact.panels))
+        faces = tuple(pattern.faces[panel] for panel in contact.panels)
         event = Event(CONTACT, (contact.low, contact.high), faces=faces, detail=contact.kind)
         if until == CONTACT:
             duration, end, events = contact.high, CONTACT, []
@@ -147,19 +147,31 @@ def _chosen(
     if numbers is not None:
         return None, _named_modes(known, numbers)
     if result.rigid is PROVED:
-        raise NotApplicableError("the sheet is rigid - PROVED: there is nothing to follow")
+        raise NotFollowedError("the sheet is rigid - PROVED: there is nothing to follow")
     components = panel_components(result, known)
     if not components:
-        reasons = [open_reason(mode) for mode in known[:3]] or [
-            "no motion is known that is one mode; vertices with more than four folds are followed "
-            "only along motions with one parameter that are linear in the half-angle tangents"
-        ]
-        raise NotApplicableError(f"there is nothing to follow: {'; '.join(reasons)}")
+        raise NotFollowedError(f"there is nothing to follow: {_why_nothing(result, known)}")
     at = 1 if component is None else component
     if not 1 <= at <= len(components):
         raise UsageError(f"there is no component {at}: they are 1 to {len(components)}")
     inside = set(components[at - 1].modes)
     return at, tuple(mode for mode in known if mode.number in inside)
+
+
+def _why_nothing(result: Decomposition, known: Sequence[PanelMode]) -> str:
+    if known:
+        more = f"; and so on for {len(known) - _REASONS} more" if len(known) > _REASONS else ""
+        return "; ".join(open_reason(mode) for mode in known[:_REASONS]) + more
+    families = any(d > 1 for d in {**(result.found_true or {}), **(result.true or {})})
+    what = (
+        "the sheet folds in families of several dimensions only"
+        if families
+        else "no motion is known that is one mode"
+    )
+    return (
+        f"{what}; where vertices have more than four folds, only motions with one parameter that "
+        "are linear in the half-angle tangents are followed"
+    )
 
 
 def _named_modes(known: Sequence[PanelMode], numbers: Sequence[int]) -> tuple[PanelMode, ...]:
@@ -170,7 +182,7 @@ def _named_modes(known: Sequence[PanelMode], numbers: Sequence[int]) -> tuple[Pa
             raise UsageError(f"there is no mode {number}: {what}")
         mode = known[number - 1]
         if mode.extends.verdict is not PROVED:
-            raise NotApplicableError(open_reason(mode))
+            raise NotFollowedError(open_reason(mode))
         for other in chosen:
             shared = sorted(set(mode.vertices) & set(other.vertices))
             if shared:

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from math import inf, pi
+from math import inf, pi, radians
 from types import MappingProxyType
-from typing import TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
 from exactfold.arrays import FloatArray
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import Number, exact
+from exactfold.motion import in_motion
 from exactfold.motion.events import Event
 from exactfold.motion.panel_curves import FollowedCurve, LinearCurve
 from exactfold.motion.panel_places import Placing, Spot, Turn
+from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import counted
 
@@ -27,6 +30,8 @@ AnglesAt: TypeAlias = "Callable[[FloatArray], FloatArray]"
 
 _DEGREES = 2.0
 _MOST_SAMPLES = 4000
+_LEADING: Final = 30.0
+_NAMED: Final = 8
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -115,6 +120,76 @@ class PanelMotion:
         found = {f: letters[s] for f, s in zip(self.pattern.folds, signs.tolist(), strict=True)}
         return MappingProxyType(found)
 
+    @property
+    def name(self) -> str:
+        """The modes and free folds that fold, in a few words."""
+        what = []
+        if self.modes:
+            numbers = ", ".join(map(str, self.modes[:_NAMED]))
+            numbers += ", ..." if len(self.modes) > _NAMED else ""
+            what = [f"mode {numbers}" if len(self.modes) == 1 else f"modes {numbers}"]
+        if self.free_rates:
+            what.append(counted(len(self.free_rates), "free fold"))
+        return " and ".join(what)
+
+    @property
+    def time_name(self) -> str:
+        """What time is."""
+        return "the angle of the folds that drive it, in radians"
+
+    @property
+    def leading_angles(self) -> Mapping[Edge, float]:
+        """The fold angles in degrees when the driving folds have 30 degrees, or at the end."""
+        [angles] = self.angles_at(np.array([min(radians(_LEADING), self.duration)]))
+        return dict(zip(self.pattern.folds, np.degrees(angles).tolist(), strict=True))
+
+    @property
+    def leading_angles_are(self) -> str:
+        """What these are, in words."""
+        return f"the fold angles at time {min(radians(_LEADING), self.duration):.3g}"
+
+    @property
+    def reason(self) -> str:
+        """What is proved of the motion."""
+        if self.closes is PROVED:
+            return (
+                "all vertices close exactly at all fold angles"
+                if self.curves
+                else "folds from border to border are free"
+            )
+        return "each mode truly folds; its angles were followed in floats"
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What files say of the motion, as JSON."""
+        return {
+            "modes": list(self.modes),
+            "component": self.component,
+            "free_folds": [f"{i}-{j}" for i, j in self.free_rates],
+            **in_motion.facts_of_frames(self),
+        }
+
+    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+        """The object printed by `exactfold fold --json`: `schema("motion")`.
+
+        `name`: of the pattern; `written`: the files that hold the motion. What belongs to branches
+        of triangulated sheets is null.
+        """
+        return {
+            **headed("motion"),
+            "pattern": described_panels(self.pattern, name),
+            "theory": "modes",
+            "reason": self.reason,
+            "vertex_signs": None,
+            "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
+            "side": None,
+            "modes": list(self.modes),
+            "component": self.component,
+            **in_motion.frames_reported(self, written),
+            "warnings": [],
+            "seconds": round(self.seconds, 3),
+        }
+
     @cached_property
     def _placing(self) -> Placing:
         return Placing(self.pattern, self.held)
@@ -195,9 +270,7 @@ class PanelMotion:
     @property
     def length_error(self) -> float:
         """The largest relative change of the length of an edge in any frame."""
-        i, j = np.array(self.pattern.edges, dtype=np.intp).T
-        lengths = np.linalg.norm(self.coords[:, i] - self.coords[:, j], axis=2)
-        return float(np.max(np.abs(lengths / lengths[0] - 1)))
+        return in_motion.length_error(self)
 
     @property
     def residual(self) -> float:
@@ -219,21 +292,16 @@ class PanelMotion:
 
     def table(self) -> tuple[tuple[str, ...], FloatArray]:
         """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
-        names = ("time", *(f"{i}-{j}" for i, j in self.pattern.folds))
-        return names, np.column_stack([self.times, np.degrees(self.angles)])
+        return in_motion.table(self)
 
     @property
     def largest_angles(self) -> FloatArray:
         """For each fold its largest angle in any frame in degrees, with its sign."""
-        rows = np.argmax(np.abs(self.angles), axis=0)
-        return np.asarray(np.degrees(self.angles[rows, np.arange(self.angles.shape[1])]))
+        return in_motion.largest_angles(self)
 
     def __repr__(self) -> str:
-        what = [f"mode {', '.join(map(str, self.modes))}"] if self.modes else []
-        if self.free_rates:
-            what.append(counted(len(self.free_rates), "free fold"))
         return (
-            f"<PanelMotion: {' and '.join(what)}, {self.status}, {len(self.times)} frames to "
+            f"<PanelMotion: {self.name}, {self.status}, {len(self.times)} frames to "
             f"{self.end} at {self.duration:.6g}>"
         )
 

@@ -8,28 +8,30 @@ from typing import Any
 
 import numpy as np
 
-from exactfold.branches.export import AMOUNT
-from exactfold.branches.letters import UPSIDE_DOWN
 from exactfold.bridges.fold_frames import MotionFrame, motion_document
 from exactfold.bridges.meshes import animated_gltf, gltf_bytes, obj_text
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import shown
 from exactfold.motion.events import RETURN
+from exactfold.motion.in_motion import SheetInMotion
 from exactfold.motion.motion import Motion
+from exactfold.motion.panel_motion import PanelMotion
 from exactfold.pattern.fold_writing import document_text, write_bytes, write_text
+from exactfold.pattern.triangulating import triangles_of
 
 ENDINGS = (".fold", ".glb", ".gltf", ".obj")
 
 
 def write_motion(
-    motion: Motion, path: str | PathLike[str], *, title: str | None = None
+    motion: SheetInMotion, path: str | PathLike[str], *, title: str | None = None
 ) -> tuple[Path, ...]:
     """Write a motion in the format that the ending of the path names; the files written.
 
     ".fold": FOLD 1.2, the exact flat sheet and after it all frames, with their fold angles
     (`motion_document`). ".glb" and ".gltf": glTF 2.0 in one file with an animation of the frames,
     for Blender and three.js; needs pygltflib (`pip install 'exactfold[motion]'`). ".obj": a file
-    for each frame, NAME_0000.obj and on. `title` names the pattern. See docs/folding.md.
+    for each frame, NAME_0000.obj and on. FOLD files hold panels as they are, the others cut them
+    into triangles. `title` names the pattern. See docs/folding.md.
 
     Raises `UsageError` for another ending, `GltfMissingError`, `UnwritableFileError`.
 
@@ -42,17 +44,17 @@ def write_motion(
     ...     [file.name for file in files]
     ['two_0000.obj', 'two_0001.obj', 'two_0002.obj']
     """
-    if not isinstance(motion, Motion):
+    if not isinstance(motion, Motion | PanelMotion):
         raise UsageError(
-            f"write_motion(motion, path): {shown(motion)} is not a motion; `follow` returns one"
+            f"write_motion(motion, path): {shown(motion)} is not a motion: `follow` and "
+            "`follow_panels` return one"
         )
     target = Path(path)
     ending = checked_ending(target)
     if ending == ".fold":
         write_text(target, document_text(fold_motion(motion, title=title)))
         return (target,)
-    pattern = motion.branch.pattern
-    triangles = np.array(pattern.triangles, dtype=np.intp)
+    triangles = np.array(triangles_of(motion.pattern), dtype=np.intp)
     name = title or "sheet"
     if ending == ".obj":
         files = [target.with_name(f"{target.stem}_{k:04}.obj") for k in range(len(motion.times))]
@@ -60,7 +62,7 @@ def write_motion(
             write_text(file, obj_text(coords, triangles, name))
         return tuple(files)
     model = animated_gltf(
-        motion.coords, triangles, name, returns=motion.end == RETURN, facts=facts(motion)
+        motion.coords, triangles, name, returns=motion.end == RETURN, facts=motion.facts
     )
     write_bytes(target, gltf_bytes(model, binary=ending == ".glb"))
     return (target,)
@@ -78,20 +80,14 @@ def checked_ending(path: Path) -> str:
     return ending
 
 
-def fold_motion(motion: Motion, *, title: str | None = None) -> dict[str, Any]:
+def fold_motion(motion: SheetInMotion, *, title: str | None = None) -> dict[str, Any]:
     """The FOLD object of a motion, as `write_motion` writes it.
 
-    `edges_foldAngle` of the flat sheet are the first-order angles of the branch, the largest 30
-    degrees: a simulator that reads no more than this frame stays on the branch (docs/export.md).
+    `edges_foldAngle` of the flat sheet are `motion.leading_angles`, the first-order angles of a
+    branch, or those of panels at 30 degrees: a simulator that reads no more than this frame stays
+    on the branch or mode (docs/export.md).
     """
-    branch, folds = motion.branch, motion.branch.pattern.folds
-    letters = dict(branch.assignment)
-    if motion.side < 0:
-        letters = {fold: letter.translate(UPSIDE_DOWN) for fold, letter in letters.items()}
-    angles = {
-        fold: motion.side * angle if letters[fold] in "MV" else 0.0
-        for fold, angle in branch.fold_angles.degrees(AMOUNT).items()
-    }
+    folds = motion.pattern.folds
     frames = [
         MotionFrame(
             float(time),
@@ -100,29 +96,13 @@ def fold_motion(motion: Motion, *, title: str | None = None) -> dict[str, Any]:
         )
         for time, coords, row in zip(motion.times, motion.coords, motion.angles, strict=True)
     ]
-    known = facts(motion)
     return motion_document(
-        branch.pattern,
-        letters,
-        angles,
+        motion.pattern,
+        motion.assignment,
+        motion.leading_angles,
         frames,
-        name=f"motion along branch {known['vertex_signs'][:60]}",
+        name=f"motion along {motion.name}",
         title=title,
-        facts=known,
+        facts=motion.facts,
+        angles_are=motion.leading_angles_are,
     )
-
-
-def facts(motion: Motion) -> dict[str, Any]:
-    """What the files say of a motion."""
-    branch = motion.branch
-    return {
-        "vertex_signs": branch.sign_text,
-        "vertices": list(branch.pattern.interior),
-        "side": motion.side,
-        "status": motion.status,
-        "end": motion.end,
-        "duration": motion.duration,
-        "pinned": list(motion.pinned),
-        "length_error": motion.length_error,
-        "pattern": branch.pattern.sha256,
-    }

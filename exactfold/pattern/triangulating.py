@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from exactfold.exact.surds import sign
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
 
@@ -21,20 +22,46 @@ def triangulating_edges(pattern: PanelPattern) -> tuple[Edge, ...]:
     ((1, 3),)
     """
     points = pattern.scaled_vertices
-    found = [edge for face in pattern.faces for edge in _diagonals(points, face)]
-    return tuple(sorted(found))
+    ears = [ear for face in pattern.faces for ear in _triangles(points, face)[:-1]]
+    return tuple(sorted((min(i, j), max(i, j)) for i, _, j in ears))
 
 
-def _diagonals(points: Sequence[Point], face: Sequence[int]) -> list[Edge]:
+def triangles_of(pattern: CreasePattern | PanelPattern) -> tuple[tuple[int, ...], ...]:
+    """The triangles of a sheet, panels cut along `triangulating_edges`, counter-clockwise.
+
+    >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)])
+    >>> triangles_of(square)
+    ((3, 0, 1), (1, 2, 3))
+    """
+    return tuple(triangle for piece in triangles_by_face(pattern) for triangle in piece)
+
+
+def triangles_by_face(
+    pattern: CreasePattern | PanelPattern,
+) -> tuple[tuple[tuple[int, ...], ...], ...]:
+    """The same, those of each face together."""
+    if isinstance(pattern, CreasePattern):
+        return tuple((triangle,) for triangle in pattern.triangles)
+    points = pattern.scaled_vertices
+    return tuple(tuple(_triangles(points, face)) for face in pattern.faces)
+
+
+def cut_panels(pattern: PanelPattern) -> PanelPattern:
+    """The sheet with all panels cut into triangles."""
+    joins = triangulating_edges(pattern)
+    return PanelPattern(pattern.vertices, (*pattern.edges, *joins)) if joins else pattern
+
+
+def _triangles(points: Sequence[Point], face: Sequence[int]) -> list[tuple[int, ...]]:
+    """Ears cut off one after the other, each with the corner in the middle, and what is left."""
     ring = list(face)
-    found = []
+    found: list[tuple[int, ...]] = []
     while len(ring) > 3:
         ears = [k for k in range(len(ring)) if _is_ear(points, ring, k)]
         k = min(ears, key=lambda k: _length(points[ring[k - 1]], points[ring[(k + 1) % len(ring)]]))
-        i, j = ring[k - 1], ring[(k + 1) % len(ring)]
-        found.append((min(i, j), max(i, j)))
+        found.append((ring[k - 1], ring[k], ring[(k + 1) % len(ring)]))
         del ring[k]
-    return found
+    return [*found, tuple(ring)]
 
 
 def _is_ear(points: Sequence[Point], ring: Sequence[int], k: int) -> bool:

@@ -9,6 +9,7 @@ from exactfold.report.info import examples_report, expectation, info_report, pan
 from exactfold.report.motion import motion_report
 from exactfold.report.motions import motions_report
 from exactfold.report.panels import panels_report
+from exactfold.report.stills import motion_stills
 from exactfold.report.terminal import console, show
 
 __all__ = [
@@ -25,6 +26,7 @@ __all__ = [
     "export_report",
     "info_report",
     "motion_report",
+    "motion_stills",
     "motions_report",
     "panels_info",
     "panels_report",

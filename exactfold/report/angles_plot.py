@@ -18,7 +18,7 @@ from exactfold.motion.events import (
     TURNING,
     Event,
 )
-from exactfold.motion.motion import Motion
+from exactfold.motion.in_motion import SheetInMotion
 from exactfold.report import svg
 from exactfold.wording import counted, plural
 
@@ -41,10 +41,10 @@ _NAMES: Final = {
 }
 
 
-def angles_plot(motion: Motion, title: str = "") -> str:
+def angles_plot(motion: SheetInMotion, title: str = "") -> str:
     """All fold angles in degrees along a motion, as the text of an SVG file.
 
-    Valleys are above 0 and mountains below, time is the arclength. Up to 28 folds have lines and
+    Valleys are above 0 and mountains below. Up to 28 folds have lines and
     labels of their own; of more, each line has the colour of its direction at the start, and of
     more than 600 those with the largest angles are drawn. Events are thin vertical lines.
     """
@@ -59,13 +59,13 @@ def angles_plot(motion: Motion, title: str = "") -> str:
     few = len(shown) <= _LABELLED
     parts = [
         *_heading(motion, title, len(shown), degrees.shape[1]),
-        *_axes(across, down),
+        *_axes(across, down, f"time ({motion.time_name})"),
         *_events(motion, across),
         *_lines(times, degrees, shown, across, down, few=few),
     ]
     if few:
         parts += _labels(motion, degrees, shown, down)
-    name = f"Fold angles of {title or 'a sheet'} along branch {_brief(motion)}"
+    name = f"Fold angles of {title or 'a sheet'} along {motion.name}"
     return svg.picture(_WIDTH, _HEIGHT, parts, name)
 
 
@@ -75,13 +75,7 @@ def _shown(degrees: FloatArray) -> list[int]:
     return sorted(int(k) for k in np.argsort(-sizes, kind="stable")[:_DRAWN])
 
 
-def _brief(motion: Motion) -> str:
-    signs = motion.branch.sign_text
-    short = signs if len(signs) <= 40 else f"{signs[:37]}..."
-    return short if motion.side > 0 else f"{short}, mirror side"
-
-
-def _heading(motion: Motion, title: str, shown: int, folds: int) -> list[str]:
+def _heading(motion: SheetInMotion, title: str, shown: int, folds: int) -> list[str]:
     lead = f"{title}: " if title else ""
     drawn = counted(folds, "fold")
     if shown < folds:
@@ -89,12 +83,12 @@ def _heading(motion: Motion, title: str, shown: int, folds: int) -> list[str]:
     if shown > _LABELLED:
         drawn += ", blue where they start as valleys, orange where as mountains"
     return [
-        svg.text(f"{lead}fold angles along branch {_brief(motion)}", _LEFT, 28, size=17),
+        svg.text(f"{lead}fold angles along {motion.name}", _LEFT, 28, size=17),
         svg.text(f"{drawn}; valley above 0, mountain below", _LEFT, 47, fill="#555555"),
     ]
 
 
-def _axes(across: svg.Scale, down: svg.Scale) -> list[str]:
+def _axes(across: svg.Scale, down: svg.Scale, time_text: str) -> list[str]:
     parts = []
     bottom, right = _HEIGHT - _BOTTOM, _WIDTH - _RIGHT
     for angle in svg.ticks(down.high, down.low, 11, (1, 2, 5, 10, 15, 30, 45, 60, 90, 180)):
@@ -108,11 +102,11 @@ def _axes(across: svg.Scale, down: svg.Scale) -> list[str]:
         parts.append(svg.text(f"{time:g}", x, bottom + 19, anchor="middle"))
     parts.append(svg.line((_LEFT, bottom), (right, bottom), "#777777"))
     middle = (_LEFT + right) / 2
-    parts.append(svg.text("time (arclength)", middle, _HEIGHT - 12, anchor="middle", size=13))
+    parts.append(svg.text(time_text, middle, _HEIGHT - 12, anchor="middle", size=13))
     return parts
 
 
-def _events(motion: Motion, across: svg.Scale) -> list[str]:
+def _events(motion: SheetInMotion, across: svg.Scale) -> list[str]:
     """A vertical line for every time, and a name for those that are not too close together."""
     parts, labels = [], []
     placed = [(across(event.time[1]), event) for event in motion.events]
@@ -209,9 +203,11 @@ def _direction(angles: FloatArray) -> str:
     return svg.VALLEY if first > 0 else svg.MOUNTAIN
 
 
-def _labels(motion: Motion, degrees: FloatArray, shown: list[int], down: svg.Scale) -> list[str]:
+def _labels(
+    motion: SheetInMotion, degrees: FloatArray, shown: list[int], down: svg.Scale
+) -> list[str]:
     """The name of each fold beside the end of its line."""
-    right, folds = _WIDTH - _RIGHT, motion.branch.pattern.folds
+    right, folds = _WIDTH - _RIGHT, motion.pattern.folds
     # Lines that end in one place are named in the order in which they come there.
     late = degrees[len(degrees) * 2 // 3 :].mean(axis=0)
     ends = [down(float(degrees[-1, k] + 1e-3 * late[k])) for k in shown]

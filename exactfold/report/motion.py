@@ -10,7 +10,6 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from exactfold.branches.letters import UPSIDE_DOWN
 from exactfold.motion.events import (
     ANGLE,
     CONTACT,
@@ -22,30 +21,30 @@ from exactfold.motion.events import (
     TURNING,
     Event,
 )
+from exactfold.motion.motion import Motion
 from exactfold.report.terminal import cut, facts_table, letters_text, status_text
+from exactfold.verdict import PROVED
 from exactfold.wording import counted
 
 if TYPE_CHECKING:
-    from exactfold.motion.motion import Motion
-    from exactfold.pattern.crease_pattern import Triangle
+    from exactfold.motion.in_motion import SheetInMotion
+    from exactfold.motion.panel_motion import PanelMotion
+    from exactfold.pattern.crease_pattern import Edge
 
 _TURNINGS: Final = 8
 _LARGEST: Final = 5
+_FOLDS: Final = 6
+_CORNERS: Final = 8
 
 
-def motion_report(motion: Motion, written: Sequence[str] = ()) -> Group:
-    """A motion: its branch, where it ends and why, its events, and what was written."""
-    branch = motion.branch
-    letters = branch.assignment_text
-    side = "mirror image: all signs reversed" if motion.side < 0 else "as named"
+def motion_report(motion: Motion | PanelMotion, written: Sequence[str] = ()) -> Group:
+    """A motion: what it goes along, where it ends and why, its events, and what was written."""
+    letters = "".join(motion.assignment[fold] for fold in motion.pattern.folds)
+    along = _branch_rows(motion) if isinstance(motion, Motion) else _mode_rows(motion)
     rows: list[tuple[str, RenderableType]] = [
-        ("branch", Text.assemble(cut(branch.sign_text), ", ", status_text(branch.status))),
-        ("side", f"{'-' if motion.side < 0 else '+'} ({side})"),
-        (
-            "mountain-valley",
-            letters_text(cut(letters.translate(UPSIDE_DOWN) if motion.side < 0 else letters)),
-        ),
-        ("motion", "followed in floats: not proved"),
+        *along,
+        ("mountain-valley", letters_text(cut(letters))),
+        ("motion", _proved(motion)),
         ("end", f"time {motion.duration:.6g}: {ending_text(motion)}"),
         ("largest angles", _largest(motion)),
         ("lengths", f"kept to {motion.length_error:.1e} of each"),
@@ -57,7 +56,28 @@ def motion_report(motion: Motion, written: Sequence[str] = ()) -> Group:
     return Group(facts_table(rows), *_events(motion))
 
 
-def ending_text(motion: Motion) -> str:
+def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
+    branch = motion.branch
+    side = "mirror image: all signs reversed" if motion.side < 0 else "as named"
+    return [
+        ("branch", Text.assemble(cut(branch.sign_text), ", ", status_text(branch.status))),
+        ("side", f"{'-' if motion.side < 0 else '+'} ({side})"),
+    ]
+
+
+def _mode_rows(motion: PanelMotion) -> list[tuple[str, RenderableType]]:
+    if motion.component is None:
+        return [("modes", cut(", ".join(map(str, motion.modes))))]
+    return [("component", cut(f"{motion.component} ({motion.name})"))]
+
+
+def _proved(motion: Motion | PanelMotion) -> RenderableType:
+    if isinstance(motion, Motion) or motion.closes is not PROVED:
+        return "followed in floats: not proved"
+    return Text.assemble(status_text(PROVED), f": {motion.reason}; contacts are not")
+
+
+def ending_text(motion: SheetInMotion) -> str:
     """Why a motion ends, in plain words."""
     last = [event for event in motion.events if event.kind == motion.end]
     if motion.end == LENGTH or not last:
@@ -74,14 +94,17 @@ def event_text(event: Event) -> str:
     >>> event_text(Event("contact", (0.5, 0.5), ((1, 2, 3), (4, 5, 6)), detail="edge on edge"))
     'faces 1-2-3 and 4-5-6 meet (edge on edge)'
     """
-    folds = ", ".join(f"{i}-{j}" for i, j in event.folds)
+    folds = _folds(event.folds)
     detail = f" ({event.detail})" if event.detail else ""
     if event.kind == CONTACT:
         return f"faces {' and '.join(map(_face, event.faces))} meet{detail}"
+    several = len(event.folds) > 1
     words = {
-        FLAT_FOLD: f"fold {folds} closes: its two faces meet",
-        TURNING: f"fold {folds} turns back{detail}",
-        ANGLE: f"fold {folds} has the angle that was asked for",
+        FLAT_FOLD: f"{folds} close: faces meet"
+        if several
+        else f"{folds} closes: its two faces meet",
+        TURNING: f"{folds} {'turn' if several else 'turns'} back{detail}",
+        ANGLE: f"{folds} {'have' if several else 'has'} the angle that was asked for",
         NODE: f"another motion crosses here{detail}",
         RETURN: "the sheet is flat again",
         SINGULAR: f"it could not be followed further{detail}",
@@ -89,19 +112,25 @@ def event_text(event: Event) -> str:
     return words[event.kind]
 
 
-def _face(face: Triangle) -> str:
-    return "-".join(map(str, face))
+def _folds(folds: Sequence[Edge]) -> str:
+    named = ", ".join(f"{i}-{j}" for i, j in folds[:_FOLDS])
+    more = f" and {len(folds) - _FOLDS} more" if len(folds) > _FOLDS else ""
+    return f"{'folds' if len(folds) > 1 else 'fold'} {named}{more}"
 
 
-def _largest(motion: Motion) -> str:
-    angles, folds = motion.largest_angles, motion.branch.pattern.folds
+def _face(face: Sequence[int]) -> str:
+    return "-".join(map(str, face[:_CORNERS])) + ("-..." if len(face) > _CORNERS else "")
+
+
+def _largest(motion: SheetInMotion) -> str:
+    angles, folds = motion.largest_angles, motion.pattern.folds
     order = np.argsort(-np.abs(angles), kind="stable")[:_LARGEST]
     shown = ", ".join(f"{folds[k][0]}-{folds[k][1]} {angles[k]:.4g}" for k in order)
     more = "" if len(folds) <= _LARGEST else ", ..."
     return f"{shown}{more} degrees"
 
 
-def _events(motion: Motion) -> list[RenderableType]:
+def _events(motion: SheetInMotion) -> list[RenderableType]:
     """The table of events; of many folds that turn back the first are listed."""
     turning = [event for event in motion.events if event.kind == TURNING]
     left_out = turning[_TURNINGS:]

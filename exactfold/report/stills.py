@@ -1,4 +1,4 @@
-"""Pictures of a sheet in space: shaded faces with two colours, sorted by depth, in plain SVG."""
+"""Pictures of a sheet in space: shaded faces with two colours, nearer ones over others, as SVG."""
 
 from __future__ import annotations
 
@@ -9,10 +9,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from exactfold.arrays import FloatArray
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.triangulating import triangles_by_face
+from exactfold.report.painting import back_to_front
 from exactfold.report.svg import INK, element, path, picture, text
 
 if TYPE_CHECKING:
-    from exactfold.motion.motion import Motion
+    from exactfold.motion.in_motion import SheetInMotion
+    from exactfold.pattern.panel_pattern import PanelPattern
 
 _UPPER: Final = (86, 180, 233)
 _LOWER: Final = (240, 228, 66)
@@ -20,12 +24,15 @@ _LOWER: Final = (240, 228, 66)
 _AZIMUTH, _ELEVATION = -62.0, 34.0
 _LIGHT = (0.35, -0.5, 0.79)
 _PANEL, _MARGIN, _CAPTION = 200.0, 12.0, 22.0
+_EARLIER: Final = 0.02
+"""Of the way back to the frame before: layers that meet are still apart there."""
 
 
-def motion_stills(motion: Motion, number: int = 5, title: str = "") -> str:
+def motion_stills(motion: SheetInMotion, number: int = 5, title: str = "") -> str:
     """A row of stills of a motion, from the flat sheet to its end, as an SVG file.
 
     All have the same scale and point of view; below each stand the largest fold angle and the time.
+    Layers that lie on each other are drawn as they came there.
     """
     places = np.linspace(0, len(motion.times) - 1, max(2, number)).round().astype(int)
     shapes = [_levelled(motion.coords[k], motion.coords[0]) for k in places]
@@ -33,9 +40,15 @@ def motion_stills(motion: Motion, number: int = 5, title: str = "") -> str:
         f"{_largest(motion.angles[k]):.0f}° at {motion.times[k]:.3g}" if k else "flat"
         for k in places
     ]
-    faces = motion.branch.pattern.triangles
-    name = title or f"branch {motion.branch.sign_text}"
-    return stills(shapes, faces, captions, f"{name}: the sheet as it folds")
+    earlier = [_levelled(motion.coords[max(k - 1, 0)], motion.coords[0]) for k in places]
+    layered = [
+        (1 - _EARLIER) * shape + _EARLIER * before
+        for shape, before in zip(shapes, earlier, strict=True)
+    ]
+    pieces = triangles_by_face(motion.pattern)
+    faces = _faces(motion.pattern)
+    heading = f"{title or motion.name}: the sheet as it folds"
+    return stills(shapes, faces, captions, heading, pieces=pieces, layered=layered)
 
 
 def stills(
@@ -43,8 +56,14 @@ def stills(
     faces: Sequence[Sequence[int]],
     captions: Sequence[str],
     title: str,
+    *,
+    pieces: Sequence[Sequence[Sequence[int]]] | None = None,
+    layered: Sequence[FloatArray] | None = None,
 ) -> str:
     """Shapes of one sheet side by side, each of shape (V, 3), with a caption each.
+
+    `pieces`: the triangles of each face, needed if there are others. `layered`: shapes close to
+    these in which no faces lie on each other, which say what is drawn over what.
 
     >>> flat = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5]])
     >>> stills([flat], [(0, 1, 2), (0, 2, 3)], ["a & b"], "two faces").count("<path")
@@ -57,12 +76,17 @@ def stills(
     scale = (_PANEL - 2 * _MARGIN) / span
     height = float((high - low)[1]) * scale + 2 * _MARGIN
     parts = []
+    cut = pieces or [[face] for face in faces]
+    apart = shapes if layered is None else layered
     for k, (shape, view, caption) in enumerate(zip(shapes, seen, captions, strict=True)):
+        order = back_to_front(_seen(np.asarray(apart[k], dtype=np.float64)), cut)
         left = k * _PANEL + _MARGIN + ((_PANEL - 2 * _MARGIN) - float((high - low)[0]) * scale) / 2
         flat = np.column_stack(
             [left + (view[:, 0] - low[0]) * scale, _MARGIN + (high[1] - view[:, 1]) * scale]
         )
-        parts.append(element("g", _drawn(np.asarray(shape), view, flat, faces), stroke=INK))
+        parts.append(
+            element("g", _drawn(np.asarray(shape), flat, [faces[k] for k in order]), stroke=INK)
+        )
         centre = (k + 0.5) * _PANEL
         parts.append(text(caption, centre, height + 12, anchor="middle", size=12))
     return picture(len(shapes) * _PANEL, height + _CAPTION, parts, title)
@@ -85,18 +109,19 @@ def _seen(shape: FloatArray) -> FloatArray:
     return np.asarray(shape @ np.array([right, up, towards]).T)
 
 
-def _drawn(
-    shape: FloatArray, view: FloatArray, flat: FloatArray, faces: Sequence[Sequence[int]]
-) -> str:
-    """The faces from back to front, each in the colour of the side that is seen."""
+def _faces(pattern: CreasePattern | PanelPattern) -> Sequence[Sequence[int]]:
+    return pattern.triangles if isinstance(pattern, CreasePattern) else pattern.faces
+
+
+def _drawn(shape: FloatArray, flat: FloatArray, faces: Sequence[Sequence[int]]) -> str:
+    """The faces in this order, each in the colour of the side that is seen."""
     towards = _seen(np.eye(3))[:, 2]
     light = np.array(_LIGHT) / np.linalg.norm(_LIGHT)
-    order = sorted(range(len(faces)), key=lambda k: float(view[list(faces[k]), 2].mean()))
     drawn = []
-    for k in order:
-        corners = list(faces[k])
-        a, b, c = shape[corners[:3]]
-        normal = np.cross(b - a, c - a)
+    for face in faces:
+        corners = list(face)
+        ring = shape[corners] - shape[corners[0]]
+        normal = np.cross(ring, np.roll(ring, -1, axis=0)).sum(axis=0)
         normal = normal / max(float(np.linalg.norm(normal)), 1e-300)
         upper = float(normal @ towards) >= 0
         shade = 0.5 + 0.5 * max(0.0, float((normal if upper else -normal) @ light))

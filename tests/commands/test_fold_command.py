@@ -7,13 +7,17 @@ import json
 import pytest
 from drawings import SQUARE, as_cp
 from jsonschema import Draft202012Validator
+from panel_sheets import miura
 from running import BAD_INPUT, UNDECIDED, USAGE, error_class, run
 from sheets import HEXAGON, TRIANGLE, scrambled
 
-from exactfold import find_branch, follow, random_square, schema, write_fold
+from exactfold import count_ways, find_branch, follow, random_square, schema, write_fold
 from exactfold.bridges import meshes
+from exactfold.motion import follow_panels
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.families import single_vertex
+from exactfold.pattern.opening import Opened
+from exactfold.pattern.panel_writing import converted
 
 OK = 0
 
@@ -91,6 +95,118 @@ def test_frames_by_a_fold_until_an_angle():
     assert data["largest_angles"]["3-5"] == data["angles"]["3-5"][-1]
 
 
+# --- panels --------------------------------------------------------------------------------------
+
+
+def miura_file(folder):
+    """Straight creases crossed by zigzags: vertices that can be folded flat."""
+    path = folder / "miura.fold"
+    path.write_text(json.dumps(converted(Opened(miura(2, 2))).document()))
+    return path
+
+
+def test_a_drawing_folds_along_the_component_with_most_folds():
+    result = run("fold", "zigzags")
+    assert result.exit_code == OK
+    assert "the first of 3 components that can be followed, with most folds" in result.stderr
+    motion = follow_panels(count_ways("zigzags"))
+    lines = result.stdout.splitlines()
+    assert lines[0] == f"component        1 (mode {motion.modes[0]})"
+    assert lines[2] == "motion           followed in floats: not proved"
+    assert lines[3] == "end              time 3.14159: fold 14-15 closes: its two faces meet"
+    assert lines[-1].endswith("turning    fold 13-14 turns back")
+
+
+def test_modes_that_are_linear_are_proved(tmp_path):
+    result = run("fold", miura_file(tmp_path), "--component", 1)
+    assert result.exit_code == OK
+    assert "no component was named" not in result.stderr
+    assert "motion           PROVED: all vertices close exactly" in result.stdout
+    assert "folds 1-5, 2-6, 4-5, 5-6, 5-9, 6-7 and 6 more close: faces meet" in " ".join(
+        result.stdout.split()
+    )
+
+
+@pytest.mark.parametrize("how", [["--component", "3"], ["--modes", "1, 5"]])
+def test_json_of_panels_is_that_of_python(how, tmp_path):
+    out, plot, picture = (tmp_path / name for name in ("m.fold", "a.svg", "p.svg"))
+    files = ("-o", out, "--plot", plot, "--picture", picture)
+    result = run("fold", "zigzags", *how, "--until", "90deg", "--frames", 5, *files, "--json")
+    assert result.exit_code == OK
+    data = json.loads(result.stdout)
+    Draft202012Validator(schema("motion")).validate(data)
+    named = {"component": 3} if "--component" in how else {"modes": [1, 5]}
+    motion = follow_panels(count_ways("zigzags"), until="90deg", frames=5, **named)
+    written = [str(out), str(plot), str(picture)]
+    assert data | {"seconds": 0} == motion.report("zigzags", written) | {"seconds": 0}
+    assert (data["theory"], data["modes"]) == ("modes", [1, 5])
+    assert data["component"] == named.get("component")
+    assert (data["status"], data["side"], data["vertex_signs"]) == ("proved", None, None)
+    assert data["pinned"] == [0, 4, 9, 8]
+    assert max(map(abs, data["largest_angles"].values())) == pytest.approx(90)
+    assert picture.read_text().count("<path") == 5 * 9
+    assert plot.read_text().count("<path") == 12
+
+
+def test_free_folds_fold_where_nothing_else_can(tmp_path):
+    book = [((str(x), "0"), (str(x), "1"), "B" if x in (0, 2) else "V") for x in range(3)]
+    book += [((str(x), y), (str(x + 1), y), "B") for x in range(2) for y in "01"]
+    (tmp_path / "b.cp").write_text(as_cp(book))
+    result = run("fold", tmp_path / "b.cp", "--json")
+    assert result.exit_code == OK
+    assert "the only component that can be followed: 1 free fold" in result.stderr
+    data = json.loads(result.stdout)
+    assert (data["status"], data["modes"], data["end"]) == ("proved", [], "flat-fold")
+    assert list(data["largest_angles"].values()) == pytest.approx([180])
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--signs", "+"], "--signs is for branches"),
+        (["--up", "4"], "--up is for branches"),
+        (["--branch", "1"], "--branch is for branches"),
+        (["--side", "-"], "--side is for branches"),
+        (["--through-nodes"], "--through-nodes is for branches"),
+        (["--component", "4"], "there is no component 4: they are 1 to 3"),
+        (["--modes", "1,2"], "modes 1 and 2 cannot fold together"),
+        (["--modes", "9"], "there is no mode 9: they are 1 to 5"),
+        (["--until", "return"], "give contact, or an angle"),
+        (["--by", "8-9"], "fold 8-9 stays flat"),
+    ],
+)
+def test_what_panels_do_not_take(options, words):
+    result = run("fold", "zigzags", *options)
+    assert result.exit_code == USAGE
+    assert words in result.stderr.splitlines()[-1]
+    assert result.stdout == ""
+
+
+def test_a_mode_that_does_not_truly_fold():
+    result = run("fold", "zigzags", "--modes", "4", "--json")
+    assert result.exit_code == UNDECIDED
+    assert error_class(result) == "NotFollowedError"
+    assert "mode 4 does not truly fold: the loop 14-10-9-13 does not close" in result.stderr
+
+
+def test_a_rigid_sheet(tmp_path):
+    (tmp_path / "s.cp").write_text(as_cp(SQUARE))
+    result = run("fold", tmp_path / "s.cp", "--json")
+    assert result.exit_code == UNDECIDED
+    assert error_class(result) == "NotFollowedError"
+    assert "the sheet is rigid - PROVED" in result.stderr
+
+
+def test_the_picture_of_a_branch(tmp_path):
+    picture = tmp_path / "p.svg"
+    result = run("fold", "two-vertex", "--signs", "+-", "--picture", picture)
+    assert result.exit_code == OK
+    assert str(picture) in result.stdout.replace("\n", "").replace(" " * 17, "")
+    text = picture.read_text()
+    assert "<title>two-vertex, branch +-: the sheet as it folds</title>" in text
+    assert text.count("<path") == 5 * 6
+
+
 # --- what is refused -----------------------------------------------------------------------------
 
 
@@ -105,6 +221,11 @@ def test_frames_by_a_fold_until_an_angle():
         (["--signs", "++", "--frames", "1"], "1 is less than 2"),
         (["--signs", "++", "--by", "4"], "'4' is not a fold such as 4-7"),
         (["--signs", "++", "--by", "0-1"], "no fold 0-1"),
+        (["--component", "1"], "--component is for motions of rigid panels"),
+        (["--modes", "1"], "--modes is for motions of rigid panels"),
+        (["--component", "1", "--modes", "1"], "one of --component and --modes"),
+        (["--modes", "1,x"], "'x' is not a whole number"),
+        (["--signs", "++", "--plot", "a.svg", "--picture", "a.svg"], "name another file"),
         (["--signs", "++", "-o", "m.stl"], "a motion is written as .fold"),
         (["--signs", "++", "-o", "-"], "an output has a name of its own"),
         (["--signs", "++", "-o", "a.fold", "--plot", "a.fold"], "name another file"),
@@ -123,7 +244,7 @@ def test_wrong_usage_is_one_line(options, words, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("pattern", "words"),
     [
-        (scrambled(1, HEXAGON, 2, loose=True), "boundary"),
+        (scrambled(1, HEXAGON, 2, loose=True), "the sheet folds in families of several dimensions"),
         (scrambled(1, TRIANGLE, 3), "boundary"),
         (single_vertex(5), "boundary"),
     ],
@@ -134,14 +255,6 @@ def test_sheets_that_have_no_single_motion(pattern, words, tmp_path):
     result = run("fold", tmp_path / "p.fold")
     assert result.exit_code == UNDECIDED
     assert words in result.stderr
-
-
-def test_sheets_of_panels(tmp_path):
-    (tmp_path / "s.cp").write_text(as_cp(SQUARE))
-    result = run("fold", tmp_path / "s.cp", "--json")
-    assert result.exit_code == UNDECIDED
-    assert error_class(result) == "NotTriangulatedError"
-    assert "fold takes triangulated sheets" in result.stderr
 
 
 def test_a_branch_with_a_flat_vertex_is_not_followed():

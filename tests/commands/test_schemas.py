@@ -121,6 +121,7 @@ def test_errors_and_invalid_certificates(tmp_path: Path) -> None:
     printed("examples", "examples")
     printed("export", "export", "two-vertex", "--branch", "1", "-o", tmp_path / "b.fold")
     printed("motion", "fold", "two-vertex", "--up", "4", "--frames", "3")
+    printed("motion", "fold", "zigzags", "--frames", "3")
     printed("error", "info", written(tmp_path, "{"))
     assert run("count", example_path("two-vertex"), "--certificate", out).exit_code == PROVED
     out.write_text(out.read_text().replace('"distinct":4', '"distinct":5'))

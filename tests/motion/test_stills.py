@@ -1,11 +1,16 @@
 """Stills of motions: one polygon for each face, the right side in front, text made safe."""
 
 import xml.etree.ElementTree as ElementTree
+from fractions import Fraction
 
 import numpy as np
 import pytest
+from panel_sheets import miura
 
 from exactfold import find_branch, follow, random_square
+from exactfold.motion import follow_panels
+from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.report.painting import back_to_front
 from exactfold.report.stills import _seen, motion_stills, stills
 
 NAME = "{http://www.w3.org/2000/svg}"
@@ -70,3 +75,58 @@ def test_a_sheet_that_only_moves_looks_the_same(turn):
         for m in (motion, other)
     )
     assert np.abs(np.array(one) - np.array(two)).max() <= 0.011
+
+
+def test_panels_are_polygons_that_keep_their_corners():
+    motion = follow_panels(miura(2, 3), frames=6)
+    text = motion_stills(motion, 3)
+    paths = faces_of(text)
+    assert len(paths) == 3 * len(motion.pattern.faces)
+    assert {path["d"].count("L") for path in paths} == {3}
+    assert "mode " in ElementTree.fromstring(text).find(f"{NAME}title").text
+
+
+def turned_to_the_eye(corners):
+    """Points given by right, up and depth."""
+    return np.array(corners, dtype=float) @ np.linalg.inv(_seen(np.eye(3)))
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_a_long_face_lies_under_a_near_one_whatever_its_mean_depth(turn):
+    """The long one comes nearer than the other, but not where they overlap."""
+    long = [[0, 0, 0], [20, 0, 20], [20, 1, 20], [0, 1, 0]]
+    short = [[0, 0.2, 3], [1, 0.2, 3], [1, 0.8, 3], [0, 0.8, 3]]
+    pieces = [[(0, 1, 2), (0, 2, 3)], [(4, 5, 6), (4, 6, 7)]][::turn]
+    view = np.array(long + short, dtype=float)
+    order = back_to_front(view, pieces)
+    assert order == ([0, 1] if turn > 0 else [1, 0])
+    assert view[:4, 2].mean() > view[4:, 2].mean()
+    shape = turned_to_the_eye(view)
+    assert _seen(shape) == pytest.approx(view)
+    polygons = [(0, 1, 2, 3), (4, 5, 6, 7)][::turn]
+    drawn = faces_of(stills([shape], polygons, [""], "t", pieces=pieces))
+    places = [list(map(float, f["d"][1:-1].replace("L", " ").split()))[::2] for f in drawn]
+    widths = [max(xs) - min(xs) for xs in places]
+    assert widths[0] > 10 * widths[1]
+
+
+def test_three_faces_in_a_circle_are_all_drawn():
+    """Each lies over the next, as the flaps of a box do."""
+    turns = [np.exp(2j * np.pi * k / 3) for k in range(3)]
+    corners, pieces = [], []
+    for t in turns:
+        bar = [(-2 - 1j, 1), (2 - 1j, -1), (2 - 0.4j, -1), (-2 - 0.4j, 1)]
+        corners += [[(t * z).real, (t * z).imag, depth] for z, depth in bar]
+        k = len(corners) - 4
+        pieces.append([(k, k + 1, k + 2), (k, k + 2, k + 3)])
+    assert sorted(back_to_front(np.array(corners), pieces)) == [0, 1, 2]
+
+
+@pytest.mark.parametrize("rate", [1, -1])
+def test_layers_that_lie_on_each_other_are_drawn_as_they_came_there(rate):
+    """Of two panels the second is folded over the first, or under it."""
+    points = [(Fraction(x), Fraction(y)) for x in (0, 2, 4) for y in (0, 2)]
+    sides = [(0, 1), (2, 3), (4, 5), (0, 2), (2, 4), (1, 3), (3, 5)]
+    motion = follow_panels(PanelPattern(points, sides), amounts={(2, 3): rate}, frames=30)
+    last = faces_of(motion_stills(motion, 2))[2:]
+    assert [is_blue(face["fill"]) for face in last] == [rate > 0, rate < 0]

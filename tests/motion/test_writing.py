@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import io
 import json
+from fractions import Fraction
 
 import numpy as np
 import pygltflib
 import pytest
 import trimesh
+from panel_sheets import regular_twist
 
 from exactfold import find_branch, follow, random_square
 from exactfold.bridges import meshes
 from exactfold.errors import GltfMissingError, UnwritableFileError, UsageError
-from exactfold.motion import write_motion
-from exactfold.pattern import load_fold
+from exactfold.motion import follow_panels, write_motion
+from exactfold.pattern import PanelPattern, load_fold, open_pattern
+from exactfold.pattern.triangulating import triangles_by_face, triangles_of
 
 PATTERN = random_square(4, seed=1)
 BRANCH = find_branch(PATTERN, "+-++")
 MOTION = follow(BRANCH, frames=6)
 BACK = follow(BRANCH, frames=6, side=-1)
+PANELS = follow_panels(regular_twist(6, (Fraction(0), Fraction(-5))), frames=4)
 CLOSED = follow(find_branch("two-vertex", "+-"), until="return", frames=5)
 
 
@@ -76,6 +80,59 @@ def test_letters_change_where_an_angle_does(tmp_path):
     assert set(changed[0]["edges_assignment"]) == {"F", "B"}
     for frame in changed:
         assert frame["edges_assignment"] != document["edges_assignment"]
+
+
+def test_panels_stay_polygons_with_exact_corners(tmp_path):
+    document = json.loads(write_motion(PANELS, tmp_path / "p.fold", title="twist")[0].read_text())
+    sheet = PANELS.pattern
+    opened = open_pattern(tmp_path / "p.fold")
+    assert opened.sheet == sheet
+    assert opened.field_name == "Q(sqrt 3)"
+    assert {len(face) for face in document["faces_vertices"]} == {3, 4, 6}
+    assert document["faces_vertices"] == [list(face) for face in sheet.faces]
+    assert document["file_title"] == "twist, motion along mode 1"
+    assert document["frame_title"].startswith("flat sheet, with the fold angles at time 0.524 of")
+    facts = document["frame_exactfold:motion"]
+    assert (facts["modes"], facts["component"], facts["free_folds"]) == ([1], 1, [])
+    assert (facts["status"], facts["pattern"]) == (PANELS.status, sheet.sha256)
+    assert max(map(abs, document["edges_foldAngle"])) == pytest.approx(30)
+    edges = [tuple(edge) for edge in document["edges_vertices"]]
+    letters = dict(zip(edges, document["edges_assignment"], strict=True))
+    assert {fold: letters[fold] for fold in sheet.folds} == dict(PANELS.assignment)
+    assert len(document["file_frames"]) == 4
+    for k, frame in enumerate(document["file_frames"]):
+        assert frame["vertices_coords"] == PANELS.coords[k].tolist()
+        angles = dict(zip(edges, frame["edges_foldAngle"], strict=True))
+        shown = [angles[fold] for fold in sheet.folds]
+        assert shown == pytest.approx(np.degrees(PANELS.angles[k]).tolist(), abs=1e-6)
+
+
+def test_panels_that_are_not_convex_are_cut_into_triangles(tmp_path):
+    corners = [(0, 0), (4, 0), (4, 4), (0, 4), (3, 2)]  # the crease 0-4-3 leaves a dart
+    sheet = PanelPattern(corners, [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (4, 3)])
+    assert [len(face) for face in sheet.faces] == [5, 3]
+    triangles = np.array(triangles_of(sheet))
+    flat = np.array([[float(x), float(y), 0] for x, y in sheet.vertices])
+    across = np.cross(*(flat[triangles[:, k]] - flat[triangles[:, 0]] for k in (1, 2)))[:, 2]
+    assert (across > 0).all()
+    assert across.sum() / 2 == 16
+    assert [len(piece) for piece in triangles_by_face(sheet)] == [3, 1]
+    for ending in ("glb", "obj"):
+        path = write_motion(PANELS, tmp_path / f"p.{ending}")[0]
+        found = trimesh.load(path)
+        mesh = next(iter(found.geometry.values())) if ending == "glb" else found
+        expected = sum(len(face) - 2 for face in PANELS.pattern.faces)
+        assert len(mesh.faces) == expected
+        assert mesh.area == pytest.approx(area_of(PANELS.pattern), rel=1e-6)
+
+
+def area_of(sheet):
+    points = [(float(x), float(y)) for x, y in sheet.vertices]
+    return sum(
+        (points[a][0] * points[b][1] - points[b][0] * points[a][1]) / 2
+        for face in sheet.faces
+        for a, b in zip(face, (*face[1:], face[0]), strict=True)
+    )
 
 
 # --- glTF ----------------------------------------------------------------------------------------

@@ -1,0 +1,148 @@
+"""What motions along branches and motions of panels have in common, for writers and reports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from exactfold.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from exactfold.motion.events import Event
+    from exactfold.pattern.crease_pattern import CreasePattern, Edge
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+
+class SheetInMotion(Protocol):
+    """A sheet as it folds: `Motion` along a branch, or `PanelMotion` along modes of rigid panels.
+
+    `times`, shape (frames,); `coords`, shape (frames, V, 3); `angles`, radians, shape
+    (frames, folds), in the order of `pattern.folds`; `events` in the order of time.
+    """
+
+    @property
+    def pattern(self) -> CreasePattern | PanelPattern:
+        """The flat sheet."""
+
+    @property
+    def name(self) -> str:
+        """What the sheet folds along, in a few words."""
+
+    @property
+    def time_name(self) -> str:
+        """What time is."""
+
+    @property
+    def assignment(self) -> Mapping[Edge, str]:
+        """A letter for each fold, on the side that is followed."""
+
+    @property
+    def leading_angles(self) -> Mapping[Edge, float]:
+        """Fold angles in degrees, small enough to lead a simulator into this motion."""
+
+    @property
+    def leading_angles_are(self) -> str:
+        """What these are, in words."""
+
+    @property
+    def times(self) -> FloatArray:
+        """Of the frames."""
+
+    @property
+    def coords(self) -> FloatArray:
+        """Of all vertices in every frame."""
+
+    @property
+    def angles(self) -> FloatArray:
+        """Of all folds in every frame."""
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """What happens."""
+
+    @property
+    def end(self) -> str:
+        """The kind of event at which the motion stops."""
+
+    @property
+    def status(self) -> str:
+        """What is known of the motion, in a word."""
+
+    @property
+    def duration(self) -> float:
+        """The time of the last frame."""
+
+    @property
+    def pinned(self) -> tuple[int, ...]:
+        """The corners of the face that is held."""
+
+    @property
+    def length_error(self) -> float:
+        """The largest relative change of the length of an edge in any frame."""
+
+    @property
+    def largest_angles(self) -> FloatArray:
+        """For each fold its largest angle in any frame in degrees, with its sign."""
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What files say of the motion, as JSON."""
+
+    def at(self, time: float) -> FloatArray:
+        """The positions of all vertices at a time, shape (V, 3)."""
+
+    def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
+        """Times and all fold angles in radians at `least` points or more."""
+
+    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+        """The object printed by `exactfold fold --json`."""
+
+
+def length_error(motion: SheetInMotion) -> float:
+    """The largest relative change of the length of an edge in any frame."""
+    i, j = np.array(motion.pattern.edges, dtype=np.intp).T
+    lengths = np.linalg.norm(motion.coords[:, i] - motion.coords[:, j], axis=2)
+    return float(np.max(np.abs(lengths / lengths[0] - 1)))
+
+
+def largest_angles(motion: SheetInMotion) -> FloatArray:
+    """For each fold its largest angle in any frame in degrees, with its sign."""
+    rows = np.argmax(np.abs(motion.angles), axis=0)
+    return np.asarray(np.degrees(motion.angles[rows, np.arange(motion.angles.shape[1])]))
+
+
+def table(motion: SheetInMotion) -> tuple[tuple[str, ...], FloatArray]:
+    """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
+    names = ("time", *(f"{i}-{j}" for i, j in motion.pattern.folds))
+    return names, np.column_stack([motion.times, np.degrees(motion.angles)])
+
+
+def frames_reported(motion: SheetInMotion, written: Sequence[str]) -> dict[str, Any]:
+    """The keys of `schema("motion")` that do not depend on what the sheet folds along."""
+    folds = [f"{i}-{j}" for i, j in motion.pattern.folds]
+    return {
+        "status": motion.status,
+        "pinned": list(motion.pinned),
+        "frames": {"number": len(motion.times), "times": motion.times.tolist()},
+        "angles": dict(zip(folds, np.degrees(motion.angles).T.tolist(), strict=True)),
+        "largest_angles": dict(zip(folds, motion.largest_angles.tolist(), strict=True)),
+        "events": [event.to_dict() for event in motion.events],
+        "end": motion.end,
+        "duration": motion.duration,
+        "length_error": motion.length_error,
+        "written": list(written),
+    }
+
+
+def facts_of_frames(motion: SheetInMotion) -> dict[str, Any]:
+    """The facts that do not depend on what the sheet folds along."""
+    return {
+        "status": motion.status,
+        "end": motion.end,
+        "duration": motion.duration,
+        "pinned": list(motion.pinned),
+        "length_error": motion.length_error,
+        "pattern": motion.pattern.sha256,
+    }
