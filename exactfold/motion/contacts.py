@@ -61,7 +61,7 @@ def first_contact(branch: Branch, side: int = 1, *, most: int = 1000) -> tuple[T
     >>> from exactfold.count.find import find_branch
     >>> track, contact = first_contact(find_branch("two-vertex", "+-"))
     >>> print(contact.status, contact.event.kind, contact.event.faces)
-    proved contact ((0, 1, 4), (2, 3, 5))
+    proved flat-fold ((3, 5, 2), (3, 4, 5))
     """
     watch = ContactWatch()
     track = follow_proved(branch, side, stop=watch, most=most)
