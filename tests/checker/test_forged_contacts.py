@@ -7,6 +7,7 @@ import random
 from collections.abc import Callable
 from fractions import Fraction
 from functools import cache
+from itertools import combinations
 from typing import Any
 
 import pytest
@@ -24,7 +25,7 @@ from exactfold.motion.contacts import first_contact
 from exactfold.pattern.random_squares import random_square
 
 BRANCHES = {
-    "contact": (2, 5, "+-"),
+    "contact": (2, 2, "++"),
     "corner": (1, 2, "-"),
     "fold": (1, 3, "-"),
 }
@@ -33,9 +34,17 @@ BRANCHES = {
 @cache
 def _text(name: str) -> str:
     n, seed, signs = BRANCHES[name]
-    return json.dumps(
-        certificate_with_contact(*first_contact(find_branch(random_square(n, seed=seed), signs)))
+    document = certificate_with_contact(
+        *first_contact(find_branch(random_square(n, seed=seed), signs))
     )
+    if name == "corner":  # faces beside a fold that closes, which touch at the same time
+        document["claims"]["contact"] |= {
+            "kind": "contact",
+            "faces": [[1, 2, 4], [0, 4, 3]],
+            "folds": [],
+        }
+        document["evidence"]["contacts"]["from"] = document["evidence"]["contacts"]["to"]
+    return json.dumps(document)
 
 
 def given(name: str) -> Document:
@@ -180,11 +189,13 @@ def test_what_is_not_clear_is_refused(name: str, monkeypatch: pytest.MonkeyPatch
     """
     if name == "fold":
         monkeypatch.setattr(motion_contacts.Faces, "_at_corner", lambda *_: True)
+    elif name == "corner":
+        monkeypatch.setattr(motion_contacts.Faces, "_open", lambda *_: True)
     document = given(name)
     faces = document["claims"]["contact"]["faces"]
 
     def beyond(claims: Document, contacts: Document) -> None:
-        contacts["clear"] = contacts["to"]
+        contacts["clear"] = contacts["to"] + (1 << 32)
         del claims["contact"], contacts["from"], contacts["to"]
 
     with pytest.raises(CertificateError) as caught:
@@ -193,9 +204,17 @@ def test_what_is_not_clear_is_refused(name: str, monkeypatch: pytest.MonkeyPatch
     if name == "fold":
         i, j = document["claims"]["contact"]["folds"][0]
         assert str(caught.value) == f"the faces at {i}-{j} may touch {place}"
-    else:
-        one, two = sorted(tuple(face) for face in map(_turned, faces))
-        assert str(caught.value) == f"the faces {one} and {two} may touch {place}"
+        return
+    x = positions(name, document["evidence"]["contacts"]["to"] + (1 << 32))
+    triangles = sorted(_turned(face) for face in document["pattern"]["triangles"])
+    meeting = [
+        pair
+        for pair in combinations(triangles, 2)
+        if len(set(pair[0]) & set(pair[1])) == (name == "corner") and crossing(x, *pair)
+    ]
+    one, two = map(tuple, meeting[0])
+    assert str(caught.value) == f"the faces {one} and {two} may touch {place}"
+    assert sorted(map(_turned, faces)) in [list(map(list, pair)) for pair in meeting]
 
 
 def _turned(face: list[int]) -> list[int]:
@@ -284,16 +303,24 @@ def test_other_tubes_hold_no_contact() -> None:
 # --- false faces ---------------------------------------------------------------------------------
 
 
+def positions(name: str, parameter: int) -> dict[int, list[Fraction]]:
+    """The middle of the box of a configuration on the tube of the contact."""
+    number = given(name)["evidence"]["contacts"]["tube"]
+    tube = pieces(name)[2][number - 1][0]
+    flat = motion_boxes.flat_of(tube.equations)
+    at = tube.enclosure(Fraction(parameter, 1 << 40)).centre
+    x = {v: [Fraction(c, 1 << GRID) for c in point] for v, point in flat.items()}
+    for v, k in tube.equations.place.items():
+        x[v] = [p + Fraction(q, 1 << tube.bits) for p, q in zip(x[v], at[k : k + 3], strict=True)]
+    return x
+
+
 def test_faces_that_do_not_touch() -> None:
     """All pairs of faces, against the signs of volumes at the middle of the box, in rationals."""
     document = given("contact")
     contacts = document["evidence"]["contacts"]
-    equations, tube = pieces("contact")[0].equations, pieces("contact")[2][contacts["tube"] - 1][0]
-    flat = motion_boxes.flat_of(equations)
-    at = tube.enclosure(Fraction(contacts["to"], 1 << 40)).centre
-    x = {v: [Fraction(c, 1 << GRID) for c in point] for v, point in flat.items()}
-    for v, k in equations.place.items():
-        x[v] = [p + Fraction(q, 1 << tube.bits) for p, q in zip(x[v], at[k : k + 3], strict=True)]
+    tube, later = pieces("contact")[2][contacts["tube"] - 1][0], contacts["to"] + (1 << 32)
+    equations, x = tube.equations, positions("contact", later)
     faces = motion_contacts.Faces(equations)
     radii, rates = (getattr(tube, f)(tube.reach).radii for f in ("enclosure", "velocity"))
     path = Path.of_tube(tube.curve, tube.bits, tube.reach, radii, rates)
@@ -301,7 +328,7 @@ def test_faces_that_do_not_touch() -> None:
     for one in document["pattern"]["triangles"]:
         for two in document["pattern"]["triangles"]:
             truly = len(set(one) & set(two)) < 2 and crossing(x, one, two)
-            assert faces.crossing(path, Fraction(contacts["to"], 1 << 40), one, two) == truly
+            assert faces.crossing(path, Fraction(later, 1 << 40), one, two) == truly
             touching += [(one, two)] * truly
     assert len(touching) >= 2
 
