@@ -1,4 +1,7 @@
 from exactfold.motion.angles import fold_angles_of as fold_angles_of
+from exactfold.motion.contact_claims import (
+    certificate_with_contact as certificate_with_contact,
+)
 from exactfold.motion.contacts import FirstContact as FirstContact
 from exactfold.motion.contacts import first_contact as first_contact
 from exactfold.motion.events import Event as Event

@@ -31,8 +31,8 @@ def certificate_with_contact(track: Track, contact: FirstContact) -> Document:
     >>> from exactfold.motion.contacts import first_contact
     >>> track, contact = first_contact(find_branch("two-vertex", "+-"))
     >>> claims = checker.check(certificate_with_contact(track, contact))["contact"]
-    >>> claims["kind"], claims["faces"]
-    ('contact', [[0, 1, 4], [2, 3, 5]])
+    >>> claims["kind"], claims["folds"]
+    ('flat-fold', [[3, 5]])
     """
     document = track.certificate()
     if contact.parameters is None:

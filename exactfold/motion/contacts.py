@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -22,7 +23,7 @@ from exactfold.pattern.crease_pattern import Triangle
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 _FINEST = 2.0**-22
-_STEPS = 40
+_STEPS = 20
 _ROOM, _MORE = 4.0, 1e-10
 """Tubes are taken to be so much wider, so that a checker with weights of its own sees the same."""
 _AFTER = 1 << 14
@@ -60,7 +61,7 @@ def first_contact(branch: Branch, side: int = 1, *, most: int = 1000) -> tuple[T
     >>> from exactfold.count.find import find_branch
     >>> track, contact = first_contact(find_branch("two-vertex", "+-"))
     >>> print(contact.status, contact.event.kind, contact.event.faces)
-    proved contact ((0, 1, 4), (2, 3, 5))
+    proved flat-fold ((3, 5, 2), (3, 4, 5))
     """
     watch = ContactWatch()
     track = follow_proved(branch, side, stop=watch, most=most)
@@ -99,7 +100,7 @@ class ContactWatch:
         self.clear = link.time(parameter)[0] if parameter > link.entry[1] else link.entered[0]
         self.parameters = parameter, parameter, parameter
         after = (max(link.entry) + _AFTER) / (1 << PARAMETER_BITS)
-        found = _touching(pairs, coefficients, radius, left, (after, max(at, after), longest))
+        found = _touching(pairs, coefficients, radius, (after, max(at, after), longest))
         if found is None:
             return "some faces are not proved to stay apart, nor to touch"
         begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (found.begin, found.end))
@@ -176,7 +177,6 @@ def _touching(
     pairs: FacePairs,
     coefficients: FloatArray,
     radius: FloatArray,
-    left: Open,
     where: tuple[float, float, float],
 ) -> _Touching | None:
     """Parameters between which faces are proved to touch, and how; None if none are found.
@@ -187,20 +187,40 @@ def _touching(
     """
     crossings = Crossings(pairs.framework)
     first, low, high = where
-    step = 1e-9 * (high - low)
-    for _ in range(_STEPS):
-        begin, end = _whole(max(first, low - step)), _whole(min(high, low + step))
-        for fold in left.folds:
-            if _closes(pairs, coefficients, radius, int(fold), begin, end):
-                return _Touching(begin, end, fold=int(fold))
+
+    def closed(s: float) -> _Touching | None:
+        begin, end = _whole(max(first, low - (s - low))), _whole(s)
+        ends = [Swept.of(coefficients, radius, at, at) for at in (begin, end)]
+        signs = [bends(swept, pairs.framework.hinges) for swept in ends]
+        for fold in np.flatnonzero(signs[0] * signs[1] == -1).tolist():
+            if _closes(pairs, Swept.of(coefficients, radius, begin, end), fold):
+                return _Touching(begin, end, fold=fold)
+        return None
+
+    def crossed(s: float) -> _Touching | None:
+        end = _whole(s)
         point = Swept.of(coefficients, radius, end, end)
         for crossing in map(crossings.named, crossings.pairs(point.start)):
             if through(point, crossing.edge, crossing.face):
                 return _Touching(end, end, crossing)
+        return None
+
+    def earliest(test: Callable[[float], _Touching | None], good: float) -> _Touching | None:
+        found, bad = test(good), low
+        for _ in range(_STEPS if found else 0):
+            middle = 0.5 * (bad + good)
+            other = test(middle)
+            found, bad, good = (found, middle, good) if other is None else (other, bad, middle)
+        return found
+
+    step = 1e-9 * (high - low)
+    while closed(low + step) is None and crossed(low + step) is None:
         if low + step >= high:
             return None
-        step *= 2.0
-    return None
+        step = min(2.0 * step, high - low)
+    # Where a fold closes, faces beside it touch at the same time, and are often seen before.
+    later = min(16.0 * step, high - low)
+    return earliest(closed, low + later) or earliest(crossed, low + step)
 
 
 def _whole(s: float) -> float:
@@ -208,16 +228,9 @@ def _whole(s: float) -> float:
     return math.floor(s * (1 << PARAMETER_BITS)) / (1 << PARAMETER_BITS)
 
 
-def _closes(
-    pairs: FacePairs, coefficients: FloatArray, radius: FloatArray, fold: int, a: float, b: float
-) -> bool:
-    """Whether a fold is proved to reach 180 degrees between two parameters."""
-    hinge = pairs.framework.hinges[fold : fold + 1]
-    ends = [bends(Swept.of(coefficients, radius, s, s), hinge)[0] for s in (a, b)]
-    if ends[0] * ends[1] != -1:
-        return False
-    swept = Swept.of(coefficients, radius, a, b)
-    left, right = hinge[0, 2], hinge[0, 3]
+def _closes(pairs: FacePairs, swept: Swept, fold: int) -> bool:
+    """Whether a fold, a valley at one end and a mountain at the other, reaches 180 degrees."""
+    _, _, left, right = pairs.framework.hinges[fold]
     gap = np.abs(swept.start[left] - swept.start[right])
     gap = gap + swept.half * np.abs(swept.slope[left] - swept.slope[right])
     gap = gap + swept.error[left] + swept.error[right]
