@@ -15,7 +15,16 @@ FILES = sorted(path.name for path in FOLDER.iterdir() if path.suffix in (".json"
 
 def test_there_are_certificates_of_every_kind() -> None:
     kinds = {name.split("-")[0] for name in FILES}
-    assert kinds == {"listing", "algebraic", "rigid", "single", "compact", "branch", "panels", "loops"}
+    assert kinds == {
+        "listing",
+        "algebraic",
+        "rigid",
+        "single",
+        "compact",
+        "branch",
+        "panels",
+        "loops",
+    }
     assert len(FILES) == 72
 
 

@@ -32,9 +32,7 @@ def verified(forged: Lines | bytes) -> Document:
     return motion_loops.check_lines(lines(io.BytesIO(content)))
 
 
-def refused(
-    forged: Lines | bytes, message: str, error: type[Exception] = CertificateError
-) -> None:
+def refused(forged: Lines | bytes, message: str, error: type[Exception] = CertificateError) -> None:
     """The checker refuses the file, with exactly this message."""
     with pytest.raises(error) as caught:
         verified(forged)
@@ -101,7 +99,8 @@ def test_the_claims_come_last_and_once() -> None:
     refused([header, claims, loop], "something follows the claims")
     refused([header, loop, claims, claims], "something follows the claims")
     refused(
-        [header, loop, claims | {"more": 1}], "the last line: expected an object with the keys claims"
+        [header, loop, claims | {"more": 1}],
+        "the last line: expected an object with the keys claims",
     )
 
 
@@ -269,7 +268,7 @@ def test_other_names_are_refused() -> None:
         for sign in (True, "1", None, 1.0):
             forged = given_lines(ONE)
             forged[1][end]["vertex_signs"] = [sign]
-            with pytest.raises((CertificateError, FormatError), match="is not an integer|floats"):
+            with pytest.raises((CertificateError, FormatError), match=r"is not an integer|floats"):
                 verified(forged)
         forged = given_lines(ONE)
         forged[1][end]["vertex_signs"].append(1)
@@ -452,11 +451,8 @@ def test_a_node_that_is_none_is_refused() -> None:
             passed(entry)
     entry = node()
     entry["node"] = [0] * len(entry["node"])
-    with pytest.raises(CertificateError, match=r"malformed|singular|does not hold|not near"):
-        try:
-            passed(entry)
-        except ZeroDivisionError as error:  # which `check_line` calls malformed
-            raise CertificateError("malformed") from error
+    with pytest.raises((CertificateError, ZeroDivisionError)):  # the second: "malformed"
+        passed(entry)
 
 
 def test_another_arc_is_refused() -> None:
