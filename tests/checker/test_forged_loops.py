@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import io
 import json
+import random
 from fractions import Fraction
 from functools import cache
-from typing import Any
+from operator import mul
+from typing import Any, cast
 
+import numpy as np
 import pytest
 from forge import Document, Lines, chained, given_lines
 
@@ -15,7 +18,8 @@ from exactfold import checker
 from exactfold.checker import motion_loops, motion_nodes, motion_patches
 from exactfold.checker.compact_lines import lines
 from exactfold.checker.motion import PARAMETER_BITS, tube_of, vector
-from exactfold.checker.motion_equations import LengthEquations
+from exactfold.checker.motion_bounds import value as polynomial
+from exactfold.checker.motion_equations import LengthEquations, at
 from exactfold.checker.motion_loops import LoopSheet, Matching
 from exactfold.checker.motion_nodes import NodeTube, Stresses, independent
 from exactfold.checker.motion_patches import Patch, wheel_stress
@@ -586,3 +590,204 @@ def test_a_panel_is_spanned_by_what_is_pinned_in_it() -> None:
                 point = sum(w * sheet.points[b][a] for w, b in zip(row, base, strict=True))
                 assert point == sheet.points[v][a]
     assert motion_nodes.MOTION_BITS == 2048
+
+
+# --- boxes are large enough ----------------------------------------------------------------------
+
+
+def holds(box: Ball, centre: list[int], slack: int) -> bool:
+    return all(
+        abs(x - y) <= r + slack for x, y, r in zip(centre, box.centre, box.radii, strict=True)
+    )
+
+
+def moved(row: list[int], size: int, seed: int) -> list[int]:
+    """Other integers, up to `size` away."""
+    spread = random.Random(seed)
+    return [x + spread.randint(-size, size) for x in row]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_box_of_a_node_holds_it_wherever_one_begins(seed: int) -> None:
+    sheet = _node()[0]
+    patch, near = Patch(sheet.equations, node()["flat"]), node()["node"]
+    fine = patch.node(near)
+    assert max(fine.radii) < 1 << 10
+    for size in (1 << 20, 1 << 36):
+        box = patch.node(moved(near, size, seed))
+        assert holds(box, fine.centre, 1 << 10)
+        assert size >> 8 < max(box.radii) < size << 8
+        # Corners of the panel stay where the base takes them.
+        radius = max(box.radii)
+        assert all(0 < r <= radius for r in box.radii)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_an_arc_holds_the_curve_of_every_node_in_its_box(seed: int) -> None:
+    sheet, entry = _node()[0], node()
+    patch = Patch(sheet.equations, entry["flat"])
+    fine = patch.node(entry["node"])
+    reach = Fraction(entry["reach"], 64)
+    true = NodeTube(patch, fine, entry["centre"], entry["row"], reach)
+    size = 1 << 30
+    wide = Ball(moved(fine.centre, size, seed), [size + r for r in fine.radii])
+    other = NodeTube(patch, wide, moved(entry["centre"], size, seed + 9), entry["row"], reach)
+    for k in (-2, -1, 0, 1, 2):
+        s = reach * Fraction(k, 32)
+        for exact, box in zip(true.configuration(s), other.configuration(s), strict=True):
+            assert max(exact.radii) < size
+            assert holds(box, exact.centre, max(exact.radii))
+            assert max(box.radii) < size << 16
+
+
+def test_what_the_box_of_a_node_does_to_an_arc_is_counted() -> None:
+    """With exact numbers: the equations and their slope, at every corner that was tried."""
+    sheet, entry = _node()[0], node()
+    equations, patch = sheet.equations, Patch(sheet.equations, entry["flat"])
+    fine, size = patch.node(entry["node"]), 1 << 44
+    wide = Ball(fine.centre, [size] * equations.size)
+    kept: dict[str, Any] = {}
+    bounds = motion_nodes.bounds
+
+    def seen(*given: Any) -> Any:
+        kept["p"], kept["weights"] = given[0], given[-1]
+        return bounds(*given)
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(motion_nodes, "bounds", seen)
+        arc = NodeTube(patch, wide, entry["centre"], entry["row"], Fraction(1, 64))
+    stresses, one = Stresses(equations, entry["flat"]), Fraction(1, 1 << equations.bits)
+    weights = [Fraction(w, 1 << 16) for w in kept["weights"]]
+    choose = random.Random(5)
+
+    def vectors(row: list[int]) -> list[list[Fraction]]:
+        return [[a * one for a in e] for e in equations.along(row)]
+
+    def norm(values: list[Fraction]) -> Fraction:
+        """|P v|."""
+        return max(
+            abs(sum((a * v for a, v in zip(line, values, strict=True)), Fraction(0))) / w / 2**40
+            for line, w in zip(kept["p"], weights, strict=True)
+        )
+
+    def dots(a: list[list[Fraction]], b: list[list[Fraction]]) -> list[Fraction]:
+        return [
+            sum((x * y for x, y in zip(u, v, strict=True)), Fraction(0))
+            for u, v in zip(a, b, strict=True)
+        ]
+
+    def stressed(values: list[Fraction]) -> list[Fraction]:
+        return [
+            sum((w * values[e] for e, w in row.items()), Fraction(0)) / (1 << stresses.bits)
+            for row in stresses.rows
+        ]
+
+    for trial in range(8):
+        corner = [c + choose.choice((-size, size)) for c in wide.centre]
+        flat = [[a * one for a in e] for e in equations.flat]
+        x = [
+            [a + b for a, b in zip(*e, strict=True)]
+            for e in zip(flat, vectors(corner), strict=True)
+        ]
+        s = Fraction(choose.randint(-64, 64), 4096)
+        point = at(arc.curve, s)
+        y = vectors(point)
+        values = [a + s * b / 2 for a, b in zip(dots(x, y), dots(y, y), strict=True)]
+        for edge, value in zip(stresses.replaced, stressed(dots(y, y)), strict=True):
+            values[edge] = value / 2
+        last = sum((t * a for t, a in zip(entry["row"], point, strict=True)), 0) * one
+        rounding = Fraction(1, 1 << 40)
+        assert norm([*values, last / 2**20 - 1]) <= polynomial(arc.proof.b, abs(s)) + rounding
+        z = [choose.choice((-1, 1)) * w for w in weights]
+        dz = [[a / one for a in e] for e in vectors(cast("list[int]", z))]
+        slope = [a + s * b for a, b in zip(dots(x, dz), dots(y, dz), strict=True)]
+        for edge, value in zip(stresses.replaced, stressed(dots(y, dz)), strict=True):
+            slope[edge] = value
+        last = sum((t * a for t, a in zip(entry["row"], z, strict=True)), Fraction(0))
+        image = [*slope, last / 2**20]
+        off = max(
+            abs(a - sum(map(mul, line, image), Fraction(0)) / 2**40) / w
+            for a, line, w in zip(z, kept["p"], weights, strict=True)
+        )
+        assert off <= polynomial(arc.proof.q, abs(s)) + rounding, trial
+        again = [choose.choice((-1, 1)) * w for w in weights]
+        da = [[a / one for a in e] for e in vectors(cast("list[int]", again))]
+        far = Fraction(choose.randint(-1000, 1000))
+        bend = [far * a for a in dots(dz, da)]
+        for edge, value in zip(stresses.replaced, stressed(dots(dz, da)), strict=True):
+            bend[edge] = value
+        assert norm([*bend, Fraction(0)]) <= polynomial(arc.proof.kappa, abs(far))
+    assert polynomial(arc.proof.q, Fraction(0)) > Fraction(size) * one
+
+
+def test_the_bars_of_a_panel_bend_as_much_as_is_counted() -> None:
+    """The second derivative of the equations of a node, with exact numbers."""
+    sheet, entry = _node()[0], node()
+    patch = Patch(sheet.equations, entry["flat"])
+    kept: list[Any] = []
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(motion_patches, "bounds", lambda *given: kept.extend(given))
+        with pytest.raises(AttributeError):  # there is no proof
+            patch.node(entry["node"])
+    [squares] = kept[5]
+    size, scale = kept[2] - 2 * sheet.equations.bits - 1, 1 << 32
+    assert 1 << size <= patch.denominator**2 < 4 << size
+    choose = random.Random(3)
+    for _ in range(20):
+        y, z = ([[choose.choice((-1, 1)) for _ in range(3)] for _ in patch.moving] for _ in "yz")
+        for (i, j), most in zip(patch.bars, squares, strict=True):
+            sides = [
+                [
+                    sum(c * v[m][a] for m, c in patch.rows[i].items())
+                    - sum(c * v[m][a] for m, c in patch.rows[j].items())
+                    for a in range(3)
+                ]
+                for v in (y, z)
+            ]
+            assert abs(sum(map(mul, *sides))) * scale <= most << size
+
+
+def test_a_node_exists_whichever_face_is_held() -> None:
+    """The same configuration, moved as a whole: three corners of the panel are held, or fewer."""
+    entry, first, held = node(), _node()[0].equations, set[int]()
+    sheet, one = first.sheet, 1 << first.bits
+    unit = float(first.unit)
+    flat = {v: np.array([float(x), float(y), 0.0]) / unit for v, (x, y) in sheet.points.items()}
+    place = dict(flat)
+    for v, k in first.place.items():
+        place[v] = flat[v] + np.array(entry["node"][k : k + 3]) / one
+    for face in sheet.triangles:
+        equations = LengthEquations(sheet, sorted(face), first.bits)
+        a, b, c = equations.pinned
+        frames = []
+        for points in (place, flat):
+            u = points[b] - points[a]
+            w = np.cross(u, points[c] - points[a])
+            frames.append(
+                np.array(
+                    [
+                        u / np.linalg.norm(u),
+                        np.cross(w, u) / np.linalg.norm(np.cross(w, u)),
+                        w / np.linalg.norm(w),
+                    ]
+                )
+            )
+        turned = frames[1].T @ frames[0]
+        near = []
+        for v in equations.free:
+            d = turned @ (place[v] - place[a]) + flat[a] - flat[v]
+            near += [round(x * one * float(first.unit / equations.unit)) for x in d]
+        patch = Patch(equations, entry["flat"])
+        held.add(len(patch.vertices & set(equations.pinned)))
+        ball = patch.node(near)
+        assert max(ball.radii) < one >> 40
+        for u, d, r in zip(
+            equations.flat,
+            equations.along(ball.centre),
+            equations.weight_sums(ball.radii),
+            strict=True,
+        ):
+            change = sum((2 * p + q) * q for p, q in zip(u, d, strict=True))
+            room = sum(2 * abs(p + q) * t + t * t for p, q, t in zip(u, d, r, strict=True))
+            assert abs(change) <= room
+    assert held >= {1, 2, 3}
