@@ -242,6 +242,10 @@ class UnprovedRivalsError(NotCountedError):
     """A branch cannot be compared with all others, as not all are proved or told apart."""
 
 
+class NotFollowedError(NotApplicableError):
+    """A branch whose motion is not followed, as it is not simple or as floats do not suffice."""
+
+
 class UndecidedBranchError(ExactfoldError):
     """A branch that is not proved was to be exported (exit code 4)."""
 

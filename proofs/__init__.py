@@ -31,4 +31,5 @@ MODULES: tuple[str, ...] = (
     "branch_counts",
     "multiplicity",
     "panels",
+    "matching",
 )

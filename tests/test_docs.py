@@ -192,3 +192,16 @@ def test_the_page_names_every_kind_of_output() -> None:
     text = (ROOT / "docs" / "files.md").read_text(encoding="utf-8")
     (listed,) = re.findall(r"the JSON Schema of each kind: (.+?)\. ", text.replace("\n", " "))
     assert re.findall(r"`([a-z-]+)`", listed) == list(VERSIONS)
+
+
+def test_every_picture_of_a_page_is_there_and_well_formed() -> None:
+    from xml.etree import ElementTree
+
+    found = set()
+    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
+        for text, name in re.findall(r"!\[([^]]*)\]\(([^)]+)\)", page.read_text("utf-8")):
+            path = (page.parent / name).resolve()
+            assert text, f"{page.name}: {name} has no words for those who do not see it"
+            assert ElementTree.parse(path).getroot().tag == "{http://www.w3.org/2000/svg}svg"
+            found.add(path)
+    assert found == set((ROOT / "docs" / "pictures").glob("*.svg"))

@@ -30,6 +30,7 @@ MOST_LINE = 1 << 25  # bytes of a line
 MOST_TUBES = 1 << 12  # of a motion
 MOST_WORK = 1 << 34  # of a motion: products of numbers of 256 bits, nearly; under an hour
 MOTION_BITS = 1 << 11  # of a motion
+MOST_TESTS = 1 << 23  # of contacts of a motion: of two faces, or to place a vertex; under an hour
 NODE_WORK = 16  # tubes that a node is counted for
 MOST_DIGITS = 4000  # of an exact root in a block, and its bits
 

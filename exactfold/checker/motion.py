@@ -14,6 +14,7 @@ from math import isqrt
 from typing import Any
 
 from .formats import MOST_TUBES, MOST_WORK, MOTION, MOTION_BITS, MOTION_VERSION
+from .motion_contacts import Link, check_contacts, said
 from .motion_equations import SPARE, LengthEquations
 from .motion_tubes import Ball, Start, Tube
 from .reading import (
@@ -49,6 +50,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     is followed by one analytic curve of configurations, all regular, which is at least `length`
     long in the space of the vertices (unit of the sheet, one triangle held). `side` is the sign of
     the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch closed.
+    With `clear`, no two faces touch beyond what they share before this length of the motion; with
+    `contact`, some do between two lengths (docs/contacts.md).
     """
     try:
         return _check(data)
@@ -59,8 +62,11 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 def _check(data: dict[str, Any]) -> dict[str, Any]:
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
-    keys(claims, "vertex_signs side length", "claims")
-    keys(evidence, "emptied pinned bits start tubes", "evidence")
+    more = ["clear"] if "clear" in claims else []
+    more = ["clear", "contact"] if "contact" in claims else more
+    keys(claims, " ".join(["vertex_signs side length", *more]), "claims")
+    names = "emptied pinned bits start tubes"
+    keys(evidence, f"{names} contacts" if more else names, "evidence")
     equations, removed = framework(given, evidence)
     bits = equations.bits
     tubes = items(evidence["tubes"], "tubes")
@@ -70,16 +76,20 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     ball, velocity = start.configuration(tau)
     length = Fraction(0)
     before = Ball([0] * equations.size, [0] * equations.size)
+    links: list[Link] = []
     for entry in tubes:
         length += chord(before, ball, bits)
         keys(entry, "centre row reach exit", "tube")
         tube = tube_of(equations, entry)
         end = Fraction(natural(entry["exit"], "exit"), 1 << PARAMETER_BITS)
         require(tube.entered(ball, velocity) <= end, "a motion leaves a tube before it enters")
+        links.append((tube, ball, end))
         before, ball, velocity = ball, tube.enclosure(end), tube.velocity(end)
     length += chord(before, ball, bits)
     claimed = parse_rational(claims["length"])
     require(claimed <= length * equations.unit, "the motion is shorter than claimed")
+    if more:
+        check_contacts(start, tau, links, claims, evidence["contacts"])
     return {"sha256": digest, "tubes": len(tubes), **claims}
 
 
@@ -205,5 +215,6 @@ def summary(claims: dict[str, Any]) -> str:
     length = float(parse_rational(claims["length"]))
     return (
         f"VALID: the motion along the half-branch {shown} ({len(signs)}), side {side}, is one "
-        f"curve without a gap of length {length:.6g} or more; {tubes}; sha256 {claims['sha256']}"
+        f"curve without a gap of length {length:.6g} or more{said(claims)}; {tubes}; "
+        f"sha256 {claims['sha256']}"
     )

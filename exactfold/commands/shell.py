@@ -26,6 +26,7 @@ from exactfold.errors import (
     InputError,
     NotCountedError,
     NotEnoughMemoryError,
+    NotFollowedError,
     UnreadableFileError,
     UsageError,
     WorkerDiedError,
@@ -104,7 +105,7 @@ def exit_code(error: Exception) -> int:
         return NO_MEMORY
     if isinstance(error, WorkerDiedError) or not isinstance(error, ExactfoldError):
         return INTERNAL
-    if isinstance(error, NotCountedError):
+    if isinstance(error, NotCountedError | NotFollowedError):
         return EXIT[UNDECIDED]
     return BAD_INPUT if isinstance(error, InputError) else USAGE
 

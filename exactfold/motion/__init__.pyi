@@ -17,6 +17,8 @@ from exactfold.motion.motion import Motion as Motion
 from exactfold.motion.panel_following import follow_panels as follow_panels
 from exactfold.motion.panel_motion import PanelMotion as PanelMotion
 from exactfold.motion.piece import Ball as Ball
+from exactfold.motion.proving import MotionProof as MotionProof
+from exactfold.motion.proving import prove as prove
 from exactfold.motion.start import Start as Start
 from exactfold.motion.tracks import Frame as Frame
 from exactfold.motion.tracks import Link as Link

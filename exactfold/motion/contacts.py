@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -22,6 +23,10 @@ from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 _FINEST = 2.0**-22
 _STEPS = 40
+_ROOM, _MORE = 4.0, 1e-10
+"""Tubes are taken to be so much wider, so that a checker with weights of its own sees the same."""
+_AFTER = 1 << 14
+"""Over 2^PARAMETER_BITS: so much later than the entry of its tube a contact is looked for."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,10 @@ class FirstContact:
     = (not before, at the latest); the first one where its lower end is `clear`. None if the track
     ended before, or nothing was proved to touch; `open_faces` are the pairs then that are not
     proved to stay apart after `clear`. `status` is PROVED if the first contact is enclosed.
+
+    `parameters`: on the last tube of the track, over 2^PARAMETER_BITS, where what is clear ends,
+    and between which two the contact is proved, the last two equal for an edge that runs through a
+    face; None if nothing is proved to be clear.
     """
 
     status: Verdict
@@ -40,6 +49,7 @@ class FirstContact:
     event: Event | None
     open_faces: tuple[tuple[Triangle, Triangle], ...]
     reason: str
+    parameters: tuple[int, int, int] | None = None
 
 
 def first_contact(branch: Branch, side: int = 1, *, most: int = 1000) -> tuple[Track, FirstContact]:
@@ -67,28 +77,34 @@ class ContactWatch:
     clear: Fraction = Fraction(0)
     touching: _Touching | None = None
     open_pairs: Open | None = None
+    parameters: tuple[int, int, int] | None = None
     _pairs: FacePairs | None = field(default=None, repr=False)
 
     def __call__(self, link: Link) -> str | None:
         """Why the track may end: a contact, or pairs that are not separated; None to go on."""
         pairs = self._pairs = self._pairs or FacePairs(link.tube.framework)
         coefficients, radius = positions_of(link.tube)
+        radius = _ROOM * radius + _MORE
         low, high, longest = (
             x / (1 << PARAMETER_BITS) for x in (link.entry[0], link.exit, link.tube.longest)
         )
         at, left = clear_until(pairs, coefficients, radius, low, high, finest=_FINEST)
         if not left:
             self.clear = link.left[0]
+            self.parameters = link.exit, link.exit, link.exit
             return None
         self.open_pairs = left
         # The clear part ends at `at`, a float; one unit less is below it.
         parameter = max(link.entry[1], int(at * (1 << PARAMETER_BITS)) - 1)
         self.clear = link.time(parameter)[0] if parameter > link.entry[1] else link.entered[0]
-        found = _touching(pairs, coefficients, radius, left, at, longest)
+        self.parameters = parameter, parameter, parameter
+        after = (max(link.entry) + _AFTER) / (1 << PARAMETER_BITS)
+        found = _touching(pairs, coefficients, radius, left, (after, max(at, after), longest))
         if found is None:
             return "some faces are not proved to stay apart, nor to touch"
-        parameter = min(link.tube.longest, int(found.parameter * (1 << PARAMETER_BITS)) + 1)
-        self.touching = replace(found, latest=link.time(parameter)[1])
+        begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (found.begin, found.end))
+        self.parameters = parameter, begin, end
+        self.touching = replace(found, latest=link.time(end)[1])
         return "the first contact"
 
     def result(self, track: Track) -> FirstContact:
@@ -96,6 +112,7 @@ class ContactWatch:
         pairs = self._pairs = self._pairs or FacePairs(track.framework)
         coefficients, radius = planar_positions_of(track.start)
         reach = (track.start.last / (1 << ROOT_BITS)) ** 2
+        radius = _ROOM * radius + _MORE
         _, left = clear_until(pairs, coefficients, radius, 0.0, reach, planar=True, finest=_FINEST)
         if left:
             reason = "some faces are not proved to stay apart near the flat state"
@@ -103,16 +120,22 @@ class ContactWatch:
         clear = self.clear * track.framework.unit
         if self.touching is None:
             left = self.open_pairs or left
-            return FirstContact(UNDECIDED, clear, None, _named(track, pairs, left), track.reason)
+            return FirstContact(
+                UNDECIDED, clear, None, _named(track, pairs, left), track.reason, self.parameters
+            )
         event = _event(track, self.touching, clear)
-        return FirstContact(PROVED, clear, event, (), "")
+        return FirstContact(PROVED, clear, event, (), "", self.parameters)
 
 
 @dataclass(frozen=True)
 class _Touching:
-    """Faces that touch at a parameter or before, and at the latest at a time."""
+    """Faces that touch between two parameters, and at the latest at a time.
 
-    parameter: float
+    The parameters are whole numbers over 2^PARAMETER_BITS.
+    """
+
+    begin: float
+    end: float
     crossing: Crossing | None = None
     fold: int | None = None
     latest: Fraction = Fraction(0)
@@ -154,29 +177,35 @@ def _touching(
     coefficients: FloatArray,
     radius: FloatArray,
     left: Open,
-    low: float,
-    high: float,
+    where: tuple[float, float, float],
 ) -> _Touching | None:
-    """A parameter after `low` by which faces are proved to touch, and how; None if none is found.
+    """Parameters between which faces are proved to touch, and how; None if none are found.
 
-    A fold is closed at some time between two at which it is a valley and a mountain, if its other
-    corners are near each other all the while. Or an edge runs through a face.
+    `where`: the first parameter that may be used, that after which to look, and the last. A fold is
+    closed at some time between two at which it is a valley and a mountain, if its other corners are
+    near each other all the while. Or an edge runs through a face.
     """
     crossings = Crossings(pairs.framework)
+    first, low, high = where
     step = 1e-9 * (high - low)
     for _ in range(_STEPS):
-        s = min(high, low + step)
+        begin, end = _whole(max(first, low - step)), _whole(min(high, low + step))
         for fold in left.folds:
-            if _closes(pairs, coefficients, radius, int(fold), max(0.0, low - step), s):
-                return _Touching(s, fold=int(fold))
-        point = Swept.of(coefficients, radius, s, s)
+            if _closes(pairs, coefficients, radius, int(fold), begin, end):
+                return _Touching(begin, end, fold=int(fold))
+        point = Swept.of(coefficients, radius, end, end)
         for crossing in map(crossings.named, crossings.pairs(point.start)):
             if through(point, crossing.edge, crossing.face):
-                return _Touching(s, crossing)
-        if s >= high:
+                return _Touching(end, end, crossing)
+        if low + step >= high:
             return None
         step *= 2.0
     return None
+
+
+def _whole(s: float) -> float:
+    """A parameter rounded down to a whole number over 2^PARAMETER_BITS."""
+    return math.floor(s * (1 << PARAMETER_BITS)) / (1 << PARAMETER_BITS)
 
 
 def _closes(

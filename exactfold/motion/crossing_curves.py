@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import brentq
 
-from exactfold.arrays import FloatArray
+from exactfold.arrays import FloatArray, IndexArray
 from exactfold.motion.angles import fold_angles_of
 from exactfold.motion.curve import LostCurveError, Piece, expansion, orientation_at, piece_of
 from exactfold.motion.framework import Framework
 
 _BISECTIONS = 50
 _PIECES = 12
-_FLAT = 1e-4
+_FLAT, _EXACTLY_FLAT = 1e-4, 1e-7
 
 
 def crossing_in(framework: Framework, piece: Piece) -> tuple[float, float]:
@@ -22,6 +23,32 @@ def crossing_in(framework: Framework, piece: Piece) -> tuple[float, float]:
         sign = orientation_at(framework, piece.at(middle), piece.speed(middle))
         low, high = (middle, high) if sign == piece.orientation else (low, middle)
     return low, high
+
+
+def flat_star_in(framework: Framework, piece: Piece) -> tuple[float, float] | None:
+    """Parameters of a piece between which all folds at some vertex are flat at once, or nearly.
+
+    Found by the signs of their angles. Such a configuration may be a node although the orientation
+    does not change: with an even number of flat vertices it does not.
+    """
+    ends = np.array([0.0, piece.reach])
+    angles = fold_angles_of(framework.positions(piece.at(ends)), framework.hinges)
+    turned = (angles[0] * angles[1] < 0) & (np.abs(angles) < 1).all(axis=0)
+    for v in framework.sheet.interior:
+        at = np.flatnonzero((framework.hinges[:, :2] == v).any(axis=1))
+        if not turned[at].all():
+            continue
+        fold = at[int(np.argmax(np.abs(angles[1, at] - angles[0, at])))]
+        hinge = framework.hinges[fold : fold + 1]
+
+        def angle(s: float, hinge: IndexArray = hinge) -> float:
+            return float(fold_angles_of(framework.positions(piece.at(s)), hinge)[0])
+
+        s = float(brentq(angle, 0.0, piece.reach, xtol=1e-15))
+        star = fold_angles_of(framework.positions(piece.at(s)), framework.hinges[at])
+        if np.abs(star).max() < _EXACTLY_FLAT:
+            return s, s
+    return None
 
 
 def crossing_ahead(
@@ -35,9 +62,12 @@ def crossing_ahead(
     try:
         for _ in range(_PIECES):
             piece = piece_of(*expansion(framework, x, direction))
-            if before is not None and before.orientation * piece.orientation < 0:
-                s = sum(crossing_in(framework, before)) / 2
-                return before.at(s), before.speed(s)
+            if before is not None:
+                turns = before.orientation * piece.orientation < 0
+                ends = crossing_in(framework, before) if turns else flat_star_in(framework, before)
+                if ends is not None:
+                    s = sum(ends) / 2
+                    return before.at(s), before.speed(s)
             before, x, direction = piece, piece.at(piece.reach), piece.speed(piece.reach)
     except LostCurveError:
         pass

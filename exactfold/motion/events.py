@@ -10,7 +10,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from exactfold.arrays import FloatArray
 from exactfold.motion.angles import angle_rates, fold_angles_of
-from exactfold.motion.crossing_curves import crossing_in, flat_vertices
+from exactfold.motion.crossing_curves import crossing_in, flat_star_in, flat_vertices
 from exactfold.motion.crossings import Crossings
 from exactfold.motion.curve import Piece
 from exactfold.motion.framework import Framework
@@ -23,6 +23,7 @@ ANGLE, LENGTH = "angle", "length"
 _SAMPLES = 8
 _NEAR_FLAT = 0.3
 _FLAT = 1e-5
+_STILL = 1e-9
 
 
 @dataclass(frozen=True)
@@ -97,11 +98,14 @@ class Watch:
         return high, Event(kind, times, **more)  # type: ignore[arg-type]
 
     def _node(self, piece: Piece) -> list[tuple[float, Event]]:
-        """A change of orientation since the start of the piece before, found by bisection."""
+        """A crossing of curves on the piece before: its orientation changes, or a star is flat."""
         before, self._before = self._before, piece
-        if before is None or before.orientation * piece.orientation >= 0:
+        if before is None or not before.orientation:
             return []
-        ends = crossing_in(self.framework, before)
+        turns = before.orientation * piece.orientation < 0
+        ends = (crossing_in if turns else flat_star_in)(self.framework, before)
+        if ends is None:
+            return []
         low, high = (before.time + before.length_to(s) for s in ends)
         flat = flat_vertices(self.framework, before.at(ends[1]))
         return [(0.0, Event(NODE, (low, high), vertices=flat))]
@@ -141,7 +145,10 @@ class Watch:
         framework = self.framework
         rates = angle_rates(positions, framework.displacement(piece.speed(grid)), framework.hinges)
         found = []
-        for k, e in np.argwhere(rates[1:] * rates[:-1] < 0):
+        # Folds that stay flat have rates that are rounding errors.
+        sizes = np.abs(rates)
+        moving = np.maximum(sizes[1:], sizes[:-1]) > _STILL * sizes.max(initial=0.0)
+        for k, e in np.argwhere((rates[1:] * rates[:-1] < 0) & moving):
 
             def rate(s: float, e: int = e) -> float:
                 return float(

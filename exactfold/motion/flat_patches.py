@@ -21,7 +21,7 @@ _MATRIX_BITS = 40
 
 @dataclass(frozen=True, repr=False)
 class FlatPatch:
-    """The faces at some vertices of a framework, kept flat: a rigid panel with four corners.
+    """The faces at some vertices of a framework, kept flat: a rigid panel.
 
     `flat` are the vertices. The framework whose patch is rigid has as unknowns the displacements
     of `moving`, which are the free vertices outside of the patch and up to three of it, `base`; the
@@ -36,8 +36,9 @@ class FlatPatch:
     def of(cls, framework: Framework, flat: Iterable[int]) -> FlatPatch | None:
         """The patch of these vertices; None unless there are as many equations as unknowns.
 
-        That is so where the patch, a disk, has four corners: the folds at its inner vertices are
-        three for each of them, and one more.
+        That is so where the patch is a disk with four corners: the folds at its inner vertices are
+        three for each of them, and one more. Other patches with as many are taken as well: that
+        the equations have one solution in a box is proved in any case.
         """
         patch = cls(framework, tuple(sorted(flat)))
         if not patch.flat or len(patch.base) != 3:

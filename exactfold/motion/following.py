@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
-from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
+from exactfold.errors import NotApplicableError, NotFollowedError, UndecidedBranchError, UsageError
 from exactfold.motion.curve import Curve, LostCurveError, Piece, continued, leaving_piece
 from exactfold.motion.events import (
     ANGLE,
@@ -57,7 +57,7 @@ def follow(
     `through_nodes`. `frames`: their number, at equal steps of time, or of the angle of the fold
     `by`. `side`: 1 for the ray that `branch` shows, -1 for its mirror image.
 
-    Raises `UsageError` for options that make no sense, `NotApplicableError` for a branch that is
+    Raises `UsageError` for options that make no sense, `NotFollowedError` for a branch that is
     not simple, `UndecidedBranchError` for one of which nothing is proved. A motion that ends
     "singular" could not be followed further, which does not mean that it ends there.
 
@@ -137,7 +137,7 @@ def _start(framework: Framework, problem: Problem, branch: Branch) -> Start:
         raise UndecidedBranchError("nothing is proved of the branch: there is nothing to follow")
     for vertex, sign in branch.vertex_signs.items():
         if not sign and vertex in problem.foldable:
-            raise NotApplicableError(
+            raise NotFollowedError(
                 f"vertex {vertex} is flat on this branch: several curves may be tangent to it, and "
                 "none is followed"
             )
@@ -189,7 +189,7 @@ def _followed(
     else:
         reason = f"{_MOST_PIECES} pieces were followed"
     if not pieces:
-        raise NotApplicableError(f"the branch could not be followed: {reason}")
+        raise NotFollowedError(f"the branch could not be followed: {reason}")
     curve = Curve(framework, tuple(pieces))
     events.append(Event(SINGULAR, (curve.duration, curve.duration), detail=reason))
     return curve, events, SINGULAR

@@ -377,7 +377,8 @@ def named(start: StartTube, side: int = 1) -> HalfBranch:
 
 def _whole_length(step: Link | Passage, landing: Landing) -> Interval:
     """Bounds of the length of a loop, whose last tube is met by the start tube of the landing."""
-    if not isinstance(step, Link) or (found := step.tube.located(landing.ball)) is None:
+    found = step.tube.located(landing.ball) if isinstance(step, Link) else None
+    if not isinstance(step, Link) or found is None or found[0] < step.entry[1]:
         raise ArithmeticError("the landing is not on the tube")
     shortest, longest = landing.start.length(0, abs(landing.tau))
     return step.time(found[0])[0] + shortest, step.time(found[1])[1] + longest

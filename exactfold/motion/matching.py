@@ -138,13 +138,11 @@ def find_loops(
             found = _matching([*file.known, *_followed(sheet, problem, runs, progress, file)])
             file.finish()
     reasons = []
-    if skipped:
-        reasons.append(
-            f"{counted(len(skipped), 'branch')} {agreeing(len(skipped), 'is')} not simple"
-        )
+    if many := len(skipped):
+        reasons.append(f"{counted(many, 'branch')} {agreeing(many, 'is')} not simple")
     if left := sum(loop.target is None for loop in found):
         reasons.append(f"{counted(left, 'loop')} {agreeing(left, 'is')} not proved to the end")
-    return Loops(
+    loops = Loops(
         sheet,
         tuple(found),
         skipped,
@@ -152,6 +150,9 @@ def find_loops(
         "; ".join(reasons),
         time.perf_counter() - begun,
     )
+    if not reasons and len(loops.matching) != 2 ** (len(problem.foldable) + 1):
+        raise ArithmeticError("half-branches are missing from a matching that should be whole")
+    return loops
 
 
 Job = tuple[HalfBranch, bool]
@@ -229,13 +230,14 @@ def _once(found: Iterable[Loop]) -> list[Loop]:
     """Of loops that are the same, run through backwards or mirrored, the first one."""
     seen: set[HalfBranch] = set()
     kept = []
-    for loop in found:
+    # First those that are proved: one that is not may be the end of another.
+    for loop in sorted(found, key=lambda loop: loop.target is None):
         if loop.source not in seen:
             kept.append(loop)
         seen |= {loop.source, loop.source.mirrored}
         if loop.target is not None:
             seen |= {loop.target, loop.target.mirrored}
-    return kept
+    return sorted(kept, key=lambda loop: loop.source)
 
 
 def _check(found: Iterable[Loop]) -> None:

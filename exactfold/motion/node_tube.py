@@ -152,6 +152,8 @@ def _independent(rows: BigArray) -> tuple[int, ...]:
     chosen: list[int] = []
     for k, row in enumerate(left):
         column = max(range(len(row)), key=lambda c: abs(row[c]))
+        if not row[column]:
+            raise ArithmeticError("the wheel stresses of different vertices are dependent")
         chosen.append(column)
         for other in left[k + 1 :]:
             factor = other[column] / row[column]

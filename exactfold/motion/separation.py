@@ -6,9 +6,24 @@ and n.(v - y) > 0 for the other corners. Two faces with a common fold touch beyo
 fold is closed: where the distance of their other corners is as small as in the sheet folded over
 along it, which is a rational number. So sums of a few products decide everything.
 
-Positions are p(s) + e with a polynomial p in floats and a bound of |e|, both of them exact up to
-roundings that are bounded here: with all sums of sizes at most `_MOST`, every number computed below
-is off by less than `_MARGIN`, which is demanded on top.
+The sums are computed in floats, u = 2^-53, and their roundings are bounded as follows.
+
+- Positions are a + b (s - m) + e with floats a, b, m, exactly these numbers, and |e| <= `error`.
+  They come from c_0, ..., c_K, K <= 20, with sum |c_k| M^k < `_MOST` = 4 for every coordinate,
+  M = max |s|; else the error is infinite, and nothing is separated. Expanding at m by repeated
+  division rounds each term at most 3 K times, and the terms of all a, b, ... times the powers of
+  half add up to at most 4, as |m| + half = M: 240 u. The ulps of m and half move s by less than
+  2 u M, and the position by less than 2 u K 4 = 160 u. The sum of the rest is off by less than
+  45 u of 4 = 180 u, and the coefficients by 4 u of 4 when they were converted. All is less than
+  700 u < 1e-13 = `_ROUND`.
+- So a, b half and e are at most 4 and those of differences at most 8. With |n| <= 1 the three parts
+  of a sum n.x are at most 8 sqrt(3) < 14 and rounded less than 10 times: off by less than 30 u 14,
+  with the subtractions less than 60 u 14 < 1e-13. The squares and products of folds are sums of
+  terms that add up to less than 1500, each rounded less than 20 times: off by less than 4e-12.
+  `_MARGIN` is more than either.
+- The six products of a determinant add up to at most 3^(3/2) times the product of the lengths of
+  its rows, each rounded less than 10 times; the products of lengths are off by less than 40 u of
+  themselves, twice. Less than 2e-14 of the product, of which `_OF_VOLUME` is demanded.
 """
 
 from __future__ import annotations
@@ -23,7 +38,8 @@ from exactfold.arrays import BoolArray, FloatArray, IndexArray
 from exactfold.motion.framework import Framework
 from exactfold.pattern.crease_pattern import Edge, Triangle
 
-_MOST, _MARGIN = 64.0, 1e-11
+_MOST, _ROUND, _MARGIN, _OF_VOLUME = 4.0, 1e-13, 1e-11, 1e-13
+_MOST_ROWS = 21
 _PRODUCTS = 2_000_000
 
 
@@ -56,6 +72,10 @@ class Swept:
         The polynomial is expanded at the middle; what is beyond the slope goes into the error.
         """
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        most = max(abs(low), abs(high))
+        sizes = np.abs(coefficients[-1])
+        for row in coefficients[-2::-1]:
+            sizes = most * sizes + np.abs(row)
         rows = coefficients.copy()
         for k in range(len(rows)):  # Horner's scheme, repeated: rows[k] is p^(k)(middle) / k!
             for m in range(len(rows) - 2, k - 1, -1):
@@ -64,10 +84,9 @@ class Swept:
         for k in range(2, len(rows)):
             error += np.abs(rows[k]) * half**k
         slope = rows[1] if len(rows) > 1 else np.zeros_like(rows[0])
-        reach = np.abs(rows[0]) + np.abs(slope) * half + error
-        if not reach.max() < _MOST / 16:
+        if not (sizes.max() + radius.max() < _MOST and len(rows) <= _MOST_ROWS):
             error = np.full_like(error, np.inf)
-        return cls(rows[0], slope, error + 1e-14, half, planar)
+        return cls(rows[0], slope, error + _ROUND, half, planar)
 
 
 @dataclass(frozen=True, repr=False)
@@ -218,6 +237,8 @@ def _at_corner(swept: Swept, rows: IndexArray) -> BoolArray:
     v, one, two = rows[:, :1], rows[:, 1:3], rows[:, 3:]
     at = swept.start if not swept.planar else swept.start * np.array([1.0, 1.0, 0.0])
     axes = _nearest_points(_unit(np.concatenate([at[one] - at[v], at[v] - at[two]], axis=1)))
+    if swept.planar:
+        axes = axes * np.array([1.0, 1.0, 0.0])
     # The plane passes through the moving vertex: both sides are differences from it.
     left = _least(swept, axes, one, np.broadcast_to(v, one.shape))
     right = _least(swept, axes, np.broadcast_to(v, two.shape), two)
@@ -299,8 +320,9 @@ def _volume_signs(swept: Swept, rows: IndexArray) -> IndexArray:
     most = [n + np.linalg.norm(spread, axis=1) for n, spread in zip(size, spreads, strict=True)]
     volume = (arms[0] * np.cross(arms[1], arms[2])).sum(axis=1)
     # |det(e + de, ...) - det(e, ...)| is at most the product of the larger lengths less the others.
-    change = most[0] * most[1] * most[2] - size[0] * size[1] * size[2]
-    clear = np.abs(volume) > change * (1 + 1e-9) + _MARGIN
+    product = most[0] * most[1] * most[2]
+    change = product - size[0] * size[1] * size[2]
+    clear = np.abs(volume) > change + _OF_VOLUME * product
     return np.where(clear, np.sign(volume), 0).astype(np.intp)
 
 

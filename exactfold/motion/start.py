@@ -9,7 +9,7 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from exactfold.arrays import FloatArray
-from exactfold.errors import NotApplicableError
+from exactfold.errors import NotFollowedError
 from exactfold.motion.angles import fold_angles_of
 from exactfold.motion.framework import Framework
 from exactfold.solve.least_squares import least_squares
@@ -40,7 +40,7 @@ class Start:
         """The series from approximate heights of all vertices on a branch, shape (V,).
 
         The heights are scaled so that the largest fold angle is t to first order. Raises
-        `NotApplicableError` where Newton's method does not converge: the branch is not simple, or
+        `NotFollowedError` where Newton's method does not converge: the branch is not simple, or
         the numbers leave the range of floats.
         """
         first = _scaled(framework, _above_pinned(framework, heights))
@@ -63,7 +63,7 @@ class Start:
             series[k] = factors.solve(np.append(-0.5 * right, 0.0))
             along[k] = framework.along(series[k])
         if not np.isfinite(series).all():
-            raise NotApplicableError("the series of the motion leaves the range of floats")
+            raise NotFollowedError("the series of the motion leaves the range of floats")
         return cls(framework, series, held)
 
     def in_t(self) -> FloatArray:
@@ -132,7 +132,7 @@ def _newton(framework: Framework, y: FloatArray, held: int) -> tuple[FloatArray,
         if size < 1e-15:
             return y, factors
         last = size
-    raise NotApplicableError(
+    raise NotFollowedError(
         "no curve was found that leaves the flat state along this branch: it is not simple, or too "
         "close to another one for floats"
     )
@@ -153,7 +153,7 @@ def _scaled(framework: Framework, heights: FloatArray) -> FloatArray:
     space = np.column_stack([framework.flat, tiny * heights])
     largest = float(np.max(np.abs(fold_angles_of(space, framework.hinges)), initial=0.0)) / tiny
     if not (np.isfinite(largest) and largest > 0):
-        raise NotApplicableError("no fold of this branch bends in floats")
+        raise NotFollowedError("no fold of this branch bends in floats")
     return heights / largest
 
 

@@ -72,6 +72,11 @@ def _notes(found: Loops) -> list[RenderableType]:
         "",
         "One of each pair of mirror images, in one of its two directions; contact is ignored.",
     ]
+    if found.pattern.reflex_corner is not None:
+        notes.append(
+            f"The saddle stands for the sign of the reflex corner {found.pattern.reflex_corner} "
+            "in the sheet with its notch closed."
+        )
     if len(found.loops) > _LISTED:
         notes.append(f"{counted(len(found.loops) - _LISTED, 'more loop')}: --json lists all.")
     reasons = {loop.reason for loop in found.loops if loop.reason}

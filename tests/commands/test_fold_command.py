@@ -12,6 +12,7 @@ from sheets import HEXAGON, TRIANGLE, scrambled
 
 from exactfold import find_branch, follow, random_square, schema, write_fold
 from exactfold.bridges import meshes
+from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.families import single_vertex
 
 OK = 0
@@ -144,9 +145,31 @@ def test_sheets_of_panels(tmp_path):
 
 
 def test_a_branch_with_a_flat_vertex_is_not_followed():
-    result = run("fold", "flat-vertex", "--signs", "+0")
-    assert result.exit_code == USAGE
+    result = run("fold", "flat-vertex", "--signs", "+0", "--json")
+    assert result.exit_code == UNDECIDED
     assert "vertex 5 is flat on this branch: several curves may be tangent to it" in result.stderr
+    assert error_class(result) == "NotFollowedError"
+
+
+def test_a_branch_that_is_not_proved_is_not_followed_where_it_is_not_simple(tmp_path):
+    write_fold(ringed_square(4), tmp_path / "p.fold")
+    result = run("fold", tmp_path / "p.fold", "--signs", "+++++")
+    assert result.exit_code == UNDECIDED
+    assert "it is not simple, or too close to another one for floats" in result.stderr
+
+
+def test_folds_that_stay_flat_do_not_turn_back(tmp_path):
+    pattern = ringed_square(4)
+    write_fold(pattern, tmp_path / "p.fold")
+    data = json.loads(run("fold", tmp_path / "p.fold", "--signs=---+-", "--json").stdout)
+    flat = {fold for fold, letter in data["assignment"].items() if letter == "F"}
+    assert len(flat) == 2
+    turning = {
+        fold for event in data["events"] if event["kind"] == "turning" for fold in event["folds"]
+    }
+    assert turning
+    assert not turning & flat
+    assert max(abs(data["largest_angles"][fold]) for fold in flat) < 1e-9
 
 
 def test_files_that_cannot_be_written(tmp_path, monkeypatch):

@@ -233,3 +233,22 @@ def test_bounds_in_floats_are_bounds():
     third = Fraction(1, 3)
     assert Fraction(below(third)) < third < Fraction(above(third))
     assert below(Fraction(1, 4)) == above(Fraction(1, 4)) == 0.25
+
+
+def test_a_reflex_corner_hides_no_half_branch():
+    """The saddle and the corner name branches differently; all sign vectors are followed."""
+    pattern = CreasePattern(
+        [
+            (3, -5),
+            (6, 7),
+            (2, -7),
+            (6, 0),
+            (Fraction(20, 7), Fraction(-489, 91)),
+            (Fraction(1748, 413), Fraction(-16014, 5369)),
+        ],
+        [(0, 4, 5), (0, 5, 3), (2, 3, 5), (2, 5, 4), (0, 1, 4), (1, 2, 4)],
+    )
+    assert pattern.reflex_corner is not None
+    found = find_loops(pattern)
+    assert found.status is PROVED
+    assert len(found.matching) == 8

@@ -1,0 +1,277 @@
+"""The first contact of a motion: how long no faces touch, and by when some do (docs/contacts.md).
+
+Two faces without a common vertex do not touch if a plane parts them; two with one common vertex
+touch only there if a plane through it does; two at a fold touch only there unless it is closed.
+Near the flat state the same is shown of the projections to the plane of the face that is held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import combinations
+from math import ceil, floor
+from typing import Any
+
+from .formats import MOST_TESTS
+from .motion_boxes import (
+    Boxes,
+    Direction,
+    best_apart,
+    best_corner,
+    boxes_on,
+    flat_of,
+    nearer,
+    open_by_distance,
+    parted,
+    parted_at,
+    upright,
+    volume_sign,
+)
+from .motion_equations import LengthEquations
+from .motion_lengths import GRID, Path, entry
+from .motion_tubes import Ball, Start, Tube
+from .reading import integer, items, keys, natural, parse_rational, require
+from .sheet import Edge
+
+Link = tuple[Tube, Ball, Fraction]
+"""A tube, the box in which the motion enters it, and the parameter at which it leaves it."""
+
+_KINDS = "contact", "flat-fold"
+_PARAMETER_BITS = 40
+_NARROWEST = 1 << 16  # of an interval of x, over 2^GRID
+_KEPT = 1 << 10  # stretches whose boxes are kept for the next pairs
+
+
+class Faces:
+    """The pairs of faces of a sheet by what they share, and the tests that they do not touch."""
+
+    def __init__(self, equations: LengthEquations) -> None:
+        sheet = equations.sheet
+        self.faces = sorted(sheet.face(t) for t in sheet.triangles)
+        self.place, self.flat = equations.place, flat_of(equations)
+        self.apart: list[tuple[int, int]] = []
+        self.corner: list[tuple[int, int]] = []
+        for i, j in combinations(range(len(self.faces)), 2):
+            shared = len(set(self.faces[i]) & set(self.faces[j]))
+            if shared < 2:
+                (self.corner if shared else self.apart).append((i, j))
+        self.folds: dict[Edge, tuple[int, int, int, int]] = {}
+        for i, j in sheet.folds:
+            left, right = sheet.next[i][j], sheet.next[j][i]
+            closed, flat = folded_over(equations, (i, j), left, right)
+            unit = Fraction(1 << 2 * GRID)
+            mean = floor((closed + flat) / 2 * unit)
+            self.folds[i, j] = left, right, ceil(closed * unit), mean
+        self.known: dict[tuple[int, int], Direction] = {}
+        self.work = MOST_TESTS
+
+    def spend(self, tests: int) -> None:
+        """Count tests; raises `CertificateError` if they are too many."""
+        self.work -= tests
+        require(self.work >= 0, "the contacts take too much work")
+
+    def clear(self, path: Path, low: int, high: int, planar: bool = False) -> None:
+        """Refuse unless no two faces touch for low <= x <= high beyond what they share."""
+        boxes: dict[tuple[int, int], Boxes] = {}
+
+        def on(a: int, b: int) -> Boxes:
+            if (a, b) not in boxes:
+                self.spend(len(self.flat))
+                if len(boxes) >= _KEPT:
+                    boxes.clear()
+                boxes[a, b] = boxes_on(path, self.flat, self.place, a, b, planar)
+            return boxes[a, b]
+
+        tests = (
+            (self._apart, self.apart),
+            (self._at_corner, self.corner),
+            (self._open, self.folds),
+        )
+        for test, pairs in tests:
+            for i, j in pairs:
+                stack = [(low, high)] if low <= high else []
+                while stack:
+                    a, b = stack.pop()
+                    self.spend(1)
+                    if test(on(a, b), i, j, planar):
+                        continue
+                    names = (i, j) if test == self._open else (self.faces[i], self.faces[j])
+                    what = "the faces at {}-{}" if test == self._open else "the faces {} and {}"
+                    may = what.format(*names) + " may touch where the motion is claimed to be clear"
+                    require(b - a > _NARROWEST, may)
+                    middle = (a + b) >> 1
+                    stack += [(middle, b), (a, middle)]
+
+    def _apart(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
+        """Whether a plane parts two faces: with the direction that did last, or a new one."""
+        one, two = self.faces[i], self.faces[j]
+        known = self.known.get((i, j))
+        if known and not (planar and known[2]) and parted(boxes, one, two, known):
+            return True
+        self.spend(3)
+        found = self.known[i, j] = best_apart(boxes, one, two, planar)
+        return parted(boxes, one, two, found)
+
+    def _at_corner(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
+        """Whether a plane through their common vertex parts two faces."""
+        [v] = set(self.faces[i]) & set(self.faces[j])
+        one, two = ([w for w in self.faces[k] if w != v] for k in (i, j))
+        known = self.known.get((i, j))
+        if known and not (planar and known[2]) and parted_at(boxes, v, one, two, known):
+            return True
+        self.spend(3)
+        found = self.known[i, j] = best_corner(boxes, v, one, two, planar)
+        return parted_at(boxes, v, one, two, found)
+
+    def _open(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
+        """Whether the fold between two vertices is not closed."""
+        left, right, closed, _ = self.folds[i, j]
+        if open_by_distance(boxes, left, right, closed):
+            return True
+        if planar:
+            return upright(boxes, i, j, left) and upright(boxes, j, i, right)
+        return volume_sign(boxes, i, j, left, right) != 0
+
+    def crossing(self, path: Path, s: Fraction, one: Sequence[int], two: Sequence[int]) -> bool:
+        """Whether a side of one face runs through the other at a parameter."""
+        boxes = self._at(path, s, s)
+        for first, second in ((one, two), (two, one)):
+            a, b, c = second
+            for p, q in combinations(first, 2):
+                if {p, q} & set(second):
+                    continue
+                ends = [volume_sign(boxes, v, a, b, c) for v in (p, q)]
+                around = [volume_sign(boxes, p, q, *side) for side in ((a, b), (b, c), (c, a))]
+                if ends[0] * ends[1] == -1 and abs(sum(around)) == 3:
+                    return True
+        return False
+
+    def closes(self, path: Path, first: Fraction, last: Fraction, fold: Edge) -> bool:
+        """Whether a fold is closed between two parameters.
+
+        It is a valley at one of them and a mountain at the other; between, its two faces lie in
+        one plane, and near each other: nearer than at 90 degrees.
+        """
+        left, right, _, mean = self.folds[fold]
+        signs = [volume_sign(self._at(path, s, s), *fold, left, right) for s in (first, last)]
+        return signs[0] * signs[1] == -1 and nearer(self._at(path, first, last), left, right, mean)
+
+    def _at(self, path: Path, first: Fraction, last: Fraction) -> Boxes:
+        """The boxes of all vertices between two parameters."""
+        return boxes_on(path, self.flat, self.place, path.below(first), path.above(last), False)
+
+
+def folded_over(
+    equations: LengthEquations, fold: Edge, left: int, right: int
+) -> tuple[Fraction, Fraction]:
+    """The squared distance of two corners at a fold that is closed, and flat, over unit^2.
+
+    Along the fold the corners keep their places; across it the distances are subtracted or added.
+    """
+    (ix, iy), (jx, jy), (lx, ly), (rx, ry) = (
+        equations.sheet.points[v] for v in (*fold, left, right)
+    )
+    ex, ey = jx - ix, jy - iy
+    square = (ex * ex + ey * ey) * equations.unit**2
+    along = (lx - rx) * ex + (ly - ry) * ey
+    one, two = ex * (ly - iy) - ey * (lx - ix), ey * (rx - ix) - ex * (ry - iy)
+    return (along**2 + (one - two) ** 2) / square, (along**2 + (one + two) ** 2) / square
+
+
+class Stretch:
+    """The part of a piece that the motion passes: it enters between two parameters."""
+
+    def __init__(self, path: Path, low: Fraction, high: Fraction, end: Fraction) -> None:
+        self.path, self.low, self.high, self.end = path, low, high, end
+
+    def length(self) -> tuple[Fraction, Fraction]:
+        """Bounds of its length."""
+        path, end = self.path, self.end
+        return (
+            path.shortest(path.above(self.high), path.below(end)),
+            path.longest(path.below(self.low), path.above(end)),
+        )
+
+
+def check_contacts(start: Start, tau: Fraction, links: list[Link], claims: Any, given: Any) -> None:
+    """Refuse unless the claims `clear` and, if there is one, `contact` hold.
+
+    `given`: the tube, by its number from 1 on, in which what is clear ends at the parameter
+    `clear`, and in which a contact is proved at `to`, or a fold closes between `from` and `to`.
+    """
+    keys(given, "tube clear from to" if "contact" in claims else "tube clear", "contacts")
+    number = natural(given["tube"], "tube")
+    require(1 <= number <= len(links), "there is no such tube")
+    radii, rates = start.enclosure(tau**2).radii, start.velocity(tau**2).radii
+    path = Path.of_start(start.curve, start.bits, start.halvings, tau, radii, rates)
+    stretches = [Stretch(path, Fraction(0), Fraction(0), tau)]
+    for tube, ball, end in links[:number]:
+        radii, rates = tube.enclosure(tube.reach).radii, tube.velocity(tube.reach).radii
+        path = Path.of_tube(tube.curve, tube.bits, tube.reach, radii, rates)
+        stretches.append(Stretch(path, *entry(tube, ball), end))
+    last, reach = stretches[-1], links[number - 1][0].reach
+
+    def parameter(key: str, least: Fraction) -> Fraction:
+        found = Fraction(integer(given[key]), 1 << _PARAMETER_BITS)
+        require(least <= found <= reach, f'the parameter "{key}" is out of range')
+        return found
+
+    lengths = [stretch.length() for stretch in stretches[:-1]]
+    last.end = parameter("clear", -reach)
+    clear, unit = parse_rational(claims["clear"]), start.equations.unit
+    shortest = sum((low for low, _ in lengths), last.length()[0])
+    require(clear <= shortest * unit, "what is clear is shorter than claimed")
+    faces = Faces(start.equations)
+    if "contact" in claims:
+        keys(claims["contact"], "kind time faces folds", "contact")
+        first, latest = map(parse_rational, items(claims["contact"]["time"], "time", 2))
+        require(first == clear, "a contact is not claimed from where the motion is clear")
+        begin = parameter("from", last.high)
+        end = parameter("to", begin)
+        longest = Stretch(last.path, last.low, last.high, end).length()[1]
+        longest += sum((high for _, high in lengths), Fraction(0))
+        require(longest * unit <= latest, "the contact may be later than claimed")
+        _check_contact(faces, last.path, begin, end, claims["contact"])
+    for k, stretch in enumerate(stretches):
+        path = stretch.path
+        faces.clear(path, path.below(stretch.low), path.above(stretch.end), planar=k == 0)
+
+
+def _check_contact(faces: Faces, path: Path, begin: Fraction, end: Fraction, claim: Any) -> None:
+    """The faces claimed touch by the parameter `end`."""
+    require(claim["kind"] in _KINDS, "the contact is of no known kind")
+    pair = [
+        tuple(natural(v, "corner") for v in items(face, "face", 3))
+        for face in items(claim["faces"], "faces", 2)
+    ]
+    known = {frozenset(face) for face in faces.faces}
+    require(known.issuperset(map(frozenset, pair)), "what touches is no face")
+    folds = [
+        tuple(natural(v, "vertex") for v in items(fold, "fold", 2))
+        for fold in items(claim["folds"], "folds")
+    ]
+    one, two = pair
+    if claim["kind"] == "contact":
+        require(not folds, "a contact has no folds")
+        require(faces.crossing(path, end, one, two), "no side runs through the other face")
+        return
+    require(len(folds) == 1 and folds[0] in faces.folds, "what closes is no fold")
+    [(i, j)] = folds
+    left, right = faces.folds[i, j][:2]
+    require([set(one), set(two)] == [{i, j, left}, {i, j, right}], "the faces are not at the fold")
+    require(faces.closes(path, begin, end, (i, j)), "the fold does not close")
+
+
+def said(claims: dict[str, Any]) -> str:
+    """What of contacts a line about verified claims says."""
+    if "clear" not in claims:
+        return ""
+    text = f"; no two faces touch before {float(parse_rational(claims['clear'])):.6g}"
+    if "contact" not in claims:
+        return text
+    contact = claims["contact"]
+    last = float(parse_rational(contact["time"][1]))
+    if contact["kind"] == "contact":
+        return f"{text}, {' and '.join(str(tuple(f)) for f in contact['faces'])} do by {last:.6g}"
+    return f"{text}, the fold {tuple(contact['folds'][0])} is closed by {last:.6g}"

@@ -1,0 +1,51 @@
+"""`exactfold motions`: the matching as people and programs read it, and what is refused."""
+
+import json
+
+from jsonschema import Draft202012Validator
+from running import BAD_INPUT, UNDECIDED, USAGE, error_class, run
+from sheets import HEXAGON, scrambled
+
+from exactfold import find_loops, schema, write_fold
+
+OK = 0
+
+
+def test_the_table_lists_each_loop_once():
+    result = run("motions", "two-vertex", "--workers", "1")
+    assert result.exit_code == OK
+    assert "matched  8 of 8 half-branches, PROVED" in result.stdout
+    lines = result.stdout.splitlines()
+    loops = [line for line in lines if "saddle +" in line]
+    assert len(loops) == len(find_loops("two-vertex").loops) == 2
+    assert all(line.split()[6] == "saddle" for line in loops)
+
+
+def test_the_json_is_what_python_says():
+    result = run("motions", "two-vertex", "--workers", "1", "--json")
+    found = json.loads(result.stdout)
+    Draft202012Validator(schema("motions")).validate(found)
+    again = find_loops("two-vertex").report("two-vertex")
+    for value in (found, again):
+        value.pop("seconds")
+    assert found == again
+    assert (found["half_branches"], found["matched"], found["vertices"]) == (8, 8, [4, 5])
+
+
+def test_what_is_not_matched_is_said():
+    result = run("motions", "flat-vertex", "--workers", "1")
+    assert result.exit_code == UNDECIDED
+    assert "UNDECIDED" in result.stdout
+    assert "not simple" in result.stdout
+
+
+def test_sheets_of_another_kind_are_refused(tmp_path):
+    path = tmp_path / "hexagon.fold"
+    write_fold(scrambled(1, HEXAGON, 2), path)
+    result = run("motions", str(path), "--json")
+    assert result.exit_code == UNDECIDED
+    assert error_class(result) == "NotCountedError"
+    result = run("motions", str(tmp_path / "missing.fold"))
+    assert result.exit_code == BAD_INPUT
+    result = run("motions", "two-vertex", "--workers", "2", "--dask", "tcp://127.0.0.1:1")
+    assert result.exit_code == USAGE
