@@ -78,13 +78,12 @@ class LoopSheet:
         return tuple(map(integer, signs)), integer(entry["side"])
 
     def check_loop(self, entry: dict[str, Any]) -> None:
-        """Raise unless a loop is proved by its evidence.
+        """Raise unless a loop, which has the keys of one, is proved by its evidence.
 
         The claims are: from the flat state on, the half-branch `from` is followed by one analytic
         curve of configurations that ends in the flat state along the half-branch `to`. All of them
         are regular but the nodes it passes. It is at least `length` long, as in `motion`.
         """
-        keys(entry, "from to length evidence provenance", "loop")
         evidence = entry["evidence"]
         keys(evidence, "start steps landing", "evidence")
         steps = items(evidence["steps"], "steps")
@@ -93,11 +92,11 @@ class LoopSheet:
         start, tau = first_piece(self.equations, evidence["start"])
         require(self._named(start) == self.half_branch(entry["from"]), "it begins along another")
         path = Path(start.configuration(tau), self.equations.bits)
-        for step, after in zip(steps, [*steps[1:], None], strict=True):
+        for k, step in enumerate(steps):
             if _is_node(step):
                 self._pass_node(path, step)
             else:
-                onwards = after is not None and not _is_node(after)
+                onwards = k + 1 < len(steps) and not _is_node(steps[k + 1])
                 keys(step, "centre row reach exit" if onwards else "centre row reach", "tube")
                 path.enter(tube_of(self.equations, step))
                 if onwards:

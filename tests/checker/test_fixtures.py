@@ -15,8 +15,17 @@ FILES = sorted(path.name for path in FOLDER.iterdir() if path.suffix in (".json"
 
 def test_there_are_certificates_of_every_kind() -> None:
     kinds = {name.split("-")[0] for name in FILES}
-    assert kinds == {"listing", "algebraic", "rigid", "single", "compact", "branch", "panels"}
-    assert len(FILES) == 70
+    assert kinds == {
+        "listing",
+        "algebraic",
+        "rigid",
+        "single",
+        "compact",
+        "branch",
+        "panels",
+        "loops",
+    }
+    assert len(FILES) == 72
 
 
 @pytest.mark.parametrize("name", FILES)
