@@ -367,6 +367,15 @@ def fold(
             callback=not_a_dash, metavar="FILE.svg", help="Draw the sheet at five times, in space."
         ),
     ] = None,
+    certificate: Annotated[
+        Path | None,
+        typer.Option(
+            callback=not_a_dash,
+            metavar="OUT.json",
+            help="Of a branch: prove the motion and its first contact, and write the evidence for "
+            "`exactfold check`.",
+        ),
+    ] = None,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
@@ -384,9 +393,10 @@ def fold(
         raise UsageError("give one of --signs, --up and --branch")
     if component is not None and modes is not None:
         raise UsageError("give one of --component and --modes")
-    apart(output, pattern, plot, picture)
-    apart(plot, pattern, picture)
-    apart(picture, pattern)
+    apart(output, pattern, plot, picture, certificate)
+    apart(plot, pattern, picture, certificate)
+    apart(picture, pattern, certificate)
+    apart(certificate, pattern)
     asked = Wanted(
         pattern,
         snap,
@@ -404,6 +414,7 @@ def fold(
         output,
         plot,
         picture,
+        certificate,
         as_json,
     )
     raise typer.Exit(asked.answer())

@@ -14,6 +14,7 @@ from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.evidence.entries import write_certificate
 from exactfold.motion.following import follow
 from exactfold.motion.motion import Motion
 from exactfold.motion.writing import checked_ending, write_motion
@@ -26,6 +27,7 @@ from exactfold.wording import counted
 if TYPE_CHECKING:  # branches are followed without what panels need
     from exactfold.modes.result import Decomposition
     from exactfold.motion.panel_motion import PanelMotion
+    from exactfold.motion.proving import MotionProof
 
 
 @dataclass(frozen=True)
@@ -51,12 +53,14 @@ class Wanted:
     output: Path | None
     plot: Path | None
     picture: Path | None
+    certificate: Path | None
     as_json: bool
 
     def answer(self) -> int:
         """Follow the sheet, write what was asked for and print; the exit code.
 
-        0 where the branch is proved or modes truly fold, wherever the motion ends. Raises the
+        0 where the branch is proved or modes truly fold, wherever the motion ends, and, with a
+        certificate, where the motion is proved. Raises the
         errors of `read_any`, `chosen`, `follow`, `follow_panels` and `write_motion`, but for
         `UndecidedBranchError`, which is said, and `UsageError` for options of the other kind of
         sheet.
@@ -78,16 +82,18 @@ class Wanted:
                     return EXIT[UNDECIDED]
             else:
                 motion = self._panels(opened, bar)
+            proof = self._proof(motion, bar)
             bar("writing")
-            written = self._written(motion)
+            written = self._written(motion, proof)
         if self.as_json:
-            print(json.dumps(motion.report(name_of(self.file), written)))
+            found = motion.report(name_of(self.file), written)
+            print(json.dumps(found | {"proof": None if proof is None else proof.to_dict()}))
         else:
-            report.show(report.motion_report(motion, written))
+            report.show(report.motion_report(motion, written, proof))
         if isinstance(motion, Motion) and motion.branch.status is not PROVED:
             say(f"the branch is not proved: {motion.branch.reason}")
             return EXIT[motion.branch.status]
-        return EXIT[PROVED]
+        return EXIT[PROVED if proof is None else proof.status]
 
     @property
     def _title(self) -> str | None:
@@ -155,9 +161,23 @@ class Wanted:
             say(_first(ways, motion))
         return motion
 
+    # --- proof -----------------------------------------------------------------------------------
+
+    def _proof(self, motion: Motion | PanelMotion, bar: Bar) -> MotionProof | None:
+        if self.certificate is None:
+            return None
+        if not isinstance(motion, Motion):
+            raise UsageError(
+                "--certificate is for motions along branches of triangulated sheets with four "
+                "corners; `exactfold count --certificate` proves how panels fold"
+            )
+        from exactfold.motion.proving import prove
+
+        return prove(motion, progress=bar)
+
     # --- files -----------------------------------------------------------------------------------
 
-    def _written(self, motion: Motion | PanelMotion) -> list[str]:
+    def _written(self, motion: Motion | PanelMotion, proof: MotionProof | None) -> list[str]:
         from exactfold import report
 
         title, written = self._title or "", []
@@ -170,6 +190,16 @@ class Wanted:
             name = f"{title}, {motion.name}" if title else motion.name
             write_text(self.picture, report.motion_stills(motion, title=name))
             written.append(str(self.picture))
+        if self.certificate is not None and proof is not None:
+            document = proof.certificate()
+            if document is None:
+                say(
+                    "no certificate was written: that of a motion back to the flat sheet is one "
+                    "of `exactfold motions --certificate`"
+                )
+            else:
+                write_certificate(document, self.certificate)
+                written.append(str(self.certificate))
         return written
 
 

@@ -133,6 +133,7 @@ def frames_reported(motion: SheetInMotion, written: Sequence[str]) -> dict[str, 
         "duration": motion.duration,
         "length_error": motion.length_error,
         "written": list(written),
+        "proof": None,
     }
 
 

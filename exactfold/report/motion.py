@@ -29,6 +29,7 @@ from exactfold.wording import counted
 if TYPE_CHECKING:
     from exactfold.motion.in_motion import SheetInMotion
     from exactfold.motion.panel_motion import PanelMotion
+    from exactfold.motion.proving import MotionProof
     from exactfold.pattern.crease_pattern import Edge
 
 _TURNINGS: Final = 8
@@ -37,14 +38,19 @@ _FOLDS: Final = 6
 _CORNERS: Final = 8
 
 
-def motion_report(motion: Motion | PanelMotion, written: Sequence[str] = ()) -> Group:
-    """A motion: what it goes along, where it ends and why, its events, and what was written."""
+def motion_report(
+    motion: Motion | PanelMotion, written: Sequence[str] = (), proof: MotionProof | None = None
+) -> Group:
+    """A motion: what it goes along, where it ends and why, its events, and what was written.
+
+    `proof`: what is proved of it, if that was asked for.
+    """
     letters = "".join(motion.assignment[fold] for fold in motion.pattern.folds)
     along = _branch_rows(motion) if isinstance(motion, Motion) else _mode_rows(motion)
     rows: list[tuple[str, RenderableType]] = [
         *along,
         ("mountain-valley", letters_text(cut(letters))),
-        ("motion", _proved(motion)),
+        ("motion", _proved(motion) if proof is None else _proof(proof)),
         ("end", f"time {motion.duration:.6g}: {ending_text(motion)}"),
         ("largest angles", _largest(motion)),
         ("lengths", f"kept to {motion.length_error:.1e} of each"),
@@ -69,6 +75,23 @@ def _mode_rows(motion: PanelMotion) -> list[tuple[str, RenderableType]]:
     if motion.component is None:
         return [("modes", cut(", ".join(map(str, motion.modes))))]
     return [("component", cut(f"{motion.component} ({motion.name})"))]
+
+
+def _proof(proof: MotionProof) -> RenderableType:
+    """What is proved of a motion, in a sentence or two."""
+    if proof.status is not PROVED:
+        return Text.assemble(status_text(proof.status), f": {proof.reason}")
+    parts = [f": one curve without a gap, {counted(proof.tubes, 'tube')}"]
+    contact = proof.contact
+    if contact is not None and contact.event is None:
+        parts.append("no two faces touch on it")
+    elif contact is not None and contact.event is not None:
+        low, high = contact.event.time
+        after = ", where the motion goes on" if proof.passed else ""
+        parts.append(f"the first contact is between the times {low:.8g} and {high:.8g}{after}")
+    elif proof.loop is not None:
+        parts.append(f"it comes back along {proof.loop.target}")
+    return Text.assemble(status_text(proof.status), "; ".join(parts))
 
 
 def _proved(motion: Motion | PanelMotion) -> RenderableType:

@@ -301,3 +301,28 @@ def test_large_sheets_are_followed(tmp_path):
     assert result.exit_code == OK
     assert "... (--json has all)" not in result.stdout
     assert "fold" in result.stdout
+
+
+def test_a_certificate_proves_the_motion_and_its_contact(tmp_path):
+    path = tmp_path / "proof.json"
+    result = run("fold", "two-vertex", "--signs", "+-", "--certificate", str(path), "--json")
+    assert result.exit_code == OK
+    found = json.loads(result.stdout)
+    Draft202012Validator(schema("motion")).validate(found)
+    low, high = found["proof"]["contact"]["time"]
+    assert low <= found["duration"] <= high < low * 1.0001
+    assert found["written"] == [str(path)]
+    assert run("check", str(path)).stdout.startswith("VALID: the motion along the half-branch +-")
+
+
+def test_what_has_no_certificate_is_said(tmp_path):
+    path = tmp_path / "proof.json"
+    panels = run("fold", "zigzags", "--certificate", str(path))
+    assert panels.exit_code == USAGE
+    assert "along branches" in panels.stderr
+    back = ("fold", "two-vertex", "--signs", "+-", "--until", "return", "--certificate", str(path))
+    returned = run(*back)
+    assert returned.exit_code == OK
+    assert "exactfold motions --certificate" in returned.stderr
+    assert "it comes back along +-, saddle -" in " ".join(returned.stdout.split())
+    assert not path.exists()
