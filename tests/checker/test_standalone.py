@@ -25,6 +25,7 @@ KINDS = {
     "single-vertex-nine-folds.json": "VALID: 1 branch (1 with multiplicity, 1 real) of the sheet",
     "compact-blocks-of-4.txt": "VALID: 16 branches (16 with multiplicity, 16 real) of the sheet",
     "panels-bent.json": "VALID: the motions of the sheet of 12 folds and 4 interior vertices have",
+    "loops-one-vertex.txt": "VALID: 1 loop of true motions, which match all 4 half-branches",
     "branch-reflex.json": "VALID: exactly one branch has the vertex signs +0- (3); 10 of 10",
 }
 WAYS = ("folder", "zipapp", "module")
