@@ -18,6 +18,7 @@ from exactfold import errors
 from exactfold.algebra.exact_solution import RootClass
 from exactfold.algebra.quotient import QuotientAlgebra
 from exactfold.certify.box import Uncertified
+from exactfold.motion.loops import LoopFinder
 from exactfold.pattern.families import H1Triangulation, sample_h1_sequence, single_vertex
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_writing import converted
@@ -49,7 +50,26 @@ MOTIONS = exactfold.decompose(OPENED.sheet)
 SPACES = exactfold.decompose(panels(single_vertex(5)))
 MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
 DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
+ONE = exactfold.random_square(1, seed=0)
+LEAVING = exactfold.find_branch(ONE, "+")
+TRACK = exactfold.motion.follow_proved(LEAVING, until=0.3)
+LOOPS = exactfold.find_loops(ONE)
+PROVING = {
+    "track": TRACK,
+    "frame of a track": TRACK.frame(0.2),
+    "link": TRACK.links[0],
+    "tube": TRACK.links[0].tube,
+    "start tube": TRACK.start,
+    "ball": TRACK.frame(0.2).ball,
+    "proof of a motion": exactfold.motion.prove(exactfold.follow(LEAVING, until="30deg", frames=2)),
+    "first contact": exactfold.motion.first_contact(LEAVING)[1],
+    "loops": LOOPS,
+    "loop": LOOPS.loops[0],
+    "half-branch": LOOPS.loops[0].source,
+    "proof of a loop": LoopFinder(Problem.of(ONE)).follow(LEAVING),
+}
 VALUES = {
+    **PROVING,
     "pattern": PATTERN,
     "pattern with long coordinates": exactfold.CreasePattern(
         [(0, 0), (10**5000, 0), (0, "1/7"), (1, "1/50")], [(0, 1, 3), (1, 2, 3), (2, 0, 3)]
