@@ -30,7 +30,7 @@ _AFTER = 1 << 14
 """Over 2^PARAMETER_BITS: so much later than the entry of its tube a contact is looked for."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FirstContact:
     """What is proved of the first contact of a motion, ignoring thickness.
 
@@ -51,6 +51,10 @@ class FirstContact:
     open_faces: tuple[tuple[Triangle, Triangle], ...]
     reason: str
     parameters: tuple[int, int, int] | None = None
+
+    def __repr__(self) -> str:
+        what = "" if self.event is None else f", {self.event.kind} by {self.event.time[1]:.6g}"
+        return f"<FirstContact: {self.status}, clear until {float(self.clear):.6g}{what}>"
 
 
 def first_contact(branch: Branch, side: int = 1, *, most: int = 1000) -> tuple[Track, FirstContact]:

@@ -54,7 +54,11 @@ ONE = exactfold.random_square(1, seed=0)
 LEAVING = exactfold.find_branch(ONE, "+")
 TRACK = exactfold.motion.follow_proved(LEAVING, until=0.3)
 LOOPS = exactfold.find_loops(ONE)
+FLAT_FOLDABLE = exactfold.decompose(panels(single_vertex(4)))
 PROVING = {
+    "motion of panels": exactfold.motion.follow_panels(FLAT_FOLDABLE, frames=3),
+    "component of panels": exactfold.motion.panel_components(FLAT_FOLDABLE)[0],
+    "mode of panels": exactfold.motion.panel_modes(FLAT_FOLDABLE)[0],
     "track": TRACK,
     "frame of a track": TRACK.frame(0.2),
     "link": TRACK.links[0],
