@@ -34,11 +34,13 @@ def test_certificates_of_panels(tmp_path):
     data = json.loads(run("check", out, "--json").stdout)
     assert data["valid"] is True
     assert data["claims"]["second_order"] == data["claims"]["true"] == {"1": 2}
-    points = [[0, 0], [9, 0], [3, -5], [6, -5], [12, -4], [14, 0], [12, 4], [6, 5], [3, 5], [-3, 4]]
-    points += [[-5, 0], [-3, -4]]
-    rim = [[k, k + 1] for k in range(2, 11)] + [[2, 11]]
-    folds = [[0, 1], [0, 2], *([0, k] for k in range(8, 12)), *([1, k] for k in range(3, 8))]
-    letters = ["B"] * 10 + ["U"] * 11
+    # A triangle at each of whose corners three more folds end: not decided.
+    points = [[0, 0], [8, 0], [3, 7], [-2, 6], [-6, 2], [-4, -4], [2, -6], [6, -6], [12, -4]]
+    points += [[13, 3], [8, 10], [3, 13]]
+    rim = [[k, k + 1] for k in range(3, 11)] + [[3, 11]]
+    folds = [[0, 1], [1, 2], [0, 2], [0, 4], [0, 5], [0, 6], [1, 7], [1, 8], [1, 9]]
+    folds += [[2, 10], [2, 11], [2, 3]]
+    letters = ["B"] * 9 + ["U"] * 12
     more = dict(zip(keys, (points, rim + folds, letters), strict=True))
     drawing.write_text(json.dumps(more))
     out.unlink()
