@@ -10,7 +10,6 @@ from pathlib import Path
 from exactfold.branches.branch import Branch
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, name_of, say
-from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import NotCountedError, UnreadableFileError, UsageError
@@ -108,6 +107,8 @@ def chosen(
         finder = BranchFinder(pattern)
         bar("setting up")
         return finder.find(given_signs(finder, signs, up), progress=bar)
+    from exactfold.count.collect import count_branches  # FLINT, for this alone
+
     result = count_branches(pattern, progress=bar)
     if not 1 <= place <= len(result.branches):
         proved = "" if result.status is PROVED else f", undecided: {result.reason}"

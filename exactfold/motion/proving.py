@@ -87,7 +87,7 @@ def prove(motion: Motion, *, progress: Progress | None = None) -> MotionProof:
     >>> from exactfold.motion.following import follow
     >>> proof = prove(follow(find_branch("two-vertex", "+-")))
     >>> proof.status, proof.contact.event.kind
-    (<Verdict.PROVED: 'proved'>, 'contact')
+    (<Verdict.PROVED: 'proved'>, 'flat-fold')
     """
     if motion.end == RETURN:
         return _returning(motion)

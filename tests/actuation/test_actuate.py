@@ -200,6 +200,7 @@ def bests(pattern):
 
 @few
 @given(seeds, st.integers(1, 2), st.randoms(use_true_random=False))
+@pytest.mark.slow
 def test_labels_position_size_and_side_do_not_matter(seed, inside, source):
     pattern = random_square(inside, seed=seed)
     order = list(range(len(pattern.vertices)))

@@ -53,8 +53,8 @@ def half_branch(entry, pattern):
     [
         random_square(1, seed=0),
         random_square(2, seed=3),
-        random_square(3, seed=2),
-        nested_triangles(),
+        pytest.param(random_square(3, seed=2), marks=pytest.mark.slow),
+        pytest.param(nested_triangles(), marks=pytest.mark.slow),
     ],
     ids=["one", "two", "three", "triangles"],
 )
@@ -89,6 +89,7 @@ def test_half_branches_of_a_reflex_sheet_are_those_of_its_corner(tmp_path):
     assert {half.saddle for half in found.matching} == {1, -1}
 
 
+@pytest.mark.slow
 def test_a_loop_through_nodes_verifies(tmp_path):
     problem = Problem.of(NODE_SHEET)
     proof = LoopFinder(problem).follow(find_branch(NODE_SHEET, NODE_SIGNS))
@@ -265,6 +266,7 @@ if __name__ == "__main__":
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.slow
 def test_an_interruption_says_how_to_go_on(tmp_path):
     pattern, fold, file = random_square(3, seed=2), tmp_path / "a b.fold", tmp_path / "c.txt"
     write_fold(pattern, fold)

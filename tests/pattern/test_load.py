@@ -135,6 +135,7 @@ TAKES_PATTERN = {
     "problem.BranchSystem": (),
     "count.count_branches": (),
     "count.find_branch": ("+-",),
+    "actuation.actuate": ("+-",),
 }
 
 TAKES_PATTERN_ELSEWHERE = {
@@ -144,6 +145,7 @@ TAKES_PATTERN_ELSEWHERE = {
     "count.neighbours",
     "count.stream_branches",
     "pattern.write_fold",
+    "motion.find_loops",
 }
 
 
@@ -170,6 +172,12 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "modes.Decomposition",
         "count.PanelFacts",
         "pattern.Converted",
+        "actuation.Actuation",
+        "evidence.motion_certificate",
+        "motion.Loops",
+        "motion.PanelMode",
+        "motion.PanelMotion",
+        "motion.Track",
     }
     of_panels = {"modes.decompose", "count.panel_facts", "pattern.triangulating_edges"}
     taking = {
