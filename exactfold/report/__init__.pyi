@@ -1,5 +1,5 @@
 from exactfold.report.actuation import actuation_report as actuation_report
-from exactfold.report.angles_plot import angles_plot as angles_plot
+from exactfold.report.plotting import angles_plot as angles_plot
 from exactfold.report.batch import batch_report as batch_report
 from exactfold.report.branch import branch_report as branch_report
 from exactfold.report.branch import branch_row as branch_row

@@ -27,7 +27,7 @@ from exactfold.data import example_path
         ["random", "--interior", "3", "--seed", "-1"],
         ["random", "--interior", "9", "--seed", "1", "--denominator", "2"],
         ["check"],
-        ["unfold", "x.fold"],
+        ["xyz", "x.fold"],
     ],
 )
 def test_wrong_usage_exits_2(arguments):
@@ -49,7 +49,7 @@ def test_wrong_usage_exits_2(arguments):
         (["count", "x", "--jobs", "0"], "--jobs: 0 is less than 1"),
         (["export", "x", "--amount", "wide"], "--amount: 'wide' is not a number"),
         (["count"], "missing argument 'PATTERN'"),
-        (["unfold"], "no such command 'unfold'"),
+        (["xyz"], "no such command 'xyz'"),
     ],
 )
 def test_wrong_usage_is_one_plain_line(arguments, said):
