@@ -1,5 +1,4 @@
 from exactfold.report.actuation import actuation_report as actuation_report
-from exactfold.report.plotting import angles_plot as angles_plot
 from exactfold.report.batch import batch_report as batch_report
 from exactfold.report.branch import branch_report as branch_report
 from exactfold.report.branch import branch_row as branch_row
@@ -13,6 +12,7 @@ from exactfold.report.info import panels_info as panels_info
 from exactfold.report.motion import motion_report as motion_report
 from exactfold.report.motions import motions_report as motions_report
 from exactfold.report.panels import panels_report as panels_report
+from exactfold.report.plotting import angles_plot as angles_plot
 from exactfold.report.stills import motion_stills as motion_stills
 from exactfold.report.terminal import console as console
 from exactfold.report.terminal import show as show
