@@ -329,7 +329,7 @@ def test_numbers_of_the_object_are_those_of_the_value():
     assert len(data["ranking"]) == 4
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 @pytest.mark.parametrize("inside", range(1, 9))
 def test_fifty_random_squares(inside):
     """Proved, within a ten-thousandth of the best, and with no torques for one branch alone."""

@@ -1,4 +1,4 @@
-"""How long motions take: run with `-m slow --benchmark-enable -s`."""
+"""How long motions take: run with `-m survey --benchmark-enable -s`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from exactfold import find_branch, find_branches, follow, random_square
 from exactfold.pattern.random_squares import sample_random_square
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 @pytest.mark.parametrize(("n", "frames"), [(8, 60), (100, 60), (1000, 60)])
 def test_one_motion_until_contact(benchmark, n, frames):
     pattern = sample_random_square(n, 1, 1 << 16, redraw=True).pattern
@@ -23,7 +23,7 @@ def test_one_motion_until_contact(benchmark, n, frames):
     print(f"\n{n} vertices, {frames} frames: {motion.seconds:.2f} s, {motion!r}")
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_all_branches_of_eight_vertices_until_contact(benchmark):
     pattern = random_square(8, seed=1)
     signs = ["".join(s) for s in itertools.product("+-", repeat=8)]

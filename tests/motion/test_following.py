@@ -55,7 +55,7 @@ def test_lengths_are_kept_on_random_squares(n):
         assert_rigid(motion)
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 @pytest.mark.parametrize("n", range(1, 7))
 def test_lengths_are_kept_on_fifty_random_squares(n):
     for branch in squares(n, 50):
