@@ -40,7 +40,7 @@ SHEETS = {
 
 
 QUICK = ("square 1, 0", "square 3, 1", "square 5, 0", "reflex")
-ALL = [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SHEETS]
+ALL = [name if name in QUICK else pytest.param(name, marks=pytest.mark.survey) for name in SHEETS]
 
 
 @cache

@@ -122,6 +122,7 @@ def test_a_loop_that_is_not_proved_to_its_end_has_no_line(tmp_path):
 # --- interruptions -------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_is_continued(tmp_path, monkeypatch):
     pattern, file = random_square(3, seed=2), tmp_path / "loops.txt"
     whole = find_loops(pattern, certificate=tmp_path / "whole.txt")

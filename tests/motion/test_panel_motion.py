@@ -215,7 +215,7 @@ def test_a_vertex_with_four_folds_is_a_spherical_four_bar_linkage(seed):
 
 
 @pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(1, 6))]
+    "seed", [0, *(pytest.param(k, marks=pytest.mark.survey) for k in range(1, 6))]
 )
 def test_all_folds_of_a_strip_grow_until_the_first_closes(seed):
     result = decompose(mesh(1, 3, seed=seed))
