@@ -453,8 +453,9 @@ def motions(
 ) -> None:
     """Follow every branch, with proof, until the sheet is flat again.
 
-    A sheet with n foldable vertices leaves the flat state along 2^(n+1) half-branches, which true
-    motions join in pairs, contact ignored: this says which with which.
+    A sheet with n foldable vertices leaves the flat state along 2^(n+1)
+    half-branches. True motions join them in pairs, contact ignored: this says
+    which with which.
     """
     from exactfold.commands.motions import Wanted
 

@@ -9,6 +9,7 @@ from math import isqrt, lcm
 import numpy as np
 
 from exactfold.arrays import FloatArray
+from exactfold.exact.surds import float_bounds
 from exactfold.motion.length_equations import Row, squared
 
 _DEGREE = 10
@@ -142,3 +143,13 @@ def rounded(value: Fraction, direction: int) -> Fraction:
     scaled = value.numerator << _ROUND
     whole = -(-scaled // value.denominator) if direction > 0 else scaled // value.denominator
     return Fraction(whole, 1 << _ROUND)
+
+
+def in_floats(bounds: Interval) -> tuple[float, float]:
+    """Bounds of a length as floats, rounded outwards, the lower one not below 0.
+
+    >>> low, high = in_floats((Fraction(1, 3), Fraction(1, 3)))
+    >>> Fraction(low) < Fraction(1, 3) < Fraction(high), in_floats((Fraction(0), Fraction(0)))[0]
+    (True, 0.0)
+    """
+    return max(0.0, float_bounds(bounds[0])[0]), float_bounds(bounds[1])[1]

@@ -11,10 +11,10 @@ import numpy as np
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
+from exactfold.motion.arclength import in_floats
 from exactfold.motion.contraction import SCALE, WEIGHT_BITS
 from exactfold.motion.crossings import Crossing, Crossings
 from exactfold.motion.events import CONTACT, FLAT_FOLD, Event
-from exactfold.motion.loops import above, below
 from exactfold.motion.piece import PARAMETER_BITS, Piece
 from exactfold.motion.separation import FacePairs, Open, Swept, bends, clear_until, through
 from exactfold.motion.tracks import Link, Track, follow_proved
@@ -246,7 +246,7 @@ def _closes(pairs: FacePairs, swept: Swept, fold: int) -> bool:
 
 def _event(track: Track, touching: _Touching, clear: Fraction) -> Event:
     framework = track.framework
-    time = below(clear), above(touching.latest * framework.unit)
+    time = in_floats((clear, touching.latest * framework.unit))
     if touching.fold is not None:
         i, j, left, right = (track.labels[v] for v in framework.hinges[touching.fold])
         return Event(FLAT_FOLD, time, ((i, j, left), (i, right, j)), ((i, j),))

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import zip_longest
-from math import inf, nextafter
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from exactfold.evidence.entries import Document
 from exactfold.evidence.loops import loop_line
 from exactfold.exact.numbers import format_rational
 from exactfold.motion.angles import fold_angles_of
-from exactfold.motion.arclength import Interval
+from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
 from exactfold.motion.flat_patches import FlatPatch
 from exactfold.motion.half_branches import HalfBranch
@@ -103,12 +102,11 @@ class Loop:
 
     def to_dict(self) -> dict[str, object]:
         """The loop as `exactfold motions --json` prints it."""
-        low, high = self.length
         return {
             "from": self.source.to_dict(),
             "to": None if self.target is None else self.target.to_dict(),
             "through": [{"flat": list(vertices)} for vertices in self.through],
-            "length": [below(low), above(high)],
+            "length": list(in_floats(self.length)),
             "status": str(self.status),
             "reason": self.reason,
             "tubes": self.tubes,
@@ -382,14 +380,3 @@ def _whole_length(step: Link | Passage, landing: Landing) -> Interval:
         raise ArithmeticError("the landing is not on the tube")
     shortest, longest = landing.start.length(0, abs(landing.tau))
     return step.time(found[0])[0] + shortest, step.time(found[1])[1] + longest
-
-
-def below(value: Fraction) -> float:
-    """The nearest float, or the next one below if that is above the value."""
-    found = float(value)
-    return found if Fraction(found) <= value else nextafter(found, -inf)
-
-
-def above(value: Fraction) -> float:
-    """The nearest float, or the next one above if that is below the value."""
-    return -below(-value)

@@ -45,29 +45,18 @@ class NodeTube(Piece):
 
     def ball(self, parameter: int) -> Ball:
         """A box of unknowns of the length equations that holds the configuration at s."""
-        inner = self.enclosure(parameter)
-        node, most = self.node.finer(self.bits), abs(parameter)
-        centre = tuple(
-            x + (parameter * y >> PARAMETER_BITS)
-            for x, y in zip(node.centre, inner.centre, strict=True)
-        )
-        radii = tuple(
-            r + up(most * y, PARAMETER_BITS) + 1
-            for r, y in zip(node.radii, inner.radii, strict=True)
-        )
-        return Ball(self.bits, centre, radii)
+        return self._along(self.node.finer(self.bits), self.enclosure(parameter), parameter)
 
     def ball_velocity(self, parameter: int) -> Ball:
         """A box that holds the derivative by s of these unknowns: y + s y'."""
-        inner, rate, most = self.enclosure(parameter), self.velocity(parameter), abs(parameter)
-        centre = tuple(
-            y + (parameter * v >> PARAMETER_BITS)
-            for y, v in zip(inner.centre, rate.centre, strict=True)
-        )
-        radii = tuple(
-            y + up(most * v, PARAMETER_BITS) + 1
-            for y, v in zip(inner.radii, rate.radii, strict=True)
-        )
+        return self._along(self.enclosure(parameter), self.velocity(parameter), parameter)
+
+    def _along(self, base: Ball, step: Ball, parameter: int) -> Ball:
+        """A box that holds x + s y for all x in one box and y in another, rounded outwards."""
+        pairs = zip(base.centre, step.centre, strict=True)
+        centre = tuple(x + (parameter * y >> PARAMETER_BITS) for x, y in pairs)
+        pairs = zip(base.radii, step.radii, strict=True)
+        radii = tuple(r + up(abs(parameter) * q, PARAMETER_BITS) + 1 for r, q in pairs)
         return Ball(self.bits, centre, radii)
 
     def length(self, low: int, high: int) -> Interval:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any
 
+from exactfold.errors import NotProvedAtTheFlatStateError
 from exactfold.evidence.entries import Document
-from exactfold.motion.arclength import Interval
+from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import ContactWatch, FirstContact
 from exactfold.motion.events import CONTACT, FLAT_FOLD, RETURN
-from exactfold.motion.loops import Loop, LoopFinder, above, below
+from exactfold.motion.loops import Loop, LoopFinder
 from exactfold.motion.motion import Motion
 from exactfold.motion.tracks import Link, Track, follow_proved, half_branch
 from exactfold.problem.problem import Problem
@@ -60,8 +62,8 @@ class MotionProof:
             "status": str(self.status),
             "reason": self.reason,
             "tubes": self.tubes,
-            "length": [below(self.length[0]), above(self.length[1])],
-            "clear": None if contact is None else below(contact.clear),
+            "length": list(in_floats(self.length)),
+            "clear": None if contact is None else in_floats((contact.clear, contact.clear))[0],
             "contact": None if event is None else event.to_dict(),
             "to": None
             if self.loop is None or self.loop.target is None
@@ -81,7 +83,7 @@ def prove(motion: Motion, *, progress: Progress | None = None) -> MotionProof:
     Nodes are passed where the motion returns to the flat state (docs/motions.md), and are its end
     otherwise.
 
-    Raises as `follow_proved`. UNDECIDED says nothing against the motion.
+    Raises `UsageError` where the branch is not proved. UNDECIDED says nothing against the motion.
 
     >>> from exactfold.count.find import find_branch
     >>> from exactfold.motion.following import follow
@@ -89,8 +91,13 @@ def prove(motion: Motion, *, progress: Progress | None = None) -> MotionProof:
     >>> proof.status, proof.contact.event.kind
     (<Verdict.PROVED: 'proved'>, 'flat-fold')
     """
-    if motion.end == RETURN:
-        return _returning(motion)
+    try:
+        return _returning(motion) if motion.end == RETURN else _tracked(motion, progress)
+    except NotProvedAtTheFlatStateError as error:
+        return MotionProof(UNDECIDED, str(error), (Fraction(0), Fraction(0)), 0)
+
+
+def _tracked(motion: Motion, progress: Progress | None) -> MotionProof:
     watch = ContactWatch()
     to_contact = motion.end in (CONTACT, FLAT_FOLD)
     found: FirstContact | None = None

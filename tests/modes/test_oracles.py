@@ -40,6 +40,19 @@ MORE = {
 }
 
 
+def answers(program: str) -> list[str]:
+    """What a program of Singular prints behind an "@", line by line."""
+    done = subprocess.run(
+        [SINGULAR or "Singular", "-q"],
+        input=program,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    return [line[1:] for line in done.stdout.splitlines() if line.startswith("@")]
+
+
 def by_singular(pattern: PanelPattern) -> dict[int, int]:
     """{dimension: sum of the degrees} of the minimal primes of all conditions, over Q."""
     moving = stars(pattern)
@@ -68,19 +81,10 @@ def by_singular(pattern: PanelPattern) -> dict[int, int]:
         {{ s = std(l[k]); print("@" + string(dim(s)) + " " + string(mult(s))); }}
         quit;
     """
-    done = subprocess.run(
-        [SINGULAR or "Singular", "-q"],
-        input=program,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=True,
-    )
     found: Counter[int] = Counter()
-    for line in done.stdout.splitlines():
-        if line.startswith("@"):
-            dimension, degree = line[1:].split()
-            found[int(dimension)] += int(degree)
+    for line in answers(program):
+        dimension, degree = line.split()
+        found[int(dimension)] += int(degree)
     return dict(found)
 
 
