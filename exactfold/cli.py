@@ -10,30 +10,22 @@ from typing import Annotated, Any
 
 import typer
 
+from exactfold.cli_branches import COMMANDS
 from exactfold.commands.parameters import (
     Json,
     Pattern,
     Patterns,
-    Place,
     Sheet,
-    Signs,
     Snap,
-    Up,
     complete_method,
-    degrees,
     distance,
     flag,
-    fold_name,
     method_name,
-    numbers,
-    one_side,
     whole,
 )
 from exactfold.commands.shell import (
-    EXIT,
     OUTPUT_FAILED,
     Bar,
-    apart,
     not_a_dash,
     output_failed,
     reported,
@@ -44,7 +36,6 @@ from exactfold.commands.usage import Command, Group
 from exactfold.count.registry import METHODS
 from exactfold.errors import UsageError
 from exactfold.schemas import headed
-from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.workers import one_thread
 
 # Each command imports what it needs: loading everything takes longer than most of the work.
@@ -203,302 +194,8 @@ def check(
     raise typer.Exit(0 if valid(certificate, workers, as_json) else 1)
 
 
-@app.command(cls=Command)
-@reported
-def branch(
-    pattern: Pattern,
-    signs: Signs = None,
-    up: Up = None,
-    batch: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Instead: one sign vector a line.")
-    ] = None,
-    pops: Annotated[
-        str | None,
-        typer.Option(
-            "--neighbours",
-            metavar="5,7|all",
-            help="The branches reached by popping each of these vertices through, one at a time.",
-        ),
-    ] = None,
-    certificate: Annotated[
-        Path | None,
-        typer.Option(
-            callback=not_a_dash, metavar="OUT.json", help="Of one branch: write a certificate."
-        ),
-    ] = None,
-    as_json: Json = False,
-    snap: Snap = None,
-    sheet: Sheet = None,
-) -> None:
-    """Find and prove the one branch with given vertex signs, and no other.
-
-    Signs are those of the side with boundary saddle +1 (with a reflex corner:
-    on which the corner pops up); the other side has all of them reversed. With
-    --json, one object a line.
-    """
-    from exactfold.commands.branch import Asked
-
-    if (signs is not None) + (up is not None) + (batch is not None) != 1:
-        raise UsageError("give one of --signs, --up and --batch")
-    if pops is not None and batch is not None:
-        raise UsageError("--neighbours goes with --signs or --up")
-    if certificate is not None and (pops is not None or batch is not None):
-        raise UsageError("--certificate goes with a single branch")
-    apart(certificate, pattern)
-    proved = Asked(pattern, snap, sheet, signs, up, batch, pops, certificate, as_json).answer()
-    raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
-
-
-@app.command(cls=Command)
-@reported
-def export(
-    pattern: Pattern,
-    signs: Signs = None,
-    up: Up = None,
-    place: Place = None,
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="FILE.fold", help="Default, and -: stdout."),
-    ] = None,
-    amount: Annotated[
-        float | None,
-        typer.Option(
-            parser=degrees, metavar="DEG", help="The largest fold angle, in degrees. Default: 30."
-        ),
-    ] = None,
-    force: Annotated[
-        bool, flag("--force", text="Write a branch that is enclosed but not proved, too.")
-    ] = False,
-    as_json: Json = False,
-    snap: Snap = None,
-    sheet: Sheet = None,
-) -> None:
-    """Write one branch as a FOLD file that simulators can fold.
-
-    The fold angles in it are in proportion to those of the branch, so that a
-    simulator that is driven by them stays on it. A second frame shows the sheet
-    in space, to second order.
-    """
-    from exactfold.commands.export import Wanted
-
-    if (signs is not None) + (up is not None) + (place is not None) != 1:
-        raise UsageError("give one of --signs, --up and --branch")
-    apart(output, pattern)
-    asked = Wanted(pattern, snap, sheet, signs, up, place, output, amount, force, as_json)
-    raise typer.Exit(asked.answer())
-
-
-@app.command(cls=Command)
-@reported
-def fold(
-    pattern: Pattern,
-    signs: Signs = None,
-    up: Up = None,
-    place: Place = None,
-    side: Annotated[
-        Any,
-        typer.Option(
-            parser=one_side,
-            metavar="+|-",
-            help="Of a branch. -: the mirror image, with all signs reversed.",
-        ),
-    ] = None,
-    through_nodes: Annotated[
-        bool,
-        flag("--through-nodes", text="Of a branch: go straight on where another motion crosses."),
-    ] = False,
-    component: Annotated[
-        int | None,
-        typer.Option(
-            parser=whole(1),
-            metavar="K",
-            help="Of panels: the K-th component of their motions, those with most folds first. "
-            "Default: 1.",
-        ),
-    ] = None,
-    modes: Annotated[
-        Any,
-        typer.Option(
-            parser=numbers,
-            metavar="1,3",
-            help="Instead: modes that share no vertex, as `count` numbers them.",
-        ),
-    ] = None,
-    until: Annotated[
-        str,
-        typer.Option(
-            metavar="WHERE",
-            help="Where to stop: `contact`, when faces meet or a fold closes; a fold angle such as "
-            "90deg; of a branch also `return`, when the sheet is flat again, or a number, the "
-            "time.",
-        ),
-    ] = "contact",
-    frames: Annotated[
-        int, typer.Option(parser=whole(2), metavar="N", help="Number of frames.")
-    ] = 60,
-    by: Annotated[
-        Any,
-        typer.Option(
-            parser=fold_name,
-            metavar="I-J",
-            help="Frames at equal steps of the angle of this fold, not of time.",
-        ),
-    ] = None,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            callback=not_a_dash,
-            metavar="FILE",
-            help="Write the frames: FILE.fold; .glb or .gltf with an animation; or .obj, a file "
-            "for each, FILE_0000.obj and on.",
-        ),
-    ] = None,
-    plot: Annotated[
-        Path | None,
-        typer.Option(
-            callback=not_a_dash, metavar="FILE.svg", help="Draw all fold angles along the motion."
-        ),
-    ] = None,
-    picture: Annotated[
-        Path | None,
-        typer.Option(
-            callback=not_a_dash, metavar="FILE.svg", help="Draw the sheet at five times, in space."
-        ),
-    ] = None,
-    certificate: Annotated[
-        Path | None,
-        typer.Option(
-            callback=not_a_dash,
-            metavar="OUT.json",
-            help="Of a branch: prove the motion and its first contact, and write the evidence for "
-            "`exactfold check`.",
-        ),
-    ] = None,
-    as_json: Json = False,
-    snap: Snap = None,
-    sheet: Sheet = None,
-) -> None:
-    """Fold a sheet in space, faces rigid, until something happens.
-
-    A triangulated sheet with four corners follows a branch: the one named by
-    --signs, --up or --branch, else that on which all vertices pop up. Any other
-    sheet follows modes of rigid panels: --component or --modes. That the branch
-    or mode exists is proved; what of the motion is proved is said.
-    """
-    from exactfold.commands.fold import Wanted
-
-    if (signs is not None) + (up is not None) + (place is not None) > 1:
-        raise UsageError("give one of --signs, --up and --branch")
-    if component is not None and modes is not None:
-        raise UsageError("give one of --component and --modes")
-    apart(output, pattern, plot, picture, certificate)
-    apart(plot, pattern, picture, certificate)
-    apart(picture, pattern, certificate)
-    apart(certificate, pattern)
-    asked = Wanted(
-        pattern,
-        snap,
-        sheet,
-        signs,
-        up,
-        place,
-        side,
-        through_nodes,
-        component,
-        modes,
-        until,
-        frames,
-        by,
-        output,
-        plot,
-        picture,
-        certificate,
-        as_json,
-    )
-    raise typer.Exit(asked.answer())
-
-
-@app.command(cls=Command)
-@reported
-def motions(
-    pattern: Pattern,
-    workers: Annotated[
-        int | None,
-        typer.Option(parser=whole(1), metavar="N", help="Processes. Default: all cores."),
-    ] = None,
-    dask: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="Run on the dask.distributed cluster with this scheduler; `local` starts one "
-            "here.",
-        ),
-    ] = None,
-    certificate: Annotated[
-        Path | None,
-        typer.Option(
-            callback=not_a_dash,
-            metavar="FILE",
-            help="Write the proof of each loop to FILE as it is found, for `check`.",
-        ),
-    ] = None,
-    resume: Annotated[
-        bool, flag("--resume", text="Continue the FILE that an interrupted run left.")
-    ] = False,
-    as_json: Json = False,
-    snap: Snap = None,
-    sheet: Sheet = None,
-) -> None:
-    """Follow every branch, with proof, until the sheet is flat again.
-
-    A sheet with n foldable vertices leaves the flat state along 2^(n+1)
-    half-branches. True motions join them in pairs, contact ignored: this says
-    which with which.
-    """
-    from exactfold.commands.motions import Wanted
-
-    wanted = Wanted(pattern, snap, sheet, workers, dask, certificate, resume, as_json)
-    raise typer.Exit(wanted.answer())
-
-
-@app.command(cls=Command)
-@reported
-def actuate(
-    pattern: Pattern,
-    signs: Signs = None,
-    up: Up = None,
-    creases: Annotated[
-        int | None,
-        typer.Option(parser=whole(1), metavar="K", help="Drive at most K creases. Default: all."),
-    ] = None,
-    torques: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE.json",
-            help='Instead: judge these torques, {"0-4": 0.5, ...}; creases not named have 0.',
-        ),
-    ] = None,
-    as_json: Json = False,
-    snap: Snap = None,
-    sheet: Sheet = None,
-    everything: Annotated[bool, flag("--all", text="List every branch in the ranking.")] = False,
-) -> None:
-    """Find torques on the creases that drive the sheet along one branch and not along the others.
-
-    All torques have size at most 1, and a positive one folds towards a valley.
-    The sheet is driven to the side on which the vertex signs are those given;
-    opposite torques drive it to the other side.
-    """
-    from exactfold.commands.actuate import Driven
-
-    if (signs is not None) + (up is not None) != 1:
-        raise UsageError("give either --signs or --up")
-    if creases is not None and torques is not None:
-        raise UsageError("--creases and --torques do not go together")
-    asked = Driven(pattern, snap, sheet, signs, up, creases, torques, as_json, everything)
-    raise typer.Exit(asked.answer())
+for command in COMMANDS:
+    app.command(cls=Command)(command)
 
 
 @app.command("random", cls=Command)
