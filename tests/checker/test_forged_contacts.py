@@ -158,6 +158,18 @@ def test_old_certificates_claim_nothing_of_contacts() -> None:
     refused(document, f"claims: expected an object with the keys {names}")
 
 
+def test_a_whole_certificate_with_a_false_contact_is_refused() -> None:
+    """Not on pieces that were verified before, as below: the check itself looks at contacts."""
+    document = given("contact")
+    document["claims"]["clear"] = longer(document["claims"]["clear"], "1.00001")
+    document["claims"]["contact"]["time"][0] = document["claims"]["clear"]
+    refused(document, "what is clear is shorter than claimed")
+    document = given("contact")
+    latest = document["claims"]["contact"]["time"]
+    latest[1] = longer(latest[1], "0.99998")
+    refused(document, "the contact may be later than claimed")
+
+
 # --- false times ---------------------------------------------------------------------------------
 
 
