@@ -36,7 +36,9 @@ from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 4000
 _FOLDED_FLAT = 1e-2
+"""Radians that fold angles may be off 0 or pi where the sheet is said to come to be folded flat."""
 _LOOK_BACK = (1, 3, 5, 8, 12)
+"""From which of the last links a node ahead is looked for; the last ones are too close to it."""
 _NEAR_FLAT = 0.8
 """Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
 

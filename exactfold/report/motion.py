@@ -95,7 +95,9 @@ def _proof(proof: MotionProof) -> RenderableType:
 
 
 def _proved(motion: Motion | PanelMotion) -> RenderableType:
-    if isinstance(motion, Motion) or motion.closes is not PROVED:
+    if isinstance(motion, Motion):
+        return "followed in floats: not proved (--certificate proves it)"
+    if motion.closes is not PROVED:
         return "followed in floats: not proved"
     return Text.assemble(status_text(PROVED), f": {motion.reason}; contacts are not")
 
