@@ -12,7 +12,8 @@ from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import ContactWatch, FirstContact
 from exactfold.motion.events import CONTACT, FLAT_FOLD, RETURN
-from exactfold.motion.loops import Loop, LoopFinder
+from exactfold.motion.loop_proofs import Loop
+from exactfold.motion.loops import LoopFinder
 from exactfold.motion.motion import Motion
 from exactfold.motion.tracks import Link, Track, follow_proved, half_branch
 from exactfold.problem.problem import Problem
