@@ -39,7 +39,8 @@ _WIDEST = 1.0
 """Radians that the angle may be off the middle one of a part."""
 _CLOSE = 1e-3
 """Radians within which extreme angles are looked for."""
-_HALVINGS = 20
+_MOST_PARTS = 8000
+"""Of a chain; with more, angles that turn too fast are given up, extreme ones are less close."""
 _MICRO = 10**6
 
 
@@ -230,7 +231,7 @@ class _Parts:
 
     def narrow(self) -> bool:
         """Halve parts until angles change by less than a radian on each; False if they do not."""
-        for _ in range(_HALVINGS):
+        while len(self.stretch) < _MOST_PARTS:
             wide = self.spreads.max(axis=1, initial=0.0) >= _WIDEST
             if not wide.any():
                 return True
@@ -252,7 +253,7 @@ class _Parts:
         The angles are continuous from part to part by now. Parts on which the least or the greatest
         one may lie are halved until its bounds are close.
         """
-        for _ in range(_HALVINGS):
+        while len(self.stretch) < _MOST_PARTS:
             above, below = self.angles + self.spreads, self.angles - self.spreads
             beyond = (above > below.max(axis=0) + _CLOSE) | (below < above.min(axis=0) - _CLOSE)
             wide = beyond.any(axis=1)

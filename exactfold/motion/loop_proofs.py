@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import zip_longest
@@ -83,7 +83,7 @@ class Loop:
     when these are passed. `length` bounds the length in the unit of the sheet; where `status` is
     UNDECIDED that of the part that is proved, `target` is None, and `reason` says what stopped the
     proof. `tubes`: how many proved it. `folds`: the ranges of the angles of all folds, empty if the
-    status is UNDECIDED or a range was not proved.
+    status is UNDECIDED or a range was not proved, and in an outline.
     """
 
     source: HalfBranch
@@ -132,6 +132,11 @@ class LoopProof:
     @cached_property
     def loop(self) -> Loop:
         """What is proved."""
+        return replace(self.outline, folds=self._folds())
+
+    @cached_property
+    def outline(self) -> Loop:
+        """The same without the ranges of the fold angles, which take time."""
         landing, unit = self.landing, self.start.framework.unit
         low, high = self.steps[-1].left if self.steps else self.start.length(0, self.start.last)
         if landing is not None:
@@ -145,7 +150,6 @@ class LoopProof:
             self.reason,
             len(self.steps) + 1,
             tuple(step.visit(unit) for step in self.steps if isinstance(step, Passage)),
-            self._folds(),
         )
 
     def _folds(self) -> tuple[FoldRange, ...]:
@@ -242,7 +246,7 @@ class LoopProof:
         return Fraction(int(total * (1 - 1e-5) * (1 << 30)), 1 << 30)
 
     def __repr__(self) -> str:
-        return f"<LoopProof: {len(self.steps)} steps, {self.loop!r}>"
+        return f"<LoopProof: {len(self.steps)} steps, {self.outline!r}>"
 
 
 @dataclass(frozen=True, repr=False)

@@ -132,5 +132,5 @@ def _tracked(motion: Motion, progress: Progress | None) -> MotionProof:
 
 def _returning(motion: Motion) -> MotionProof:
     problem = Problem.of(motion.branch.pattern)
-    loop = LoopFinder(problem).follow(motion.branch, motion.side).loop
+    loop = LoopFinder(problem).follow(motion.branch, motion.side).outline
     return MotionProof(loop.status, loop.reason, loop.length, loop.tubes, loop=loop)

@@ -14,7 +14,7 @@ from exactfold import find_branch, find_loops, random_square
 from exactfold.count.pools import process_pool
 from exactfold.motion import graph_building, visits
 from exactfold.motion.configuration_graph import ConfigurationGraph, GraphArc, NodeEnd
-from exactfold.motion.fold_ranges import Folds, Stretch, box_angles
+from exactfold.motion.fold_ranges import Folds, Stretch, box_angles, fold_ranges
 from exactfold.motion.following import follow
 from exactfold.motion.framework import Framework
 from exactfold.motion.graph_building import graph_of
@@ -275,6 +275,17 @@ def test_a_box_of_configurations_bounds_the_angles_of_all_of_them():
     assert (np.abs(middle - exact)[known] <= spread[known]).all()
     far = Ball(box.bits, box.centre, tuple(1 << box.bits for _ in box.radii))
     assert np.isinf(angles_in(far)[1]).all()
+
+
+def test_angles_that_are_not_followed_are_not_guessed():
+    """A fold whose positions are known too roughly: on the whole chain, or on one part of it."""
+    names = PROBLEM.sheet.folds
+    still = Stretch.at(FRAMEWORK, Ball(8, (0,) * FRAMEWORK.size, (0,) * FRAMEWORK.size))
+    ranges = fold_ranges(FRAMEWORK, [still, still], names)
+    assert ranges is not None
+    assert all(fold.turns == 0 and fold.least[1] == fold.greatest[0] == 0 for fold in ranges)
+    rough = replace(still, radius=np.full_like(still.radius, 0.3), end=1.0)
+    assert fold_ranges(FRAMEWORK, [still, rough, still], names) is None
 
 
 def angles_in(box):
