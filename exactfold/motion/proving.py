@@ -12,7 +12,8 @@ from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import ContactWatch, FirstContact
 from exactfold.motion.events import CONTACT, FLAT_FOLD, RETURN
-from exactfold.motion.loops import Loop, LoopFinder
+from exactfold.motion.loop_proofs import Loop
+from exactfold.motion.loops import LoopFinder
 from exactfold.motion.motion import Motion
 from exactfold.motion.tracks import Link, Track, follow_proved, half_branch
 from exactfold.problem.problem import Problem
@@ -131,5 +132,5 @@ def _tracked(motion: Motion, progress: Progress | None) -> MotionProof:
 
 def _returning(motion: Motion) -> MotionProof:
     problem = Problem.of(motion.branch.pattern)
-    loop = LoopFinder(problem).follow(motion.branch, motion.side).loop
+    loop = LoopFinder(problem).follow(motion.branch, motion.side).outline
     return MotionProof(loop.status, loop.reason, loop.length, loop.tubes, loop=loop)

@@ -31,6 +31,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -48,13 +49,13 @@ class Swept:
     """Positions of all vertices on |s - middle| <= half: a + b (s - middle) + e, |e| <= error.
 
     Arrays of shape (V, 3), in units of the framework; `planar` if the third component is not
-    bounded and must not be used.
+    bounded and must not be used. For many intervals at once, they have one more axis in front.
     """
 
     start: FloatArray
     slope: FloatArray
     error: FloatArray
-    half: float
+    half: Any
     planar: bool = False
 
     @classmethod
@@ -62,30 +63,32 @@ class Swept:
         cls,
         coefficients: FloatArray,
         radius: FloatArray,
-        low: float,
-        high: float,
+        low: Any,
+        high: Any,
         *,
         planar: bool = False,
     ) -> Swept:
         """From p(s) = sum_k c_k s^k, shape (order + 1, V, 3), and |x - p| <= radius, shape (V, 3).
 
         The polynomial is expanded at the middle; what is beyond the slope goes into the error.
+        `low` and `high` are numbers, or arrays of shape (intervals, 1, 1).
         """
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        most = max(abs(low), abs(high))
+        most = np.maximum(np.abs(low), np.abs(high))
         sizes = np.abs(coefficients[-1])
         for row in coefficients[-2::-1]:
             sizes = most * sizes + np.abs(row)
-        rows = coefficients.copy()
+        shape = np.broadcast_shapes(np.shape(middle), radius.shape)
+        rows = [np.broadcast_to(row, shape).copy() for row in coefficients]
         for k in range(len(rows)):  # Horner's scheme, repeated: rows[k] is p^(k)(middle) / k!
             for m in range(len(rows) - 2, k - 1, -1):
                 rows[m] += middle * rows[m + 1]
-        error = radius.copy()
+        error = np.broadcast_to(radius, shape).copy()
         for k in range(2, len(rows)):
             error += np.abs(rows[k]) * half**k
         slope = rows[1] if len(rows) > 1 else np.zeros_like(rows[0])
-        if not (sizes.max() + radius.max() < _MOST and len(rows) <= _MOST_ROWS):
-            error = np.full_like(error, np.inf)
+        small = np.broadcast_to(sizes, shape).max(axis=(-1, -2)) + radius.max() < _MOST
+        error[~(small & (len(rows) <= _MOST_ROWS))] = np.inf
         return cls(rows[0], slope, error + _ROUND, half, planar)
 
 

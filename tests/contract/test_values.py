@@ -70,6 +70,9 @@ PROVING = {
     "loops": LOOPS,
     "loop": LOOPS.loops[0],
     "half-branch": LOOPS.loops[0].source,
+    "range of a fold": LOOPS.loops[0].folds[0],
+    "configuration graph": LOOPS.graph,
+    "arc of a graph": LOOPS.graph.arcs[0],
     "proof of a loop": LoopFinder(Problem.of(ONE)).follow(LEAVING),
 }
 VALUES = {
