@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import pytest
 from forge import given_lines
 
-from exactfold.checker import motion_contacts, motion_tubes
+from exactfold.checker import motion_boxes, motion_contacts, motion_tubes
 from exactfold.checker.motion_bounds import Bounds
 from exactfold.checker.motion_contacts import Faces
 from exactfold.checker.motion_equations import LengthEquations, at
@@ -43,8 +43,16 @@ class Made(NamedTuple):
 
 
 def made(kind: Any, *given: Any) -> Made:
-    """A piece of the sheet of `equations`."""
+    """A piece of the sheet of `equations`, along another curve than the checker would take.
+
+    Any would do. On this one no coefficient of an equation is 0.
+    """
     kept: list[Any] = []
+    rng, extended = random.Random(0), motion_tubes.extended
+
+    def other(*values: Any) -> list[list[int]]:
+        first, *rest = extended(*values)
+        return [first, *([x + rng.randint(-(1 << 40), 1 << 40) for x in row] for row in rest)]
 
     def seen(*values: Any) -> Bounds:
         kept.extend((values[0], values[-1]))
@@ -53,6 +61,7 @@ def made(kind: Any, *given: Any) -> Made:
     bounds = motion_tubes.bounds
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(motion_tubes, "bounds", seen)
+        patch.setattr(motion_tubes, "extended", other)
         piece = kind(*given)
     p = [[Fraction(x, 1 << 40) for x in row] for row in kept[0]]
     return Made(piece, p, [Fraction(w, 1 << 16) for w in kept[1]])
@@ -282,6 +291,7 @@ def test_boxes_hold_what_is_proved_and_little_more() -> None:
                 (piece.enclosure(s), polynomial, r),
                 (piece.velocity(s), slope, rate),
             ):
+                assert all(type(x) is int for x in (*box.centre, *box.radii))
                 for i, w in enumerate(weights):
                     room = radius * w * 512 / (1 << 16)
                     off = abs(value(curve, i, s) - box.centre[i])
@@ -495,6 +505,60 @@ def test_roundings_of_a_path_are_counted() -> None:
     assert all(e >= 5 * tiny * ONE for e in path.errors)
     steep = sum(k * tiny for k in range(5))
     assert path.off**2 >= 2 * steep**2
+
+
+def test_the_flat_sheet_on_the_grid() -> None:
+    sheet = equations()
+    points, size = sheet.sheet.points, unit(sheet)
+    found = motion_boxes.flat_of(sheet)
+    assert found.keys() == points.keys()
+    origin = points[HEADER["pinned"][0]]
+    for v, place in found.items():
+        exact = [(a - b) / size * ONE for a, b in zip(points[v], origin, strict=True)]
+        assert all(0 <= x - c < 1 for x, c in zip(exact, place, strict=False))
+        assert place[2:] == [0]
+
+
+def test_lengths_below_a_unit_are_bounded_too() -> None:
+    """Of straight lines so slow that every rounding shows, where the length is exact."""
+    rng = random.Random(9)
+    for _ in range(40):
+        across, along = rng.choice(((3, 4), (5, 12), (8, 15))), rng.randint(1, 9)
+        size = {3: 5, 5: 13, 8: 17}[across[0]] * along
+        rows = [[Fraction(0)] * 2, [Fraction(x * along, ONE) for x in across]]
+        path = Path(rows, [Fraction(0)] * 2, Fraction(0), Fraction(1))
+        path.off = Fraction(0)
+        low, high = sorted(rng.randint(-ONE, ONE) for _ in range(2))
+        exact = Fraction(size * (high - low), ONE * ONE)
+        assert path.shortest(low, high) <= exact <= path.longest(low, high)
+        path.off = Fraction(1, 100)
+        assert path.shortest(low, high) == 0
+        assert path.longest(low, high) >= exact + Fraction(high - low, 100 * ONE)
+
+
+def test_boxes_of_vertices_with_other_errors() -> None:
+    """Each vertex has the largest error of its own places, and a unit more for every rounding."""
+    rng = random.Random(8)
+    for degree in (1, 2, 4, 8, 18):
+        path: Any = SimpleNamespace(degree=degree)
+        for _ in range(10):
+            path.columns = [[rng.randint(-9, 9) for _ in range(degree + 1)] for _ in range(9)]
+            path.errors = [rng.choice((0, 100, 1000)) for _ in range(9)]
+            low, high = sorted(rng.randint(-ONE, ONE) for _ in range(2))
+            rest = {v: [rng.randint(-ONE, ONE) for _ in range(3)] for v in range(3)}
+            boxes = motion_boxes.boxes_on(path, rest, {v: 3 * v for v in rest}, low, high, False)
+            half = high - ((low + high) >> 1)
+            for v, (a, b, error) in boxes.items():
+                assert type(error) is int
+                known = max(path.errors[3 * v : 3 * v + 3])
+                assert error >= known + degree * (degree + 1) // 2 + 4
+                for x in (low, high, rng.randint(low, high)):
+                    y = Fraction(x - high + 2 * half, 2 * half)
+                    for i in range(3):
+                        column = path.columns[3 * v + i]
+                        q = sum(c * Fraction(x, ONE) ** m for m, c in enumerate(column))
+                        off = abs((1 - y) * a[i] + y * b[i] - rest[v][i] - q)
+                        assert off + path.errors[3 * v + i] <= error
 
 
 def faces_for(accepted: Any, pairs: str) -> tuple[Faces, dict[str, list[tuple[int, int]]]]:
