@@ -14,7 +14,6 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.report.crease_drawing import SIZE, CreaseDrawing
 from exactfold.report.crease_lines import crease_lines
 
-
 if TYPE_CHECKING:
     from exactfold.modes.result import Decomposition
     from exactfold.motion.followable import PanelMode
@@ -67,7 +66,7 @@ def branch_way(branch: Branch, number: int | None = None) -> DrawnWay:
     >>> from exactfold.count.find import find_branch
     >>> way = branch_way(find_branch("two-vertex", "+-"))
     >>> way.name, way.text, sorted(way.signs.items())
-    ('branch +-', 'VVVMMMVVM', [(4, 1), (5, -1)])
+    ('branch +-', 'MVVVMVM', [(4, 1), (5, -1)])
     """
     angles = {}
     if branch.heights:
@@ -83,8 +82,9 @@ def mode_way(mode: PanelMode) -> DrawnWay:
     >>> from exactfold.motion.followable import panel_modes
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.pattern.opening import panels
-    >>> mode_way(panel_modes(decompose(panels(single_vertex(4))))[0]).text
-    'VMVV'
+    >>> way = mode_way(panel_modes(decompose(panels(single_vertex(4))))[0])
+    >>> way.name, sorted(way.letters) == sorted(way.angles)
+    ('mode 1', True)
     """
     points = [(float(x), float(y)) for x, y in mode.pattern.vertices]
     first = mode.folds[0]
@@ -97,18 +97,21 @@ def mode_way(mode: PanelMode) -> DrawnWay:
     return DrawnWay(mode.pattern, f"mode {mode.number}", letters, {}, angles, mode.number)
 
 
-def ways_of(result: BranchCount | Decomposition) -> Sequence[DrawnWay]:
-    """All ways that a count lists, in its order.
+def ways_of(result: BranchCount | Decomposition, most: int | None = None) -> Sequence[DrawnWay]:
+    """The ways that a count lists, in its order, all or the first `most`.
+
+    Where a sheet of panels has families only, of which none is listed: the ways known in them.
 
     >>> from exactfold.count.collect import count_branches
     >>> [way.number for way in ways_of(count_branches("two-vertex"))]
     [1, 2, 3, 4]
     """
     if isinstance(result, BranchCount):
-        return [branch_way(branch, k) for k, branch in enumerate(result.branches, 1)]
+        return [branch_way(branch, k) for k, branch in enumerate(result.branches[:most], 1)]
     from exactfold.motion.followable import panel_modes
 
-    return [mode_way(mode) for mode in panel_modes(result)]
+    known = panel_modes(result)[: len(result.modes) or None]
+    return [mode_way(mode) for mode in known[:most]]
 
 
 def shortened(text: str, most: int = _LONG) -> str:
