@@ -45,13 +45,13 @@ def pictures() -> dict[str, str]:
 
 def drawings() -> dict[str, str]:
     """Those of the page on drawing, as `exactfold draw` makes them."""
-    opened = open_pattern(example_path("waterbomb"))
+    opened = open_pattern(example_path("zigzags"))
     branch = find_branch("random-8", "+-++--+-")
     all_branches, all_modes = count_ways("two-vertex"), count_ways("zigzags")
     octahedron = ways_of(count_ways("flat-octahedron"))
     title = "{}: {} ways to start folding, proved"
     return {
-        "draw-waterbomb.svg": pattern_picture(opened.sheet, opened.assignment, title="waterbomb"),
+        "draw-zigzags.svg": pattern_picture(opened.sheet, opened.assignment, title="zigzags"),
         "draw-branch.svg": branch_way(branch).picture("random-8"),
         "draw-folded.svg": folded(follow(branch), Amount.of("60deg"), "random-8").text,
         "draw-all.svg": sheet_of_multiples(octahedron, title.format("flat-octahedron", 8)),

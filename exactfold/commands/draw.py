@@ -18,6 +18,7 @@ from exactfold.errors import (
     FoldError,
     NotCountedError,
     PatternError,
+    SeveralSheetsError,
     UndecidedBranchError,
     UsageError,
 )
@@ -108,8 +109,8 @@ class Wanted:
         """The picture, and whether what it shows is proved."""
         try:
             opened = read_any(self.file, self.snap, self.sheet)
-        except (FoldError, PatternError) as error:
-            if not self._is_plain:
+        except (FoldError, PatternError, SeveralSheetsError) as error:
+            if not self._is_plain or self.sheet is not None:
                 raise
             drawing = self._raw()
             if drawing is None:

@@ -49,6 +49,15 @@ class CreaseLines:
         return float(width), float(height)
 
     @cached_property
+    def spacing(self) -> float:
+        """How far apart neighbouring points are: a low one of the lengths of the lines."""
+        if not self.edges:
+            return 1.0
+        i, j = np.array(self.edges, dtype=np.intp).T
+        lengths = np.linalg.norm(self.points[i] - self.points[j], axis=1)
+        return float(np.quantile(lengths, 0.3))
+
+    @cached_property
     def neighbours(self) -> Mapping[int, Sequence[int]]:
         """The other ends of the lines at each point that has any."""
         around: dict[int, list[int]] = {}

@@ -11,7 +11,7 @@ from exactfold.branches.branch import Branch
 from exactfold.branches.letters import UPSIDE_DOWN
 from exactfold.branches.result import BranchCount
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.report.crease_drawing import SIZE, CreaseDrawing
+from exactfold.report.crease_drawing import CreaseDrawing, natural_size
 from exactfold.report.crease_lines import crease_lines
 
 if TYPE_CHECKING:
@@ -48,11 +48,12 @@ class DrawnWay:
         """The same on both sides of the sheet: the smaller text of the two."""
         return min(self.text, self.text.translate(UPSIDE_DOWN))
 
-    def drawing(self, size: float = SIZE, *, small: bool = False) -> CreaseDrawing:
+    def drawing(self, size: float | None = None, *, small: bool = False) -> CreaseDrawing:
         """The drawing of the pattern with this way; `small`: without the numbers of vertices."""
         lines = crease_lines(self.pattern, self.letters)
         joined = True if small else None
-        return CreaseDrawing(lines, self.signs, self.angles, size, not small, joined)
+        wide = size or natural_size(lines)
+        return CreaseDrawing(lines, self.signs, self.angles, wide, not small, joined)
 
     def picture(self, title: str = "") -> str:
         """The crease pattern with this way as an SVG file."""

@@ -26,7 +26,7 @@ _FRAME: Final = 18.0
 """Room for the words on the frame of ways with the same letters."""
 _MOST_COLUMNS: Final = 8
 _GREY: Final = "#666666"
-_EVEN: Final = {"font_family": "Menlo, Consolas, DejaVu Sans Mono, monospace"}
+_EVEN: Final = {"font_family": "monospace"}
 """For signs and letters, which are compared place by place."""
 
 
@@ -85,7 +85,7 @@ def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, number: int | No
         top += 20
     letters = {letter for way in ways for letter in way.letters.values()}
     signs = {sign for way in ways for sign in way.signs.values()}
-    key = legend(letters, signs, Style.of(100), any(way.angles for way in ways))
+    key = legend(letters, signs, Style.of(100), by_angle=any(way.angles for way in ways))
     below, height = key.placed(width, top)
     head = svg.text(title, width / 2, 19, anchor="middle", size=14)
     return svg.picture(width, height, [head, *parts, *below], title)

@@ -30,8 +30,10 @@ def title(text):
 
 
 def test_without_a_way_the_letters_of_the_file_are_drawn():
-    opened = open_pattern(example_path("waterbomb"))
-    assert drawn("waterbomb") == pattern_picture(opened.sheet, opened.assignment, title="waterbomb")
+    opened = open_pattern(example_path("zigzags"))
+    text = drawn("zigzags")
+    assert text == pattern_picture(opened.sheet, opened.assignment, title="zigzags")
+    assert (text.count('class="M"'), text.count('class="V"')) == (6, 6)
 
 
 @pytest.mark.parametrize("which", [("--branch", "-+"), ("--up", "5")])

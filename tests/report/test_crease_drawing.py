@@ -84,7 +84,10 @@ def test_folds_without_a_letter_are_of_a_fifth_kind():
     assert len({colour for colour, _ in styles}) == len({dash for _, dash in styles}) + 1 == 5
     plain = pattern_picture(single_vertex(4))
     assert group_of(plain, "U").get("stroke-dasharray") is None
-    assert words(plain).count("undecided") == 0
+    assert set(words(plain)) == {"0", "1", "2", "3", "4"}
+    assert "unassigned" in words(text)
+    signed = pattern_picture(single_vertex(4), {(0, 4): "M"}, signs={4: 1})
+    assert "undecided" in words(signed)
 
 
 def test_the_width_grows_with_the_angle(random_8):
