@@ -25,7 +25,7 @@ from exactfold.errors import (
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import Opened, has_branches
 from exactfold.report.crease_drawing import pattern_picture
-from exactfold.report.drawn_ways import branch_way, mode_way, ways_of
+from exactfold.report.drawn_ways import DrawnWay, branch_way, mode_way, ways_of
 from exactfold.report.folded import Amount, Folded, folded
 from exactfold.report.multiples import sheet_of_multiples
 from exactfold.report.picture_files import checked_picture, write_picture
@@ -126,7 +126,7 @@ class Wanted:
         if branches and isinstance(sheet, CreasePattern):
             signs = None if self._place is not None else self.way
             return self._branch(chosen(sheet, signs, self.up, self._place, bar), bar)
-        return self._mode(opened, bar), PROVED
+        return self._mode(opened, bar)
 
     def _raw(self) -> Drawing | None:
         """The drawing in a file that is no sheet; None where there is none, or no second look."""
@@ -152,26 +152,29 @@ class Wanted:
         motion = follow(branch, progress=bar)
         return self._folded(folded(motion, self.amount, self._title)), branch.status
 
-    def _mode(self, opened: Opened, bar: Bar) -> str:
-        """A mode of panels, by its number."""
+    def _mode(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
+        """A mode of panels, by its number, and whether it truly folds."""
         if self._place is None:
             raise UsageError(
                 "vertex signs are for triangulated sheets with four corners, and this sheet folds "
                 "along modes of rigid panels: give the number of one, as `exactfold count` lists it"
             )
-        from exactfold.motion.followable import panel_modes
+        from exactfold.motion.followable import open_reason, panel_modes
 
         ways = self._counted(opened, bar)
         if isinstance(ways, BranchCount):
             raise NotCountedError("this sheet has no single ways to draw: draw it without --branch")
         mode = self._chosen(panel_modes(ways))
+        verdict = mode.extends.verdict
         if self.amount is None:
-            return mode_way(mode).picture(self._title)
+            if verdict is not PROVED:
+                say(open_reason(mode))
+            return mode_way(mode).picture(self._title), verdict
         from exactfold.motion.panel_following import follow_panels
 
         bar("following")
         motion = follow_panels(ways, modes=(mode.number,))
-        return self._folded(folded(motion, self.amount, self._title))
+        return self._folded(folded(motion, self.amount, self._title)), verdict
 
     def _chosen(self, modes: Sequence[PanelMode]) -> PanelMode:
         place = self._place or 0
@@ -199,7 +202,6 @@ class Wanted:
         result = self._counted(opened, bar)
         bar("drawing")
         ways = ways_of(result, self.most)
-        of_branches = isinstance(result, BranchCount)
         number = len(result.branches) if isinstance(result, BranchCount) else len(result.modes)
         number = max(number, len(ways))
         if not ways:
@@ -208,10 +210,9 @@ class Wanted:
             )
         if number > len(ways):
             say(f"the first {len(ways)} of {number} are drawn: --most N draws more")
-        noun = "way to start folding" if of_branches else "mode"
-        known = "proved" if result.status is PROVED else f"{result.status} whether all"
-        name = f"{self._title}: " if self._title else ""
-        title = f"{name}{_number(number, noun)}, {known}"
+        title = _all_title(result, ways, number)
+        if self._title:
+            title = f"{self._title}: {title}"
         return sheet_of_multiples(ways, title, number=number), result.status
 
 
@@ -220,7 +221,12 @@ def on_a_terminal() -> bool:
     return sys.stdout.isatty()
 
 
-def _number(number: int, noun: str) -> str:
-    """The noun is the first word here."""
-    first, _, rest = noun.partition(" ")
-    return f"{counted(number, first)} {rest}".rstrip()
+def _all_title(result: BranchCount | Decomposition, ways: Sequence[DrawnWay], number: int) -> str:
+    """How many ways a count lists, in words; `ways` are the first of them."""
+    if isinstance(result, BranchCount):
+        known = "proved" if result.status is PROVED else "proved to exist"
+        return f"{counted(number, 'way')} to start folding, {known}"
+    if number > len(ways):
+        return counted(number, "mode")
+    folding = sum(not way.note for way in ways)
+    return f"{counted(number, 'mode')}, {folding} of them known to truly fold"

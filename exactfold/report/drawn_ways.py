@@ -20,13 +20,16 @@ if TYPE_CHECKING:
     from exactfold.pattern.panel_pattern import PanelPattern
 
 _LONG: Final = 24
+_NOTES: Final = {"refuted": "does not truly fold", "undecided": "truly folds: undecided"}
+"""Of modes, by what is known of how they go on."""
 
 
 @dataclass(frozen=True)
 class DrawnWay:
     """One way to fold, as it is drawn; `number` is its place in the list of `exactfold count`.
 
-    `angles` are in proportion to the fold angles, empty where nothing is proved of them.
+    `angles` are in proportion to the fold angles, empty where nothing is proved of them. `note`
+    says if it is not known that the sheet truly folds so, or that it does not.
     """
 
     pattern: CreasePattern | PanelPattern
@@ -35,6 +38,7 @@ class DrawnWay:
     signs: Mapping[int, int] = field(default_factory=dict)
     angles: Mapping[Edge, float] = field(default_factory=dict)
     number: int | None = None
+    note: str = ""
 
     @property
     def text(self) -> str:
@@ -57,8 +61,8 @@ class DrawnWay:
 
     def picture(self, title: str = "") -> str:
         """The crease pattern with this way as an SVG file."""
-        name = f"{title}, {self.name}" if title else self.name
-        return self.drawing().picture(name)
+        parts = [part for part in (title, self.name, self.note) if part]
+        return self.drawing().picture(", ".join(parts))
 
 
 def branch_way(branch: Branch, number: int | None = None) -> DrawnWay:
@@ -95,7 +99,8 @@ def mode_way(mode: PanelMode) -> DrawnWay:
             rates.setdefault(fold, rates[known] * float(mode.choice[k].gain(known, fold)))
     angles = {(i, j): rate * dist(points[i], points[j]) for (i, j), rate in rates.items()}
     letters = {fold: mode.letters.get(fold, "F") for fold in mode.pattern.folds}
-    return DrawnWay(mode.pattern, f"mode {mode.number}", letters, {}, angles, mode.number)
+    note = _NOTES.get(str(mode.extends.verdict), "")
+    return DrawnWay(mode.pattern, f"mode {mode.number}", letters, {}, angles, mode.number, note)
 
 
 def ways_of(result: BranchCount | Decomposition, most: int | None = None) -> Sequence[DrawnWay]:

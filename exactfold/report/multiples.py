@@ -21,10 +21,13 @@ _INNER: Final = 132.0
 """The longer side of a crease pattern."""
 _GAP: Final = 8.0
 _CAPTION: Final = 34.0
+_NOTE: Final = 12.0
 _HEAD: Final = 30.0
 _FRAME: Final = 18.0
 """Room for the words on the frame of ways with the same letters."""
 _MOST_COLUMNS: Final = 8
+_FAINT: Final = 0.45
+"""How strongly a way is drawn that is not known to be one."""
 _GREY: Final = "#666666"
 _EVEN: Final = {"font_family": "monospace"}
 """For signs and letters, which are compared place by place."""
@@ -62,7 +65,7 @@ def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, number: int | No
         raise UsageError(f"{title}: there is no way to draw")
     blocks = _blocks(ways)
     first = ways[0].drawing(_INNER, small=True)
-    high = first.extent[1] + _CAPTION
+    high = first.extent[1] + _CAPTION + (_NOTE if any(way.note for way in ways) else 0)
     columns = _columns(len(ways), high)
     parts = []
     top, width = _HEAD, columns * _CELL + 2 * _GAP
@@ -124,16 +127,17 @@ def _cell(way: DrawnWay, x: float, y: float, high: float) -> str:
     """A small crease pattern and two lines below it."""
     drawing = way.drawing(_INNER, small=True)
     aside = x + (_CELL - drawing.extent[0]) / 2
-    body = svg.element(
-        "g", drawing.body(), transform=f"translate({svg.number(aside)} {svg.number(y)})"
-    )
-    middle, below = x + _CELL / 2, y + high - _CAPTION
+    at = f"translate({svg.number(aside)} {svg.number(y)})"
+    body = svg.element("g", drawing.body(), transform=at, opacity=_FAINT if way.note else None)
+    middle, below = x + _CELL / 2, y + drawing.extent[1]
     name = way.name.removeprefix("branch ") if way.signs else way.name
     letters = shortened(way.text, 22)
     lines = [
         svg.text(shortened(name, 18), middle, below + 12, anchor="middle", size=12, **_EVEN),
         svg.text(letters, middle, below + 25, anchor="middle", size=9.5, fill=_GREY, **_EVEN),
     ]
+    if way.note:
+        lines.append(svg.text(way.note, middle, below + 37, anchor="middle", size=10.5))
     return svg.element("g", "".join([body, *lines]), class_="way", data_way=str(way.number or 1))
 
 

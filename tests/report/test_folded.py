@@ -14,7 +14,7 @@ def motion():
     return follow(find_branch("two-vertex", "+-"), until="90deg", frames=10)
 
 
-@pytest.mark.parametrize("degrees", [20.0, 61.25, 90.0])
+@pytest.mark.parametrize("degrees", [20.0, 90.0])
 def test_the_largest_fold_angle_is_the_one_asked_for(motion, degrees):
     time = Amount(degrees=degrees).time(motion)
     again = follow(motion.branch, until=f"{degrees}deg", frames=2)

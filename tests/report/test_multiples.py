@@ -61,6 +61,13 @@ def test_ways_with_the_same_letters_stand_in_one_frame():
     assert frames(sheet_of_multiples(turned, "t")) == ["1, 2: the same letters from opposite sides"]
 
 
+def test_modes_that_do_not_fold_are_faint_and_say_so():
+    text = sheet_of_multiples(ways_of(count_ways("zigzags")), "t")
+    faint = [g.get("data-way") for g in of_class(text, "way") if g[0].get("opacity")]
+    assert faint == ["4"]
+    assert words(text).count("does not truly fold") == 1
+
+
 def test_undecided_letters_are_not_shared():
     ways = ways_of(count_ways("two-vertex"))
     unknown = [replace(way, letters=dict.fromkeys(way.letters, "U")) for way in ways]
