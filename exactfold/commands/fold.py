@@ -14,7 +14,6 @@ from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
-from exactfold.evidence.entries import write_certificate
 from exactfold.motion.following import follow
 from exactfold.motion.motion import Motion
 from exactfold.motion.writing import checked_ending, write_motion
@@ -83,6 +82,8 @@ class Wanted:
             else:
                 motion = self._panels(opened, bar)
             proof = self._proof(motion, bar)
+            if proof is not None:
+                motion = proof.motion
             bar("writing")
             written = self._written(motion, proof)
         if self.as_json:
@@ -191,15 +192,10 @@ class Wanted:
             write_text(self.picture, report.motion_stills(motion, title=name))
             written.append(str(self.picture))
         if self.certificate is not None and proof is not None:
-            document = proof.certificate()
-            if document is None:
-                say(
-                    "no certificate was written: that of a motion back to the flat sheet is one "
-                    "of `exactfold motions --certificate`"
-                )
-            else:
-                write_certificate(document, self.certificate)
+            if proof.write(self.certificate):
                 written.append(str(self.certificate))
+            else:
+                say(f"no certificate was written: {proof.reason}")
         return written
 
 

@@ -32,6 +32,7 @@ from exactfold.motion.tube_start import (
     prove_start,
 )
 from exactfold.problem.problem import Problem
+from exactfold.progress import Progress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 4000
@@ -226,17 +227,19 @@ class LoopFinder:
 
     problem: Problem
 
-    def follow(self, branch: Branch, side: int = 1) -> LoopProof:
+    def follow(
+        self, branch: Branch, side: int = 1, *, progress: Progress | None = None
+    ) -> LoopProof:
         """The loop that leaves the flat state along a half-branch of a simple, proved branch.
 
-        Raises as `half_branch`.
+        `progress` is told how many tubes there are. Raises as `half_branch`.
 
         >>> from exactfold.count.find import find_branch
         >>> branch = find_branch("two-vertex", "+-")
         >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
         <Loop: +-, saddle + to +-, saddle -, proved>
         """
-        return self._proof(half_branch(branch, side).start)
+        return self._proof(half_branch(branch, side).start, progress)
 
     def follow_from(self, branch: Branch, source: HalfBranch) -> LoopProof:
         """The loop that leaves the flat state along `source`, one of the halves of a branch.
@@ -249,11 +252,13 @@ class LoopFinder:
                 return self._proof(start)
         raise NotProvedAtTheFlatStateError(f"the branch has not the half-branch {source}")
 
-    def _proof(self, start: StartTube) -> LoopProof:
-        steps, landing, reason = self._followed(start)
+    def _proof(self, start: StartTube, progress: Progress | None = None) -> LoopProof:
+        steps, landing, reason = self._followed(start, progress)
         return LoopProof(self.problem, start, tuple(steps), landing, reason)
 
-    def _followed(self, start: StartTube) -> tuple[list[Link | Passage], Landing | None, str]:
+    def _followed(
+        self, start: StartTube, progress: Progress | None
+    ) -> tuple[list[Link | Passage], Landing | None, str]:
         """The steps from a start tube on, to a landing or to what stopped the proof."""
         equations = LengthEquations.of(start.framework)
         last, time = start.last, start.length(0, start.last)
@@ -265,6 +270,8 @@ class LoopFinder:
             link = next(ahead)
             if isinstance(link, Link):
                 steps.append(link)
+                if progress is not None:
+                    progress("proving, tubes", len(steps), 0)
                 landing = self._landing(link)
                 if landing is not None:
                     return steps, landing, ""

@@ -2,32 +2,44 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from exactfold.errors import NotProvedAtTheFlatStateError
-from exactfold.evidence.entries import Document
+from exactfold.evidence.entries import Document, write_certificate
 from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import ContactWatch, FirstContact
+from exactfold.motion.enclosed import with_enclosed_frames
 from exactfold.motion.events import CONTACT, FLAT_FOLD, RETURN
-from exactfold.motion.loops import Loop, LoopFinder
+from exactfold.motion.framework import Framework
+from exactfold.motion.loop_file import LoopFile
+from exactfold.motion.loop_frames import frame_of
+from exactfold.motion.loops import Loop, LoopFinder, LoopProof
 from exactfold.motion.motion import Motion
-from exactfold.motion.tracks import Link, Track, follow_proved, half_branch
+from exactfold.motion.tracks import Frame, Link, Track, follow_proved, half_branch
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
+
+_AT_ONCE = 1e-9
+_STRAYED = "the frames in floats are not near the proved curve: floats have left the branch"
 
 
 @dataclass(frozen=True, repr=False)
 class MotionProof:
     """What is proved of a motion: that it exists, without a gap, and what touches first.
 
-    `track`: the chain of tubes, None for a motion until its return. `contact`: how far no two faces
-    touch, and the first contact if the motion meets one; None until the return. `passed`: the
-    motion goes on after that contact, through the paper. `loop`: of a motion until its return.
-    `length` bounds how far it is proved, in the unit of the sheet.
+    `motion`: the motion with the frames of the proved curve, each with a bound of how far it is off
+    (`Motion.bounds`); as it was given where it is not proved to its end. `track`: the chain of
+    tubes, None for a motion until its return. `contact`: how far no two faces touch, and the first
+    contact if the motion meets one; None until the return. `passed`: the motion goes on after that
+    contact, through the paper. `looped`: the proof of a motion until its return. `length` bounds
+    how far it is proved, in the unit of the sheet.
 
     `status` is PROVED if all of the motion is, and its contact where it ends at one; else `reason`
     says what is missing.
@@ -35,18 +47,24 @@ class MotionProof:
 
     status: Verdict
     reason: str
+    motion: Motion
     length: Interval
     tubes: int
     track: Track | None = None
     contact: FirstContact | None = None
     passed: bool = False
-    loop: Loop | None = None
+    looped: LoopProof | None = None
+
+    @property
+    def loop(self) -> Loop | None:
+        """Of a motion until its return, where it ends."""
+        return None if self.looped is None else self.looped.loop
 
     def certificate(self) -> Document | None:
         """The evidence for `exactfold.checker`; None for a motion until its return.
 
-        The certificate of a loop is one of `exactfold motions`. Of a contact that the motion
-        passes nothing is claimed.
+        That of a loop has lines: `write` writes it. Of a contact that the motion passes nothing is
+        claimed.
         """
         if self.track is None:
             return None
@@ -54,9 +72,40 @@ class MotionProof:
             return self.track.certificate()
         return certificate_with_contact(self.track, self.contact)
 
+    def write(self, path: str | os.PathLike[str]) -> bool:
+        """Write the evidence for `exactfold.checker`; False if there is nothing to write.
+
+        A motion until its return is one loop in a file of loops (docs/motions.md), if it is proved
+        to its end; any other one has a certificate of its own as far as it is proved. Raises
+        `UnwritableFileError`.
+
+        >>> import os, tempfile
+        >>> from exactfold.checker import summary, verify
+        >>> from exactfold.count.find import find_branch
+        >>> from exactfold.motion.following import follow
+        >>> proof = prove(follow(find_branch("two-vertex", "+-"), until="return"))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "proof")
+        ...     proof.write(path), summary(verify(path))[:57]
+        (True, 'VALID: 1 loop of true motions, which match 2 of 8 half-br')
+        """
+        document = self.certificate()
+        if document is not None:
+            write_certificate(document, path)
+            return True
+        if self.looped is None or self.looped.landing is None:
+            return False
+        file = LoopFile.opened(path, self.looped.problem, resume=False, replace=True)
+        try:
+            file.add(self.looped.loop, self.looped.line())
+            file.finish()
+        finally:
+            file.close()
+        return True
+
     def to_dict(self) -> dict[str, Any]:
         """The proof as `exactfold fold --json` prints it."""
-        contact = self.contact
+        contact, loop = self.contact, self.loop
         event = None if contact is None else contact.event
         return {
             "status": str(self.status),
@@ -65,9 +114,7 @@ class MotionProof:
             "length": list(in_floats(self.length)),
             "clear": None if contact is None else in_floats((contact.clear, contact.clear))[0],
             "contact": None if event is None else event.to_dict(),
-            "to": None
-            if self.loop is None or self.loop.target is None
-            else self.loop.target.to_dict(),
+            "to": None if loop is None or loop.target is None else loop.target.to_dict(),
         }
 
     def __repr__(self) -> str:
@@ -81,25 +128,28 @@ def prove(motion: Motion, *, progress: Progress | None = None) -> MotionProof:
     (docs/motion.md), and separating planes show what does not touch (docs/contacts.md). A motion
     until its first contact is proved with that contact; any other one with how far it is clear.
     Nodes are passed where the motion returns to the flat state (docs/motions.md), and are its end
-    otherwise.
+    otherwise. The frames of the motion that is returned are those of the proved curve, each in a
+    box (`Motion.bounds`).
 
     Raises `UsageError` where the branch is not proved. UNDECIDED says nothing against the motion.
 
     >>> from exactfold.count.find import find_branch
     >>> from exactfold.motion.following import follow
     >>> proof = prove(follow(find_branch("two-vertex", "+-")))
-    >>> proof.status, proof.contact.event.kind
-    (<Verdict.PROVED: 'proved'>, 'flat-fold')
+    >>> proof.status, proof.contact.event.kind, max(proof.motion.bounds.radii) < 1e-14
+    (<Verdict.PROVED: 'proved'>, 'flat-fold', True)
     """
     try:
-        return _returning(motion) if motion.end == RETURN else _tracked(motion, progress)
+        if motion.end == RETURN:
+            return _returning(motion, progress)
+        return _tracked(motion, progress)
     except NotProvedAtTheFlatStateError as error:
-        return MotionProof(UNDECIDED, str(error), (Fraction(0), Fraction(0)), 0)
+        return MotionProof(UNDECIDED, str(error), motion, (Fraction(0), Fraction(0)), 0)
 
 
 def _tracked(motion: Motion, progress: Progress | None) -> MotionProof:
     watch = ContactWatch()
-    to_contact = motion.end in (CONTACT, FLAT_FOLD)
+    to_contact = _ends_at_the_first_contact(motion)
     found: FirstContact | None = None
     links: list[Link] = []
 
@@ -126,10 +176,37 @@ def _tracked(motion: Motion, progress: Progress | None) -> MotionProof:
     if to_contact and status is PROVED and contact.status is not PROVED:
         status, reason = UNDECIDED, contact.reason
     passed = found is not None
-    return MotionProof(status, reason, track.length, len(track.links) + 1, track, contact, passed)
+    proof = MotionProof(
+        status, reason, motion, track.length, len(track.links) + 1, track, contact, passed
+    )
+    return _with_frames(proof, track.framework, track.frame)
 
 
-def _returning(motion: Motion) -> MotionProof:
+def _ends_at_the_first_contact(motion: Motion) -> bool:
+    """Whether nothing touches before the end of a motion, and something does there."""
+    touching = [event for event in motion.events if event.kind in (CONTACT, FLAT_FOLD)]
+    return motion.end in (CONTACT, FLAT_FOLD) and all(
+        event.time[1] >= motion.duration * (1 - _AT_ONCE) for event in touching
+    )
+
+
+def _returning(motion: Motion, progress: Progress | None) -> MotionProof:
     problem = Problem.of(motion.branch.pattern)
-    loop = LoopFinder(problem).follow(motion.branch, motion.side).loop
-    return MotionProof(loop.status, loop.reason, loop.length, loop.tubes, loop=loop)
+    looped = LoopFinder(problem).follow(motion.branch, motion.side, progress=progress)
+    loop = looped.loop
+    proof = MotionProof(loop.status, loop.reason, motion, loop.length, loop.tubes, looped=looped)
+    return _with_frames(proof, looped.start.framework, partial(frame_of, looped))
+
+
+def _with_frames(
+    proof: MotionProof, framework: Framework, frame: Callable[[float], Frame]
+) -> MotionProof:
+    """The proof with enclosed frames; UNDECIDED if it is that of another motion."""
+    if proof.status is not PROVED:
+        return proof
+    longest = Fraction(proof.length[1])
+    times = [float(min(Fraction(time), longest)) for time in proof.motion.times.tolist()]
+    motion = with_enclosed_frames(proof.motion, framework, [frame(time) for time in times])
+    if motion is None:
+        return replace(proof, status=UNDECIDED, reason=_STRAYED)
+    return replace(proof, motion=motion)
