@@ -17,7 +17,7 @@ from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.motion.following import follow
 from exactfold.motion.motion import Motion
 from exactfold.motion.writing import checked_ending, write_motion
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.pattern.fold_writing import write_text
 from exactfold.pattern.opening import Opened, has_branches
 from exactfold.verdict import PROVED, UNDECIDED
@@ -117,7 +117,7 @@ class Wanted:
         )
         return chosen(pattern, None, ",".join(map(str, pattern.foldable_vertices)), None, bar)
 
-    def _along(self, branch: Branch, bar: Bar) -> Motion:
+    def _along(self, branch: Branch, bar: Bar, pinned: Triangle | None = None) -> Motion:
         return follow(
             branch,
             side=self.side or 1,
@@ -125,6 +125,7 @@ class Wanted:
             frames=self.frames,
             by=self.by,
             through_nodes=self.through_nodes,
+            pinned=pinned,
             progress=bar,
         )
 
@@ -172,9 +173,10 @@ class Wanted:
                 "--certificate is for motions along branches of triangulated sheets with four "
                 "corners; `exactfold count --certificate` proves how panels fold"
             )
-        from exactfold.motion.proving import prove
+        from exactfold.motion.proving import prove_persistently
 
-        return prove(motion, progress=bar)
+        branch = motion.branch
+        return prove_persistently(motion, lambda held: self._along(branch, bar, held), progress=bar)
 
     # --- files -----------------------------------------------------------------------------------
 

@@ -31,6 +31,7 @@ from exactfold.motion.tube_start import (
     StartTube,
     prove_start,
 )
+from exactfold.pattern.crease_pattern import Triangle
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
@@ -228,18 +229,25 @@ class LoopFinder:
     problem: Problem
 
     def follow(
-        self, branch: Branch, side: int = 1, *, progress: Progress | None = None
+        self,
+        branch: Branch,
+        side: int = 1,
+        *,
+        pinned: Triangle | None = None,
+        bits: int = 64,
+        progress: Progress | None = None,
     ) -> LoopProof:
         """The loop that leaves the flat state along a half-branch of a simple, proved branch.
 
-        `progress` is told how many tubes there are. Raises as `half_branch`.
+        `pinned` and `bits` as in `half_branch`, whose errors are raised. `progress` is told how
+        many tubes there are.
 
         >>> from exactfold.count.find import find_branch
         >>> branch = find_branch("two-vertex", "+-")
         >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
         <Loop: +-, saddle + to +-, saddle -, proved>
         """
-        return self._proof(half_branch(branch, side).start, progress)
+        return self._proof(half_branch(branch, side, pinned, bits=bits).start, progress)
 
     def follow_from(self, branch: Branch, source: HalfBranch) -> LoopProof:
         """The loop that leaves the flat state along `source`, one of the halves of a branch.
@@ -260,7 +268,7 @@ class LoopFinder:
         self, start: StartTube, progress: Progress | None
     ) -> tuple[list[Link | Passage], Landing | None, str]:
         """The steps from a start tube on, to a landing or to what stopped the proof."""
-        equations = LengthEquations.of(start.framework)
+        equations = LengthEquations.of(start.framework, start.bits)
         last, time = start.last, start.length(0, start.last)
         ahead = onwards(
             equations, start.ball(last), start.ball_velocity(last), time, float(time[0]) / 2
@@ -304,7 +312,10 @@ class LoopFinder:
         framework = steps[-1].tube.framework
         flat = flat_vertices(framework, point)
         patch = FlatPatch.of(framework, flat)
-        tube = None if patch is None else prove_node_tube(framework, patch, point, tangent)
+        bits = steps[-1].tube.bits
+        tube = (
+            None if patch is None else prove_node_tube(framework, patch, point, tangent, bits=bits)
+        )
         if tube is None:
             return None
         # The first link that reaches into the tube, so that the short ones before the node go.
@@ -371,7 +382,7 @@ class LoopFinder:
 
     def _start(self, tube: Tube, heights: FloatArray) -> StartTube | None:
         try:
-            return prove_start(tube.framework, self.problem.gauge, heights)
+            return prove_start(tube.framework, self.problem.gauge, heights, bits=tube.bits)
         except NotProvedAtTheFlatStateError:
             return None
 

@@ -15,16 +15,20 @@ from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import ContactWatch, FirstContact
 from exactfold.motion.enclosed import with_enclosed_frames
-from exactfold.motion.events import CONTACT, FLAT_FOLD, RETURN
+from exactfold.motion.events import CONTACT, FLAT_FOLD, NODE, RETURN, SINGULAR
 from exactfold.motion.framework import Framework
 from exactfold.motion.loop_file import LoopFile
 from exactfold.motion.loop_frames import frame_of
 from exactfold.motion.loops import Loop, LoopFinder, LoopProof
 from exactfold.motion.motion import Motion
 from exactfold.motion.tracks import Frame, Link, Track, follow_proved, half_branch
+from exactfold.pattern.crease_pattern import Triangle
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
+
+BITS = 64, 128
+"""After the point, of the numbers in tubes: what is tried, one after the other."""
 
 _AT_ONCE = 1e-9
 _STRAYED = "the frames in floats are not near the proved curve: floats have left the branch"
@@ -59,6 +63,13 @@ class MotionProof:
     def loop(self) -> Loop | None:
         """Of a motion until its return, where it ends."""
         return None if self.looped is None else self.looped.loop
+
+    @property
+    def may_succeed_otherwise(self) -> bool:
+        """Whether tubes failed at a place where floats see nothing singular."""
+        if self.status is PROVED or self.motion.end in (NODE, SINGULAR):
+            return False
+        return self.reason != _STRAYED and (self.track is None or self.track.status is not PROVED)
 
     def certificate(self) -> Document | None:
         """The evidence for `exactfold.checker`; None for a motion until its return.
@@ -95,9 +106,10 @@ class MotionProof:
             return True
         if self.looped is None or self.looped.landing is None:
             return False
-        file = LoopFile.opened(path, self.looped.problem, resume=False, replace=True)
+        looped = self.looped
+        file = LoopFile.opened(path, looped.problem, resume=False, replace=True, like=looped.start)
         try:
-            file.add(self.looped.loop, self.looped.line())
+            file.add(looped.loop, looped.line())
             file.finish()
         finally:
             file.close()
@@ -121,7 +133,7 @@ class MotionProof:
         return f"<MotionProof: {self.status}, {self.tubes} tubes>"
 
 
-def prove(motion: Motion, *, progress: Progress | None = None) -> MotionProof:
+def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = None) -> MotionProof:
     """Prove a motion as far as it was followed.
 
     Tubes hold one configuration for each parameter, from the flat state to the end of the motion
@@ -129,7 +141,7 @@ def prove(motion: Motion, *, progress: Progress | None = None) -> MotionProof:
     until its first contact is proved with that contact; any other one with how far it is clear.
     Nodes are passed where the motion returns to the flat state (docs/motions.md), and are its end
     otherwise. The frames of the motion that is returned are those of the proved curve, each in a
-    box (`Motion.bounds`).
+    box (`Motion.bounds`). `bits`: after the point, of all numbers in the tubes.
 
     Raises `UsageError` where the branch is not proved. UNDECIDED says nothing against the motion.
 
@@ -141,13 +153,59 @@ def prove(motion: Motion, *, progress: Progress | None = None) -> MotionProof:
     """
     try:
         if motion.end == RETURN:
-            return _returning(motion, progress)
-        return _tracked(motion, progress)
+            return _returning(motion, bits, progress)
+        return _tracked(motion, bits, progress)
     except NotProvedAtTheFlatStateError as error:
         return MotionProof(UNDECIDED, str(error), motion, (Fraction(0), Fraction(0)), 0)
 
 
-def _tracked(motion: Motion, progress: Progress | None) -> MotionProof:
+def prove_persistently(
+    motion: Motion,
+    again: Callable[[Triangle], Motion],
+    *,
+    progress: Progress | None = None,
+) -> MotionProof:
+    """`prove`, and where tubes fail once more with more bits, then with another triangle held.
+
+    `again` follows the same motion with a triangle of the framework held: times are others then,
+    and so is `MotionProof.motion`. Where floats found a node or a singular configuration at the
+    end nothing more is tried. What was tried is in `MotionProof.reason`. Raises as `prove`.
+
+    >>> from exactfold.count.find import find_branch
+    >>> from exactfold.motion.following import follow
+    >>> branch = find_branch("two-vertex", "+-")
+    >>> motion = follow(branch, until="30deg", frames=2)
+    >>> prove_persistently(motion, lambda held: follow(branch, until="30deg", pinned=held)).status
+    <Verdict.PROVED: 'proved'>
+    """
+    found = prove(motion, progress=progress)
+    if not found.may_succeed_otherwise:
+        return found
+    other = _another(motion.curve.framework)
+    held = [motion.pinned]
+    finer = prove(motion, bits=BITS[1], progress=progress)
+    if finer.may_succeed_otherwise and other is not None:
+        turned = again(other)
+        held.append(turned.pinned)
+        by_turning = prove(turned, bits=BITS[1], progress=progress)
+        if by_turning.status is PROVED:
+            return by_turning
+    if not finer.may_succeed_otherwise:
+        return finer
+    faces = " and ".join("-".join(map(str, face)) for face in held)
+    tried = f"tried: steps down to 1e-7, {BITS[0]} and {BITS[1]} bits, face {faces} held"
+    best = max(found, finer, key=lambda proof: proof.length[0])
+    return replace(best, reason=f"{best.reason} ({tried})")
+
+
+def _another(framework: Framework) -> Triangle | None:
+    """The triangle to hold instead: one with as few of the same corners as possible."""
+    held = set(framework.pinned)
+    others = [t for t in framework.sheet.triangles if set(t) != held]
+    return min(others, key=lambda t: len(held & set(t)), default=None)
+
+
+def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProof:
     watch = ContactWatch()
     to_contact = _ends_at_the_first_contact(motion)
     found: FirstContact | None = None
@@ -169,8 +227,11 @@ def _tracked(motion: Motion, progress: Progress | None) -> MotionProof:
         return None
 
     until = None if to_contact else motion.duration
-    so_far = half_branch(motion.branch, motion.side)
-    track = follow_proved(motion.branch, motion.side, until=until, stop=stop)
+    pinned = motion.curve.framework.pinned
+    so_far = half_branch(motion.branch, motion.side, pinned, bits=bits)
+    track = follow_proved(
+        motion.branch, motion.side, until=until, stop=stop, pinned=pinned, bits=bits
+    )
     contact = watch.result(track) if found is None else found
     status, reason = track.status, "" if track.status is PROVED else track.reason
     if to_contact and status is PROVED and contact.status is not PROVED:
@@ -190,9 +251,14 @@ def _ends_at_the_first_contact(motion: Motion) -> bool:
     )
 
 
-def _returning(motion: Motion, progress: Progress | None) -> MotionProof:
-    problem = Problem.of(motion.branch.pattern)
-    looped = LoopFinder(problem).follow(motion.branch, motion.side, progress=progress)
+def _returning(motion: Motion, bits: int, progress: Progress | None) -> MotionProof:
+    looped = LoopFinder(Problem.of(motion.branch.pattern)).follow(
+        motion.branch,
+        motion.side,
+        pinned=motion.curve.framework.pinned,
+        bits=bits,
+        progress=progress,
+    )
     loop = looped.loop
     proof = MotionProof(loop.status, loop.reason, motion, loop.length, loop.tubes, looped=looped)
     return _with_frames(proof, looped.start.framework, partial(frame_of, looped))
