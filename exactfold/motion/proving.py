@@ -15,7 +15,7 @@ from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import ContactWatch, FirstContact
 from exactfold.motion.enclosed import with_enclosed_frames
-from exactfold.motion.events import CONTACT, FLAT_FOLD, NODE, RETURN, SINGULAR
+from exactfold.motion.events import CONTACT, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
 from exactfold.motion.framework import Framework
 from exactfold.motion.loop_file import LoopFile
 from exactfold.motion.loop_frames import frame_of
@@ -67,7 +67,9 @@ class MotionProof:
     @property
     def may_succeed_otherwise(self) -> bool:
         """Whether tubes failed at a place where floats see nothing singular."""
-        if self.status is PROVED or self.motion.end in (NODE, SINGULAR):
+        if self.status is PROVED or self.motion.end == SINGULAR:
+            return False
+        if self.looped is None and _node_of(self.motion) is not None:
             return False
         return self.reason != _STRAYED and (self.track is None or self.track.status is not PROVED)
 
@@ -236,11 +238,22 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
     status, reason = track.status, "" if track.status is PROVED else track.reason
     if to_contact and status is PROVED and contact.status is not PROVED:
         status, reason = UNDECIDED, contact.reason
+    node = _node_of(motion)
+    if track.status is not PROVED and node is not None:
+        reason += (
+            f"; floats see a node at the time {node.time[1]:.6g}, through which only motions back "
+            "to the flat sheet are proved"
+        )
     passed = found is not None
     proof = MotionProof(
         status, reason, motion, track.length, len(track.links) + 1, track, contact, passed
     )
     return _with_frames(proof, track.framework, track.frame)
+
+
+def _node_of(motion: Motion) -> Event | None:
+    """The first node on a motion, as floats see it."""
+    return next((event for event in motion.events if event.kind == NODE), None)
 
 
 def _ends_at_the_first_contact(motion: Motion) -> bool:

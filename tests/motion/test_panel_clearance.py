@@ -10,7 +10,7 @@ from math import acos, atan, pi
 import numpy as np
 import pytest
 from flint import arb, ctx, fmpq
-from panel_sheets import grid, mesh, miura, tiling
+from panel_sheets import grid, mesh, miura
 
 from exactfold import count_ways
 from exactfold.errors import NotApplicableError
@@ -100,8 +100,8 @@ def test_pieces_hold_the_exact_positions(folding):
 
 def test_all_panels_of_a_sheet_that_folds_flat_are_apart_until_then(folding):
     found = prove_contacts(folding)
-    assert found.event.kind == "flat-fold"
-    assert found.clear > 3
+    assert (found.status, found.event.kind) == (PROVED, "flat-fold")
+    assert found.clear > pi - 1e-6
 
 
 def test_pairs_are_those_of_different_panels(folding):
@@ -161,17 +161,21 @@ def test_a_motion_in_floats_is_refused():
     assert follow_panels(mesh(1, 1, seed=1), frames=2).closes is UNDECIDED
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "motion",
-    [
-        follow_panels(tiling(2, 2), frames=2),
-        follow_panels(count_ways("zigzags"), component=3, frames=2),
-    ],
-    ids=["tiling", "zigzags"],
-)
-def test_the_contact_in_floats_lies_in_the_enclosure(motion):
+def test_strips_that_fold_up_together_meet_at_120_degrees():
+    """Two outer strips of equal width fold over the middle one until they meet edge to edge."""
+    motion = follow_panels(count_ways("zigzags"), component=3, frames=2)
     found = prove_contacts(motion)
     assert found.status is PROVED
+    low, high = found.event.time
+    assert low < 2 * pi / 3 < high < low + 1e-6
     [contact] = [event for event in motion.events if event.kind == "contact"]
-    assert found.event.time[0] <= contact.time[1] <= found.event.time[1]
+    assert low <= contact.time[1] <= high
+
+
+@pytest.mark.slow
+def test_a_large_sheet_that_folds_flat_is_apart_until_then():
+    motion = follow_panels(miura(4, 5), frames=2)
+    found = prove_contacts(motion)
+    assert found.status is PROVED
+    assert found.clear > pi - 1e-6
+    assert found.event.folds == motion.pattern.folds
