@@ -20,6 +20,8 @@ from exactfold.motion.loop_proofs import LoopProof as LoopProof
 from exactfold.motion.matching import Loops as Loops
 from exactfold.motion.matching import find_loops as find_loops
 from exactfold.motion.motion import Motion as Motion
+from exactfold.motion.panel_clearance import PanelClearance as PanelClearance
+from exactfold.motion.panel_clearance import prove_contacts as prove_contacts
 from exactfold.motion.panel_following import follow_panels as follow_panels
 from exactfold.motion.panel_motion import PanelMotion as PanelMotion
 from exactfold.motion.piece import Ball as Ball

@@ -17,6 +17,7 @@ from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.length_equations import LengthEquations
 from exactfold.motion.loop_proofs import Loop
 from exactfold.motion.piece import Ball
+from exactfold.motion.tube_start import StartTube
 from exactfold.motion.visits import Visit
 from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED
@@ -36,12 +37,22 @@ class LoopFile:
 
     @classmethod
     def opened(
-        cls, path: str | os.PathLike[str], problem: Problem, resume: bool, replace: bool
+        cls,
+        path: str | os.PathLike[str],
+        problem: Problem,
+        resume: bool,
+        replace: bool,
+        *,
+        like: StartTube | None = None,
     ) -> LoopFile:
-        """A new file, or with `resume` one that is continued; raises the errors of `Journal`."""
-        framework = Framework.of(problem.sheet)
+        """A new file, or with `resume` one that is continued; raises the errors of `Journal`.
+
+        All loops of a file hold the same triangle and have the same bits: those of `like`, by
+        default those of `LoopFinder`.
+        """
+        framework = Framework.of(problem.sheet) if like is None else like.framework
         pinned = [problem.labels[v] for v in framework.pinned]
-        bits = LengthEquations.of(framework).bits
+        bits = LengthEquations.of(framework).bits if like is None else like.bits
         header = header_line(problem.pattern, pinned, bits)
         if not resume:
             return cls(Journal(path, header, replace=replace), problem, ())

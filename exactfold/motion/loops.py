@@ -26,7 +26,9 @@ from exactfold.motion.tube_start import (
     StartTube,
     prove_start,
 )
+from exactfold.pattern.crease_pattern import Triangle
 from exactfold.problem.problem import Problem
+from exactfold.progress import Progress
 
 MOST_TUBES = 4000
 _FOLDED_FLAT = 1e-2
@@ -43,17 +45,26 @@ class LoopFinder:
 
     problem: Problem
 
-    def follow(self, branch: Branch, side: int = 1) -> LoopProof:
+    def follow(
+        self,
+        branch: Branch,
+        side: int = 1,
+        *,
+        pinned: Triangle | None = None,
+        bits: int = 64,
+        progress: Progress | None = None,
+    ) -> LoopProof:
         """The loop that leaves the flat state along a half-branch of a simple, proved branch.
 
-        Raises as `half_branch`.
+        `pinned` and `bits` as in `half_branch`, whose errors are raised. `progress` is told how
+        many tubes there are.
 
         >>> from exactfold.count.find import find_branch
         >>> branch = find_branch("two-vertex", "+-")
         >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
         <Loop: +-, saddle + to +-, saddle -, proved>
         """
-        return self._proof(half_branch(branch, side).start)
+        return self._proof(half_branch(branch, side, pinned, bits=bits).start, progress)
 
     def follow_from(self, branch: Branch, source: HalfBranch) -> LoopProof:
         """The loop that leaves the flat state along `source`, one of the halves of a branch.
@@ -66,13 +77,13 @@ class LoopFinder:
                 return self._proof(start)
         raise NotProvedAtTheFlatStateError(f"the branch has not the half-branch {source}")
 
-    def _proof(self, start: StartTube) -> LoopProof:
-        equations = LengthEquations.of(start.framework)
+    def _proof(self, start: StartTube, progress: Progress | None = None) -> LoopProof:
+        equations = LengthEquations.of(start.framework, start.bits)
         last, time = start.last, start.length(0, start.last)
         ahead = onwards(
             equations, start.ball(last), start.ball_velocity(last), time, float(time[0]) / 2
         )
-        steps, landing, reason = self._followed(equations, ahead)
+        steps, landing, reason = self._followed(equations, ahead, progress=progress)
         return LoopProof(self.problem, start, tuple(steps), landing, reason)
 
     def follow_from_node(self, tube: NodeTube) -> ArcProof:
@@ -88,6 +99,7 @@ class LoopFinder:
         equations: LengthEquations,
         ahead: Iterator[Link | str],
         at_node: bool = False,
+        progress: Progress | None = None,
     ) -> tuple[list[Link | Passage], Landing | None, str]:
         """The steps on links ahead, to a landing or to what stopped the proof.
 
@@ -98,6 +110,8 @@ class LoopFinder:
             link = next(ahead)
             if isinstance(link, Link):
                 steps.append(link)
+                if progress is not None:
+                    progress("proving, tubes", len(steps), 0)
                 landing = self._landing(link)
                 if landing is not None:
                     return steps, landing, ""
@@ -132,7 +146,10 @@ class LoopFinder:
         framework = steps[-1].tube.framework
         flat = flat_vertices(framework, point)
         patch = FlatPatch.of(framework, flat)
-        tube = None if patch is None else prove_node_tube(framework, patch, point, tangent)
+        bits = steps[-1].tube.bits
+        tube = (
+            None if patch is None else prove_node_tube(framework, patch, point, tangent, bits=bits)
+        )
         if tube is None:
             return None
         # The first link that reaches into the tube, so that the short ones before the node go.
@@ -199,6 +216,6 @@ class LoopFinder:
 
     def _start(self, tube: Tube, heights: FloatArray) -> StartTube | None:
         try:
-            return prove_start(tube.framework, self.problem.gauge, heights)
+            return prove_start(tube.framework, self.problem.gauge, heights, bits=tube.bits)
         except NotProvedAtTheFlatStateError:
             return None

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from exactfold.arrays import BigArray, FloatArray
-from exactfold.motion.arclength import Interval, length_between
+from exactfold.motion.arclength import Interval, length_between, parameter_after
 from exactfold.motion.contraction import SCALE, WEIGHT_BITS, Contraction, up
 from exactfold.motion.flat_patches import FlatPatch
 from exactfold.motion.framework import Framework
@@ -59,7 +59,7 @@ class NodeTube(Piece):
 
     def length(self, low: int, high: int) -> Interval:
         """Bounds of the length of the curve for low <= s <= high, in the framework's unit."""
-        rows = [tuple((k + 1) * a for a in row) for k, row in enumerate(self.coefficients)]
+        rows = self._slope_of_displacements
         most = max(abs(low), abs(high))
         error = [
             max(a, b) + 2
@@ -68,6 +68,16 @@ class NodeTube(Piece):
             )
         ]
         return length_between(rows, self.bits, error, PARAMETER_BITS, low, high)
+
+    def near(self, length: float, low: int, high: int) -> int:
+        """A parameter between `low` and `high` that is nearly this length after `low`."""
+        rows = np.array([self._floats(row) for row in self._slope_of_displacements])
+        return parameter_after(rows, length, PARAMETER_BITS, low, high)
+
+    @property
+    def _slope_of_displacements(self) -> list[Row]:
+        """The coefficients of the derivative of s p(s), over 2^bits."""
+        return [tuple((k + 1) * a for a in row) for k, row in enumerate(self.coefficients)]
 
 
 def prove_node_tube(

@@ -57,6 +57,9 @@ LOOPS = exactfold.find_loops(ONE)
 FLAT_FOLDABLE = exactfold.decompose(panels(single_vertex(4)))
 PROVING = {
     "motion of panels": exactfold.motion.follow_panels(FLAT_FOLDABLE, frames=3),
+    "clearance of panels": exactfold.motion.prove_contacts(
+        exactfold.motion.follow_panels(FLAT_FOLDABLE, until="20deg", frames=2)
+    ),
     "component of panels": exactfold.motion.panel_components(FLAT_FOLDABLE)[0],
     "mode of panels": exactfold.motion.panel_modes(FLAT_FOLDABLE)[0],
     "track": TRACK,
