@@ -561,6 +561,54 @@ def test_boxes_of_vertices_with_other_errors() -> None:
                         assert off + path.errors[3 * v + i] <= error
 
 
+def test_arms_that_turn_past_each_other() -> None:
+    """Upright in the middle, and not at an end: each time one product of two changes decides."""
+    for one, two in (
+        (([-10, 3, 0], [10, 3, 0]), ([-3, 10, 0], [-3, -10, 0])),
+        (([3, -10, 0], [3, 10, 0]), ([-10, 3, 0], [10, 3, 0])),
+    ):
+        boxes = {0: ([0] * 3, [0] * 3, 0), 1: (*one, 0), 2: (*two, 0)}
+        middle = [[(a + b) // 2 for a, b in zip(*ends, strict=True)] for ends in (one, two)]
+        assert middle[0][0] * middle[1][1] - middle[0][1] * middle[1][0] == 9
+        assert not motion_boxes.upright(boxes, 0, 1, 2)
+
+
+def test_a_volume_that_drifts_and_is_off() -> None:
+    """z >= 1 along the line, but off by 2."""
+    size = 10**6
+    m = [0, 0, size], [4 * size, 4 * size, 5 * size], 2 * size
+    boxes = {0: ([0] * 3, [0] * 3, 0), 3: m}
+    for v, x in ((1, [1000 * size, 0, 0]), (2, [0, 1000 * size, 0])):
+        boxes[v] = x, x, 0
+    assert motion_boxes.volume_sign(boxes, 0, 1, 2, 3) == 0
+    boxes[3] = m[0], m[0], size // 16
+    assert motion_boxes.volume_sign(boxes, 0, 1, 2, 3) == 1
+
+
+def test_boxes_of_a_few_units() -> None:
+    """What is said of small boxes holds in all their corners, at both ends."""
+    rng, seen = random.Random(10), {"volume": 0, "upright": 0}
+    for _ in range(3000):
+        boxes: motion_boxes.Boxes = {}
+        for v in range(4):
+            a = [rng.randint(-6, 6) for _ in range(3)]
+            boxes[v] = a, [x + rng.choice((0, 0, -1, 1, 5)) for x in a], rng.choice((0, 0, 0, 1))
+        volume = motion_boxes.volume_sign(boxes, 0, 1, 2, 3)
+        upright = motion_boxes.upright(boxes, 0, 1, 2)
+        for end in (0, 1):
+            for _ in range(4 if volume or upright else 0):
+                x = [[c + rng.choice((-e, e)) for c in (a, b)[end]] for a, b, e in boxes.values()]
+                (p, q, r), (s, t, u), (f, g, h) = (
+                    [b - a for a, b in zip(x[0], x[k], strict=True)] for k in (1, 2, 3)
+                )
+                exact = p * (t * h - u * g) - q * (s * h - u * f) + r * (s * g - t * f)
+                assert not volume or exact * volume > 0
+                assert not upright or p * t - q * s > 0
+        seen["volume"] += volume != 0
+        seen["upright"] += upright
+    assert min(seen.values()) > 20
+
+
 def faces_for(accepted: Any, pairs: str) -> tuple[Faces, dict[str, list[tuple[int, int]]]]:
     """Faces whose tests accept some stretches, and what they accept."""
     seen: dict[str, list[tuple[int, int]]] = {"apart": [], "corner": [], "open": []}
