@@ -334,6 +334,7 @@ def draw(
         str | None,
         typer.Option(
             "--branch",
+            "--signs",
             metavar="N|+-...",
             help="One way to fold: the N-th that `count` lists, a branch or a mode of panels; or "
             "the branch with these vertex signs; @FILE reads them.",

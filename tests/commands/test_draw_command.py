@@ -36,7 +36,7 @@ def test_without_a_way_the_letters_of_the_file_are_drawn():
     assert (text.count('class="M"'), text.count('class="V"')) == (6, 6)
 
 
-@pytest.mark.parametrize("which", [("--branch", "-+"), ("--up", "5")])
+@pytest.mark.parametrize("which", [("--branch", "-+"), ("--signs", "-+"), ("--up", "5")])
 def test_a_branch_by_its_signs(which):
     expected = branch_way(find_branch("two-vertex", "-+")).picture("two-vertex")
     assert drawn("two-vertex", *which) == expected
