@@ -39,7 +39,7 @@ _WIDEST = 1.0
 """Radians that the angle may be off the middle one of a part."""
 _CLOSE = 1e-3
 """Radians within which extreme angles are looked for."""
-_MOST_PARTS = 8000
+_MOST_PARTS = 4000
 """Of a chain; with more, angles that turn too fast are given up, extreme ones are less close."""
 _MICRO = 10**6
 
