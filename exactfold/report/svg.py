@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil, floor, log10
@@ -9,19 +10,23 @@ from typing import Final
 
 COLOURS: Final = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#4d4d4d")
 """Colours that people with any kind of colour blindness tell apart (Okabe and Ito, 2008)."""
-VALLEY, MOUNTAIN, FLAT = COLOURS[0], COLOURS[1], "#999999"
+VALLEY, MOUNTAIN, FLAT = COLOURS[0], "#c8202f", "#999999"
+"""Blue and red, of much the same grey: valleys are dashed, too, where both are drawn."""
 
 INK, FAINT = "#222222", "#dddddd"
+
+_NOT_IN_XML: Final = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 Point = tuple[float, float]
 
 
 def escape(text: str) -> str:
-    """Text as it may stand in an element or in an attribute.
+    """Text as it may stand in an element or in an attribute; what XML cannot hold is marked.
 
     >>> escape('<a & "b">')
     '&lt;a &amp; &quot;b&quot;&gt;'
     """
+    text = _NOT_IN_XML.sub("\N{REPLACEMENT CHARACTER}", text)
     for character, name in (("&", "amp"), ("<", "lt"), (">", "gt"), ('"', "quot")):
         text = text.replace(character, f"&{name};")
     return text
