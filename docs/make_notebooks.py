@@ -1,13 +1,14 @@
 """Run the notebooks in docs/notebooks and store what they print.
 
 `python docs/make_notebooks.py [NAME ...]` runs them in place, with the packages of
-`pip install 'exactfold[notebooks]'`. What changes from run to run is left out: execution times,
-identifiers of sessions. The tests run them again and compare.
+`pip install 'exactfold[notebooks]'`. What changes from run to run is left out: times of execution,
+and the seconds that an answer took. The tests run them again and compare.
 """
 
 from __future__ import annotations
 
 import json
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -16,6 +17,7 @@ from typing import Any
 FOLDER = Path(__file__).with_name("notebooks")
 SECONDS = 300
 """After which a cell is given up."""
+_SECONDS = re.compile(r"\(\d+(\.\d+)? s\)")
 
 
 def executed(path: Path) -> dict[str, Any]:
@@ -44,6 +46,9 @@ def executed(path: Path) -> dict[str, Any]:
     }
     for cell in found["cells"]:
         cell["metadata"] = {}
+        for output in cell.get("outputs", ()):
+            if "text/html" in (data := output.get("data", {})):
+                data["text/html"] = [_SECONDS.sub("(... s)", line) for line in data["text/html"]]
     return found
 
 
