@@ -609,6 +609,18 @@ def test_boxes_of_a_few_units() -> None:
     assert min(seen.values()) > 20
 
 
+def test_when_a_fold_is_closed() -> None:
+    """Farther than closed, and nearer than at 90 degrees, which no flat fold is: on the grid."""
+    sheet = equations()
+    faces = Faces(sheet)
+    assert sorted(faces.folds) == sorted(sheet.sheet.folds)
+    for fold, (left, right, closed, mean) in faces.folds.items():
+        near, far = (x * 4**GRID for x in motion_contacts.folded_over(sheet, fold, left, right))
+        assert 0 <= closed - near < 1
+        assert 0 <= (near + far) / 2 - mean < 1
+        assert near < mean < far
+
+
 def faces_for(accepted: Any, pairs: str) -> tuple[Faces, dict[str, list[tuple[int, int]]]]:
     """Faces whose tests accept some stretches, and what they accept."""
     seen: dict[str, list[tuple[int, int]]] = {"apart": [], "corner": [], "open": []}
