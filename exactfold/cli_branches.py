@@ -20,6 +20,7 @@ from exactfold.commands.parameters import (
     fold_name,
     numbers,
     one_side,
+    sign_vectors,
     whole,
 )
 from exactfold.commands.shell import (
@@ -327,5 +328,62 @@ def actuate(
     raise typer.Exit(asked.answer())
 
 
-COMMANDS = (branch, export, fold, motions, actuate)
+@reported
+def view(
+    pattern: Pattern,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            callback=not_a_dash,
+            metavar="VIEW.html",
+            help="Default: PATTERN.view.html in this folder.",
+        ),
+    ] = None,
+    branches: Annotated[
+        Any,
+        typer.Option(
+            parser=sign_vectors,
+            metavar="+-+,++-",
+            help="Show the branches with these vertex signs only. Default: all, up to ten foldable "
+            "vertices; of larger sheets the one with all vertices up, and its neighbours.",
+        ),
+    ] = None,
+    frames: Annotated[
+        int, typer.Option(parser=whole(2), metavar="N", help="Frames of each motion.")
+    ] = 32,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            parser=whole(1), metavar="N", help="Processes that follow motions. Default: all cores."
+        ),
+    ] = None,
+    serve: Annotated[
+        bool,
+        flag(
+            "--serve",
+            text="Write no file: serve the page on this machine, and follow branches as they are "
+            "looked at.",
+        ),
+    ] = False,
+    port: Annotated[
+        int | None,
+        typer.Option(parser=whole(1), metavar="P", help="Of --serve. Default: any that is free."),
+    ] = None,
+    snap: Snap = None,
+    sheet: Sheet = None,
+) -> None:
+    """Show a sheet and its ways to fold in the browser: one HTML file that needs no network.
+
+    The crease pattern stands beside the sheet in space, with a slider from flat
+    to the first contact. A click on a vertex pops it through, a click on a fold
+    asks for a mountain or a valley.
+    """
+    from exactfold.commands.view import Wanted
+
+    Wanted(pattern, snap, sheet, output, branches, frames, workers, serve, port).run()
+
+
+COMMANDS = (branch, export, fold, motions, actuate, view)
 """In the order in which the help lists them."""
