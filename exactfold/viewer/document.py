@@ -113,9 +113,7 @@ class Known:
             if isinstance(pattern, CreasePattern) and folds_along_branches:
                 found = _branches(opened, pattern, branches, progress)
                 facts, follower = _branch_facts(found), Following(frames)
-                listed = tuple(
-                    (branch_way(branch, found.said), branch) for branch in found.branches
-                )
+                listed = tuple((branch_way(branch), branch) for branch in found.branches)
                 return cls(opened, title, follower, listed, facts)
             return _panels(opened, title, frames, progress)
         except (InputError, UsageError, WorkerDiedError):
@@ -162,12 +160,6 @@ class _Branches:
     pattern: CreasePattern
     branches: tuple[Branch, ...]
     count: BranchCount | None
-
-    @property
-    def said(self) -> str:
-        """What a count proves of each branch that it lists."""
-        whole = self.count is not None and self.count.status is PROVED
-        return "it exists, and the count has no other to list" if whole else "it exists"
 
 
 class _Numbered:

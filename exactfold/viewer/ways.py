@@ -94,8 +94,8 @@ def not_followed(why: str) -> dict[str, Any]:
     return {"motion": None, "why": why}
 
 
-def branch_way(branch: Branch, said: str = "") -> dict[str, Any]:
-    """A branch without its motion; `said` is what is proved of it where it does not say itself."""
+def branch_way(branch: Branch) -> dict[str, Any]:
+    """A branch without its motion."""
     try:
         leading = branch.fold_angles.degrees(AMOUNT)
     except ExactfoldError:
@@ -107,7 +107,7 @@ def branch_way(branch: Branch, said: str = "") -> dict[str, Any]:
         "saddle": branch.saddle,
         "multiplicity": branch.multiplicity,
         "status": str(branch.status),
-        "reason": branch.reason or said,
+        "reason": branch.reason or "it exists, with these vertex signs and letters",
         "angles": _angles(branch.pattern, leading),
         "motion": None,
         "why": "",
@@ -129,12 +129,19 @@ def component_way(
     if component.free:
         parts.append("free folds")
     by = "; ".join(sorted({mode.extends.by for mode in folding}))
+    family = (
+        f"; one of a family of dimension {component.dimension}, all modes at the same rate"
+        if component.dimension > 1 and folding
+        else ""
+    )
     return _panel_way(
         ways.pattern,
         " and ".join(parts),
         letters,
         str(PROVED),
-        f"that it truly folds is shown by: {by}" if by else "folds from border to border are free",
+        f"that it truly folds is shown by: {by}{family}"
+        if by
+        else "folds from border to border are free",
     )
 
 

@@ -62,7 +62,7 @@ class Browser:
             width=width,
             height=height,
             deviceScaleFactor=1,
-            mobile=False,
+            mobile=width < 500,
         )
         features = {
             "prefers-color-scheme": "dark" if dark else "light",

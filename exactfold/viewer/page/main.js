@@ -53,6 +53,14 @@ function paintSheet() {
   transport.angle(frames ? Math.max(0, ...foldAngles(sheet, positions).map(Math.abs)) : null);
 }
 
+// The first picture holds the flat sheet and the motion that is shown first.
+function fitScene() {
+  const frames = framesOf(store.get().ways[store.get().way]);
+  const shapes = frames ? [0.35, 0.7, 1].flatMap((part) => [false, true].map(
+    (turn) => positionsAt(frames, part, turn, new Float64Array(flat.length)))) : [];
+  scene?.fit([flat, ...shapes]);
+}
+
 function describe() {
   const { ways, way, mirrored } = store.get();
   const shown = ways[way];
@@ -150,13 +158,14 @@ createPattern(byId("pattern"), sheet, store, { onVertex: pop });
 const list = createList(page, store);
 const radius = flat.reduce((most, _, i) => (i % 3 ? most : Math.max(most, Math.hypot(flat[i], flat[i + 1]))), 1e-12);
 try {
-  scene = createScene(byId("canvas"), sheet, radius);
+  scene = createScene(byId("canvas"), sheet, flat, radius);
 } catch (error) {
   byId("stage").append(Object.assign(document.createElement("p"), { className: "empty", textContent: `The sheet cannot be drawn in space: ${error.message}` }));
 }
 store.on(["way", "mirrored", "time", "ways"], paintSheet);
 store.on(["way", "mirrored", "ways"], describe);
 describe();
+fitScene();
 if (framesOf(page.ways[0])) store.set({ time: OPENING });
 paintSheet();
 

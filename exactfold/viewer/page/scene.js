@@ -3,8 +3,9 @@
 const UPPER = 0x56b4e9, LOWER = 0xf0e442;  // the side that is +z in the flat sheet, and the other
 const EDGE = 0x1d1c1a;
 const AZIMUTH = -62, ELEVATION = 34, VIEW = 30;
+const FILLED = 0.9;  // of the picture
 
-export function createScene(canvas, sheet, radius) {
+export function createScene(canvas, sheet, flat, radius) {
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
   const scene = new THREE.Scene();
   const camera = new THREE.PerspectiveCamera(VIEW, 1, radius / 50, radius * 60);
@@ -26,13 +27,19 @@ export function createScene(canvas, sheet, radius) {
   const inner = lines(sheet.folds, 1.3), outer = lines(sheet.boundary, 2.4);
   scene.add(inner.object, outer.object);
 
-  scene.add(new THREE.HemisphereLight(0xffffff, 0xb9b4aa, 1.9));
-  const lamp = new THREE.DirectionalLight(0xffffff, 1.7);
+  scene.add(new THREE.HemisphereLight(0xffffff, 0xe2ddd3, 1.75));
+  const lamp = new THREE.DirectionalLight(0xffffff, 1.6);
   lamp.position.set(0.35, -0.5, 0.79);
-  const torch = new THREE.DirectionalLight(0xffffff, 0.75);  // so that no side is dark
+  const torch = new THREE.DirectionalLight(0xffffff, 0.95);  // so that no side is dark
   scene.add(lamp, torch);
 
-  let width = 0, height = 0, wanted = false, drawn = 0;
+  // The border in the colour of text, so that it is seen on light and on dark ground.
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const colour = () => outer.material.color.set(getComputedStyle(document.body).color);
+  dark.addEventListener("change", () => (colour(), want()));
+  colour();
+
+  let width = 0, height = 0, wanted = false, drawn = 0, fitted = [flat];
 
   function resize() {
     const box = canvas.parentElement;
@@ -48,32 +55,47 @@ export function createScene(canvas, sheet, radius) {
     draw();
   }
 
-  // Far enough that a sphere round every frame is in the picture.
+  // From where a picture of a fold is usually seen, with all of these shapes in the picture.
   function home() {
-    const half = (VIEW / 2) * (Math.PI / 180);
-    const narrow = Math.min(half, Math.atan(Math.tan(half) * Math.max(camera.aspect, 0.2)));
-    const distance = (0.92 * radius) / Math.sin(narrow);
-    place(AZIMUTH * (Math.PI / 180), (90 - ELEVATION) * (Math.PI / 180), distance);
+    const a = AZIMUTH * (Math.PI / 180), e = ELEVATION * (Math.PI / 180);
+    const towards = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
+    const right = [-Math.sin(a), Math.cos(a), 0];
+    const up = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
+    const seen = fitted.flatMap((shape) => pointsSeen(shape, [right, up, towards]));
+    const [x, y] = [0, 1].map((c) => {
+      const values = seen.map((point) => point[c]);
+      return (Math.min(...values) + Math.max(...values)) / 2;
+    });
+    const tall = Math.tan((VIEW / 2) * (Math.PI / 180)) * FILLED, wide = tall * camera.aspect;
+    const distance = Math.max(...seen.map(([px, py, pz]) => pz + Math.max(Math.abs(px - x) / wide, Math.abs(py - y) / tall)));
+    controls.target.set(...[0, 1, 2].map((c) => x * right[c] + y * up[c]));
+    place(a, Math.PI / 2 - e, distance);
     camera.userData.touched = false;
   }
 
+  // The camera on a sphere round its target.
   function place(azimuth, polar, distance) {
     const p = Math.min(Math.max(polar, 0.01), Math.PI - 0.01);
+    const { x, y, z } = controls.target;
     camera.position.set(
-      distance * Math.sin(p) * Math.cos(azimuth), distance * Math.sin(p) * Math.sin(azimuth), distance * Math.cos(p));
-    controls.target.set(0, 0, 0);
-    camera.lookAt(0, 0, 0);
+      x + distance * Math.sin(p) * Math.cos(azimuth), y + distance * Math.sin(p) * Math.sin(azimuth), z + distance * Math.cos(p));
     controls.update();
     want();
   }
 
   // Turned by angles, and nearer by a factor.
   function move(turn, tilt, factor = 1) {
-    const { x, y, z } = camera.position;
+    const [x, y, z] = camera.position.clone().sub(controls.target).toArray();
     const distance = Math.hypot(x, y, z);
     const next = Math.min(Math.max(distance * factor, radius), radius * 20);
     place(Math.atan2(y, x) + turn, Math.acos(z / distance) + tilt, next);
     camera.userData.touched = true;
+  }
+
+  // The shapes that are to be in the picture at first; the picture moves there if it is as it was.
+  function fit(shapes) {
+    fitted = shapes;
+    if (width && !camera.userData.touched) home();
   }
 
   function show(positions) {
@@ -109,7 +131,16 @@ export function createScene(canvas, sheet, radius) {
   canvas.addEventListener("webglcontextrestored", want);
   new ResizeObserver(resize).observe(canvas.parentElement);
   resize();
-  return { show, move, home, drawn: () => drawn };
+  return { show, move, home, fit, drawn: () => drawn };
+}
+
+// Right, up and towards the eye, for every vertex.
+function pointsSeen(shape, axes) {
+  const found = [];
+  for (let v = 0; v < shape.length; v += 3) {
+    found.push(axes.map((axis) => axis[0] * shape[v] + axis[1] * shape[v + 1] + axis[2] * shape[v + 2]));
+  }
+  return found;
 }
 
 function lines(edges, width) {
