@@ -353,6 +353,10 @@ def view(
     frames: Annotated[
         int, typer.Option(parser=whole(2), metavar="N", help="Frames of each motion.")
     ] = 32,
+    prove: Annotated[
+        bool,
+        flag("--prove", text="Of branches: prove each motion and its first contact, too."),
+    ] = False,
     workers: Annotated[
         int | None,
         typer.Option(
@@ -382,7 +386,7 @@ def view(
     """
     from exactfold.commands.view import Wanted
 
-    Wanted(pattern, snap, sheet, output, branches, frames, workers, serve, port).run()
+    Wanted(pattern, snap, sheet, output, branches, frames, prove, workers, serve, port).run()
 
 
 COMMANDS = (branch, export, fold, motions, actuate, view)

@@ -27,6 +27,7 @@ class Wanted:
     output: Path | None
     branches: Sequence[str] | None
     frames: int
+    proving: bool
     workers: int | None
     serve: bool
     port: int | None
@@ -53,6 +54,7 @@ class Wanted:
                     name=name,
                     branches=self.branches,
                     frames=self.frames,
+                    proving=self.proving,
                     workers=self.workers or available_cores(),
                     progress=bar,
                 )
@@ -71,6 +73,7 @@ class Wanted:
                     name=name,
                     branches=self.branches,
                     frames=self.frames,
+                    proving=self.proving,
                     port=self.port or 0,
                     progress=bar,
                 )

@@ -10,7 +10,7 @@ import numpy as np
 from exactfold.arrays import FloatArray
 
 _STEPS: Final = 1 << 23
-_ORDER: Final = 3
+_ORDER: Final = 4
 _BYTES: Final = 6
 
 
@@ -18,7 +18,7 @@ def coded_frames(coords: FloatArray) -> dict[str, Any]:
     """Frames of shape (frames, V, 3) as JSON: their number, a scale, and base64 text.
 
     Coordinates are rounded to multiples of scale / 2^23, where the largest is the scale in size.
-    Along the frames their third differences are small where a motion is smooth; these are written
+    Along the frames their fourth differences are small where a motion is smooth; these are written
     frame by frame as integers, the sign in the lowest bit, seven bits a byte, lowest first, with
     the highest bit of a byte set where more follow.
 

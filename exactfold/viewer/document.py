@@ -6,6 +6,8 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from exactfold.count.find import BranchFinder
@@ -49,6 +51,7 @@ def view_document(
     name: str | None = None,
     branches: Sequence[str] | None = None,
     frames: int = FRAMES,
+    proving: bool = False,
     workers: int = 1,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
@@ -59,7 +62,8 @@ def view_document(
     pop up and its neighbours; or those with the vertex signs `branches`. Of any other sheet the
     components of the motions of its rigid panels, up to 200, and the modes that are not followed.
     Each is followed in `frames` frames to the first contact; one that cannot be has the reason.
-    `workers`: processes that share this. `name` names the sheet.
+    With `proving`, motions along branches are proved, too (`prove`). `workers`: processes that
+    share the work. `name` names the sheet.
 
     Raises the errors of `open_sheet`, `UsageError` for signs that do not fit, and
     `WorkerDiedError`. A sheet of which nothing can be counted has a document all the same, with the
@@ -69,7 +73,9 @@ def view_document(
     >>> [(way["signs"], way["letters"], way["motion"]["end"]) for way in document["ways"]]
     [('+-', 'MVVVMVM', 'flat-fold')]
     """
-    known = Known.of(sheet, name=name, branches=branches, frames=frames, progress=progress)
+    known = Known.of(
+        sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
+    )
     return known.document(known.followed(process_pool(workers), progress))
 
 
@@ -95,13 +101,16 @@ class Known:
         name: str | None = None,
         branches: Sequence[str] | None = None,
         frames: int = FRAMES,
+        proving: bool = False,
         progress: Progress | None = None,
     ) -> Known:
         """What is known of a sheet; see `view_document`."""
         if frames < 2:
             raise UsageError(f"{frames} frames: a motion has at least 2")
         opened = open_sheet(sheet)
-        title = name or (sheet if isinstance(sheet, str) else "crease pattern")
+        title = name or (
+            Path(sheet).stem if isinstance(sheet, str | PathLike) else "crease pattern"
+        )
         pattern = opened.sheet
         folds_along_branches = isinstance(pattern, CreasePattern) and has_branches(pattern)
         if branches is not None and not folds_along_branches:
@@ -112,7 +121,7 @@ class Known:
         try:
             if isinstance(pattern, CreasePattern) and folds_along_branches:
                 found = _branches(opened, pattern, branches, progress)
-                facts, follower = _branch_facts(found), Following(frames)
+                facts, follower = _branch_facts(found), Following(frames, proving)
                 listed = tuple((branch_way(branch), branch) for branch in found.branches)
                 return cls(opened, title, follower, listed, facts)
             return _panels(opened, title, frames, progress)

@@ -58,6 +58,7 @@ def write_view(
     name: str | None = None,
     branches: Sequence[str] | None = None,
     frames: int = FRAMES,
+    proving: bool = False,
     workers: int = 1,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
@@ -72,7 +73,13 @@ def write_view(
     (['cross.html'], '2 ways to start folding - PRO')
     """
     document = view_document(
-        sheet, name=name, branches=branches, frames=frames, workers=workers, progress=progress
+        sheet,
+        name=name,
+        branches=branches,
+        frames=frames,
+        proving=proving,
+        workers=workers,
+        progress=progress,
     )
     write_text(Path(path), view_page(document))
     return document

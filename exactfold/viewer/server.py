@@ -30,6 +30,7 @@ def view_server(
     name: str | None = None,
     branches: Sequence[str] | None = None,
     frames: int = FRAMES,
+    proving: bool = False,
     port: int = 0,
     progress: Progress | None = None,
 ) -> ViewServer:
@@ -44,8 +45,10 @@ def view_server(
     ...     server.address.startswith("http://127.0.0.1:")
     True
     """
-    known = Known.of(sheet, name=name, branches=branches, frames=frames, progress=progress)
-    return ViewServer(known, frames, port)
+    known = Known.of(
+        sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
+    )
+    return ViewServer(known, Following(frames, proving), port)
 
 
 class ViewServer(ThreadingHTTPServer):
@@ -57,8 +60,8 @@ class ViewServer(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, known: Known, frames: int, port: int) -> None:
-        self._known, self._frames = known, frames
+    def __init__(self, known: Known, following: Following, port: int) -> None:
+        self._known, self._following = known, following
         self._lock = threading.Lock()
         self._finder: BranchFinder | None = None
         document = known.document([way for way, _ in known.listed], served=True)
@@ -98,7 +101,7 @@ class ViewServer(ThreadingHTTPServer):
             if self._finder is None:
                 self._finder = BranchFinder(pattern)
             branch = self._finder.find(self._finder.signs(signs, None))
-            return branch_way(branch) | Following(self._frames)(branch)
+            return branch_way(branch) | self._following(branch)
 
 
 class _Handler(BaseHTTPRequestHandler):

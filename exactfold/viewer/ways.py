@@ -9,15 +9,18 @@ from typing import TYPE_CHECKING, Any
 from exactfold.branches.export import AMOUNT
 from exactfold.errors import ExactfoldError, WorkerDiedError
 from exactfold.motion.following import follow
+from exactfold.motion.proving import prove
 from exactfold.report.motion import ending_text, event_text
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.viewer.coding import coded_frames, levelled
+from exactfold.wording import counted
 
 if TYPE_CHECKING:
     from exactfold.branches.branch import Branch
     from exactfold.modes.result import Decomposition
     from exactfold.motion.followable import PanelComponent, PanelMode
     from exactfold.motion.in_motion import SheetInMotion
+    from exactfold.motion.motion import Motion
     from exactfold.pattern.crease_pattern import CreasePattern, Edge
     from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -26,14 +29,22 @@ _KEPT = "faces stay rigid, to {:.0e} of each length"
 
 @dataclass(frozen=True)
 class Following:
-    """Follows branches; it pickles, so that several processes can share the work."""
+    """Follows branches; it pickles, so that several processes can share the work.
+
+    `proving`: each motion and its first contact are proved, too, where that is possible.
+    """
 
     frames: int
+    proving: bool = False
 
     def __call__(self, branch: Branch) -> dict[str, Any]:
         """The motion along a branch to the first contact, or why there is none."""
         try:
-            return motion_way(follow(branch, frames=self.frames))
+            motion = follow(branch, frames=self.frames)
+            way = motion_way(motion)
+            if self.proving:
+                way["motion"].update(_proof(motion))
+            return way
         except WorkerDiedError:
             raise
         except ExactfoldError as error:
@@ -87,6 +98,19 @@ def motion_way(motion: SheetInMotion) -> dict[str, Any]:
         },
         "why": "",
     }
+
+
+def _proof(motion: Motion) -> dict[str, Any]:
+    """What is proved of a motion along a branch, in place of what is said of floats."""
+    proof = prove(motion)
+    if proof.status is not PROVED:
+        return {"said": f"followed in floats; its proof is undecided: {proof.reason}"}
+    event = None if proof.contact is None else proof.contact.event
+    parts = [f"it exists, without a gap, in {counted(proof.tubes, 'tube')}"]
+    if event is not None:
+        low, high = event.time
+        parts.append(f"its first contact is between the times {low:.8g} and {high:.8g}")
+    return {"proved": True, "said": f"{'; '.join(parts)}; the frames are floats close to it"}
 
 
 def not_followed(why: str) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import pytest
 from exactfold import count_branches, count_ways, find_branch, follow, random_square
 from exactfold.certify import algebraic
 from exactfold.errors import UsageError
-from exactfold.motion import panel_components
+from exactfold.motion import panel_components, prove
 from exactfold.pattern.families import single_vertex
 from exactfold.viewer import page as page_module
 from exactfold.viewer import view_document, view_page
@@ -48,6 +48,13 @@ def test_frames_are_those_of_the_motion_and_of_its_mirror_image(two_vertex):
         assert way["motion"]["duration"] == pytest.approx(motion.duration, rel=1e-9)
     assert way["motion"]["end"] == "flat-fold"
     assert (way["motion"]["proved"], way["why"]) == (False, "")
+
+
+def test_motions_are_proved_where_that_is_asked_for():
+    [way] = view_document("two-vertex", branches=["+-"], frames=3, proving=True)["ways"]
+    event = prove(follow(find_branch("two-vertex", "+-"))).contact.event
+    assert way["motion"]["proved"]
+    assert "between the times {:.8g} and {:.8g}".format(*event.time) in way["motion"]["said"]
 
 
 def test_levelled_frames_keep_all_distances():

@@ -7,7 +7,7 @@ import { seen } from "./choose.js";
 const NOISE = 1e-4;  // degrees: coordinates are rounded to about 1e-7 of the sheet
 
 export function foldFile(page, sheet, way, mirrored) {
-  const { letters, signs } = seen(way, mirrored);
+  const { letters } = seen(way, mirrored);
   const name = mirrored ? `${way.name}, mirror image` : way.name;
   const folds = new Map(sheet.folds.map(([i, j], k) => [`${i}-${j}`, k]));
   const order = sheet.fold.edges_vertices.map(([i, j]) => folds.get(`${Math.min(i, j)}-${Math.max(i, j)}`));
@@ -20,7 +20,8 @@ export function foldFile(page, sheet, way, mirrored) {
     edges_assignment: byEdge(letters, "B"),
     edges_foldAngle: byEdge(leading.map((angle, k) => ("MV".includes(letters[k]) ? (mirrored ? -angle : angle) : 0)), 0),
     "frame_exactfold:motion": {
-      vertex_signs: signs || null,
+      vertex_signs: way.signs || null,
+      vertices: sheet.interior,
       side: mirrored ? -1 : 1,
       status: way.motion ? (way.motion.proved ? "proved" : "followed") : null,
       end: way.motion ? way.motion.end : null,

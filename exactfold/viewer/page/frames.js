@@ -1,7 +1,7 @@
 // Frames of a motion: decoded from text (exactfold/viewer/coding.py), and the sheet between them.
 
 const STEPS = 1 << 23;
-const ORDER = 3;
+const ORDER = 4;
 
 // The frames one after the other, three numbers a vertex.
 export function decodeFrames(motion) {

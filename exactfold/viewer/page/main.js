@@ -50,7 +50,7 @@ function paintSheet() {
   if (frames) positionsAt(frames, Math.min(time, 1 - APART), mirrored, positions);
   else positions.set(flat);
   scene?.show(positions);
-  transport.angle(frames ? Math.max(0, ...foldAngles(sheet, positions).map(Math.abs)) : null);
+  transport.angle(frames ? foldAngles(sheet, positions).reduce((most, angle) => Math.max(most, Math.abs(angle)), 0) : null);
 }
 
 // The first picture holds the flat sheet and the motion that is shown first.
@@ -146,7 +146,8 @@ byId("answer").append(...page.answer.split(/\b(PROVED|UNDECIDED)\b/).map((part) 
   if (part !== "PROVED" && part !== "UNDECIDED") return part.replace(/ - $/, " – ");
   return Object.assign(document.createElement("b"), { textContent: part, className: part === "PROVED" ? "" : "open" });
 }));
-byId("pattern-hint").textContent = page.kind === "branches" ? "Click a vertex to pop it, a fold to ask for M or V" : "Click a fold to ask for M or V";
+byId("pattern-hint").textContent = page.kind === "branches" ? "Click a vertex or a fold" : "Click a fold";
+byId("pattern-hint").title = "A vertex pops through; of a fold a mountain or a valley is asked for";
 byId("legend").append(...legendItems(page.kind, page.ways.map((way) => way.letters).join("")).map((parts) => {
   const node = document.createElement("li");
   node.append(...parts);

@@ -48,7 +48,7 @@ export function createPattern(holder, sheet, store, { onVertex }) {
     const { ways, way, mirrored, asks } = store.get();
     const shown = ways[way];
     const side = shown ? seen(shown, mirrored) : { letters: "", signs: "" };
-    const largest = Math.max(...(shown?.angles ?? []).map(Math.abs), 1e-9);
+    const largest = (shown?.angles ?? []).reduce((most, angle) => Math.max(most, Math.abs(angle)), 1e-9);
     folds.forEach((node, k) => {
       const letter = side.letters[k] ?? "U", asked = asks.get(k);
       const part = shown?.angles.length ? Math.abs(shown.angles[k]) / largest : 0.4;
@@ -110,8 +110,8 @@ function roam(nodes, from, step) {
 }
 
 function fitted(points, width, height) {
-  const xs = points.map(([x]) => x), ys = points.map(([, y]) => y);
-  const low = [Math.min(...xs), Math.min(...ys)], high = [Math.max(...xs), Math.max(...ys)];
+  const extreme = (choose, c) => points.reduce((found, point) => choose(found, point[c]), points[0][c]);
+  const low = [0, 1].map((c) => extreme(Math.min, c)), high = [0, 1].map((c) => extreme(Math.max, c));
   const scale = Math.min((width - 2 * MARGIN) / (high[0] - low[0]), (height - 2 * MARGIN) / (high[1] - low[1]));
   const left = (width - scale * (high[0] - low[0])) / 2, top = (height - scale * (high[1] - low[1])) / 2;
   return ([x, y]) => [left + scale * (x - low[0]), height - top - scale * (y - low[1])].map((c) => Math.round(c * 100) / 100);

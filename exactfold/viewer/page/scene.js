@@ -28,7 +28,7 @@ export function createScene(canvas, sheet, flat, radius) {
   scene.add(inner.object, outer.object);
 
   scene.add(new THREE.HemisphereLight(0xffffff, 0xe2ddd3, 1.75));
-  const lamp = new THREE.DirectionalLight(0xffffff, 1.6);
+  const lamp = new THREE.DirectionalLight(0xffffff, 1.4);
   lamp.position.set(0.35, -0.5, 0.79);
   const torch = new THREE.DirectionalLight(0xffffff, 0.95);  // so that no side is dark
   scene.add(lamp, torch);
@@ -62,12 +62,17 @@ export function createScene(canvas, sheet, flat, radius) {
     const right = [-Math.sin(a), Math.cos(a), 0];
     const up = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
     const seen = fitted.flatMap((shape) => pointsSeen(shape, [right, up, towards]));
-    const [x, y] = [0, 1].map((c) => {
-      const values = seen.map((point) => point[c]);
-      return (Math.min(...values) + Math.max(...values)) / 2;
-    });
+    const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+    for (const point of seen) {
+      for (const c of [0, 1]) {
+        low[c] = Math.min(low[c], point[c]);
+        high[c] = Math.max(high[c], point[c]);
+      }
+    }
+    const x = (low[0] + high[0]) / 2, y = (low[1] + high[1]) / 2;
     const tall = Math.tan((VIEW / 2) * (Math.PI / 180)) * FILLED, wide = tall * camera.aspect;
-    const distance = Math.max(...seen.map(([px, py, pz]) => pz + Math.max(Math.abs(px - x) / wide, Math.abs(py - y) / tall)));
+    const far = ([px, py, pz]) => pz + Math.max(Math.abs(px - x) / wide, Math.abs(py - y) / tall);
+    const distance = seen.reduce((most, point) => Math.max(most, far(point)), radius);
     controls.target.set(...[0, 1, 2].map((c) => x * right[c] + y * up[c]));
     place(a, Math.PI / 2 - e, distance);
     camera.userData.touched = false;
