@@ -18,7 +18,7 @@ export function showFacts(page, way) {
 function countFact(page) {
   if (!page.ways.length) {
     const known = page.status === "proved";
-    return [known ? "good" : "open", known ? "Proved" : "Undecided", [page.answer, page.reason].filter(Boolean).join(". ")];
+    return [known ? "good" : "open", known ? "The answer: proved" : "The answer: undecided", page.reason || page.answer];
   }
   if (page.complete) return ["good", "All are listed: proved", page.reason];
   if (page.status === "proved") return ["note", "Not all are listed", page.reason || page.answer];
@@ -35,7 +35,7 @@ function wayFacts(page, way) {
     const drawn = way.motion.said;
     facts.push(way.motion.proved ? ["good", "The motion drawn: proved", drawn] : ["open", "The motion drawn: not proved", drawn]);
     facts.push(["note", "It ends", way.motion.ending]);
-  } else if (way.why) {
+  } else if (way.why && way.status === "proved") {
     facts.push(["open", "Not followed", way.why]);
   }
   return facts;
@@ -58,7 +58,11 @@ function item([kind, title, text]) {
   icon.append(svg("path", { d: ICONS[kind] }));
   const words = document.createElement("div");
   words.append(Object.assign(document.createElement("strong"), { textContent: title }));
-  if (text) words.append(Object.assign(document.createElement("small"), { textContent: text }));
+  if (text) words.append(Object.assign(document.createElement("small"), { textContent: sentence(text) }));
   node.append(icon, words);
   return node;
+}
+
+export function sentence(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -3,7 +3,7 @@
 import { popped, poppedSigns, seen } from "./choose.js";
 import { decodeFrames, positionsAt } from "./frames.js";
 import { download, fileName, foldFile } from "./foldfile.js";
-import { showFacts } from "./facts.js";
+import { sentence, showFacts } from "./facts.js";
 import { createList } from "./list.js";
 import { createPattern, legendItems } from "./pattern.js";
 import { ask } from "./remote.js";
@@ -71,7 +71,7 @@ function describe() {
   byId("download").disabled = !shown;
   const waiting = page.served && shown && !shown.motion && !shown.why;
   byId("empty").hidden = Boolean(shown?.motion);
-  byId("empty").textContent = !shown ? [page.answer, page.reason].filter(Boolean).join(". ") : waiting ? "Following the motion …" : `Not followed: ${shown.why}`;
+  byId("empty").textContent = !shown ? sentence(`no motion is drawn: ${page.answer}`) : waiting ? "Following the motion …" : `Not followed: ${shown.why}`;
   if (waiting) follow(way);
 }
 
@@ -146,9 +146,9 @@ byId("answer").append(...page.answer.split(/\b(PROVED|UNDECIDED)\b/).map((part) 
   if (part !== "PROVED" && part !== "UNDECIDED") return part.replace(/ - $/, " – ");
   return Object.assign(document.createElement("b"), { textContent: part, className: part === "PROVED" ? "" : "open" });
 }));
-byId("pattern-hint").textContent = page.kind === "branches" ? "Click a vertex or a fold" : "Click a fold";
+byId("pattern-hint").textContent = !page.ways.length ? "" : page.kind === "branches" ? "Click a vertex or a fold" : "Click a fold";
 byId("pattern-hint").title = "A vertex pops through; of a fold a mountain or a valley is asked for";
-byId("legend").append(...legendItems(page.kind, page.ways.map((way) => way.letters).join("")).map((parts) => {
+byId("legend").append(...legendItems(page.kind, page.ways.map((way) => way.letters).join("") || "-").map((parts) => {
   const node = document.createElement("li");
   node.append(...parts);
   return node;

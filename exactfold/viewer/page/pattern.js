@@ -184,6 +184,7 @@ function name(node, text) {
 export function legendItems(kind, letters) {
   const line = (letter, text) => [svg("svg", { "aria-hidden": "true" }, svg("path", { class: `line ${letter}`, d: "M1 5H21" })), text];
   const point = (sign, text) => [svg("svg", { "aria-hidden": "true", class: "small", viewBox: "-6 -6 12 12" }, mark(sign, 5)), text];
+  if (letters === "-") return [line("U", "fold")];
   const items = [line("M", "mountain"), line("V", "valley")];
   if (letters.includes("F")) items.push(line("F", "flat"));
   if (letters.includes("U")) items.push(line("U", "undecided"));

@@ -55,6 +55,7 @@ export function createTransport(store) {
 
   function describe(motion) {
     slider.disabled = play.disabled = !motion;
+    slider.value = motion ? Math.round(store.get().time * 1000) : 0;
     document.getElementById("ending").textContent = motion ? ENDINGS[motion.end] ?? motion.end : "";
     const ticks = (motion?.events ?? []).filter(({ time }) => time < motion.duration * 0.999).map(({ time }) => {
       const tick = document.createElement("i");
