@@ -40,6 +40,8 @@ MOST_NEIGHBOURS: Final = 24
 MOST_COMPONENTS: Final = 200
 FRAMES: Final = 32
 
+_WORTH_A_PROCESS: Final = 6
+"""Motions that take about as long as to start a process."""
 _SECONDS: Final = re.compile(r" \(\d+\.\d+ s\)")
 
 J = TypeVar("J")
@@ -76,7 +78,8 @@ def view_document(
     known = Known.of(
         sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
     )
-    return known.document(known.followed(process_pool(workers), progress))
+    useful = max(1, len(known.listed) // _WORTH_A_PROCESS)
+    return known.document(known.followed(process_pool(min(workers, useful)), progress))
 
 
 @dataclass(frozen=True)

@@ -128,6 +128,7 @@ export function createScene(canvas, sheet, flat, radius) {
     if (controls.enabled) controls.update();
     torch.position.copy(camera.position);
     renderer.render(scene, camera);
+    if (!drawn) performance.mark("first picture");
     drawn += 1;
   }
 
