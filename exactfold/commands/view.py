@@ -61,9 +61,11 @@ class Wanted:
         if self.serve:
             self._serve(opened, name)
             return
-        noun = "branch" if document["kind"] == "branches" else "way to fold"
-        print(f"{document['answer']}")
-        print(f"written: {name_of(output)}, with {counted(len(document['ways']), noun)}")
+        found = len(document["ways"])
+        branches = document["kind"] == "branches"
+        ways = counted(found, "branch") if branches else f"{counted(found, 'way')} to fold"
+        print(document["answer"])
+        print(f"written: {name_of(output)}, with {ways}")
 
     def _serve(self, opened: Opened, name: str) -> None:
         with Bar("counting") as bar:

@@ -33,6 +33,15 @@ def test_branches_may_begin_with_a_minus(tmp_path):
     assert result.stdout.endswith(f"written: {target}, with 2 branches\n")
 
 
+def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
+    target = tmp_path / "panels.html"
+    result = run("view", "zigzags", "-o", target, "--frames", "2")
+    assert result.exit_code == OK
+    assert result.stdout.startswith("3 families of ways to fold")
+    assert result.stdout.endswith(f"written: {target}, with 4 ways to fold\n")
+    assert "read zigzags: SVG" in result.stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
