@@ -10,7 +10,8 @@ from typing import Annotated, Any
 
 import typer
 
-from exactfold.cli_branches import COMMANDS
+from exactfold.cli_branches import COMMANDS as BRANCHES
+from exactfold.cli_pictures import COMMANDS as PICTURES
 from exactfold.commands.parameters import (
     Json,
     Pattern,
@@ -194,7 +195,7 @@ def check(
     raise typer.Exit(0 if valid(certificate, workers, as_json) else 1)
 
 
-for command in COMMANDS:
+for command in (*PICTURES, *BRANCHES):
     app.command(cls=Command)(command)
 
 

@@ -87,6 +87,14 @@ def numbers(text: object) -> tuple[int, ...]:
     return tuple(whole(1)(part.strip()) for part in str(text).split(","))
 
 
+def sign_vectors(text: object) -> tuple[str, ...]:
+    """Vertex signs of several branches, such as +-+,++-."""
+    found = tuple(part.strip() for part in str(text).split(",") if part.strip())
+    if not found or any(set(part) - set("+-0") for part in found):
+        raise typer.BadParameter(f"{text!r} is not a list of vertex signs such as +-+,++-")
+    return found
+
+
 def distance(text: object) -> Fraction:
     """A positive number, such as 1e-6, exactly as it is written."""
     try:

@@ -1,0 +1,144 @@
+"""The commands that make pictures and pages: options, and nothing decided."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from exactfold.commands.parameters import Pattern, Sheet, Snap, Up, flag, sign_vectors, whole
+from exactfold.commands.shell import not_a_dash, reported
+from exactfold.errors import UsageError
+
+# Each command imports what it needs, as in `cli`.
+
+
+@reported
+def draw(
+    pattern: Pattern,
+    way: Annotated[
+        str | None,
+        typer.Option(
+            "--branch",
+            "--signs",
+            metavar="N|+-...",
+            help="One way to fold: the N-th that `count` lists, a branch or a mode of panels; or "
+            "the branch with these vertex signs; @FILE reads them.",
+        ),
+    ] = None,
+    up: Up = None,
+    everything: Annotated[
+        bool, flag("--all", text="All ways that `count` lists, small, on one sheet.")
+    ] = False,
+    most: Annotated[
+        int | None,
+        typer.Option(parser=whole(1), metavar="N", help="Of --all: the first N. Default: 64."),
+    ] = None,
+    folded: Annotated[
+        str | None,
+        typer.Option(
+            metavar="60deg|0.5",
+            help="Of one way: the sheet in space, folded until its largest fold angle is this, or "
+            "through this part of its motion up to the first contact.",
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE",
+            help="FILE.svg, .png or .pdf, or - for stdout. Default: stdout; on a terminal a file "
+            "NAME-drawn.svg, NAME-way.svg or NAME-ways.svg here.",
+        ),
+    ] = None,
+    snap: Snap = None,
+    sheet: Sheet = None,
+) -> None:
+    """Draw a crease pattern, one way to fold it, or all ways, as SVG, PNG or PDF.
+
+    Mountains are red, valleys blue and dashed; the wider a fold, the more it
+    folds. Triangles point up at vertices that pop up. Without a way, the letters
+    of the file are drawn. A file that is no sheet is drawn as it is.
+    """
+    from exactfold.commands.draw import Wanted
+    from exactfold.report.folded import Amount
+    from exactfold.report.multiples import MOST
+
+    if (way is not None) + (up is not None) + everything > 1:
+        raise UsageError("give one of --branch, --up and --all")
+    if most is not None and not everything:
+        raise UsageError("--most goes with --all")
+    if folded is not None and way is None and up is None:
+        raise UsageError("--folded goes with --branch or --up")
+    amount = None if folded is None else Amount.of(folded)
+    wanted = Wanted(
+        pattern, snap, sheet, way, up, everything, MOST if most is None else most, amount, output
+    )
+    raise typer.Exit(wanted.answer())
+
+
+@reported
+def view(
+    pattern: Pattern,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            callback=not_a_dash,
+            metavar="VIEW.html",
+            help="Default: PATTERN.view.html in this folder.",
+        ),
+    ] = None,
+    branches: Annotated[
+        Any,
+        typer.Option(
+            parser=sign_vectors,
+            metavar="+-+,++-",
+            help="Show the branches with these vertex signs only. Default: all, up to ten foldable "
+            "vertices; of larger sheets the one with all vertices up, and its neighbours.",
+        ),
+    ] = None,
+    frames: Annotated[
+        int, typer.Option(parser=whole(2), metavar="N", help="Frames of each motion.")
+    ] = 32,
+    prove: Annotated[
+        bool,
+        flag("--prove", text="Of branches: prove each motion and its first contact, too."),
+    ] = False,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            parser=whole(1), metavar="N", help="Processes that follow motions. Default: all cores."
+        ),
+    ] = None,
+    serve: Annotated[
+        bool,
+        flag(
+            "--serve",
+            text="Write no file: serve the page on this machine, and follow branches as they are "
+            "looked at.",
+        ),
+    ] = False,
+    port: Annotated[
+        int | None,
+        typer.Option(parser=whole(1), metavar="P", help="Of --serve. Default: any that is free."),
+    ] = None,
+    snap: Snap = None,
+    sheet: Sheet = None,
+) -> None:
+    """Show a sheet and its ways to fold in the browser: one HTML file that needs no network.
+
+    The crease pattern stands beside the sheet in space, with a slider from flat
+    to the first contact. A click on a vertex pops it through, a click on a fold
+    asks for a mountain or a valley.
+    """
+    from exactfold.commands.view import Wanted
+
+    Wanted(pattern, snap, sheet, output, branches, frames, prove, workers, serve, port).run()
+
+
+COMMANDS = (draw, view)
+"""In the order in which the help lists them."""

@@ -1,0 +1,90 @@
+"""`exactfold view`: the page that shows a sheet and its ways to fold, in a file or served."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from exactfold.commands.patterns import read_any
+from exactfold.commands.shell import Bar, apart, interruptible, name_of, say
+from exactfold.drawing.drawing import Snap
+from exactfold.errors import UsageError
+from exactfold.pattern.opening import Opened
+from exactfold.viewer.page import write_view
+from exactfold.viewer.server import view_server
+from exactfold.wording import counted
+from exactfold.workers import available_cores
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What was asked for on the command line."""
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    output: Path | None
+    branches: Sequence[str] | None
+    frames: int
+    proving: bool
+    workers: int | None
+    serve: bool
+    port: int | None
+
+    def run(self) -> None:
+        """Write the page and say where, or serve it until Ctrl-C.
+
+        Raises the errors of `read_any`, `write_view` and `view_server`.
+        """
+        if self.serve:
+            if self.output is not None or self.workers is not None:
+                raise UsageError("--serve writes no file and follows one branch at a time")
+        elif self.port is not None:
+            raise UsageError("--port goes with --serve")
+        name = "sheet" if str(self.file) == "/dev/stdin" else self.file.stem
+        output = self.output or Path(f"{name}.view.html")
+        apart(None if self.serve else output, self.file)
+        with Bar("reading") as bar, interruptible():
+            opened = read_any(self.file, self.snap, self.sheet)
+            if not self.serve:
+                document = write_view(
+                    opened,
+                    output,
+                    name=name,
+                    branches=self.branches,
+                    frames=self.frames,
+                    proving=self.proving,
+                    workers=self.workers or available_cores(),
+                    progress=bar,
+                )
+        if self.serve:
+            self._serve(opened, name)
+            return
+        found = len(document["ways"])
+        branches = document["kind"] == "branches"
+        ways = counted(found, "branch") if branches else f"{counted(found, 'way')} to fold"
+        print(document["answer"])
+        print(f"written: {name_of(output)}, with {ways}")
+
+    def _serve(self, opened: Opened, name: str) -> None:
+        with Bar("counting") as bar:
+            try:
+                server = view_server(
+                    opened,
+                    name=name,
+                    branches=self.branches,
+                    frames=self.frames,
+                    proving=self.proving,
+                    port=self.port or 0,
+                    progress=bar,
+                )
+            except OSError as error:
+                raise UsageError(f"port {self.port or 0}: {error.strerror}") from None
+        with server:
+            print(f"{name} is at {server.address} (Ctrl-C ends it)", flush=True)
+            try:
+                with interruptible():
+                    server.serve_forever(poll_interval=0.2)
+            except KeyboardInterrupt:
+                say("the server has ended")

@@ -1,0 +1,68 @@
+// What is proved of what is seen, and what is only drawn.
+
+import { svg } from "./pattern.js";
+
+const ICONS = {
+  good: "M3.5 9.5l3.6 3.6 7.4-8",
+  open: "M9 4v6.2M9 13.4v.2",
+  note: "M9 8.2V14M9 4.4v.2",
+};
+
+export function showFacts(page, way) {
+  const facts = [countFact(page), ...(way ? wayFacts(page, way) : []), ...page.notes.map((text) => ["open", "To know", text])];
+  const items = facts.map(item);
+  if (page.read.length) items.push(reading(page.read));
+  document.getElementById("facts").replaceChildren(...items);
+}
+
+function countFact(page) {
+  if (!page.ways.length) {
+    const known = page.status === "proved";
+    return [known ? "good" : "open", known ? "The answer: proved" : "The answer: undecided", page.reason || page.answer];
+  }
+  if (page.complete) return ["good", "All are listed: proved", page.reason];
+  if (page.status === "proved") return ["note", "Not all are listed", page.reason || page.answer];
+  return ["open", "The count is undecided", page.reason || page.answer];
+}
+
+function wayFacts(page, way) {
+  const noun = page.kind === "branches" ? "branch" : "way to fold";
+  const facts = [];
+  if (way.status === "proved") facts.push(["good", `This ${noun}: proved`, way.reason]);
+  else facts.push(["open", `This ${noun}: ${way.status}`, way.reason]);
+  if (way.multiplicity > 1) facts.push(["note", `Counted ${way.multiplicity} times`, "as flat vertices count double"]);
+  if (way.motion) {
+    const drawn = way.motion.said;
+    facts.push(way.motion.proved ? ["good", "The motion drawn: proved", drawn] : ["open", "The motion drawn: not proved", drawn]);
+    facts.push(["note", "It ends", way.motion.ending]);
+  } else if (way.why && way.status === "proved") {
+    facts.push(["open", "Not followed", way.why]);
+  }
+  return facts;
+}
+
+// How the drawing was read, to be opened: it is the same for every way.
+function reading(lines) {
+  const node = item(["note", "", ""]);
+  const details = document.createElement("details");
+  details.append(Object.assign(document.createElement("summary"), { textContent: "How the drawing was read" }));
+  for (const line of lines) details.append(Object.assign(document.createElement("small"), { textContent: line }));
+  node.lastChild.replaceChildren(details);
+  return node;
+}
+
+function item([kind, title, text]) {
+  const node = document.createElement("li");
+  const icon = svg("svg", { viewBox: "0 0 18 18", class: kind, "aria-hidden": "true", fill: "none", stroke: "currentColor", "stroke-width": 2, "stroke-linecap": "round", "stroke-linejoin": "round" });
+  if (kind !== "good") icon.append(svg("circle", { cx: 9, cy: 9, r: 8, "stroke-width": 1.4 }));
+  icon.append(svg("path", { d: ICONS[kind] }));
+  const words = document.createElement("div");
+  words.append(Object.assign(document.createElement("strong"), { textContent: title }));
+  if (text) words.append(Object.assign(document.createElement("small"), { textContent: sentence(text) }));
+  node.append(icon, words);
+  return node;
+}
+
+export function sentence(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

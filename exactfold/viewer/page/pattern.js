@@ -1,0 +1,193 @@
+// The crease pattern: letters as colours, vertex signs as marks, both to be clicked.
+
+import { NAMES, seen } from "./choose.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+const MARGIN = 26;
+const MOST_INDICES = 60;
+const ASKED = [undefined, "M", "V"];
+
+export function svg(tag, attributes = {}, ...children) {
+  const node = document.createElementNS(SVG, tag);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  node.append(...children);
+  return node;
+}
+
+export function createPattern(holder, sheet, store, { onVertex }) {
+  const picture = svg("svg", { role: "group", "aria-label": "Crease pattern" });
+  holder.append(picture);
+  let folds = [], vertices = [], place = null;
+
+  function layout() {
+    const width = holder.clientWidth, height = holder.clientHeight;
+    if (!width || !height) return;
+    place = fitted(sheet.points, width, height);
+    picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    const at = sheet.points.map(place);
+    const d = (corners) => corners.map((v, k) => `${k ? "L" : "M"}${at[v][0]} ${at[v][1]}`).join("");
+    const size = markSize(sheet, at);
+    const focus = document.activeElement?.dataset;
+    const kept = focus && (focus.fold ? ["fold", focus.fold] : focus.vertex ? ["vertex", focus.vertex] : null);
+    folds = sheet.folds.map((edge, k) => foldNode(edge, k, at, d(edge), size));
+    vertices = sheet.interior.map((v, k) => vertexNode(v, k, at, size, sheet));
+    const faces = svg("path", { class: "face", d: sheet.faces.map((face) => `${d(face)}Z`).join("") });
+    const border = svg("path", { class: "line B", d: sheet.boundary.map(d).join("") });
+    picture.replaceChildren(
+      faces,
+      svg("g", { role: "group", "aria-label": "Folds: ask for a mountain or a valley" }, ...folds),
+      border,
+      svg("g", { role: "group", "aria-label": "Vertices: pop one through" }, ...vertices),
+    );
+    for (const nodes of [folds, vertices]) nodes.find((node) => node.hasAttribute("tabindex"))?.setAttribute("tabindex", 0);
+    if (kept) picture.querySelector(`[data-${kept[0]}="${kept[1]}"]`)?.focus({ preventScroll: true });
+    paint();
+  }
+
+  function paint() {
+    const { ways, way, mirrored, asks } = store.get();
+    const shown = ways[way];
+    const side = shown ? seen(shown, mirrored) : { letters: "", signs: "" };
+    const largest = (shown?.angles ?? []).reduce((most, angle) => Math.max(most, Math.abs(angle)), 1e-9);
+    folds.forEach((node, k) => {
+      const letter = side.letters[k] ?? "U", asked = asks.get(k);
+      const part = shown?.angles.length ? Math.abs(shown.angles[k]) / largest : 0.4;
+      const line = node.querySelector(".line");
+      line.setAttribute("class", `line ${letter}`);
+      line.style.strokeWidth = letter === "F" || letter === "U" ? 1.2 : (1.3 + 2.2 * Math.sqrt(part)).toFixed(2);
+      const badge = node.querySelector(".badge");
+      badge.toggleAttribute("hidden", !asked);
+      badge.querySelector("text").textContent = asked ?? "";
+      badge.querySelector("circle").setAttribute("class", asked ?? "");
+      const [i, j] = sheet.folds[k];
+      const wish = asked ? `, asked to be a ${NAMES[asked]}` : "";
+      name(node, `Fold ${i}–${j}: ${shown ? NAMES[letter] : "not known"}${wish}`);
+    });
+    vertices.forEach((node, k) => {
+      const sign = side.signs[k];
+      node.querySelector(".mark").replaceWith(mark(sign, Number(node.dataset.size), sheet.foldable.has(sheet.interior[k])));
+      const words = { "+": "popped up", "-": "popped down", "0": "flat" };
+      name(node, `Vertex ${sheet.interior[k]}${sign ? `: ${words[sign] ?? "undecided"}` : ""}`);
+    });
+  }
+
+  function ask(k) {
+    const asks = new Map(store.get().asks);
+    const next = ASKED[(ASKED.indexOf(asks.get(k)) + 1) % ASKED.length];
+    if (next) asks.set(k, next);
+    else asks.delete(k);
+    store.set({ asks });
+  }
+
+  function act(target) {
+    const node = target.closest?.("[data-fold], [data-vertex]");
+    if (!node || node.classList.contains("still")) return;
+    if (node.dataset.fold) ask(Number(node.dataset.place));
+    else onVertex(Number(node.dataset.place));
+  }
+
+  picture.addEventListener("click", (event) => act(event.target));
+  picture.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    const nodes = event.target.dataset.fold ? folds : vertices.filter((node) => node.hasAttribute("tabindex"));
+    if (event.key === "Enter" || event.key === " ") act(event.target);
+    else if (step) roam(nodes, nodes.indexOf(event.target), step);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  });
+  store.on(["way", "mirrored", "asks", "ways"], paint);
+  new ResizeObserver(layout).observe(holder);
+  layout();
+}
+
+// Only one node of a group is a stop of the Tab key; arrows go round the others.
+function roam(nodes, from, step) {
+  const to = nodes[(from + step + nodes.length) % nodes.length];
+  nodes[from].setAttribute("tabindex", -1);
+  to.setAttribute("tabindex", 0);
+  to.focus();
+}
+
+function fitted(points, width, height) {
+  const extreme = (choose, c) => points.reduce((found, point) => choose(found, point[c]), points[0][c]);
+  const low = [0, 1].map((c) => extreme(Math.min, c)), high = [0, 1].map((c) => extreme(Math.max, c));
+  const scale = Math.min((width - 2 * MARGIN) / (high[0] - low[0]), (height - 2 * MARGIN) / (high[1] - low[1]));
+  const left = (width - scale * (high[0] - low[0])) / 2, top = (height - scale * (high[1] - low[1])) / 2;
+  return ([x, y]) => [left + scale * (x - low[0]), height - top - scale * (y - low[1])].map((c) => Math.round(c * 100) / 100);
+}
+
+// Marks as large as the distances between vertices leave room for.
+function markSize(sheet, at) {
+  const lengths = sheet.folds.map(([i, j]) => Math.hypot(at[i][0] - at[j][0], at[i][1] - at[j][1])).sort((a, b) => a - b);
+  const short = lengths[Math.floor(lengths.length / 5)] ?? 100;
+  return Math.max(2.5, Math.min(8.5, short / 7));
+}
+
+function foldNode([i, j], k, at, d, size) {
+  const [x, y] = [(at[i][0] + at[j][0]) / 2, (at[i][1] + at[j][1]) / 2];
+  const reach = svg("path", { class: "reach", d });
+  if (size < 6) reach.style.strokeWidth = `${2.2 * size}`;
+  const node = svg("g", { class: "fold", role: "button", tabindex: -1, "data-fold": `${i}-${j}`, "data-place": k },
+    svg("title"), reach, svg("path", { class: "line", d }),
+    svg("g", { class: "badge", hidden: "" }, svg("circle", { cx: x, cy: y, r: 9 }), svg("text", { x, y: y + 0.5 })));
+  return node;
+}
+
+function vertexNode(v, k, at, size, sheet) {
+  const still = !sheet.foldable.has(v);
+  const [x, y] = at[v];
+  const node = svg("g", { class: still ? "vertex still" : "vertex", transform: `translate(${x} ${y})`, "data-vertex": v, "data-place": k, "data-size": size },
+    svg("title"), svg("circle", { class: "reach", r: Math.max(size * 1.9, Math.min(15, size * 2.5)) }), svg("path", { class: "mark" }));
+  node.setAttribute("role", still ? "img" : "button");
+  if (!still) node.setAttribute("tabindex", -1);
+  if (sheet.interior.length <= MOST_INDICES && size > 4) {
+    const angle = widestGap(sheet.folds.filter((edge) => edge.includes(v)).map(([i, j]) => {
+      const other = at[i === v ? j : i];
+      return Math.atan2(other[1] - y, other[0] - x);
+    }));
+    const away = size + 10;
+    node.append(svg("text", { class: "index", x: away * Math.cos(angle), y: away * Math.sin(angle) }, String(v)));
+  }
+  return node;
+}
+
+// The middle of the widest angle between directions.
+function widestGap(angles) {
+  const sorted = [...angles].sort((a, b) => a - b);
+  let best = [0, 0];
+  sorted.forEach((angle, k) => {
+    const gap = (sorted[k + 1] ?? sorted[0] + 2 * Math.PI) - angle;
+    if (gap > best[0]) best = [gap, angle + gap / 2];
+  });
+  return best[1];
+}
+
+// Up and down as filled triangles, flat as an empty circle; a dot where vertices have no sign.
+export function mark(sign, size, foldable = true) {
+  const s = size;
+  const paths = {
+    "+": `M0 ${-s}L${s} ${0.75 * s}H${-s}Z`,
+    "-": `M0 ${s}L${s} ${-0.75 * s}H${-s}Z`,
+  };
+  const r = sign === undefined || !foldable ? 0.4 * s : 0.75 * s;
+  const level = !(sign in paths) && sign !== undefined && foldable;
+  const round = `M${-r} 0a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
+  return svg("path", { class: level ? "mark level" : "mark", d: paths[sign] ?? round });
+}
+
+function name(node, text) {
+  node.setAttribute("aria-label", text);
+  node.querySelector("title").textContent = text;
+}
+
+export function legendItems(kind, letters) {
+  const line = (letter, text) => [svg("svg", { "aria-hidden": "true" }, svg("path", { class: `line ${letter}`, d: "M1 5H21" })), text];
+  const point = (sign, text) => [svg("svg", { "aria-hidden": "true", class: "small", viewBox: "-6 -6 12 12" }, mark(sign, 5)), text];
+  if (letters === "-") return [line("U", "fold")];
+  const items = [line("M", "mountain"), line("V", "valley")];
+  if (letters.includes("F")) items.push(line("F", "flat"));
+  if (letters.includes("U")) items.push(line("U", "undecided"));
+  if (kind === "branches") items.push(point("+", "vertex up"), point("-", "vertex down"));
+  return items;
+}

@@ -1,0 +1,54 @@
+// The flat sheet, and the angles of its folds in space.
+
+export function readSheet(json) {
+  const { fold } = json;
+  const boundary = [];
+  const folded = new Set(json.folds.map(([i, j]) => `${i}-${j}`));
+  for (const [i, j] of fold.edges_vertices) {
+    if (!folded.has(`${Math.min(i, j)}-${Math.max(i, j)}`)) boundary.push([i, j]);
+  }
+  return {
+    fold,
+    points: fold.vertices_coords.map(([x, y]) => [x, y]),
+    faces: fold.faces_vertices,
+    triangles: json.triangles,
+    folds: json.folds,
+    boundary,
+    interior: json.interior,
+    foldable: new Set(json.foldable),
+    hinges: hingesOf(json.folds, json.triangles),
+  };
+}
+
+// For each fold i-j its ends, and the corners across it to the left and to the right.
+function hingesOf(folds, triangles) {
+  const across = new Map();
+  for (const [a, b, c] of triangles) {
+    across.set(`${a}-${b}`, c).set(`${b}-${c}`, a).set(`${c}-${a}`, b);
+  }
+  return folds.map(([i, j]) => [i, j, across.get(`${i}-${j}`), across.get(`${j}-${i}`)]);
+}
+
+// Degrees by fold, positive for a valley, between -180 and 180.
+export function foldAngles(sheet, positions) {
+  const point = (v) => [positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]];
+  return sheet.hinges.map(([i, j, left, right]) => {
+    const a = point(i);
+    const along = minus(point(j), a), l = minus(point(left), a), r = minus(point(right), a);
+    const n = cross(along, l), m = cross(r, along);
+    const length = Math.hypot(...along);
+    return (Math.atan2(-dot(cross(n, m), along) / length, dot(n, m)) * 180) / Math.PI;
+  });
+}
+
+function minus(a, b) {
+  return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+}
+
+function cross(a, b) {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+function dot(a, b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}

@@ -1,0 +1,78 @@
+"""`exactfold view`: where it writes, what it says and refuses; that the server ends cleanly."""
+
+import re
+import signal
+import subprocess
+import sys
+from http.client import HTTPConnection
+from pathlib import Path
+
+import pytest
+from running import BAD_INPUT, USAGE, run
+
+OK = 0
+
+
+def test_the_page_is_written_beside_the_reader(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("view", "single-vertex-4", "--frames", "3", "--workers", "1")
+    assert (result.exit_code, result.stderr) == (OK, "")
+    assert result.stdout.splitlines() == [
+        "2 ways to start folding - PROVED; all real, each counted once, every one continues to a "
+        "true motion",
+        "written: single-vertex-4.view.html, with 2 branches",
+    ]
+    assert Path("single-vertex-4.view.html").read_text("utf-8").startswith("<!doctype html>")
+
+
+def test_branches_may_begin_with_a_minus(tmp_path):
+    target = tmp_path / "some.html"
+    few = ("--frames", "2", "--workers", "1")
+    result = run("view", "two-vertex", "-o", target, "--branches", "--,+-", *few)
+    assert result.exit_code == OK
+    assert result.stdout.endswith(f"written: {target}, with 2 branches\n")
+
+
+def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
+    target = tmp_path / "panels.html"
+    result = run("view", "zigzags", "-o", target, "--frames", "2")
+    assert result.exit_code == OK
+    assert result.stdout.startswith("3 families of ways to fold")
+    assert result.stdout.endswith(f"written: {target}, with 4 ways to fold\n")
+    assert "read zigzags: SVG" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (["two-vertex", "--branches", "+x"], USAGE, "'+x' is not a list of vertex signs"),
+        (["two-vertex", "--branches", "+-+"], USAGE, "3 signs for 2 vertices"),
+        (["two-vertex", "--serve", "-o", "a.html"], USAGE, "--serve writes no file"),
+        (["two-vertex", "--port", "8000"], USAGE, "--port goes with --serve"),
+        (["missing.fold"], BAD_INPUT, "missing.fold"),
+        (["two-vertex", "-o", "-"], USAGE, "an output has a name of its own"),
+    ],
+)
+def test_what_is_refused(arguments, code, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("view", *arguments)
+    assert result.exit_code == code
+    assert message in result.stderr
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_ctrl_c_ends_the_server():
+    command = [sys.executable, "-m", "exactfold", "view", "two-vertex", "--serve", "--frames", "2"]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as served:
+        line = served.stdout.readline()
+        port = int(re.search(r"http://127\.0\.0\.1:(\d+)/", line)[1])
+        connection = HTTPConnection("127.0.0.1", port, timeout=60)
+        connection.request("GET", "/")
+        assert connection.getresponse().status == 200
+        connection.close()
+        served.send_signal(signal.SIGINT)
+        _, said = served.communicate(timeout=60)
+    assert (served.returncode, said) == (OK, "exactfold: the server has ended\n")

@@ -1,0 +1,290 @@
+"""The page in a real browser: it opens, folds, is clicked, typed at, and saves a file."""
+
+import json
+import threading
+import time
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from browser import chromium
+
+from exactfold import count_branches, find_branch, follow, load, open_pattern
+from exactfold.viewer import view_server, write_view
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    found = tmp_path_factory.mktemp("viewer")
+    (found / "downloads").mkdir()
+    return found
+
+
+@pytest.fixture(scope="module")
+def browser(folder):
+    with chromium(folder) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def pages(folder, browser):
+    """Addresses of the pages of three sheets, written once there is a browser."""
+    for name in ("h1-4", "zigzags", "waterbomb"):
+        write_view(name, folder / f"{name}.html", name=name)
+    return {path.stem: path.as_uri() for path in folder.glob("*.html")}
+
+
+def test_it_opens_without_a_complaint_and_asks_nothing_of_a_network(browser, pages):
+    for name, address in pages.items():
+        browser.open(address)
+        assert browser.complaints() == [], name
+        asked = browser.run("performance.getEntriesByType('resource').map((e) => e.name)")
+        assert [one for one in asked if not one.startswith("data:")] == []
+    assert browser.run("document.title") == "waterbomb - exactfold"
+    assert "one family of dimension 3" in browser.text("#answer")
+    assert browser.run("document.getElementById('play').disabled")
+
+
+def test_the_slider_folds_the_sheet(browser, pages):
+    browser.open(pages["h1-4"])
+    spans = []
+    for value in (0, 500, 1000):
+        browser.slide(value)
+        z = np.array(browser.run("exactfold.positions()")).reshape(-1, 3)
+        spans.append(float(np.ptp(z[:, 2])))
+    assert spans[0] == 0
+    assert spans[1] > 0.05
+    assert spans[2] > 0.05
+    assert spans[2] != spans[1]
+    before = _pixels(browser)
+    browser.run("exactfold.store.set({time: 0.2})")
+    assert _pixels(browser) != before
+
+
+def _pixels(browser):
+    """A picture of the page, once what was asked for is drawn."""
+    browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    return browser.command("Page.captureScreenshot")["data"]
+
+
+def test_play_moves_and_pause_stops(browser, pages):
+    browser.open(pages["h1-4"])
+    before = browser.run("exactfold.store.get().time")
+    browser.click("#play")
+    browser.until(f"Math.abs(exactfold.store.get().time - {before}) > 0.02")
+    assert browser.run("document.getElementById('play').getAttribute('aria-label')") == "Pause"
+    browser.click("#play")
+    stopped = browser.run("exactfold.store.get().time")
+    time.sleep(0.3)
+    assert browser.run("exactfold.store.get().time") == stopped
+
+
+def test_a_click_on_a_vertex_pops_it_through(browser, pages):
+    browser.open(pages["h1-4"])
+    count = count_branches("h1-4")
+    signs, letters, _ = browser.shown()
+    vertex = count.pattern.interior[2]
+    browser.click(f'[data-vertex="{vertex}"] .reach')
+    flipped = signs[:2] + ("+" if signs[2] == "-" else "-") + signs[3:]
+    assert browser.shown() == (flipped, count[flipped].assignment_text, False)
+    browser.click(f'[data-vertex="{vertex}"] .reach')
+    assert browser.shown() == (signs, letters, False)
+    assert f"Vertex {vertex} popped through" in browser.text("#message")
+
+
+def test_clicks_on_folds_ask_for_letters_and_the_list_shrinks(browser, pages):
+    browser.open(pages["h1-4"])
+    count = count_branches("h1-4")
+    folds = count.pattern.folds
+    i, j = folds[-1]
+    selector = f'[data-fold="{i}-{j}"] .reach'
+
+    total = len(count)
+    for letter in "MV":  # of the two mirror images of a branch one agrees
+        browser.click(selector)
+        sides = sum(branch.assignment[i, j] in "MV" for branch in count)
+        assert browser.text("#count") == f"{sides} of {total} branches"
+        _, letters, mirrored = browser.shown()
+        shown = letters.translate(str.maketrans("MV", "VM")) if mirrored else letters
+        assert shown[-1] == letter
+    k, m = folds[0]
+    browser.click(f'[data-fold="{k}-{m}"] .reach')  # M there, V at the last
+    both = sum(
+        (branch.assignment[k, m], branch.assignment[i, j]) in (("M", "V"), ("V", "M"))
+        for branch in count
+    )
+    assert 0 < both < total
+    assert browser.text("#count") == f"{both} of {total} branches"
+    assert browser.run("document.querySelectorAll('.way').length") == both
+    browser.click(f'[data-fold="{k}-{m}"] .reach')
+    browser.click(f'[data-fold="{k}-{m}"] .reach')
+    browser.click(selector)  # any
+    assert browser.text("#count") == f"{total} branches"
+
+
+def test_everything_is_reached_by_keys(browser, pages):
+    from selenium.webdriver.common.keys import Keys
+
+    browser.open(pages["h1-4"])
+    reached = []
+    while "download" not in reached:
+        assert len(reached) < 20
+        browser.press(Keys.TAB)
+        reached.append(
+            browser.run(
+                "(document.activeElement.id || Object.keys(document.activeElement.dataset)[0])"
+            )
+        )
+        ring = browser.run(
+            "(() => { const a = document.activeElement;"
+            " const n = a.querySelector?.('.reach') ?? a; const s = getComputedStyle(n);"
+            " return a === document.body || s.outlineStyle !== 'none' || +s.strokeOpacity < 1"
+            " || +s.fillOpacity < 1 })()"
+        )
+        assert ring, reached
+    wanted = ["fold", "vertex", "mirror", "home", "canvas", "play", "time", "search", "ways"]
+    assert [name for name in reached if name in wanted] == wanted
+
+    browser.open(pages["h1-4"])
+    signs, _, _ = browser.shown()
+    browser.press(Keys.TAB, Keys.TAB, Keys.ARROW_RIGHT, Keys.ENTER)  # the second vertex
+    assert browser.shown()[0] == signs[0] + ("+" if signs[1] == "-" else "-") + signs[2:]
+    browser.run("document.activeElement.blur()")
+    browser.press(Keys.ARROW_DOWN)
+    assert browser.run("exactfold.store.get().way") == 1 + count_branches("h1-4").branches.index(
+        count_branches("h1-4")[signs[0] + ("+" if signs[1] == "-" else "-") + signs[2:]]
+    )
+    before = browser.run("exactfold.store.get().time")
+    browser.press(Keys.ARROW_LEFT)
+    assert browser.run("exactfold.store.get().time") < before
+    browser.press(Keys.SPACE)
+    assert browser.run("exactfold.store.get().playing")
+    browser.press(Keys.SPACE, "m")
+    assert browser.run("[exactfold.store.get().playing, exactfold.store.get().mirrored]") == [
+        False,
+        True,
+    ]
+
+
+def test_the_list_is_searched_by_signs_and_letters(browser, pages):
+    browser.open(pages["h1-4"])
+    count = count_branches("h1-4")
+    browser.click("#search")
+    browser.press("+-?+")
+    wanted = sorted({branch.sign_text for branch in count if _fits(branch.sign_text, "+-?+")})
+    mirrored = {branch.sign_text for branch in count if _fits(_turned(branch.sign_text), "+-?+")}
+    rows = browser.run("document.querySelectorAll('.way').length")
+    assert rows == len(set(wanted) | mirrored)
+    browser.press("??")  # more signs than vertices
+    assert browser.text("#ways") == "No branch agrees."
+    browser.click("#clear")
+    assert browser.text("#count") == f"{len(count)} branches"
+
+
+def _fits(text, wanted):
+    return all(w in ("?", c) for c, w in zip(text, wanted, strict=True))
+
+
+def _turned(signs):
+    return signs.translate(str.maketrans("+-", "-+"))
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_branch_is_saved_as_fold(browser, pages, folder, mirrored):
+    browser.open(pages["h1-4"])
+    for kept in (folder / "downloads").iterdir():
+        kept.unlink()
+    browser.run(f"exactfold.store.set({{way: 5, mirrored: {str(mirrored).lower()}}})")
+    branch = count_branches("h1-4").branches[5]
+    browser.click("#download")
+    signs = _turned(branch.sign_text) if mirrored else branch.sign_text
+    path = folder / "downloads" / f"h1-4_branch_{signs}.fold"
+    for _ in range(200):
+        if path.exists():
+            break
+        time.sleep(0.05)
+    document = json.loads(path.read_text("utf-8"))
+    assert load(path).sha256 == branch.pattern.sha256  # the exact sheet
+    assert open_pattern(path).assignment == dict(
+        follow(branch, side=-1 if mirrored else 1).assignment
+    ) | {edge: "B" for edge in branch.pattern.edges if edge not in branch.pattern.folds}
+    motion = follow(branch, side=-1 if mirrored else 1, frames=32)
+    frames = document["file_frames"]
+    assert len(frames) == 32
+    at = [branch.pattern.edges.index(fold) for fold in branch.pattern.folds]
+    for frame, time_, angles, coords in zip(
+        frames, motion.times, motion.angles, motion.coords, strict=True
+    ):
+        assert frame["frame_exactfold:time"] == pytest.approx(time_, abs=1e-9)
+        found = np.array(frame["edges_foldAngle"])[at]
+        assert np.abs(found - np.degrees(angles)).max() < 1e-3
+        i, j = np.array(branch.pattern.edges).T
+        shape = np.array(frame["vertices_coords"])
+        lengths = [np.linalg.norm(c[i] - c[j], axis=1) for c in (shape, coords)]
+        assert np.allclose(*lengths, atol=1e-6)
+
+
+def test_dark_and_light_are_those_of_the_reader(browser, pages):
+    grounds = {}
+    for dark in (False, True):
+        browser.open(pages["h1-4"], dark=dark)
+        found = browser.run("getComputedStyle(document.body).backgroundColor")
+        grounds[dark] = sum(int(part) for part in found[4:-1].split(","))
+    assert grounds[True] < 150 < 600 < grounds[False]
+
+
+def test_panes_stack_on_a_phone(browser, pages):
+    browser.open(pages["h1-4"], width=360, height=740)
+    assert browser.run("document.documentElement.scrollWidth") <= 360
+    boxes = browser.run(
+        "Array.from(document.querySelectorAll('main > .pane, .side > .pane'), (node) => {"
+        " const b = node.getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom] })"
+    )
+    assert len(boxes) == 4
+    for (_, _, right, bottom), (left, top, _, _) in pairwise(boxes):
+        assert left < 20
+        assert right > 340
+        assert top >= bottom
+    small = browser.run(
+        "Array.from(document.querySelectorAll('#play, #mirror, #home, #download'),"
+        " (node) => node.getBoundingClientRect().height)"
+    )
+    assert min(small) >= 32
+
+
+def test_panels_are_followed_or_have_a_reason(browser, pages):
+    browser.open(pages["zigzags"])
+    names = browser.run(
+        "Array.from(document.querySelectorAll('.way .signs'), (n) => n.textContent)"
+    )
+    assert names[-1] == "mode 4refuted, not followed"
+    browser.click(".way:last-child")
+    assert "does not close" in browser.text("#empty")
+    assert browser.run("document.getElementById('play').disabled")
+    browser.click(".way:first-child")
+    assert browser.run("document.getElementById('empty').hidden")
+    assert not browser.run("document.getElementById('play').disabled")
+    assert browser.complaints() == []
+
+
+def test_branches_come_from_the_server_as_they_are_asked_for(browser):
+    with view_server("h1-4", branches=["++++"], frames=4) as server:
+        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
+        thread.start()
+        try:
+            browser.open(server.address)
+            browser.until("exactfold.store.get().ways[0].motion !== null")
+            vertex = load("h1-4").interior[1]
+            browser.click(f'[data-vertex="{vertex}"] .reach')
+            browser.until("exactfold.store.get().ways.length === 2")
+            assert browser.shown() == ("+-++", find_branch("h1-4", "+-++").assignment_text, False)
+            browser.click("#search")
+            browser.press("++x", "\ue007")
+            browser.until("document.getElementById('message').className.includes('wrong')")
+            assert "'x' is not a vertex sign" in browser.text("#message")
+            assert all("422" in line for line in browser.complaints())
+        finally:
+            server.shutdown()
+            thread.join()

@@ -1,0 +1,182 @@
+"""The document of the page against counts and motions, and the page against its document."""
+
+import base64
+import hashlib
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from exactfold import count_branches, count_ways, find_branch, follow, random_square
+from exactfold.certify import algebraic
+from exactfold.errors import UsageError
+from exactfold.motion import panel_components, prove
+from exactfold.pattern.families import single_vertex
+from exactfold.viewer import page as page_module
+from exactfold.viewer import view_document, view_page
+from exactfold.viewer.coding import coded_frames, decoded_frames, levelled
+
+PAGE = Path(page_module.__file__).parent / "page"
+
+
+@pytest.fixture(scope="module")
+def two_vertex():
+    return view_document("two-vertex", frames=7)
+
+
+def test_branches_are_those_of_the_count(two_vertex):
+    count = count_branches("two-vertex")
+    folds = count.pattern.folds
+    assert two_vertex["sheet"]["folds"] == [list(fold) for fold in folds]
+    assert [(way["signs"], way["letters"], way["saddle"]) for way in two_vertex["ways"]] == [
+        (branch.sign_text, "".join(branch.assignment[fold] for fold in folds), branch.saddle)
+        for branch in count
+    ]
+    assert (two_vertex["status"], two_vertex["complete"]) == ("proved", True)
+    assert two_vertex["answer"].startswith("4 ways to start folding - PROVED; all real")
+
+
+def test_frames_are_those_of_the_motion_and_of_its_mirror_image(two_vertex):
+    way = two_vertex["ways"][1]
+    branch = find_branch("two-vertex", way["signs"])
+    frames = decoded_frames(way["motion"])
+    for side, seen in ((1, frames), (-1, frames * [1, 1, -1])):
+        motion = follow(branch, side=side, frames=7)
+        assert np.abs(levelled(motion.coords) - seen).max() < 3e-7 * way["motion"]["scale"]
+        assert way["motion"]["duration"] == pytest.approx(motion.duration, rel=1e-9)
+    assert way["motion"]["end"] == "flat-fold"
+    assert (way["motion"]["proved"], way["why"]) == (False, "")
+
+
+def test_motions_are_proved_where_that_is_asked_for():
+    [way] = view_document("two-vertex", branches=["+-"], frames=3, proving=True)["ways"]
+    event = prove(follow(find_branch("two-vertex", "+-"))).contact.event
+    assert way["motion"]["proved"]
+    assert "between the times {:.8g} and {:.8g}".format(*event.time) in way["motion"]["said"]
+
+
+def test_levelled_frames_keep_all_distances():
+    motion = follow(find_branch("two-vertex", "+-"), frames=9)
+    shapes = levelled(motion.coords)
+    apart = [c[:, :, None] - c[:, None] for c in (motion.coords, shapes)]
+    assert np.allclose(*(np.linalg.norm(a, axis=3) for a in apart), atol=1e-12)
+    assert np.abs(np.diff(shapes, axis=0)).max() <= np.abs(np.diff(motion.coords, axis=0)).max()
+
+
+@pytest.mark.parametrize("shape", [(2, 1, 3), (3, 4, 3), (40, 5, 3)])
+def test_any_frames_survive_coding(shape):
+    coords = np.random.default_rng(7).normal(size=shape)
+    coded = coded_frames(coords)
+    assert np.abs(decoded_frames(coded) - coords).max() <= coded["scale"] / 2**24
+    assert coded_frames(np.zeros(shape))["scale"] == 1.0
+
+
+def test_the_branches_that_are_named_are_shown():
+    document = view_document(random_square(12, seed=1), branches=["+-" * 6, "-" * 12], frames=2)
+    assert [way["signs"] for way in document["ways"]] == ["+-" * 6, "-" * 12]
+    assert (document["complete"], document["status"]) == (False, "proved")
+    with pytest.raises(UsageError, match="3 signs for 12 vertices"):
+        view_document(random_square(12, seed=1), branches=["+-+"])
+    with pytest.raises(UsageError, match="modes of rigid panels"):
+        view_document("zigzags", branches=["+-+"])
+
+
+def test_a_branch_with_a_flat_vertex_has_the_reason_in_place_of_a_motion():
+    document = view_document("flat-vertex", frames=2)
+    flat = next(way for way in document["ways"] if "0" in way["signs"])
+    assert flat["motion"] is None
+    assert "is flat on this branch" in flat["why"]
+    assert (flat["status"], flat["multiplicity"]) == ("proved", 2)
+
+
+def test_panels_list_what_is_followed_and_what_is_not():
+    ways = count_ways("zigzags")
+    document = view_document("zigzags", frames=3)
+    components = panel_components(ways)
+    followed = [way for way in document["ways"] if way["motion"]]
+    assert (document["kind"], len(followed)) == ("panels", len(components))
+    [left] = [way for way in document["ways"] if way["motion"] is None]
+    assert (left["status"], left["name"]) == ("refuted", "mode 4")
+    assert "does not close" in left["why"]
+    assert set(left["letters"]) == {"M", "V"}
+    assert [way["motion"]["proved"] for way in followed].count(True) == 1
+
+
+@pytest.mark.parametrize(
+    ("sheet", "status", "answer"),
+    [
+        ("waterbomb", "proved", "infinitely many ways"),
+        (single_vertex(3), "proved", "0 ways to start folding"),
+    ],
+)
+def test_sheets_that_are_not_followed_open_with_the_reason(sheet, status, answer):
+    document = view_document(sheet)
+    assert (document["status"], document["ways"]) == (status, [])
+    assert document["answer"].startswith(answer)
+    assert document["reason"]
+    assert view_page(document).count("</script>") == 3
+
+
+def test_an_undecided_count_shows_what_is_known(monkeypatch):
+    monkeypatch.setattr(algebraic, "definite_stress", lambda pattern: None)
+    known = count_branches("flat-vertex")
+    document = view_document("flat-vertex", frames=2)
+    assert (document["status"], document["complete"]) == ("undecided", False)
+    assert "finiteness is not proved" in document["reason"]
+    assert "UNDECIDED" in document["answer"]
+    assert [way["signs"] for way in document["ways"]] == [b.sign_text for b in known]
+
+
+def test_no_name_runs_as_code_or_breaks_the_page():
+    name = "</script><script>alert(1)</script><!-- \u2028 & \"'"
+    page = view_page(view_document("single-vertex-4", name=name, frames=2))
+    assert page.count("</script>") == page.count("<script") == 3
+    assert "&lt;/script&gt;&lt;script&gt;" in page
+    assert _data(page)["name"] == name
+
+
+def test_scripts_and_styles_are_allowed_by_their_digests_and_nothing_else_is(two_vertex):
+    page = view_page(two_vertex)
+    policy = re.search(r'Content-Security-Policy" content="([^"]+)"', page)[1]
+    code = re.findall(r"<script(?: type=\"module\")?>(.*?)</script>", page, re.DOTALL)
+    texts = [*code, re.search(r"<style>(.*?)</style>", page, re.DOTALL)[1]]
+    for text in texts:
+        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+        assert f"'sha256-{digest}'" in policy
+    assert "unsafe" not in policy
+    assert "default-src 'none'" in policy
+    assert "connect-src 'none'" in policy
+    addresses = set(re.findall(r"https?://[\w./-]+", page))
+    assert addresses <= {"http://www.w3.org/1999/xhtml", "http://www.w3.org/2000/svg", *_specs()}
+    assert _data(page) == json.loads(json.dumps(two_vertex))
+
+
+def _specs():
+    """Addresses that name things in data, none of which is opened."""
+    document = view_document(single_vertex(3))["sheet"]["fold"]
+    return re.findall(r"https?://[\w./-]+", json.dumps(document))
+
+
+def test_modules_of_the_page_can_be_joined():
+    """They become one script: no name may stand in two of them."""
+    names, texts = [], {path.name: path.read_text("utf-8") for path in PAGE.glob("*.js")}
+    for text in texts.values():
+        names += re.findall(
+            r"^(?:export )?(?:async )?(?:function|const|let|class) (\w+)", text, re.MULTILINE
+        )
+        assert len(text.splitlines()) < 400
+    assert len(names) == len(set(names))
+    script = _script(view_page(view_document(single_vertex(3))))
+    assert not re.search(r"^(import|export)\b", script, re.MULTILINE)
+    assert all(f"// --- {name} ---" in script for name in texts)
+
+
+def _data(page):
+    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
+    return json.loads(found[1])
+
+
+def _script(page):
+    return re.search(r'<script type="module">(.*?)</script>', page, re.DOTALL)[1]
