@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from exactfold import count_ways, find_branch, follow, load
-from exactfold.motion import follow_panels
-from exactfold.report import motion_stills
+from exactfold import PROVED, count_ways, find_branch, follow, load
+from exactfold.motion import follow_panels, prove
+from exactfold.report import motion_animation, motion_stills
 
 FOLDER = Path(__file__).with_name("pictures")
 MOTIONS = {
@@ -32,7 +32,16 @@ def pictures() -> dict[str, str]:
     for name, (pattern, component) in PANELS.items():
         motion = follow_panels(count_ways(pattern), component=component)
         panels[f"{name}.svg"] = motion_stills(motion, 5, f"{pattern}, component {component}")
-    return branches | panels
+    return branches | panels | {"folding.svg": folding()}
+
+
+def folding() -> str:
+    """The sheet of the first page, which folds along a motion that is proved."""
+    motion = follow(find_branch(load("two-vertex"), "+-"))
+    found = prove(motion)
+    if found.status is not PROVED:
+        raise RuntimeError(f"the motion on the first page is not proved: {found.reason}")
+    return motion_animation(motion, title="two-vertex, branch +-")
 
 
 if __name__ == "__main__":
