@@ -51,6 +51,14 @@ def motion_stills(motion: SheetInMotion, number: int = 5, title: str = "") -> st
     return stills(shapes, faces, captions, heading, pieces=pieces, layered=layered)
 
 
+def motion_still(motion: SheetInMotion, time: float, caption: str, title: str, size: float) -> str:
+    """The sheet at one time of a motion, `size` pixels wide, as an SVG file."""
+    flat = motion.coords[0]
+    shape, before = (_levelled(motion.at(t), flat) for t in (time, (1 - _EARLIER) * time))
+    pieces, faces = triangles_by_face(motion.pattern), _faces(motion.pattern)
+    return stills([shape], faces, [caption], title, pieces=pieces, layered=[before], panel=size)
+
+
 def stills(
     shapes: Sequence[FloatArray],
     faces: Sequence[Sequence[int]],
@@ -59,11 +67,13 @@ def stills(
     *,
     pieces: Sequence[Sequence[Sequence[int]]] | None = None,
     layered: Sequence[FloatArray] | None = None,
+    panel: float = _PANEL,
 ) -> str:
     """Shapes of one sheet side by side, each of shape (V, 3), with a caption each.
 
     `pieces`: the triangles of each face, needed if there are others. `layered`: shapes close to
-    these in which no faces lie on each other, which say what is drawn over what.
+    these in which no faces lie on each other, which say what is drawn over what. `panel`: the width
+    of each still.
 
     >>> flat = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5]])
     >>> stills([flat], [(0, 1, 2), (0, 2, 3)], ["a & b"], "two faces").count("<path")
@@ -73,23 +83,23 @@ def stills(
     low = np.min([view.min(axis=0) for view in seen], axis=0)[:2]
     high = np.max([view.max(axis=0) for view in seen], axis=0)[:2]
     span = float(max(*(high - low), 1e-12))
-    scale = (_PANEL - 2 * _MARGIN) / span
+    scale = (panel - 2 * _MARGIN) / span
     height = float((high - low)[1]) * scale + 2 * _MARGIN
     parts = []
     cut = pieces or [[face] for face in faces]
     apart = shapes if layered is None else layered
     for k, (shape, view, caption) in enumerate(zip(shapes, seen, captions, strict=True)):
         order = back_to_front(_seen(np.asarray(apart[k], dtype=np.float64)), cut)
-        left = k * _PANEL + _MARGIN + ((_PANEL - 2 * _MARGIN) - float((high - low)[0]) * scale) / 2
+        left = k * panel + _MARGIN + ((panel - 2 * _MARGIN) - float((high - low)[0]) * scale) / 2
         flat = np.column_stack(
             [left + (view[:, 0] - low[0]) * scale, _MARGIN + (high[1] - view[:, 1]) * scale]
         )
         parts.append(
             element("g", _drawn(np.asarray(shape), flat, [faces[k] for k in order]), stroke=INK)
         )
-        centre = (k + 0.5) * _PANEL
+        centre = (k + 0.5) * panel
         parts.append(text(caption, centre, height + 12, anchor="middle", size=12))
-    return picture(len(shapes) * _PANEL, height + _CAPTION, parts, title)
+    return picture(len(shapes) * panel, height + _CAPTION, parts, title)
 
 
 def _levelled(shape: FloatArray, flat: FloatArray) -> FloatArray:

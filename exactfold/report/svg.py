@@ -9,7 +9,8 @@ from typing import Final
 
 COLOURS: Final = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#4d4d4d")
 """Colours that people with any kind of colour blindness tell apart (Okabe and Ito, 2008)."""
-VALLEY, MOUNTAIN, FLAT = COLOURS[0], COLOURS[1], "#999999"
+VALLEY, MOUNTAIN, FLAT = COLOURS[0], "#c8202f", "#999999"
+"""Blue and red, of much the same grey: valleys are dashed, too, where both are drawn."""
 
 INK, FAINT = "#222222", "#dddddd"
 

@@ -1,0 +1,120 @@
+"""What a picture shows of one way to fold: letters, vertex signs, sizes of the fold angles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import dist
+from typing import TYPE_CHECKING, Final
+
+from exactfold.branches.branch import Branch
+from exactfold.branches.letters import UPSIDE_DOWN
+from exactfold.branches.result import BranchCount
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.report.crease_drawing import SIZE, CreaseDrawing
+from exactfold.report.crease_lines import crease_lines
+
+
+if TYPE_CHECKING:
+    from exactfold.modes.result import Decomposition
+    from exactfold.motion.followable import PanelMode
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+_LONG: Final = 24
+
+
+@dataclass(frozen=True)
+class DrawnWay:
+    """One way to fold, as it is drawn; `number` is its place in the list of `exactfold count`.
+
+    `angles` are in proportion to the fold angles, empty where nothing is proved of them.
+    """
+
+    pattern: CreasePattern | PanelPattern
+    name: str
+    letters: Mapping[Edge, str]
+    signs: Mapping[int, int] = field(default_factory=dict)
+    angles: Mapping[Edge, float] = field(default_factory=dict)
+    number: int | None = None
+
+    @property
+    def text(self) -> str:
+        """The letters in the order of the folds; a point for a fold of panels that stays flat."""
+        flat = "F" if isinstance(self.pattern, CreasePattern) else "."
+        found = (self.letters.get(fold, "U") for fold in self.pattern.folds)
+        return "".join(flat if letter == "F" else letter for letter in found)
+
+    @property
+    def shared(self) -> str:
+        """The same on both sides of the sheet: the smaller text of the two."""
+        return min(self.text, self.text.translate(UPSIDE_DOWN))
+
+    def drawing(self, size: float = SIZE, *, small: bool = False) -> CreaseDrawing:
+        """The drawing of the pattern with this way; `small`: without the numbers of vertices."""
+        lines = crease_lines(self.pattern, self.letters)
+        joined = True if small else None
+        return CreaseDrawing(lines, self.signs, self.angles, size, not small, joined)
+
+    def picture(self, title: str = "") -> str:
+        """The crease pattern with this way as an SVG file."""
+        name = f"{title}, {self.name}" if title else self.name
+        return self.drawing().picture(name)
+
+
+def branch_way(branch: Branch, number: int | None = None) -> DrawnWay:
+    """A branch, by the ray that is shown.
+
+    >>> from exactfold.count.find import find_branch
+    >>> way = branch_way(find_branch("two-vertex", "+-"))
+    >>> way.name, way.text, sorted(way.signs.items())
+    ('branch +-', 'VVVMMMVVM', [(4, 1), (5, -1)])
+    """
+    angles = {}
+    if branch.heights:
+        angles = {fold: float(bend) for fold, bend in branch.fold_angles.bends.items()}
+    name = f"branch {'' if number is None else f'{number}: '}{shortened(branch.sign_text)}"
+    return DrawnWay(branch.pattern, name, branch.assignment, branch.vertex_signs, angles, number)
+
+
+def mode_way(mode: PanelMode) -> DrawnWay:
+    """An elementary mode of a sheet of panels; the folds it does not fold are flat.
+
+    >>> from exactfold.modes.decomposition import decompose
+    >>> from exactfold.motion.followable import panel_modes
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> mode_way(panel_modes(decompose(panels(single_vertex(4))))[0]).text
+    'VMVV'
+    """
+    points = [(float(x), float(y)) for x, y in mode.pattern.vertices]
+    first = mode.folds[0]
+    rates = {first: 1.0 if mode.letters[first] == "V" else -1.0}
+    for k, known in mode.order_from(first):
+        for fold in mode.stars[k].folds:
+            rates.setdefault(fold, rates[known] * float(mode.choice[k].gain(known, fold)))
+    angles = {(i, j): rate * dist(points[i], points[j]) for (i, j), rate in rates.items()}
+    letters = {fold: mode.letters.get(fold, "F") for fold in mode.pattern.folds}
+    return DrawnWay(mode.pattern, f"mode {mode.number}", letters, {}, angles, mode.number)
+
+
+def ways_of(result: BranchCount | Decomposition) -> Sequence[DrawnWay]:
+    """All ways that a count lists, in its order.
+
+    >>> from exactfold.count.collect import count_branches
+    >>> [way.number for way in ways_of(count_branches("two-vertex"))]
+    [1, 2, 3, 4]
+    """
+    if isinstance(result, BranchCount):
+        return [branch_way(branch, k) for k, branch in enumerate(result.branches, 1)]
+    from exactfold.motion.followable import panel_modes
+
+    return [mode_way(mode) for mode in panel_modes(result)]
+
+
+def shortened(text: str, most: int = _LONG) -> str:
+    """Signs or letters, cut where there are many.
+
+    >>> shortened("+-+-+-", 5)
+    '+-+-…'
+    """
+    return text if len(text) <= most else f"{text[: most - 1]}…"
