@@ -11,12 +11,13 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Final
 
-from exactfold import count_branches, count_ways, families, load, open_pattern
+from exactfold import count_branches, count_ways, families
 from exactfold.branches import BranchCount
-from exactfold.data import examples
+from exactfold.data import DRAWINGS, examples
 from exactfold.modes import Decomposition
 from exactfold.pattern import CreasePattern
 from exactfold.pattern.degenerate import DEGENERATE
+from exactfold.report.crease_drawing import pattern_picture
 from exactfold.report.drawn_ways import ways_of
 from exactfold.report.multiples import sheet_of_multiples
 
@@ -29,8 +30,8 @@ HEAD: Final = """# Gallery
 Every pattern that comes with exactfold, and one sheet of each family that it can build. Below each
 title is every way to fold it, up to twelve, drawn on its crease pattern: mountains are red, valleys
 are blue and dashed, folds that stay flat are grey. A triangle that points up marks a vertex that
-pops up, one that points down a vertex that pops down. The width of a line grows with the fold angle.
-Ways with the same mountain and valley letters are framed together: only the vertex signs tell them
+pops up, one that points down a vertex that pops down. The width of a line grows with the fold
+angle. Ways with the same mountain and valley letters are framed together: only the vertex signs tell them
 apart.
 
 The page is written by `python docs/make_gallery.py`, which counts every pattern anew.
@@ -47,7 +48,7 @@ FAMILIES: Final[dict[str, tuple[str, Callable[[], CreasePattern]]]] = {
     ),
     "h1-3": ("families.h1_sequence(3)", lambda: families.h1_sequence(3)),
     **{
-        name: (f'DEGENERATE["{name}"]()', DEGENERATE[name])
+        name: (f'pattern.degenerate.DEGENERATE["{name}"]()', DEGENERATE[name])
         for name in (
             "nested-triangles",
             "several-triangles",
@@ -74,47 +75,49 @@ def count(name: str) -> BranchCount | Decomposition:
     """All ways to fold an entry of the gallery."""
     if name in FAMILIES:
         return count_branches(FAMILIES[name][1]())
-    pattern = open_pattern(name)
-    return count_branches(load(name)) if isinstance(pattern, CreasePattern) else count_ways(name)
+    return count_ways(name) if name in DRAWINGS else count_branches(name)
 
 
 def picture(name: str, found: BranchCount | Decomposition) -> str:
-    """All ways, or the first of them, as one SVG file."""
-    return sheet_of_multiples(ways_of(found), name, most=MOST)
+    """All ways, or the first of them, as one SVG file; the pattern alone where none is listed."""
+    ways = ways_of(found)
+    if ways:
+        return sheet_of_multiples(ways, name, most=MOST)
+    return pattern_picture(found.pattern, title=name, size=200, keyed=False)
 
 
 def words(name: str, found: BranchCount | Decomposition) -> str:
     """What there is to know, in a few lines of Markdown."""
-    made = (
-        f"In Python: `{FAMILIES[name][0]}`."
-        if name in FAMILIES
-        else f"{' '.join(examples()[name].split())} `exactfold count {name}`."
-    )
+    if name in FAMILIES:
+        made = f"In Python: `{FAMILIES[name][0]}`."
+    else:
+        made = f"{' '.join(examples()[name].split())}\n\n`exactfold count {name}`:"
+    status = found.status.value
     if isinstance(found, Decomposition):
         sizes = ", ".join(f"{number} of dimension {d}" for d, number in found.true.items())
-        return f"{made} Families of ways to fold: {sizes} ({found.status.value})."
-    number = found.distinct
-    if number == 0:
-        return f"{made} The sheet is rigid ({found.status.value})."
-    ways = "1 way" if number == 1 else f"{number} ways"
-    more = (
-        f", {found.with_multiplicity} with multiplicity"
-        if found.with_multiplicity not in (None, number)
-        else ""
-    )
-    return f"{made} {ways} to start folding{more} ({found.status.value})."
+        return f"{made} {sum(found.true.values())} families of ways to fold, {sizes}; {status}."
+    if not found.branches:
+        return (
+            f"{made} one family of ways to start folding, of dimension {found.dimension}; {status}."
+        )
+    ways = "1 way" if found.distinct == 1 else f"{found.distinct} ways"
+    many = found.with_multiplicity
+    more = f" ({many} with multiplicity)" if many not in (None, found.distinct) else ""
+    return f"{made} {ways} to start folding{more}; {status}."
 
 
 def entry(name: str) -> str:
     """The section of the page on a pattern; its picture is written beside."""
     found = count(name)
-    section = f"## {name}\n\n{words(name, found)}\n"
-    if isinstance(found, Decomposition) or found.branches:
-        path = FOLDER / f"{name}.svg"
-        path.parent.mkdir(exist_ok=True)
-        path.write_text(picture(name, found), encoding="utf-8")
-        section += f"\n![The ways to fold {name}](gallery/{name}.svg)\n"
-    return section
+    path = FOLDER / f"{name}.svg"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(picture(name, found), encoding="utf-8")
+    return section(name, found)
+
+
+def section(name: str, found: BranchCount | Decomposition) -> str:
+    """What the page says of a pattern."""
+    return f"## {name}\n\n{words(name, found)}\n\n![The ways to fold {name}](gallery/{name}.svg)\n"
 
 
 def write(wanted: Iterable[str]) -> None:
