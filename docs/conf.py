@@ -57,16 +57,22 @@ copybutton_prompt_text = r">>> |\.\.\. |\$ "
 copybutton_prompt_is_regexp = True
 
 
+def _mathml(node: nodes.Element, display: str) -> str:
+    """A formula as MathML, without spaces round bars, which are norms, and slashes."""
+    text = convert(node.astext(), display=display)
+    tight = r'<mo\1 lspace="0" rspace="0">\2</mo>'
+    return re.sub(r"<mo([^>]*)>(&#x0007C;|\||/|&#x0002F;)</mo>", tight, text)
+
+
 def _inline(self: Any, node: nodes.Element) -> None:
-    """A formula in a line as MathML."""
-    self.body.append(convert(node.astext()))
+    """A formula in a line."""
+    self.body.append(_mathml(node, "inline"))
     raise nodes.SkipNode
 
 
 def _block(self: Any, node: nodes.Element) -> None:
-    """A formula on its own as MathML, in a box that scrolls where the page is narrow."""
-    formula = convert(node.astext(), display="block")
-    self.body.append(f'<div class="formula">{formula}</div>')
+    """A formula on its own, in a box that scrolls where the page is narrow."""
+    self.body.append(f'<div class="formula">{_mathml(node, "block")}</div>')
     raise nodes.SkipNode
 
 

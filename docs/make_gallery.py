@@ -31,8 +31,8 @@ Every pattern that comes with exactfold, and one sheet of each family that it ca
 title is every way to fold it, up to twelve, drawn on its crease pattern: mountains are red, valleys
 are blue and dashed, folds that stay flat are grey. A triangle that points up marks a vertex that
 pops up, one that points down a vertex that pops down. The width of a line grows with the fold
-angle. Ways with the same mountain and valley letters are framed together: only the vertex signs tell them
-apart.
+angle. Ways with the same mountain and valley letters are framed together: only the vertex signs
+tell them apart.
 
 The page is written by `python docs/make_gallery.py`, which counts every pattern anew.
 """

@@ -141,9 +141,9 @@ def entry(statement: Statement, proof: Proof) -> str:
 def wrapped(line: str) -> str:
     """An item of a list in lines of at most 100 characters, where no formula or link is longer.
 
-    >>> print(wrapped("- printed: " + "a + b, " * 14))
-    - printed: a + b, a + b, a + b, a + b, a + b, a + b, a + b, a + b, a + b, a + b, a + b, a + b, a +
-      b, a + b,
+    >>> print(wrapped("- printed: " + "a word, " * 12))
+    - printed: a word, a word, a word, a word, a word, a word, a word, a word, a word, a word, a
+      word, a word,
     """
     kept = re.sub(r"`[^`]+`", lambda code: code[0].replace(" ", "\0"), line)
     rows: list[str] = []
