@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from exactfold import PROVED, count_ways, find_branch, follow, load
+from exactfold import PROVED, count_ways, find_branch, follow, load, open_pattern
+from exactfold.data import example_path
 from exactfold.motion import follow_panels, prove
 from exactfold.pattern import CreasePattern
-from exactfold.report import motion_animation, motion_stills
+from exactfold.report import (
+    branch_way,
+    motion_animation,
+    motion_stills,
+    pattern_picture,
+    sheet_of_multiples,
+    ways_of,
+)
 from exactfold.report.crease_drawing import CreaseDrawing
 from exactfold.report.crease_lines import crease_lines
+from exactfold.report.folded import Amount, folded
 from exactfold.report.svg import element, number, picture, text
 
 FOLDER = Path(__file__).with_name("pictures")
@@ -36,7 +45,7 @@ def pictures() -> dict[str, str]:
     for name, (pattern, component) in PANELS.items():
         motion = follow_panels(count_ways(pattern), component=component)
         panels[f"{name}.svg"] = motion_stills(motion, 5, f"{pattern}, component {component}")
-    return branches | panels | {"folding.svg": folding(), "rim.svg": rim()}
+    return branches | panels | drawings() | {"folding.svg": folding(), "rim.svg": rim()}
 
 
 def rim() -> str:
@@ -65,6 +74,27 @@ def folding() -> str:
     if found.status is not PROVED:
         raise RuntimeError(f"the motion on the first page is not proved: {found.reason}")
     return motion_animation(motion, title="two-vertex, branch +-")
+
+
+def drawings() -> dict[str, str]:
+    """Those of the page on drawing, as `exactfold draw` makes them."""
+    opened = open_pattern(example_path("zigzags"))
+    branch = find_branch("random-8", "+-++--+-")
+    all_branches, all_modes = count_ways("two-vertex"), count_ways("zigzags")
+    octahedron = ways_of(count_ways("flat-octahedron"))
+    title = "{}: {} ways to start folding, proved"
+    return {
+        "draw-zigzags.svg": pattern_picture(opened.sheet, opened.assignment, title="zigzags"),
+        "draw-branch.svg": branch_way(branch).picture("random-8"),
+        "draw-folded.svg": folded(follow(branch), Amount.of("60deg"), "random-8").text,
+        "draw-all.svg": sheet_of_multiples(octahedron, title.format("flat-octahedron", 8)),
+        "draw-two-vertex.svg": sheet_of_multiples(
+            ways_of(all_branches), title.format("two-vertex", len(all_branches))
+        ),
+        "draw-modes.svg": sheet_of_multiples(
+            ways_of(all_modes), "zigzags: 5 modes, 4 of them known to truly fold"
+        ),
+    }
 
 
 if __name__ == "__main__":

@@ -327,5 +327,70 @@ def actuate(
     raise typer.Exit(asked.answer())
 
 
-COMMANDS = (branch, export, fold, motions, actuate)
+@reported
+def draw(
+    pattern: Pattern,
+    way: Annotated[
+        str | None,
+        typer.Option(
+            "--branch",
+            "--signs",
+            metavar="N|+-...",
+            help="One way to fold: the N-th that `count` lists, a branch or a mode of panels; or "
+            "the branch with these vertex signs; @FILE reads them.",
+        ),
+    ] = None,
+    up: Up = None,
+    everything: Annotated[
+        bool, flag("--all", text="All ways that `count` lists, small, on one sheet.")
+    ] = False,
+    most: Annotated[
+        int | None,
+        typer.Option(parser=whole(1), metavar="N", help="Of --all: the first N. Default: 64."),
+    ] = None,
+    folded: Annotated[
+        str | None,
+        typer.Option(
+            metavar="60deg|0.5",
+            help="Of one way: the sheet in space, folded until its largest fold angle is this, or "
+            "through this part of its motion up to the first contact.",
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE",
+            help="FILE.svg, .png or .pdf, or - for stdout. Default: stdout; on a terminal a file "
+            "NAME-drawn.svg, NAME-way.svg or NAME-ways.svg here.",
+        ),
+    ] = None,
+    snap: Snap = None,
+    sheet: Sheet = None,
+) -> None:
+    """Draw a crease pattern, one way to fold it, or all ways, as SVG, PNG or PDF.
+
+    Mountains are red, valleys blue and dashed; the wider a fold, the more it
+    folds. Triangles point up at vertices that pop up. Without a way, the letters
+    of the file are drawn. A file that is no sheet is drawn as it is.
+    """
+    from exactfold.commands.draw import Wanted
+    from exactfold.report.folded import Amount
+    from exactfold.report.multiples import MOST
+
+    if (way is not None) + (up is not None) + everything > 1:
+        raise UsageError("give one of --branch, --up and --all")
+    if most is not None and not everything:
+        raise UsageError("--most goes with --all")
+    if folded is not None and way is None and up is None:
+        raise UsageError("--folded goes with --branch or --up")
+    amount = None if folded is None else Amount.of(folded)
+    wanted = Wanted(
+        pattern, snap, sheet, way, up, everything, MOST if most is None else most, amount, output
+    )
+    raise typer.Exit(wanted.answer())
+
+
+COMMANDS = (branch, draw, export, fold, motions, actuate)
 """In the order in which the help lists them."""

@@ -292,5 +292,9 @@ class DaskMissingError(ExactfoldError):
     """dask.distributed, an optional part, is not installed."""
 
 
+class PicturesMissingError(ExactfoldError):
+    """CairoSVG, an optional part that writes PNG and PDF files, is not installed."""
+
+
 class GltfMissingError(ExactfoldError):
     """pygltflib, an optional part that writes glTF files, is not installed."""

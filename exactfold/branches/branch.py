@@ -17,6 +17,7 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
 from exactfold.schemas import headed
+from exactfold.showing import Picture
 from exactfold.verdict import PROVED, Verdict
 
 Row = tuple[Fraction, ...]
@@ -24,7 +25,7 @@ Bounds = tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True, repr=False)
-class Branch:
+class Branch(Picture):
     """One branch of a pattern, shown by one of its two rays.
 
     `vertex_signs`: interior vertex -> +1 popped up, -1 popped down, 0 proved flat. `assignment`:

@@ -18,6 +18,7 @@ from exactfold.pattern.near_degeneracy import near_degenerate, warnings
 from exactfold.problem.branch_system import Chart
 from exactfold.rigidity.rigid_triangles import RigidTriangle
 from exactfold.schemas import headed
+from exactfold.showing import Page
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import counted
 
@@ -39,7 +40,7 @@ class Proof:
 
 
 @dataclass(frozen=True, repr=False)
-class BranchCount:
+class BranchCount(Page):
     """What is known of the branches of a pattern at the unfolded state.
 
     `status` is PROVED when the counts are; they are None otherwise, and `reason` says what is
@@ -192,22 +193,6 @@ class BranchCount:
     def __repr__(self) -> str:
         found = counted("?" if self.distinct is None else self.distinct, "branch")
         return f"<BranchCount: {self.status}, {found}, {self.pattern!r}>"
-
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{branch.sign_text}</td><td>{branch.assignment_text}</td>"
-            f"<td>{branch.multiplicity}</td></tr>"
-            for branch in self.branches[:64]
-        )
-        more = len(self.branches) - 64
-        tail = f"<p>... and {more} more</p>" if more > 0 else ""
-        if self.warning is not None:
-            tail += f"<p>warning: {self.warning}</p>"
-        head = "<tr><th>vertex signs</th><th>mountain-valley</th><th>multiplicity</th></tr>"
-        count = "" if self.distinct is None else f"{counted(self.distinct, 'branch')}, "
-        return (
-            f"<p>{count}<b>{self.status}</b> ({self.reason})</p><table>{head}{rows}</table>{tail}"
-        )
 
     def _repr_latex_(self) -> str:
         if self.distinct is None:

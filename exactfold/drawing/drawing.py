@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:
     from exactfold.exact.surds import Number
+from exactfold.showing import Picture
 from exactfold.wording import counted
 
 Point: TypeAlias = "tuple[Number, Number]"
@@ -25,7 +26,7 @@ class Line(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Drawing:
+class Drawing(Picture):
     """Points in the plane, y upwards, exactly as the file states them, and lines between them.
 
     A reader gives fractions; `exact_coordinates` may turn them into numbers with square roots.

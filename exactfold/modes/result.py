@@ -16,6 +16,7 @@ from exactfold.modes.subspaces import Leaf
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.schemas import headed
+from exactfold.showing import Page
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 
 Counts = Mapping[int, int]
@@ -48,7 +49,7 @@ class Mode:
 
 
 @dataclass(frozen=True)
-class Decomposition:
+class Decomposition(Page):
     """The ways in which a sheet of rigid panels starts to fold, and which of them truly fold.
 
     `true` is {dimension: number} of the components of the true configurations near the flat state,

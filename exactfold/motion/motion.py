@@ -23,6 +23,7 @@ from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
 from exactfold.problem.problem import Problem
 from exactfold.schemas import headed
+from exactfold.showing import Picture
 from exactfold.verdict import PROVED
 
 FOLLOWED: Final = "followed"
@@ -34,7 +35,7 @@ _LONGEST: Final = 40
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Motion:
+class Motion(Picture):
     """The sheet folding along a branch, in floats; `branch` is proved, the motion is not.
 
     Faces stay rigid: every edge keeps its length to about 1e-13 of it. Time is the arclength of the

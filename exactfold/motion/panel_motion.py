@@ -21,6 +21,7 @@ from exactfold.motion.panel_places import Placing, Spot, Turn
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.schemas import headed
+from exactfold.showing import Picture
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import counted
 
@@ -35,7 +36,7 @@ _NAMED: Final = 8
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class PanelMotion:
+class PanelMotion(Picture):
     """A sheet of rigid panels as it folds along a component of its true motions.
 
     Each of the `curves`, one elementary mode each, has a driver, a fold that closes first. The

@@ -20,6 +20,7 @@ from exactfold.exact.numbers import (
 from exactfold.pattern import validate
 from exactfold.pattern.graphs import vertex_graph
 from exactfold.pattern.triangulated_triangles import find_triangulated_triangles
+from exactfold.showing import Picture
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -30,7 +31,7 @@ Triangle = tuple[int, int, int]
 
 
 @dataclass(frozen=True)
-class CreasePattern:
+class CreasePattern(Picture):
     """A flat sheet cut into triangles: the crease pattern of a triangulated origami.
 
     `vertices` are points with rational coordinates (anything `as_rational` accepts), `triangles`

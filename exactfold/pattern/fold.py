@@ -34,6 +34,7 @@ from exactfold.errors import (
 from exactfold.exact.numbers import over_common_denominator, shown, snap
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
 from exactfold.pattern.validate import rounded_to
+from exactfold.showing import Picture
 from exactfold.wording import counted
 
 OTHER_FORMATS: Final = {
@@ -50,7 +51,7 @@ _ONLY_TOP: Final = "; only the top-level frame is read, and `file_frames` is ign
 
 
 @dataclass(frozen=True)
-class FoldFile:
+class FoldFile(Picture):
     """What a FOLD file says: the pattern, and how it was read.
 
     `snapped` is the largest move of a coordinate by snapping (0 if none was asked for), `exact`

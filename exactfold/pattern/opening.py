@@ -31,6 +31,7 @@ from exactfold.errors import (
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold import FoldFile, parse_bytes
+from exactfold.showing import Picture
 from exactfold.wording import counted
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
@@ -50,7 +51,7 @@ _LEAST = ("merge", "duplicates", "split", "dangling")
 
 
 @dataclass(frozen=True)
-class Opened:
+class Opened(Picture):
     """A sheet from a file, and what was done to read it.
 
     `sheet` is a `CreasePattern` if all faces are triangles with rational corners, else a

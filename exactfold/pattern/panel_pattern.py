@@ -15,6 +15,7 @@ from exactfold.errors import MalformedPatternError, PinchError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, Surd, SurdField, common_field
 from exactfold.pattern.planar import counter_clockwise, trace_faces
+from exactfold.showing import Picture
 from exactfold.wording import counted
 
 Edge: TypeAlias = tuple[int, int]
@@ -24,7 +25,7 @@ _LONGEST: Final = 256
 
 
 @dataclass(frozen=True)
-class PanelPattern:
+class PanelPattern(Picture):
     """A planar drawing of creases on one sheet of paper; every bounded face is a rigid panel.
 
     `vertices` are points with coordinates in Q or in a field of square roots (`SurdField`),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import sqrt
 from typing import Final
 
 import numpy as np
@@ -17,8 +18,10 @@ from exactfold.report.crease_legend import legend
 from exactfold.report.crease_lines import CreaseLines, Drawable, crease_lines
 from exactfold.report.crease_style import Style, mark
 
-SIZE: Final = 440.0
-"""The longer side of the sheet in a picture."""
+SIZE, LARGEST = 440.0, 960.0
+"""The longer side of the sheet in a picture; up to the second one where there are many lines."""
+_APART: Final = 30.0
+"""Pixels between neighbouring points that a picture grows for."""
 MOST: Final = 4000
 """Beyond so many lines those of one kind are one element."""
 _STEPS: Final = 8
@@ -36,7 +39,7 @@ def pattern_picture(
     signs: Mapping[int, int] | None = None,
     angles: Mapping[Edge, float] | None = None,
     title: str = "",
-    size: float = SIZE,
+    size: float | None = None,
     labelled: bool = True,
     keyed: bool = True,
     joined: bool | None = None,
@@ -47,7 +50,8 @@ def pattern_picture(
     J as flat. `signs`: of interior vertices, 1, -1 or 0. `angles`: of the folds, in any unit; the
     width of a line grows with the size of its angle. A `Drawing`, which need not be a sheet, has
     letters of its own. `labelled`: with the numbers of vertices, where they find room; `keyed`:
-    with a legend below. `size`: the longer side of the sheet in pixels.
+    with a legend below. `size`: the longer side of the sheet in pixels; by default from 440 to 960,
+    by how close the lines are.
 
     Every line is an element with the class M, V, F, U or B and `data-edge`, its place in
     `pattern.edges`; folds have `data-fold`, as "4-9". Interior vertices are groups with the class
@@ -62,8 +66,14 @@ def pattern_picture(
     True
     """
     lines = crease_lines(pattern, letters)
-    drawing = CreaseDrawing(lines, signs or {}, angles or {}, size, labelled, joined)
+    wide = size or natural_size(lines)
+    drawing = CreaseDrawing(lines, signs or {}, angles or {}, wide, labelled, joined)
     return drawing.picture(title or "crease pattern", keyed=keyed)
+
+
+def natural_size(lines: CreaseLines) -> float:
+    """The longer side of a sheet, for lines that can be told apart."""
+    return min(max(SIZE, _APART / max(lines.spacing, 1e-9)), LARGEST)
 
 
 @dataclass(frozen=True)
@@ -95,14 +105,10 @@ class CreaseDrawing:
         x, y = self.lines.points[:, 0], height - self.lines.points[:, 1]
         return np.column_stack([x, y]) * self.size + self.margin
 
-    @cached_property
+    @property
     def room(self) -> float:
-        """How far apart neighbouring points are in the picture: a low one of such lengths."""
-        if not self.lines.edges:
-            return self.size
-        i, j = np.array(self.lines.edges, dtype=np.intp).T
-        lengths = np.linalg.norm(self.lines.points[i] - self.lines.points[j], axis=1)
-        return float(np.quantile(lengths, 0.3)) * self.size
+        """How far apart neighbouring points are in the picture."""
+        return self.lines.spacing * self.size
 
     @cached_property
     def style(self) -> Style:
@@ -121,10 +127,13 @@ class CreaseDrawing:
         return self.style.width(letter, self._share(edge))
 
     def _share(self, edge: Edge) -> float | None:
-        """The size of a fold angle, in parts of the largest; None where angles are not known."""
+        """The width for a fold angle, from 0 to 1 for the largest; None where it is not known.
+
+        The root of its part of the largest: else one narrow triangle makes all others alike.
+        """
         if not self.largest or edge not in self.angles:
             return None
-        return min(abs(self.angles[edge]) / self.largest, 1.0)
+        return sqrt(min(abs(self.angles[edge]) / self.largest, 1.0))
 
     @cached_property
     def largest(self) -> float:
@@ -139,7 +148,13 @@ class CreaseDrawing:
         body = self.body()
         if not keyed:
             return svg.picture(width, height, [body], title)
-        key = legend(self.lines.letters, self.signs.values(), self.style, bool(self.largest))
+        key = legend(
+            self.lines.letters,
+            self.signs.values(),
+            self.style,
+            by_angle=bool(self.largest),
+            of_way=bool(self.signs or self.angles),
+        )
         wide = max(width, min(key.natural, 320.0))
         parts, below = key.placed(wide, height)
         aside = (wide - width) / 2
@@ -189,15 +204,20 @@ class CreaseDrawing:
             edge = self.lines.edges[k]
             share = self._share(edge)
             step = None if share is None else round(share * _STEPS) / _STEPS
-            rows.setdefault(self.style.width(letter, step), []).append(self._line(edge, 1))
+            rows.setdefault(self.style.width(letter, step), []).append(self._short(edge))
         return "\n".join(
             svg.element("path", class_=letter, stroke_width=width, d="".join(steps))
             for width, steps in sorted(rows.items())
         )
 
-    def _line(self, edge: Edge, digits: int = 2) -> str:
-        (a, b), (c, d) = self.places[list(edge)].round(digits).tolist()
+    def _line(self, edge: Edge) -> str:
+        (a, b), (c, d) = self.places[list(edge)].tolist()
         return f"M{svg.number(a)} {svg.number(b)}L{svg.number(c)} {svg.number(d)}"
+
+    def _short(self, edge: Edge) -> str:
+        """The same to a tenth of a pixel, the second end as seen from the first."""
+        (a, b), (c, d) = self.places[list(edge)].round(1).tolist()
+        return f"M{svg.number(a)} {svg.number(b)}l{svg.number(c - a)} {svg.number(d - b)}"
 
     def _vertices(self) -> str:
         """A group for each interior vertex that has room, and the numbers of the boundary."""
@@ -223,11 +243,14 @@ class CreaseDrawing:
 
     @cached_property
     def _marked(self) -> dict[int, float]:
-        """The interior vertices with a marker, and its radius; none where markers would meet."""
+        """The interior vertices with a marker, and its radius; none where markers would meet.
+
+        None at all beside more than 4000 lines, for the size of the file.
+        """
         from scipy.spatial import cKDTree
 
         radius = self.style.marker
-        if not radius or not self.lines.interior:
+        if not radius or not self.lines.interior or len(self.lines.edges) > MOST:
             return {}
         apart, _ = cKDTree(self.places).query(self.places, k=2)
         found = {}

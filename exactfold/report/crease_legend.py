@@ -70,15 +70,25 @@ class Legend:
         return [group], top + len(rows) * _ROW + 6
 
 
-def legend(letters: Iterable[str], signs: Iterable[int], style: Style, by_angle: bool) -> Legend:
+def legend(
+    letters: Iterable[str],
+    signs: Iterable[int],
+    style: Style,
+    *,
+    by_angle: bool = False,
+    of_way: bool = True,
+) -> Legend:
     """The legend of a picture with these letters and signs; `by_angle`: widths mean angles.
 
-    >>> shown = legend("BMV", [1], Style.of(50), by_angle=False)
+    `of_way`: the letters are those of a way to fold, where one that is missing is undecided.
+
+    >>> shown = legend("BMV", [1], Style.of(50))
     >>> [item.name for item in shown.items]
     ['mountain', 'valley', 'up']
     """
     there = set(letters)
-    items = [_line(letter, _NAMES[letter]) for letter in _NAMES if letter in there]
+    names = _NAMES if of_way else {**_NAMES, "U": "unassigned"}
+    items = [_line(letter, name) for letter, name in names.items() if letter in there]
     if not there & set("MV"):  # nothing to tell apart
         items = []
     if by_angle and items:

@@ -23,7 +23,7 @@ Drawable: TypeAlias = "CreasePattern | PanelPattern | Drawing"
 _SHOWN: Final = {**{letter: letter for letter in "BMVF"}, "J": "F", "C": "B"}
 """Letters of FOLD as they are drawn; all others are U."""
 _ROUGH: Final = 1 << 60
-"""Parts of the width of a picture in which places are rounded, for floats."""
+"""Parts of the width of a picture in which places are rounded, to become floats."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +47,15 @@ class CreaseLines:
             return 1.0, 1.0
         width, height = self.points.max(axis=0)
         return float(width), float(height)
+
+    @cached_property
+    def spacing(self) -> float:
+        """How far apart neighbouring points are: a low one of the lengths of the lines."""
+        if not self.edges:
+            return 1.0
+        i, j = np.array(self.edges, dtype=np.intp).T
+        lengths = np.linalg.norm(self.points[i] - self.points[j], axis=1)
+        return float(np.quantile(lengths, 0.3))
 
     @cached_property
     def neighbours(self) -> Mapping[int, Sequence[int]]:
@@ -90,16 +99,16 @@ def _unit(points: Sequence[tuple[Any, Any]]) -> FloatArray:
     """
     if not points:
         return np.zeros((0, 2))
-    columns = []
-    for column in zip(*points, strict=True):
-        plain = all(isinstance(value, int | Fraction) for value in column)
-        low = min(column) if plain else column[0]
-        columns.append([value - low for value in column])
-    span = max(max(map(abs, column)) for column in columns)
-    if isinstance(span, Fraction) and span:
-        scaled = [[Fraction(v * _ROUGH // span, _ROUGH) for v in column] for column in columns]
-        columns = scaled
-    found = np.array(columns, dtype=np.float64).T
+    values = [value for point in points for value in point]
+    if all(isinstance(value, int | Fraction) for value in values):
+        lows = [min(column) for column in zip(*points, strict=True)]
+        moved = [[x - low for x, low in zip(point, lows, strict=True)] for point in points]
+        span = max(max(point) for point in moved) or 1
+        rows = [[int(x * _ROUGH / span) / _ROUGH for x in point] for point in moved]
+    else:  # square roots, of a sheet that a person drew
+        first = points[0]
+        rows = [[float(x - low) for x, low in zip(point, first, strict=True)] for point in points]
+    found = np.array(rows, dtype=np.float64)
     found = found - found.min(axis=0)
     size = float(found.max(initial=0.0))
     return np.asarray(found / (size or 1.0))

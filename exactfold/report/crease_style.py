@@ -23,8 +23,8 @@ _DASH: Final = {"V": (5.0, 3.0), "F": (0.1, 2.6), "U": (7.0, 2.2, 1.2, 2.2)}
 _NARROW, _WIDE, _USUAL = 0.9, 3.8, 1.9
 """Widths of a fold that hardly folds, of the one that folds most, and where this is not known."""
 _THIN: Final = {"F": 1.1, "B": 1.4, "U": 1.4}
-_FULL: Final = 34.0
-"""Pixels between neighbours from which on lines have their full width."""
+_FULL, _LEAST = 28.0, 0.3
+"""Pixels between neighbours from which on lines have their full width; the least part of it."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Style:
     def of(cls, room: float) -> Style:
         """For a picture in which neighbouring points are about `room` pixels apart."""
         marker = min(0.17 * room, 7.0)
-        return cls(min(max(room / _FULL, 0.12), 1.0), marker if marker >= 1.4 else 0.0)
+        return cls(min(max(room / _FULL, _LEAST), 1.0), marker if marker >= 1.4 else 0.0)
 
     def width(self, letter: str, share: float | None) -> float:
         """The width of a line that folds by `share` of the largest angle; None: not known.
@@ -54,7 +54,7 @@ class Style:
     def attributes(self, letter: str, *, alone: bool = False) -> dict[str, str | float | None]:
         """The attributes of a group of lines; `alone`: there are no other letters to tell apart."""
         dash = () if alone and letter == "U" else _DASH.get(letter, ())
-        scale = max(self.scale, 0.4)
+        scale = max(self.scale, 0.5)
         return {
             "stroke": COLOUR[letter],
             "stroke_width": self.width(letter, None),

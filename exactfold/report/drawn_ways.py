@@ -11,9 +11,8 @@ from exactfold.branches.branch import Branch
 from exactfold.branches.letters import UPSIDE_DOWN
 from exactfold.branches.result import BranchCount
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.report.crease_drawing import SIZE, CreaseDrawing
+from exactfold.report.crease_drawing import CreaseDrawing, natural_size
 from exactfold.report.crease_lines import crease_lines
-
 
 if TYPE_CHECKING:
     from exactfold.modes.result import Decomposition
@@ -21,13 +20,16 @@ if TYPE_CHECKING:
     from exactfold.pattern.panel_pattern import PanelPattern
 
 _LONG: Final = 24
+_NOTES: Final = {"refuted": "does not truly fold", "undecided": "truly folds: undecided"}
+"""Of modes, by what is known of how they go on."""
 
 
 @dataclass(frozen=True)
 class DrawnWay:
     """One way to fold, as it is drawn; `number` is its place in the list of `exactfold count`.
 
-    `angles` are in proportion to the fold angles, empty where nothing is proved of them.
+    `angles` are in proportion to the fold angles, empty where nothing is proved of them. `note`
+    says if it is not known that the sheet truly folds so, or that it does not.
     """
 
     pattern: CreasePattern | PanelPattern
@@ -36,6 +38,7 @@ class DrawnWay:
     signs: Mapping[int, int] = field(default_factory=dict)
     angles: Mapping[Edge, float] = field(default_factory=dict)
     number: int | None = None
+    note: str = ""
 
     @property
     def text(self) -> str:
@@ -49,16 +52,17 @@ class DrawnWay:
         """The same on both sides of the sheet: the smaller text of the two."""
         return min(self.text, self.text.translate(UPSIDE_DOWN))
 
-    def drawing(self, size: float = SIZE, *, small: bool = False) -> CreaseDrawing:
+    def drawing(self, size: float | None = None, *, small: bool = False) -> CreaseDrawing:
         """The drawing of the pattern with this way; `small`: without the numbers of vertices."""
         lines = crease_lines(self.pattern, self.letters)
         joined = True if small else None
-        return CreaseDrawing(lines, self.signs, self.angles, size, not small, joined)
+        wide = size or natural_size(lines)
+        return CreaseDrawing(lines, self.signs, self.angles, wide, not small, joined)
 
     def picture(self, title: str = "") -> str:
         """The crease pattern with this way as an SVG file."""
-        name = f"{title}, {self.name}" if title else self.name
-        return self.drawing().picture(name)
+        parts = [part for part in (title, self.name, self.note) if part]
+        return self.drawing().picture(", ".join(parts))
 
 
 def branch_way(branch: Branch, number: int | None = None) -> DrawnWay:
@@ -67,7 +71,7 @@ def branch_way(branch: Branch, number: int | None = None) -> DrawnWay:
     >>> from exactfold.count.find import find_branch
     >>> way = branch_way(find_branch("two-vertex", "+-"))
     >>> way.name, way.text, sorted(way.signs.items())
-    ('branch +-', 'VVVMMMVVM', [(4, 1), (5, -1)])
+    ('branch +-', 'MVVVMVM', [(4, 1), (5, -1)])
     """
     angles = {}
     if branch.heights:
@@ -83,8 +87,9 @@ def mode_way(mode: PanelMode) -> DrawnWay:
     >>> from exactfold.motion.followable import panel_modes
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.pattern.opening import panels
-    >>> mode_way(panel_modes(decompose(panels(single_vertex(4))))[0]).text
-    'VMVV'
+    >>> way = mode_way(panel_modes(decompose(panels(single_vertex(4))))[0])
+    >>> way.name, sorted(way.letters) == sorted(way.angles)
+    ('mode 1', True)
     """
     points = [(float(x), float(y)) for x, y in mode.pattern.vertices]
     first = mode.folds[0]
@@ -94,21 +99,25 @@ def mode_way(mode: PanelMode) -> DrawnWay:
             rates.setdefault(fold, rates[known] * float(mode.choice[k].gain(known, fold)))
     angles = {(i, j): rate * dist(points[i], points[j]) for (i, j), rate in rates.items()}
     letters = {fold: mode.letters.get(fold, "F") for fold in mode.pattern.folds}
-    return DrawnWay(mode.pattern, f"mode {mode.number}", letters, {}, angles, mode.number)
+    note = _NOTES.get(str(mode.extends.verdict), "")
+    return DrawnWay(mode.pattern, f"mode {mode.number}", letters, {}, angles, mode.number, note)
 
 
-def ways_of(result: BranchCount | Decomposition) -> Sequence[DrawnWay]:
-    """All ways that a count lists, in its order.
+def ways_of(result: BranchCount | Decomposition, most: int | None = None) -> Sequence[DrawnWay]:
+    """The ways that a count lists, in its order, all or the first `most`.
+
+    Where a sheet of panels has families only, of which none is listed: the ways known in them.
 
     >>> from exactfold.count.collect import count_branches
     >>> [way.number for way in ways_of(count_branches("two-vertex"))]
     [1, 2, 3, 4]
     """
     if isinstance(result, BranchCount):
-        return [branch_way(branch, k) for k, branch in enumerate(result.branches, 1)]
+        return [branch_way(branch, k) for k, branch in enumerate(result.branches[:most], 1)]
     from exactfold.motion.followable import panel_modes
 
-    return [mode_way(mode) for mode in panel_modes(result)]
+    known = panel_modes(result)[: len(result.modes) or None]
+    return [mode_way(mode) for mode in known[:most]]
 
 
 def shortened(text: str, most: int = _LONG) -> str:

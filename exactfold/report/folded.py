@@ -74,11 +74,13 @@ class Amount:
 class Folded:
     """A picture of a sheet at one time of a motion; `degrees` is the largest fold angle there.
 
-    `reached` says whether that is as far as was asked for, or the motion ends before.
+    `reached` says whether that is as far as was asked for, or the motion ends before, and `end` is
+    the kind of event at which it ends.
     """
 
     degrees: float
     reached: bool
+    end: str
     text: str = field(repr=False)
 
 
@@ -87,8 +89,9 @@ def folded(motion: SheetInMotion, amount: Amount, title: str = "") -> Folded:
 
     >>> from exactfold.count.find import find_branch
     >>> from exactfold.motion.following import follow
-    >>> folded(follow(find_branch("two-vertex", "+-")), Amount.of("90deg"))
-    Folded(degrees=90.0, reached=True)
+    >>> still = folded(follow(find_branch("two-vertex", "+-")), Amount.of("90deg"))
+    >>> still.degrees, still.reached
+    (90.0, True)
     """
     time = amount.time(motion)
     degrees = float(np.interp(time, *_largest(motion)))
@@ -96,7 +99,7 @@ def folded(motion: SheetInMotion, amount: Amount, title: str = "") -> Folded:
     name = f"{title}, {motion.name}" if title else motion.name
     caption = f"{name}: largest fold angle {degrees:.0f}°"
     text = motion_still(motion, time, caption, f"{name}, folded to {degrees:.0f}°", SIZE)
-    return Folded(round(degrees, 6), reached, text)
+    return Folded(round(degrees, 6), reached, motion.end, text)
 
 
 def _largest(motion: SheetInMotion) -> tuple[FloatArray, FloatArray]:

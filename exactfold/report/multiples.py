@@ -21,11 +21,16 @@ _INNER: Final = 132.0
 """The longer side of a crease pattern."""
 _GAP: Final = 8.0
 _CAPTION: Final = 34.0
+_NOTE: Final = 12.0
 _HEAD: Final = 30.0
 _FRAME: Final = 18.0
 """Room for the words on the frame of ways with the same letters."""
 _MOST_COLUMNS: Final = 8
+_FAINT: Final = 0.45
+"""How strongly a way is drawn that is not known to be one."""
 _GREY: Final = "#666666"
+_EVEN: Final = {"font_family": "monospace"}
+"""For signs and letters, which are compared place by place."""
 
 
 @dataclass(frozen=True)
@@ -40,12 +45,13 @@ class _Block:
         return wide, ceil(len(self.ways) / wide)
 
 
-def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, most: int = MOST) -> str:
+def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, number: int | None = None) -> str:
     """Ways to fold one pattern as small multiples, with their numbers, signs and letters, as SVG.
 
     They stand in the order given. Ways that share their mountain-valley letters, maybe seen from
-    opposite sides, stand in one frame where the first of them belongs. Of more than `most` ways
-    the first are drawn, and the sheet says how many there are. Each is a group with `data-way`.
+    opposite sides, stand in one frame where the first of them belongs. `number`: of all ways, if
+    these are the first of more; the sheet says how many are left out. Each is a group with
+    `data-way`.
 
     Raises `UsageError` if there are none.
 
@@ -57,11 +63,10 @@ def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, most: int = MOST
     """
     if not ways:
         raise UsageError(f"{title}: there is no way to draw")
-    drawn = ways[:most]
-    blocks = _blocks(drawn)
-    first = drawn[0].drawing(_INNER, small=True)
-    high = first.extent[1] + _CAPTION
-    columns = min(max(ceil(sqrt(len(drawn) * high / _CELL)), min(3, len(drawn))), _MOST_COLUMNS)
+    blocks = _blocks(ways)
+    first = ways[0].drawing(_INNER, small=True)
+    high = first.extent[1] + _CAPTION + (_NOTE if any(way.note for way in ways) else 0)
+    columns = _columns(len(ways), high)
     parts = []
     top, width = _HEAD, columns * _CELL + 2 * _GAP
     for row in _rows(blocks, columns):
@@ -77,16 +82,23 @@ def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, most: int = MOST
                 parts.append(_cell(way, x, y, high))
             left, rows = left + wide * _CELL, max(rows, deep)
         top = inner + rows * high + _GAP
-    if len(ways) > most:
-        more = f"and {len(ways) - most} more"
+    if number is not None and number > len(ways):
+        more = f"and {number - len(ways)} more"
         parts.append(svg.text(more, width / 2, top + 12, anchor="middle", fill=_GREY))
         top += 20
-    letters = {letter for way in drawn for letter in way.drawing(_INNER, small=True).lines.letters}
-    signs = {sign for way in drawn for sign in way.signs.values()}
-    key = legend(letters, signs, Style.of(100), any(way.angles for way in drawn))
+    letters = {letter for way in ways for letter in way.letters.values()}
+    signs = {sign for way in ways for sign in way.signs.values()}
+    key = legend(letters, signs, Style.of(100), by_angle=any(way.angles for way in ways))
     below, height = key.placed(width, top)
     head = svg.text(title, width / 2, 19, anchor="middle", size=14)
     return svg.picture(width, height, [head, *parts, *below], title)
+
+
+def _columns(number: int, high: float) -> int:
+    """Of cells so high, for a sheet about as high as wide and, if that can be, a full last row."""
+    usual = min(max(ceil(sqrt(number * high / _CELL)), 3), _MOST_COLUMNS)
+    near = range(max(2, usual - 1), min(usual + 1, _MOST_COLUMNS) + 1)
+    return 1 if number == 1 else min(near, key=lambda c: (-number % c, abs(c - usual), -c))
 
 
 def _blocks(ways: Sequence[DrawnWay]) -> list[_Block]:
@@ -115,18 +127,17 @@ def _cell(way: DrawnWay, x: float, y: float, high: float) -> str:
     """A small crease pattern and two lines below it."""
     drawing = way.drawing(_INNER, small=True)
     aside = x + (_CELL - drawing.extent[0]) / 2
-    body = svg.element(
-        "g", drawing.body(), transform=f"translate({svg.number(aside)} {svg.number(y)})"
-    )
-    middle, below = x + _CELL / 2, y + high - _CAPTION
-    signs = way.name.partition(": ")[2] or way.name
-    number = "" if way.number is None or signs == way.name else f"{way.number}:  "
+    at = f"translate({svg.number(aside)} {svg.number(y)})"
+    body = svg.element("g", drawing.body(), transform=at, opacity=_FAINT if way.note else None)
+    middle, below = x + _CELL / 2, y + drawing.extent[1]
+    name = way.name.removeprefix("branch ") if way.signs else way.name
+    letters = shortened(way.text, 22)
     lines = [
-        svg.text(f"{number}{shortened(signs, 18)}", middle, below + 12, anchor="middle", size=12),
-        svg.text(
-            shortened(way.text, 19), middle, below + 25, anchor="middle", size=9.5, fill=_GREY
-        ),
+        svg.text(shortened(name, 18), middle, below + 12, anchor="middle", size=12, **_EVEN),
+        svg.text(letters, middle, below + 25, anchor="middle", size=9.5, fill=_GREY, **_EVEN),
     ]
+    if way.note:
+        lines.append(svg.text(way.note, middle, below + 37, anchor="middle", size=10.5))
     return svg.element("g", "".join([body, *lines]), class_="way", data_way=str(way.number or 1))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil, floor, log10
@@ -14,15 +15,18 @@ VALLEY, MOUNTAIN, FLAT = COLOURS[0], "#c8202f", "#999999"
 
 INK, FAINT = "#222222", "#dddddd"
 
+_NOT_IN_XML: Final = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
 Point = tuple[float, float]
 
 
 def escape(text: str) -> str:
-    """Text as it may stand in an element or in an attribute.
+    """Text as it may stand in an element or in an attribute; what XML cannot hold is marked.
 
     >>> escape('<a & "b">')
     '&lt;a &amp; &quot;b&quot;&gt;'
     """
+    text = _NOT_IN_XML.sub("\N{REPLACEMENT CHARACTER}", text)
     for character, name in (("&", "amp"), ("<", "lt"), (">", "gt"), ('"', "quot")):
         text = text.replace(character, f"&{name};")
     return text

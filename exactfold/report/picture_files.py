@@ -1,0 +1,51 @@
+"""Pictures as files: SVG as it is, PNG and PDF by CairoSVG."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import Final
+
+from exactfold.errors import PicturesMissingError, UsageError
+from exactfold.pattern.fold_writing import write_bytes
+
+ENDINGS: Final = (".svg", ".png", ".pdf")
+_SCALE: Final = 2.0
+"""Pixels of a PNG file for one of the SVG file."""
+
+
+def checked_picture(path: Path) -> str:
+    """The format that a path names; raises `UsageError` for one that is not written.
+
+    >>> checked_picture(Path("a.b/Sheet.SVG"))
+    '.svg'
+    """
+    ending = path.suffix.lower()
+    if ending not in ENDINGS:
+        raise UsageError(f"{path}: the name of a picture ends in {', '.join(ENDINGS)}")
+    return ending
+
+
+def write_picture(text: str, path: str | PathLike[str]) -> None:
+    """Write an SVG picture in the format that the ending of the path names.
+
+    ".svg": as it is. ".png", two pixels for one, and ".pdf": with CairoSVG, which is in the extra
+    `exactfold[pictures]`. Raises `UsageError` for another ending, `PicturesMissingError` without
+    CairoSVG, and `UnwritableFileError`.
+    """
+    ending = checked_picture(Path(path))
+    if ending == ".svg":
+        write_bytes(path, text.encode("utf-8"))
+        return
+    try:
+        import cairosvg
+    except (ImportError, OSError) as error:  # OSError: Cairo itself is missing
+        raise PicturesMissingError(
+            f"{path}: PNG and PDF files need CairoSVG ({error}): "
+            "pip install 'exactfold[pictures]', or write .svg"
+        ) from None
+    raw = text.encode("utf-8")
+    if ending == ".png":
+        write_bytes(path, cairosvg.svg2png(bytestring=raw, scale=_SCALE))
+    else:
+        write_bytes(path, cairosvg.svg2pdf(bytestring=raw))

@@ -1,0 +1,197 @@
+"""`exactfold draw`: which picture, where it goes, and what is said."""
+
+import importlib.util
+import sys
+from xml.etree import ElementTree
+
+import pytest
+from running import BAD_INPUT, PROVED, UNDECIDED, USAGE, run
+
+from exactfold import count_ways, find_branch, load, open_pattern
+from exactfold.commands import draw
+from exactfold.data import example_path
+from exactfold.motion import panel_modes
+from exactfold.report import branch_way, mode_way, pattern_picture, sheet_of_multiples, ways_of
+
+NAME = "{http://www.w3.org/2000/svg}"
+HOLE = """<svg xmlns="http://www.w3.org/2000/svg" width="60" height="60">
+<path stroke="black" fill="none" d="M0 0L60 0L60 60L0 60Z"/>
+<path stroke="black" fill="none" d="M20 20L40 20L40 40L20 40Z"/></svg>"""
+
+
+def drawn(*arguments):
+    result = run("draw", *arguments)
+    assert result.exit_code == PROVED, result.stderr
+    return result.stdout
+
+
+def title(text):
+    return ElementTree.fromstring(text).find(f"{NAME}title").text
+
+
+def test_without_a_way_the_letters_of_the_file_are_drawn():
+    opened = open_pattern(example_path("zigzags"))
+    text = drawn("zigzags")
+    assert text == pattern_picture(opened.sheet, opened.assignment, title="zigzags")
+    assert (text.count('class="M"'), text.count('class="V"')) == (6, 6)
+
+
+@pytest.mark.parametrize("which", [("--branch", "-+"), ("--signs", "-+"), ("--up", "5")])
+def test_a_branch_by_its_signs(which):
+    expected = branch_way(find_branch("two-vertex", "-+")).picture("two-vertex")
+    assert drawn("two-vertex", *which) == expected
+
+
+def test_a_branch_by_signs_in_a_file(tmp_path):
+    (tmp_path / "signs").write_text("-+\n")
+    assert drawn("two-vertex", "--branch", f"@{tmp_path / 'signs'}") == drawn(
+        "two-vertex", "--branch", "-+"
+    )
+
+
+def test_a_branch_by_its_number():
+    branch = count_ways("two-vertex").branches[2]
+    assert drawn("two-vertex", "--branch", 3) == branch_way(branch, 3).picture("two-vertex")
+    assert title(drawn("two-vertex", "--branch", 3)) == "two-vertex, branch 3: +-"
+
+
+def test_a_mode_of_panels_by_its_number():
+    modes = panel_modes(count_ways("zigzags"))
+    text = drawn("zigzags", "--branch", 3)
+    assert text == mode_way(modes[2]).picture("zigzags")
+    assert title(text) == "zigzags, mode 3"
+    other = run("draw", "zigzags", "--branch", 4)
+    assert other.exit_code == 1  # refuted
+    assert "mode 4 does not truly fold" in other.stderr
+    assert title(other.stdout) == "zigzags, mode 4, does not truly fold"
+
+
+def test_all_ways_as_they_are_counted():
+    result = count_ways("two-vertex")
+    text = drawn("two-vertex", "--all")
+    assert text == sheet_of_multiples(
+        ways_of(result), "two-vertex: 4 ways to start folding, proved"
+    )
+    assert title(drawn("zigzags", "--all")) == "zigzags: 5 modes, 4 of them known to truly fold"
+
+
+def test_many_ways_are_cut_with_a_word():
+    result = run("draw", "flat-octahedron", "--all", "--most", 3)
+    assert result.stdout.count("data-way=") == 3
+    assert "the first 3 of 8 are drawn: --most N draws more" in result.stderr
+
+
+def test_the_folded_sheet_is_drawn_in_space():
+    text = drawn("two-vertex", "--branch", "+-", "--folded", "60deg")
+    assert title(text) == "two-vertex, branch +-, folded to 60°"
+    assert text.count("<path") == len(load("two-vertex").triangles)
+    assert title(drawn("zigzags", "--branch", "1", "--folded", "45deg")).endswith("to 45°")
+
+
+def test_a_drawing_with_a_hole_is_drawn_and_the_reason_told(tmp_path):
+    (tmp_path / "hole.svg").write_text(HOLE)
+    result = run("draw", tmp_path / "hole.svg")
+    assert result.exit_code == PROVED
+    assert result.stdout.count('class="B"') == 8
+    assert "no sheet that can be counted" in result.stderr
+    assert run("draw", tmp_path / "hole.svg", "--all").exit_code == BAD_INPUT
+
+
+def test_names_of_files_are_made_safe(tmp_path):
+    path = tmp_path / "a<b>&\"c'.fold"
+    path.write_bytes(example_path("two-vertex").read_bytes())
+    assert title(drawn(path)) == path.stem
+
+
+# --- where it goes -------------------------------------------------------------------------------
+
+
+def test_files_are_written_by_their_ending(tmp_path):
+    result = run("draw", "two-vertex", "-o", tmp_path / "p.svg")
+    assert (result.exit_code, result.stdout) == (PROVED, f"{tmp_path / 'p.svg'}\n")
+    assert (tmp_path / "p.svg").read_text("utf-8") == drawn("two-vertex")
+    assert drawn("two-vertex", "-o", "-") == drawn("two-vertex")
+    wrong = run("draw", "two-vertex", "-o", tmp_path / "p.gif")
+    assert wrong.exit_code == USAGE
+    assert ".svg, .png, .pdf" in wrong.stderr
+
+
+@pytest.mark.parametrize(
+    ("asked", "name"),
+    [((), "two-vertex-drawn.svg"), (("--branch", "2"), "two-vertex-way.svg")],
+)
+def test_on_a_terminal_a_file_is_written(asked, name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(draw, "on_a_terminal", lambda: True)
+    result = run("draw", "two-vertex", *asked)
+    assert result.stdout == f"{name}\n"
+    assert (tmp_path / name).read_text("utf-8").startswith("<svg")
+
+
+def test_the_pattern_is_not_replaced_by_its_picture(tmp_path):
+    path = tmp_path / "p.svg"
+    path.write_bytes(example_path("zigzags").read_bytes())
+    result = run("draw", path, "-o", path)
+    assert result.exit_code == USAGE
+    assert path.read_bytes() == example_path("zigzags").read_bytes()
+
+
+@pytest.mark.skipif(importlib.util.find_spec("cairosvg") is None, reason="CairoSVG is an extra")
+@pytest.mark.parametrize(("ending", "start"), [("png", b"\x89PNG\r\n\x1a\n"), ("PDF", b"%PDF-")])
+def test_png_and_pdf(ending, start, tmp_path):
+    path = tmp_path / f"p.{ending}"
+    assert run("draw", "two-vertex", "--branch", "+-", "-o", path).exit_code == PROVED
+    raw = path.read_bytes()
+    assert raw.startswith(start)
+    if ending == "png":  # twice as wide as the SVG picture, from the header
+        svg = ElementTree.fromstring(drawn("two-vertex", "--branch", "+-"))
+        assert int.from_bytes(raw[16:20], "big") == pytest.approx(
+            2 * float(svg.get("width")), abs=2
+        )
+
+
+def test_png_without_cairosvg_names_the_extra(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "cairosvg", None)
+    result = run("draw", "two-vertex", "-o", tmp_path / "p.png")
+    assert result.exit_code == USAGE
+    assert "pip install 'exactfold[pictures]'" in result.stderr
+    assert not (tmp_path / "p.png").exists()
+
+
+# --- wrong usage ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        (("--branch", "1", "--all"), "give one of"),
+        (("--branch", "1", "--up", "4"), "give one of"),
+        (("--most", "3"), "--most goes with --all"),
+        (("--folded", "60deg"), "--folded goes with"),
+        (("--branch", "1", "--folded", "60"), "60deg"),
+        (("--branch", "1", "--folded", "190deg"), "up to 180deg"),
+        (("--branch", "1", "--folded", "nan"), "60deg"),
+        (("--branch", "9"), "lists 4 branches"),
+        (("--branch", "+"), "1 sign for 2 vertices"),
+        (("--branch", "x+"), "is not a vertex sign"),
+    ],
+)
+def test_wrong_usage_is_told(asked, message):
+    result = run("draw", "two-vertex", *asked)
+    assert result.exit_code == USAGE
+    assert message in result.stderr
+
+
+def test_signs_are_not_for_panels():
+    result = run("draw", "zigzags", "--branch", "+-")
+    assert result.exit_code == USAGE
+    assert "give the number of one" in result.stderr
+    assert "this sheet has 5 modes" in run("draw", "zigzags", "--branch", "6").stderr
+
+
+def test_a_sheet_without_ways_is_told(tmp_path):
+    square = '<svg xmlns="http://www.w3.org/2000/svg"><path stroke="black" d="M0 0H9V9H0Z"/></svg>'
+    (tmp_path / "s.svg").write_text(square)
+    result = run("draw", tmp_path / "s.svg", "--all")
+    assert result.exit_code == UNDECIDED
+    assert "lists no single way" in result.stderr

@@ -1,0 +1,96 @@
+"""Sheets of small multiples: the order of `count`, frames round ways with the same letters."""
+
+from dataclasses import replace
+
+import pytest
+from svg_reading import NAME, letters, of_class, tree, words
+
+from exactfold import count_ways
+from exactfold.errors import UsageError
+from exactfold.report.drawn_ways import ways_of
+from exactfold.report.multiples import sheet_of_multiples
+
+
+def numbers(text):
+    return [int(g.get("data-way")) for g in of_class(text, "way")]
+
+
+def frames(text):
+    return [w for w in words(text) if "the same letters" in w]
+
+
+@pytest.fixture(scope="module", params=["flat-octahedron", "zigzags"])
+def counted(request):
+    return count_ways(request.param)
+
+
+def test_all_ways_stand_in_the_order_of_the_count(counted):
+    ways = ways_of(counted)
+    listed = getattr(counted, "branches", None) or counted.modes
+    assert len(ways) == len(listed) > 4
+    for way, one in zip(ways, listed, strict=True):
+        assert {f: a for f, a in way.letters.items() if a != "F"} == {
+            f: a for f, a in one.assignment.items() if a != "F"
+        }
+    text = sheet_of_multiples(ways, "all")
+    assert numbers(text) == list(range(1, len(ways) + 1))
+    assert frames(text) == []
+    for group, way in zip(of_class(text, "way"), ways, strict=True):
+        drawn = {p.get("class") for p in group.iter(f"{NAME}path")} - {None}
+        assert drawn == {*way.letters.values(), "B"}
+
+
+def test_captions_tell_number_signs_and_letters():
+    result = count_ways("two-vertex")
+    said = words(sheet_of_multiples(ways_of(result), "two & more"))
+    for k, branch in enumerate(result.branches, 1):
+        assert f"{k}: {branch.sign_text}" in said
+        assert branch.assignment_text in said
+    assert said[0] == "two & more"
+
+
+def test_ways_with_the_same_letters_stand_in_one_frame():
+    ways = list(ways_of(count_ways("two-vertex")))
+    same = [ways[0], ways[1], replace(ways[3], letters=ways[0].letters, number=3), ways[2]]
+    text = sheet_of_multiples(same, "t")
+    assert numbers(text) == [1, 3, 2, 3]
+    assert frames(text) == ["1, 3: the same letters"]
+    exchanged = {"M": "V", "V": "M"}
+    other = {fold: exchanged[letter] for fold, letter in ways[0].letters.items()}
+    turned = [ways[0], replace(ways[1], letters=other)]
+    assert frames(sheet_of_multiples(turned, "t")) == ["1, 2: the same letters from opposite sides"]
+
+
+def test_modes_that_do_not_fold_are_faint_and_say_so():
+    text = sheet_of_multiples(ways_of(count_ways("zigzags")), "t")
+    faint = [g.get("data-way") for g in of_class(text, "way") if g[0].get("opacity")]
+    assert faint == ["4"]
+    assert words(text).count("does not truly fold") == 1
+
+
+def test_undecided_letters_are_not_shared():
+    ways = ways_of(count_ways("two-vertex"))
+    unknown = [replace(way, letters=dict.fromkeys(way.letters, "U")) for way in ways]
+    assert frames(sheet_of_multiples(unknown, "t")) == []
+
+
+def test_a_sheet_says_how_many_ways_are_left_out():
+    ways = ways_of(count_ways("flat-octahedron"), 3)
+    assert [way.number for way in ways] == [1, 2, 3]
+    text = sheet_of_multiples(ways, "t", number=8)
+    assert numbers(text) == [1, 2, 3]
+    assert "and 5 more" in words(text)
+    with pytest.raises(UsageError, match="no way to draw"):
+        sheet_of_multiples([], "t")
+
+
+def test_pictures_stand_apart(counted):
+    text = sheet_of_multiples(ways_of(counted), "t")
+    corners = [
+        g.find(f"{NAME}g").get("transform").removeprefix("translate(").rstrip(")").split()
+        for g in of_class(text, "way")
+    ]
+    assert len(set(map(tuple, corners))) == len(corners)
+    width = float(tree(text).get("width"))
+    assert all(0 <= float(x) < width - 100 for x, _ in corners)
+    assert letters(text)["B"] == len(corners)
