@@ -78,7 +78,7 @@ def _block(self: Any, node: nodes.Element) -> None:
 
 def _formulas(_: Sphinx, __: str, source: list[str]) -> None:
     r"""Formulas in a line as GitHub has them, $`x`$, in the way that MyST reads, $x$."""
-    source[0] = re.sub(r"\$`([^`]+)`\$", r"$\1$", source[0])
+    source[0] = re.sub(r"\$`(.+?)`\$", r"$\1$", source[0], flags=re.DOTALL)
 
 
 def _docstring(_: Sphinx, __: str, name: str, ___: Any, ____: Any, lines: list[str]) -> None:

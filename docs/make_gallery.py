@@ -82,7 +82,8 @@ def picture(name: str, found: BranchCount | Decomposition) -> str:
     """All ways, or the first of them, as one SVG file; the pattern alone where none is listed."""
     ways = ways_of(found)
     if ways:
-        return sheet_of_multiples(ways, name, most=MOST)
+        more = len(ways) if len(ways) > MOST else None
+        return sheet_of_multiples(ways[:MOST], name, number=more)
     return pattern_picture(found.pattern, title=name, size=200, keyed=False)
 
 

@@ -145,7 +145,7 @@ def wrapped(line: str) -> str:
     - printed: a word, a word, a word, a word, a word, a word, a word, a word, a word, a word, a
       word, a word,
     """
-    kept = re.sub(r"`[^`]+`", lambda code: code[0].replace(" ", "\0"), line)
+    kept = re.sub(r"\$`.+?`\$|`[^`]+`", lambda code: code[0].replace(" ", "\0"), line)
     rows: list[str] = []
     for row in textwrap.wrap(kept, 98, break_long_words=False, break_on_hyphens=False):
         if rows and re.match(r"[-+*>#|=]|\d+[.)]", row):  # would begin something else
