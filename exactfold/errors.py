@@ -210,6 +210,10 @@ class CollinearPointsError(PatternError):
     """Points that span no triangle."""
 
 
+class NotACreasePatternError(PatternError):
+    """An object of another program is not a flat sheet of triangles; the cause says why."""
+
+
 class NotApplicableError(ExactfoldError):
     """A construction or method does not apply to this pattern; the message says why."""
 
@@ -298,3 +302,7 @@ class PicturesMissingError(ExactfoldError):
 
 class GltfMissingError(ExactfoldError):
     """pygltflib, an optional part that writes glTF files, is not installed."""
+
+
+class PackageMissingError(ExactfoldError):
+    """A package to which there is a bridge is not installed; the message says how to get it."""

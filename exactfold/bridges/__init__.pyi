@@ -1,5 +1,11 @@
+from exactfold.bridges.export import form_to_sage as form_to_sage
 from exactfold.bridges.export import to_homotopy_continuation as to_homotopy_continuation
 from exactfold.bridges.export import to_macaulay2 as to_macaulay2
 from exactfold.bridges.export import to_msolve as to_msolve
+from exactfold.bridges.export import to_sage as to_sage
 from exactfold.bridges.export import to_singular as to_singular
 from exactfold.bridges.export import to_sympy as to_sympy
+from exactfold.bridges.frameworks import from_pyrigi as from_pyrigi
+from exactfold.bridges.frameworks import to_pyrigi as to_pyrigi
+from exactfold.bridges.graphs import to_networkx as to_networkx
+from exactfold.bridges.meshes import to_trimesh as to_trimesh

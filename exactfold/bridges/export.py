@@ -15,15 +15,19 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from math import prod
+from typing import TYPE_CHECKING, Any
 
+from exactfold.bridges.packages import is_available, optional
 from exactfold.errors import UsageError
+from exactfold.exact.forms import QuadraticForm
 from exactfold.exact.numbers import format_integer, over_common_denominator
 from exactfold.problem.branch_system import BranchSystem, Chart
 from exactfold.problem.quadratic import QuadraticSystem
 
 if TYPE_CHECKING:
     import sympy
+    from sage.rings.polynomial.multi_polynomial_ideal import MPolynomialIdeal
 
 Term = tuple[int, tuple[int, ...]]
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*\Z", re.ASCII)
@@ -129,6 +133,57 @@ def to_sympy(
         for terms in polynomials
     ]
     return expressions, symbols
+
+
+def to_sage(
+    system: QuadraticSystem | BranchSystem, names: Sequence[str] | None = None
+) -> MPolynomialIdeal:
+    """The ideal of the polynomials in Sage: over QQ, term order degrevlex, one generator for each.
+
+    In Sage itself, or with the part of it that `pip install passagemath-singular` installs, for
+    example `to_sage(chart.system).vector_space_dimension()`. Raises `PackageMissingError` without
+    either, and `UsageError` for unusable names.
+
+    >>> to_sage(_EXAMPLE).gens()  # doctest: +SKIP
+    [x0^2 + x1^2 - 1, 2*x0*x1]
+    """
+    _sage()
+    rings = optional("sage.rings.polynomial.polynomial_ring_constructor", _SAGE)
+    rationals = optional("sage.rings.rational_field", _SAGE).QQ
+    variables, polynomials = _polynomials(system, names)
+    ring = rings.PolynomialRing(rationals, len(variables), list(variables), order="degrevlex")
+    unknowns = ring.gens()
+    generators = [
+        sum((ring(c) * prod(unknowns[k] for k in factors) for c, factors in terms), ring.zero())
+        for terms in polynomials
+    ]
+    return ring.ideal(generators)
+
+
+def form_to_sage(form: QuadraticForm) -> Any:
+    """A form as a Sage `QuadraticForm` over QQ, its variables in the order of `form.labels`.
+
+    The Sage form has the same values; its `signature_vector()` is (positive, negative, zero), the
+    inertia. Raises `PackageMissingError` as `to_sage` does.
+
+    >>> from exactfold.rigidity.curvature import curvature_form
+    >>> form_to_sage(curvature_form("two-vertex", 4)).signature_vector()  # doctest: +SKIP
+    (1, 1, 3)
+    """
+    _sage()
+    rationals = optional("sage.rings.rational_field", _SAGE).QQ
+    # Sage takes the matrix of second derivatives.
+    rows = [[rationals(2 * x) for x in row] for row in form.matrix]
+    hessian = optional("sage.matrix.constructor", _SAGE).matrix(rationals, rows)
+    return optional("sage.quadratic_forms.quadratic_form", _SAGE).QuadraticForm(hessian)
+
+
+_SAGE = "passagemath-singular"
+
+
+def _sage() -> None:
+    """Load Sage, or the part of it that is there: its modules cannot be imported in any order."""
+    optional("sage.all" if is_available("sage.all") else "sage.all__sagemath_singular", _SAGE)
 
 
 def _polynomials(

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 BRANCH_KEY: Final = "frame_exactfold:branch"
 MOTION_KEY: Final = "frame_exactfold:motion"
 TIME_KEY: Final = "frame_exactfold:time"
+TIME_BOUNDS_KEY: Final = "frame_exactfold:timeBounds"
+RADIUS_KEY: Final = "frame_exactfold:radius"
 HEIGHTS_KEY: Final = "vertices_exactfold:heights"
 _NOISE: Final = 1e-7
 """Degrees: a smaller angle is flat."""
@@ -110,11 +112,17 @@ def motion_document(
 
 @dataclass(frozen=True)
 class MotionFrame:
-    """A sheet in space: `coords` with three components a vertex, `angles` in degrees by fold."""
+    """A sheet in space: `coords` with three components a vertex, `angles` in degrees by fold.
+
+    Where it is proved, every coordinate is within `radius` of that of one true configuration, which
+    has a time within `time_bounds`.
+    """
 
     time: float
     coords: Sequence[Sequence[float]]
     angles: Mapping[Edge, float]
+    time_bounds: tuple[float, float] | None = None
+    radius: float | None = None
 
 
 def _in_space() -> dict[str, Any]:
@@ -159,6 +167,8 @@ def _frame(frame: MotionFrame, letters: Mapping[Edge, str], title: str) -> dict[
     return {
         "frame_title": title,
         TIME_KEY: frame.time,
+        **({} if frame.time_bounds is None else {TIME_BOUNDS_KEY: list(frame.time_bounds)}),
+        **({} if frame.radius is None else {RADIUS_KEY: frame.radius}),
         **_in_space(),
         "vertices_coords": [[float(x) for x in point] for point in frame.coords],
         **({} if own == letters else {"edges_assignment": list(own.values())}),

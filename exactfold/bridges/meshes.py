@@ -1,4 +1,4 @@
-"""Sheets in space as meshes: OBJ files, and glTF with an animation."""
+"""Sheets in space as meshes: OBJ files, glTF with an animation, and objects of trimesh."""
 
 from __future__ import annotations
 
@@ -8,9 +8,15 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from exactfold.arrays import FloatArray, IndexArray
-from exactfold.errors import GltfMissingError
+from exactfold.bridges.packages import optional
+from exactfold.errors import GltfMissingError, UsageError
+from exactfold.pattern.loading import PatternLike, as_pattern
+from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.triangulating import triangles_of
 
 if TYPE_CHECKING:
+    import trimesh
+    from numpy.typing import ArrayLike
     from pygltflib import GLTF2
 
 FRONT: Final = (0.80, 0.24, 0.16)
@@ -117,6 +123,38 @@ def animated_gltf(
     file.model.scene = 0
     file.model.animations = [animation]
     return file.finished()
+
+
+def to_trimesh(
+    pattern: PatternLike | PanelPattern, coords: ArrayLike | None = None
+) -> trimesh.Trimesh:
+    """The sheet as a `trimesh.Trimesh`, in floats, in the unit of the pattern.
+
+    `coords`: where the vertices are, shape (V, 3), such as a frame `motion.coords[k]` or
+    `motion.at(time)`; without it the sheet lies flat in z = 0. Vertices and triangles keep their
+    order and nothing is merged; panels are cut into triangles. Faces are counter-clockwise seen
+    from the side that is +z in the flat sheet. The mesh is a surface with a border, so that trimesh
+    calls it not watertight.
+
+    Raises `PackageMissingError` without trimesh, `UsageError` for coordinates of another shape, and
+    the errors of `load`.
+
+    >>> mesh = to_trimesh("two-vertex")
+    >>> mesh.faces.shape, round(float(mesh.area), 12)
+    ((6, 3), 1.0)
+    """
+    package = optional("trimesh", "'exactfold[bridges]'")
+    sheet = pattern if isinstance(pattern, PanelPattern) else as_pattern(pattern)
+    if coords is None:
+        points = np.array([[float(x), float(y), 0.0] for x, y in sheet.vertices])
+    else:
+        points = np.array(coords, dtype=np.float64)
+        if points.shape != (len(sheet.vertices), 3):
+            raise UsageError(
+                f"the coordinates of this sheet have the shape ({len(sheet.vertices)}, 3), not "
+                f"{points.shape}"
+            )
+    return package.Trimesh(points, triangles_of(sheet), process=False)
 
 
 def gltf_bytes(model: GLTF2, *, binary: bool) -> bytes:

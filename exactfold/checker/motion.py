@@ -28,6 +28,7 @@ from .reading import (
     natural,
     parse_rational,
     require,
+    shown,
 )
 from .reduced import closed, emptied_sheet
 from .sheet import Sheet, read_sheet, turn
@@ -209,12 +210,11 @@ def saddle_of(sheet: Sheet) -> dict[int, Fraction]:
 def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
-    shown = signs if len(signs) <= 60 else signs[:60] + "..."
+    letters = signs if len(signs) <= 60 else signs[:60] + "..."
     side = "+" if claims["side"] > 0 else "-"
     tubes = counted(claims["tubes"], "tube", "tubes")
-    length = float(parse_rational(claims["length"]))
     return (
-        f"VALID: the motion along the half-branch {shown} ({len(signs)}), side {side}, is one "
-        f"curve without a gap of length {length:.6g} or more{said(claims)}; {tubes}; "
+        f"VALID: the motion along the half-branch {letters} ({len(signs)}), side {side}, is one "
+        f"curve without a gap of length {shown(claims['length'])} or more{said(claims)}; {tubes}; "
         f"sha256 {claims['sha256']}"
     )

@@ -31,7 +31,7 @@ from .motion_boxes import (
 from .motion_equations import LengthEquations
 from .motion_lengths import GRID, Path, entry
 from .motion_tubes import Ball, Start, Tube
-from .reading import integer, items, keys, natural, parse_rational, require
+from .reading import integer, items, keys, natural, parse_rational, require, shown
 from .sheet import Edge
 
 Link = tuple[Tube, Ball, Fraction]
@@ -267,11 +267,11 @@ def said(claims: dict[str, Any]) -> str:
     """What of contacts a line about verified claims says."""
     if "clear" not in claims:
         return ""
-    text = f"; no two faces touch before {float(parse_rational(claims['clear'])):.6g}"
+    text = f"; no two faces touch before {shown(claims['clear'])}"
     if "contact" not in claims:
         return text
     contact = claims["contact"]
-    last = float(parse_rational(contact["time"][1]))
+    last = shown(contact["time"][1])
     if contact["kind"] == "contact":
-        return f"{text}, {' and '.join(str(tuple(f)) for f in contact['faces'])} do by {last:.6g}"
-    return f"{text}, the fold {tuple(contact['folds'][0])} is closed by {last:.6g}"
+        return f"{text}, {' and '.join(str(tuple(f)) for f in contact['faces'])} do by {last}"
+    return f"{text}, the fold {tuple(contact['folds'][0])} is closed by {last}"

@@ -137,3 +137,13 @@ def digits(n: int) -> str:
     half = n.bit_length() * 3 // 20
     high, low = divmod(n, 10**half)
     return digits(high) + digits(low).rjust(half, "0")
+
+
+def shown(text: str) -> str:
+    """A rational number in six digits, also one that is too large for a float."""
+    value = parse_rational(text)
+    try:
+        return f"{float(value):.6g}"
+    except OverflowError:
+        whole = digits(abs(int(value)))
+        return f"{'-' if value < 0 else ''}{whole[0]}.{whole[1:6]}e+{len(whole) - 1}"

@@ -14,11 +14,10 @@ from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
-from exactfold.evidence.entries import write_certificate
 from exactfold.motion.following import follow
 from exactfold.motion.motion import Motion
 from exactfold.motion.writing import checked_ending, write_motion
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.pattern.fold_writing import write_text
 from exactfold.pattern.opening import Opened, has_branches
 from exactfold.verdict import PROVED, UNDECIDED
@@ -83,6 +82,8 @@ class Wanted:
             else:
                 motion = self._panels(opened, bar)
             proof = self._proof(motion, bar)
+            if proof is not None:
+                motion = proof.motion
             bar("writing")
             written = self._written(motion, proof)
         if self.as_json:
@@ -116,7 +117,7 @@ class Wanted:
         )
         return chosen(pattern, None, ",".join(map(str, pattern.foldable_vertices)), None, bar)
 
-    def _along(self, branch: Branch, bar: Bar) -> Motion:
+    def _along(self, branch: Branch, bar: Bar, pinned: Triangle | None = None) -> Motion:
         return follow(
             branch,
             side=self.side or 1,
@@ -124,6 +125,7 @@ class Wanted:
             frames=self.frames,
             by=self.by,
             through_nodes=self.through_nodes,
+            pinned=pinned,
             progress=bar,
         )
 
@@ -171,9 +173,10 @@ class Wanted:
                 "--certificate is for motions along branches of triangulated sheets with four "
                 "corners; `exactfold count --certificate` proves how panels fold"
             )
-        from exactfold.motion.proving import prove
+        from exactfold.motion.proving import prove_persistently
 
-        return prove(motion, progress=bar)
+        branch = motion.branch
+        return prove_persistently(motion, lambda held: self._along(branch, bar, held), progress=bar)
 
     # --- files -----------------------------------------------------------------------------------
 
@@ -191,15 +194,10 @@ class Wanted:
             write_text(self.picture, report.motion_stills(motion, title=name))
             written.append(str(self.picture))
         if self.certificate is not None and proof is not None:
-            document = proof.certificate()
-            if document is None:
-                say(
-                    "no certificate was written: that of a motion back to the flat sheet is one "
-                    "of `exactfold motions --certificate`"
-                )
-            else:
-                write_certificate(document, self.certificate)
+            if proof.write(self.certificate):
                 written.append(str(self.certificate))
+            else:
+                say(f"no certificate was written: {proof.reason}")
         return written
 
 

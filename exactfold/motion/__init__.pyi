@@ -1,4 +1,7 @@
 from exactfold.motion.angles import fold_angles_of as fold_angles_of
+from exactfold.motion.configuration_graph import (
+    ConfigurationGraph as ConfigurationGraph,
+)
 from exactfold.motion.contact_claims import (
     certificate_with_contact as certificate_with_contact,
 )
@@ -12,11 +15,13 @@ from exactfold.motion.followable import panel_modes as panel_modes
 from exactfold.motion.following import follow as follow
 from exactfold.motion.framework import Framework as Framework
 from exactfold.motion.half_branches import HalfBranch as HalfBranch
-from exactfold.motion.loops import Loop as Loop
-from exactfold.motion.loops import LoopProof as LoopProof
+from exactfold.motion.loop_proofs import Loop as Loop
+from exactfold.motion.loop_proofs import LoopProof as LoopProof
 from exactfold.motion.matching import Loops as Loops
 from exactfold.motion.matching import find_loops as find_loops
 from exactfold.motion.motion import Motion as Motion
+from exactfold.motion.panel_clearance import PanelClearance as PanelClearance
+from exactfold.motion.panel_clearance import prove_contacts as prove_contacts
 from exactfold.motion.panel_following import follow_panels as follow_panels
 from exactfold.motion.panel_motion import PanelMotion as PanelMotion
 from exactfold.motion.piece import Ball as Ball

@@ -21,6 +21,7 @@ TOLERANCE = 1e-11
 
 _CORRECTIONS = 8
 _SMALLEST = 1e-7
+_NO_HEIGHT = 1e-8
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
@@ -260,10 +261,11 @@ def on_curve(
 def near_flat(framework: Framework, x: FloatArray) -> FloatArray:
     """The configuration next to x, close to the flat one, with the same largest height.
 
-    By two steps of Newton's method in the blown-up equations, which are regular there.
+    By two steps of Newton's method in the blown-up equations, which are regular there. Heights of
+    the size of rounding errors have no direction: then x, which is as good as floats are, stays.
     """
     t = float(np.max(np.abs(x[2::3]), initial=0.0))
-    if t == 0:
+    if t < _NO_HEIGHT:
         return x
     scale = np.full(framework.size, t * t)
     scale[2::3] = t

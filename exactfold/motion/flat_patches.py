@@ -14,6 +14,7 @@ import numpy as np
 from exactfold.arrays import BigArray, FloatArray, IndexArray
 from exactfold.motion.contraction import ONE, SCALE, Contraction, up
 from exactfold.motion.framework import Framework
+from exactfold.motion.length_equations import Row
 from exactfold.motion.piece import Ball
 
 _MATRIX_BITS = 40
@@ -109,19 +110,20 @@ class FlatPatch:
         return rows
 
     def enclosed(self, near: FloatArray, bits: int) -> Ball | None:
-        """A box of unknowns of the framework with exactly one configuration whose patch is flat.
+        """The box of `point`."""
+        point = self.point(near, bits)
+        return None if point is None else point.ball
 
-        `near`: its unknowns, nearly. Newton's method with exact residuals, then the test of
-        Kantorovich in the form of `Contraction`, in integers. None proves nothing.
+    def point(self, near: FloatArray, bits: int) -> FlatPoint | None:
+        """The one configuration with a flat patch that has nearly the unknowns `near`.
+
+        Newton's method with exact residuals, then the test of Kantorovich in the form of
+        `Contraction`, in integers. None proves nothing.
         """
         framework = self.framework
         bits = max(bits, framework.bits)
-        free = {int(v): k for k, v in enumerate(framework.free)}
-        start = near.reshape(-1, 3)[[free[v] for v in self.moving]]
-        z = np.array(
-            [[int(x) << (bits - 60) for x in row] for row in np.rint(start * 2.0**60)],
-            dtype=object,
-        ).reshape(-1, 3)
+        start = np.rint(near[list(self.places)] * 2.0**60)
+        z = np.array([int(x) << (bits - 60) for x in start], dtype=object).reshape(-1, 3)
         jacobian = self._jacobian(z, bits)
         try:
             floats = np.array([[x / (1 << _MATRIX_BITS) for x in row] for row in jacobian])
@@ -157,7 +159,14 @@ class FlatPatch:
             for x in d[v]:
                 centre.append(int(x) // self._denominator)
                 radii.append(-(-reach // self._denominator) + 1)
-        return Ball(bits, tuple(centre), tuple(radii))
+        ball = Ball(bits, tuple(centre), tuple(radii))
+        return FlatPoint(self, ball, tuple(int(x) for x in z.reshape(-1)), proof.uniqueness(ONE))
+
+    @cached_property
+    def places(self) -> tuple[int, ...]:
+        """The places of the displacements of `moving` in the unknowns of the framework."""
+        free = {int(v): k for k, v in enumerate(self.framework.free)}
+        return tuple(3 * free[v] + a for v in self.moving for a in range(3))
 
     def _edges(self, z: BigArray, bits: int) -> tuple[BigArray, BigArray]:
         """d_e and U_e of the bars, times the denominator, over 2^bits: shape (bars, 3)."""
@@ -194,6 +203,36 @@ class FlatPatch:
 
     def __repr__(self) -> str:
         return f"<FlatPatch: flat at {self.flat}, {len(self.bars)} bars>"
+
+
+@dataclass(frozen=True, repr=False)
+class FlatPoint:
+    """A configuration whose patch is flat: the only one in `ball`.
+
+    Its displacements of `patch.moving` are near `centre`, integers over 2^bits of the ball, and
+    configurations whose patch is flat with displacements within `room`, over 2^SCALE, of `centre`
+    in the maximum norm are equal.
+    """
+
+    patch: FlatPatch
+    ball: Ball
+    centre: Row
+    room: int
+
+    def is_in(self, box: Ball) -> bool:
+        """Whether the configuration with this flat patch that a box is known to hold is this one.
+
+        False says nothing.
+        """
+        bits = max(box.bits, self.ball.bits)
+        box, shift = box.finer(bits), bits - self.ball.bits
+        return all(
+            (abs(box.centre[i] - (x << shift)) + box.radii[i]) << SCALE < self.room << bits
+            for i, x in zip(self.patch.places, self.centre, strict=True)
+        )
+
+    def __repr__(self) -> str:
+        return f"<FlatPoint: flat at {self.patch.flat}, {self.ball!r}>"
 
 
 def _whole(matrix: FloatArray, bits: int) -> BigArray:

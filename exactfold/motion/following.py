@@ -28,7 +28,7 @@ from exactfold.motion.events import (
 from exactfold.motion.framework import Framework
 from exactfold.motion.motion import Motion, angles_at, in_space
 from exactfold.motion.start import Start
-from exactfold.pattern.crease_pattern import Edge
+from exactfold.pattern.crease_pattern import Edge, Triangle
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 
@@ -45,6 +45,7 @@ def follow(
     frames: int = 60,
     by: Edge | None = None,
     through_nodes: bool = False,
+    pinned: Triangle | None = None,
     progress: Progress | None = None,
 ) -> Motion:
     """The motion that continues a simple branch, from the flat sheet until something happens.
@@ -55,7 +56,9 @@ def follow(
     "return", the flat sheet again; "90deg", the first fold angle of that size; or a number, the
     time at which to stop. Where another curve crosses (an event "node") the motion stops, unless
     `through_nodes`. `frames`: their number, at equal steps of time, or of the angle of the fold
-    `by`. `side`: 1 for the ray that `branch` shows, -1 for its mirror image.
+    `by`. `side`: 1 for the ray that `branch` shows, -1 for its mirror image. `pinned`: the triangle
+    that is held, by vertices of the sheet without what stays flat (`Problem.sheet`), by default the
+    largest; times depend on it.
 
     Raises `UsageError` for options that make no sense, `NotFollowedError` for a branch that is
     not simple, `UndecidedBranchError` for one of which nothing is proved. A motion that ends
@@ -74,7 +77,7 @@ def follow(
     problem = Problem.of(branch.pattern)
     if by is not None and by not in branch.pattern.folds:
         raise UsageError(f"there is no fold {by[0]}-{by[1]} to make equal steps of")
-    framework = Framework.of(problem.sheet)
+    framework = Framework.of(problem.sheet, pinned)
     curve, events, end = _followed(framework, _start(framework, problem, branch), goal, progress)
     unit = float(framework.unit)
     times = np.linspace(0.0, curve.duration * unit, frames)

@@ -11,6 +11,7 @@ from exactfold.arrays import FloatArray
 
 if TYPE_CHECKING:
     from exactfold.motion.events import Event
+    from exactfold.motion.motion import FrameBounds
     from exactfold.pattern.crease_pattern import CreasePattern, Edge
     from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -71,6 +72,10 @@ class SheetInMotion(Protocol):
         """What is known of the motion, in a word."""
 
     @property
+    def bounds(self) -> FrameBounds | None:
+        """How far the frames are from true configurations, None where that is not proved."""
+
+    @property
     def duration(self) -> float:
         """The time of the last frame."""
 
@@ -121,11 +126,16 @@ def table(motion: SheetInMotion) -> tuple[tuple[str, ...], FloatArray]:
 
 def frames_reported(motion: SheetInMotion, written: Sequence[str]) -> dict[str, Any]:
     """The keys of `schema("motion")` that do not depend on what the sheet folds along."""
-    folds = [f"{i}-{j}" for i, j in motion.pattern.folds]
+    folds, bounds = [f"{i}-{j}" for i, j in motion.pattern.folds], motion.bounds
     return {
         "status": motion.status,
         "pinned": list(motion.pinned),
-        "frames": {"number": len(motion.times), "times": motion.times.tolist()},
+        "frames": {
+            "number": len(motion.times),
+            "times": motion.times.tolist(),
+            "time_bounds": None if bounds is None else [list(time) for time in bounds.times],
+            "radii": None if bounds is None else list(bounds.radii),
+        },
         "angles": dict(zip(folds, np.degrees(motion.angles).T.tolist(), strict=True)),
         "largest_angles": dict(zip(folds, motion.largest_angles.tolist(), strict=True)),
         "events": [event.to_dict() for event in motion.events],

@@ -10,10 +10,15 @@ from typing import Any
 
 from exactfold.evidence.journal import Journal
 from exactfold.evidence.loops import OPENING, claims_line, header_line
+from exactfold.motion.arclength import Interval
+from exactfold.motion.fold_ranges import FoldRange
 from exactfold.motion.framework import Framework
 from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.length_equations import LengthEquations
-from exactfold.motion.loops import Loop
+from exactfold.motion.loop_proofs import Loop
+from exactfold.motion.piece import Ball
+from exactfold.motion.tube_start import StartTube
+from exactfold.motion.visits import Visit
 from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED
 
@@ -32,12 +37,22 @@ class LoopFile:
 
     @classmethod
     def opened(
-        cls, path: str | os.PathLike[str], problem: Problem, resume: bool, replace: bool
+        cls,
+        path: str | os.PathLike[str],
+        problem: Problem,
+        resume: bool,
+        replace: bool,
+        *,
+        like: StartTube | None = None,
     ) -> LoopFile:
-        """A new file, or with `resume` one that is continued; raises the errors of `Journal`."""
-        framework = Framework.of(problem.sheet)
+        """A new file, or with `resume` one that is continued; raises the errors of `Journal`.
+
+        All loops of a file hold the same triangle and have the same bits: those of `like`, by
+        default those of `LoopFinder`.
+        """
+        framework = Framework.of(problem.sheet) if like is None else like.framework
         pinned = [problem.labels[v] for v in framework.pinned]
-        bits = LengthEquations.of(framework).bits
+        bits = LengthEquations.of(framework).bits if like is None else like.bits
         header = header_line(problem.pattern, pinned, bits)
         if not resume:
             return cls(Journal(path, header, replace=replace), problem, ())
@@ -45,7 +60,7 @@ class LoopFile:
         matched: set[HalfBranch] = set()
 
         def refusal(text: str, _: int) -> str | None:
-            loop = _loop_of(text, problem)
+            loop = _loop_of(text, problem, bits)
             if loop is None or not matched.isdisjoint(_ends(loop)):
                 return "it is no loop of this sheet, or the same as one before"
             known.append(loop)
@@ -83,17 +98,39 @@ def _ends(loop: Loop) -> set[HalfBranch]:
     return ends if loop.target is None else ends | {loop.target, loop.target.mirrored}
 
 
-def _loop_of(text: str, problem: Problem) -> Loop | None:
+def _loop_of(text: str, problem: Problem, bits: int) -> Loop | None:
     """The loop of a line; None if this program did not write it."""
     try:
         data = json.loads(text)
         source, target = (_half_branch(data[key], problem) for key in ("from", "to"))
         steps = data["evidence"]["steps"]
-        low, high = (Fraction(x) for x in data["provenance"]["length"])
-        through = tuple(tuple(step["flat"]) for step in steps if "flat" in step)
+        known = data["provenance"]
+        nodes = [step for step in steps if "flat" in step]
+        through = tuple(tuple(step["flat"]) for step in nodes)
+        visits = tuple(
+            _visit(step, node, problem, bits)
+            for step, node in zip(nodes, known["nodes"], strict=True)
+        )
+        folds = tuple(
+            FoldRange((i, j), turns, _interval(least), _interval(greatest))
+            for i, j, turns, least, greatest in known["folds"]
+        )
+        length = _interval(known["length"])
     except (ValueError, LookupError, TypeError, ZeroDivisionError):
         return None
-    return Loop(source, target, through, (low, high), PROVED, "", len(steps) + 1)
+    return Loop(source, target, through, length, PROVED, "", len(steps) + 1, visits, folds)
+
+
+def _visit(step: dict[str, Any], node: dict[str, Any], problem: Problem, bits: int) -> Visit:
+    flat = tuple(problem.labels.index(v) for v in step["flat"])
+    place = Ball(bits, tuple(step["node"]), tuple(node["radii"]))
+    along = Ball(bits, tuple(step["centre"]), tuple(node["spread"]))
+    return Visit(flat, place, along, _interval(node["time"]))
+
+
+def _interval(texts: list[str]) -> Interval:
+    low, high = (Fraction(x) for x in texts)
+    return low, high
 
 
 def _half_branch(data: dict[str, Any], problem: Problem) -> HalfBranch:

@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
-from itertools import zip_longest
 
 import numpy as np
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
-from exactfold.errors import NotCountedError, NotProvedAtTheFlatStateError
-from exactfold.evidence.entries import Document
-from exactfold.evidence.loops import loop_line
-from exactfold.exact.numbers import format_rational
+from exactfold.errors import NotProvedAtTheFlatStateError
 from exactfold.motion.angles import fold_angles_of
-from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
 from exactfold.motion.flat_patches import FlatPatch
 from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.length_equations import LengthEquations
+from exactfold.motion.loop_proofs import ArcProof, Landing, LoopProof, Passage, named
 from exactfold.motion.node_tube import ROW_BITS as NODE_ROW_BITS
 from exactfold.motion.node_tube import NodeTube, prove_node_tube
-from exactfold.motion.piece import PARAMETER_BITS, Ball
+from exactfold.motion.piece import PARAMETER_BITS
 from exactfold.motion.tracks import Link, half_branch, onwards
 from exactfold.motion.tube import Tube
 from exactfold.motion.tube_start import (
@@ -31,8 +26,9 @@ from exactfold.motion.tube_start import (
     StartTube,
     prove_start,
 )
+from exactfold.pattern.crease_pattern import Triangle
 from exactfold.problem.problem import Problem
-from exactfold.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.progress import Progress
 
 MOST_TUBES = 4000
 _FOLDED_FLAT = 1e-2
@@ -43,200 +39,32 @@ _NEAR_FLAT = 0.8
 """Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
 
 
-@dataclass(frozen=True, repr=False)
-class Landing:
-    """Where a motion comes back to the flat state: on the last tube lies a point of `start`.
-
-    At `tau` the start tube of the half-branch `to`, which is that of its mirror image for a
-    negative `tau`, passes the last tube in the opposite direction; so the motion ends in the flat
-    state along `to`.
-    """
-
-    to: HalfBranch
-    start: StartTube
-    tau: int
-
-    @property
-    def ball(self) -> Ball:
-        """A box of unknowns of the length equations that holds the configuration at `tau`."""
-        return self.start.ball(self.tau)
-
-    def __repr__(self) -> str:
-        return f"<Landing: {self.to}>"
-
-
-@dataclass(frozen=True, repr=False)
-class Passage:
-    """How a motion passes a node: on an arc `tube` through it, from one parameter to another.
-
-    The configuration at `entry` lies on the link before, which goes the same way there; the next
-    link begins at `exit`. `entered` and `left` bound the time as in `Link`. `vertices` are flat at
-    the node, by the numbers of the pattern.
-    """
-
-    tube: NodeTube
-    vertices: tuple[int, ...]
-    entry: int
-    exit: int
-    entered: Interval
-    left: Interval
-
-    def __repr__(self) -> str:
-        return f"<Passage: flat at {self.vertices}, time {float(self.entered[0]):.4g}>"
-
-
-@dataclass(frozen=True, repr=False)
-class Loop:
-    """The true configurations from the flat state along `source` back to it along `target`.
-
-    `through`: the vertices that are flat at each node on the way, in order. `length` bounds the
-    length in the unit of the sheet; where `status` is UNDECIDED that of the part that is proved,
-    `target` is None, and `reason` says what stopped the proof. `tubes`: how many proved it.
-    """
-
-    source: HalfBranch
-    target: HalfBranch | None
-    through: tuple[tuple[int, ...], ...]
-    length: Interval
-    status: Verdict
-    reason: str
-    tubes: int
-
-    def to_dict(self) -> dict[str, object]:
-        """The loop as `exactfold motions --json` prints it."""
-        return {
-            "from": self.source.to_dict(),
-            "to": None if self.target is None else self.target.to_dict(),
-            "through": [{"flat": list(vertices)} for vertices in self.through],
-            "length": list(in_floats(self.length)),
-            "status": str(self.status),
-            "reason": self.reason,
-            "tubes": self.tubes,
-        }
-
-    def __repr__(self) -> str:
-        return f"<Loop: {self.source} to {self.target}, {self.status}>"
-
-
-@dataclass(frozen=True, repr=False)
-class LoopProof:
-    """One analytic curve of configurations from `start` through `steps` to `landing`, no gap.
-
-    Without `landing` it ends after the last step, and `reason` says why.
-    """
-
-    problem: Problem
-    start: StartTube
-    steps: tuple[Link | Passage, ...]
-    landing: Landing | None
-    reason: str
-
-    @property
-    def loop(self) -> Loop:
-        """What is proved."""
-        landing, unit = self.landing, self.start.framework.unit
-        low, high = self.steps[-1].left if self.steps else self.start.length(0, self.start.last)
-        if landing is not None:
-            low, high = _whole_length(self.steps[-1], landing)
-        return Loop(
-            named(self.start),
-            None if landing is None else landing.to,
-            tuple(step.vertices for step in self.steps if isinstance(step, Passage)),
-            (low * unit, high * unit),
-            UNDECIDED if landing is None else PROVED,
-            self.reason,
-            len(self.steps) + 1,
-        )
-
-    def line(self) -> str:
-        """The line of a loop that is proved to its end, for `exactfold.checker` (docs/motions.md).
-
-        It claims a length a little smaller than that of the loop, as far as straight chords show
-        it. Raises `NotCountedError` for a loop without a landing.
-        """
-        if self.landing is None:
-            raise NotCountedError(f"the loop is not proved to its end: {self.reason}")
-        landing, loop, unit = self.landing, self.loop, self.start.framework.unit
-        steps = [self._entry(a, b) for a, b in zip_longest(self.steps, self.steps[1:])]
-        return loop_line(
-            self._named(loop.source),
-            self._named(landing.to),
-            format_rational(self._chords * unit),
-            {
-                "start": {**self._flat_end(self.start), "exit": self.start.last},
-                "steps": steps,
-                "landing": {**self._flat_end(landing.start), "tau": landing.tau},
-            },
-            {"length": [format_rational(x) for x in loop.length]},
-        )
-
-    def _named(self, half_branch: HalfBranch) -> Document:
-        """A half-branch by the signs of all interior vertices of the pattern."""
-        signs = dict(zip(self.problem.foldable, half_branch.vertex_signs, strict=True))
-        interior = self.problem.pattern.interior
-        return {"vertex_signs": [signs.get(v, 0) for v in interior], "side": half_branch.saddle}
-
-    def _flat_end(self, start: StartTube) -> Document:
-        held = int(start.framework.free[start.held // 3])
-        return {
-            "centre": list(start.coefficients[0]),
-            "halvings": start.halvings,
-            "held": self.problem.labels[held],
-            "reach": start.reach,
-        }
-
-    def _entry(self, step: Link | Passage, after: Link | Passage | None) -> Document:
-        tube = step.tube
-        found: Document = {
-            "centre": list(tube.coefficients[0]),
-            "row": list(tube.row),
-            "reach": tube.reach,
-        }
-        if isinstance(step, Passage):
-            node = step.tube.node.centre
-            found = {"flat": list(step.vertices), "node": list(node), **found, "entry": step.entry}
-        if isinstance(step, Passage) or isinstance(after, Link):
-            found["exit"] = step.exit
-        return found
-
-    @property
-    def _chords(self) -> Fraction:
-        """A little less than the lengths of the chords between the points where pieces meet."""
-        balls = [self.start.ball(self.start.last)]
-        for step, after in zip_longest(self.steps, self.steps[1:]):
-            if isinstance(step, Passage):
-                balls += [step.tube.ball(at) for at in (step.entry, 0, step.exit)]
-            elif isinstance(after, Link):
-                balls.append(step.tube.enclosure(step.exit))
-        if self.landing is not None:
-            balls.append(self.landing.ball)
-        none = np.zeros((1, self.start.framework.size))
-        points = np.array([ball.floats[0] for ball in balls])
-        steps = np.diff(points, axis=0, prepend=none, append=none)
-        total = float(np.linalg.norm(steps, axis=1).sum())
-        return Fraction(int(total * (1 - 1e-5) * (1 << 30)), 1 << 30)
-
-    def __repr__(self) -> str:
-        return f"<LoopProof: {len(self.steps)} steps, {self.loop!r}>"
-
-
 @dataclass(frozen=True)
 class LoopFinder:
     """Follows the half-branches of one sheet; what they share is computed once."""
 
     problem: Problem
 
-    def follow(self, branch: Branch, side: int = 1) -> LoopProof:
+    def follow(
+        self,
+        branch: Branch,
+        side: int = 1,
+        *,
+        pinned: Triangle | None = None,
+        bits: int = 64,
+        progress: Progress | None = None,
+    ) -> LoopProof:
         """The loop that leaves the flat state along a half-branch of a simple, proved branch.
 
-        Raises as `half_branch`.
+        `pinned` and `bits` as in `half_branch`, whose errors are raised. `progress` is told how
+        many tubes there are.
 
         >>> from exactfold.count.find import find_branch
         >>> branch = find_branch("two-vertex", "+-")
         >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
         <Loop: +-, saddle + to +-, saddle -, proved>
         """
-        return self._proof(half_branch(branch, side).start)
+        return self._proof(half_branch(branch, side, pinned, bits=bits).start, progress)
 
     def follow_from(self, branch: Branch, source: HalfBranch) -> LoopProof:
         """The loop that leaves the flat state along `source`, one of the halves of a branch.
@@ -249,22 +77,41 @@ class LoopFinder:
                 return self._proof(start)
         raise NotProvedAtTheFlatStateError(f"the branch has not the half-branch {source}")
 
-    def _proof(self, start: StartTube) -> LoopProof:
-        steps, landing, reason = self._followed(start)
-        return LoopProof(self.problem, start, tuple(steps), landing, reason)
-
-    def _followed(self, start: StartTube) -> tuple[list[Link | Passage], Landing | None, str]:
-        """The steps from a start tube on, to a landing or to what stopped the proof."""
-        equations = LengthEquations.of(start.framework)
+    def _proof(self, start: StartTube, progress: Progress | None = None) -> LoopProof:
+        equations = LengthEquations.of(start.framework, start.bits)
         last, time = start.last, start.length(0, start.last)
         ahead = onwards(
             equations, start.ball(last), start.ball_velocity(last), time, float(time[0]) / 2
         )
+        steps, landing, reason = self._followed(equations, ahead, progress=progress)
+        return LoopProof(self.problem, start, tuple(steps), landing, reason)
+
+    def follow_from_node(self, tube: NodeTube) -> ArcProof:
+        """The arc from a node on, forwards along a tube through it, to the next node."""
+        equations, end = LengthEquations.of(tube.framework), tube.longest * 3 // 4
+        left = tube.length(0, end)
+        ahead = onwards(equations, tube.ball(end), tube.ball_velocity(end), left, float(left[0]))
+        steps, landing, reason = self._followed(equations, ahead, at_node=True)
+        return ArcProof(tube, tuple(steps), landing, reason)
+
+    def _followed(
+        self,
+        equations: LengthEquations,
+        ahead: Iterator[Link | str],
+        at_node: bool = False,
+        progress: Progress | None = None,
+    ) -> tuple[list[Link | Passage], Landing | None, str]:
+        """The steps on links ahead, to a landing or to what stopped the proof.
+
+        With `at_node` the passage of the first node is the last step.
+        """
         steps: list[Link | Passage] = []
         while len(steps) < MOST_TUBES:
             link = next(ahead)
             if isinstance(link, Link):
                 steps.append(link)
+                if progress is not None:
+                    progress("proving, tubes", len(steps), 0)
                 landing = self._landing(link)
                 if landing is not None:
                     return steps, landing, ""
@@ -274,6 +121,8 @@ class LoopFinder:
                 return steps, None, self._why(steps, link)
             kept, passage = found
             steps = [*steps[:kept], passage]
+            if at_node:
+                return steps, None, ""
             tube, at = passage.tube, passage.exit
             step = float(tube.length(0, at)[0])
             ahead = onwards(equations, tube.ball(at), tube.ball_velocity(at), passage.left, step)
@@ -297,7 +146,10 @@ class LoopFinder:
         framework = steps[-1].tube.framework
         flat = flat_vertices(framework, point)
         patch = FlatPatch.of(framework, flat)
-        tube = None if patch is None else prove_node_tube(framework, patch, point, tangent)
+        bits = steps[-1].tube.bits
+        tube = (
+            None if patch is None else prove_node_tube(framework, patch, point, tangent, bits=bits)
+        )
         if tube is None:
             return None
         # The first link that reaches into the tube, so that the short ones before the node go.
@@ -364,21 +216,6 @@ class LoopFinder:
 
     def _start(self, tube: Tube, heights: FloatArray) -> StartTube | None:
         try:
-            return prove_start(tube.framework, self.problem.gauge, heights)
+            return prove_start(tube.framework, self.problem.gauge, heights, bits=tube.bits)
         except NotProvedAtTheFlatStateError:
             return None
-
-
-def named(start: StartTube, side: int = 1) -> HalfBranch:
-    """The half-branch of a start tube, or of its mirror image."""
-    named = HalfBranch(start.vertex_signs, start.side)
-    return named if side > 0 else named.mirrored
-
-
-def _whole_length(step: Link | Passage, landing: Landing) -> Interval:
-    """Bounds of the length of a loop, whose last tube is met by the start tube of the landing."""
-    found = step.tube.located(landing.ball) if isinstance(step, Link) else None
-    if not isinstance(step, Link) or found is None or found[0] < step.entry[1]:
-        raise ArithmeticError("the landing is not on the tube")
-    shortest, longest = landing.start.length(0, abs(landing.tau))
-    return step.time(found[0])[0] + shortest, step.time(found[1])[1] + longest

@@ -22,9 +22,12 @@ from exactfold.errors import (
     UsageError,
     WorkerDiedError,
 )
+from exactfold.motion.configuration_graph import ConfigurationGraph
+from exactfold.motion.graph_building import graph_of
 from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.loop_file import LoopFile
-from exactfold.motion.loops import Loop, LoopFinder
+from exactfold.motion.loop_proofs import Loop
+from exactfold.motion.loops import LoopFinder
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
 from exactfold.pattern.loading import PatternLike, as_pattern
@@ -46,7 +49,8 @@ class Loops:
     simple, by the reason, of which nothing is claimed. Curves that do not pass the flat state are
     not looked for.
 
-    `status` is PROVED if all 2^(n + 1) half-branches are matched, with proof.
+    `status` is PROVED if all 2^(n + 1) half-branches are matched, with proof. `graph`: the flat
+    state, the nodes that can be reached from it, and all arcs between them, mirror images as well.
     """
 
     pattern: CreasePattern
@@ -54,6 +58,7 @@ class Loops:
     skipped: Mapping[str, str]
     status: Verdict
     reason: str
+    graph: ConfigurationGraph
     seconds: float = field(default=0.0, compare=False)
 
     @cached_property
@@ -80,6 +85,7 @@ class Loops:
             "half_branches": 2 ** (len(self.pattern.foldable_vertices) + 1),
             "matched": len(self.matching),
             "loops": [loop.to_dict() for loop in self.loops],
+            "graph": self.graph.to_dict(),
             "skipped": dict(self.skipped),
             "warnings": warnings(self.pattern),
             "seconds": round(self.seconds, 3),
@@ -103,7 +109,8 @@ def find_loops(
     """Follow every half-branch of a sheet through true configurations back to the flat state.
 
     Each loop is one analytic curve, proved from end to end by tubes (docs/motion.md), through nodes
-    as well; of mirror images and of the two directions one is followed. Four boundary vertices.
+    as well; of mirror images and of the two directions one is followed. Then the arcs that leave
+    the nodes on other lines are followed, likewise proved. Four boundary vertices.
 
     The file `certificate` takes the proof of each loop as it is found, and at last the claims, for
     `exactfold.checker` (docs/motions.md). With `resume`, a file left by an interrupted run is
@@ -142,12 +149,14 @@ def find_loops(
         reasons.append(f"{counted(many, 'branch')} {agreeing(many, 'is')} not simple")
     if left := sum(loop.target is None for loop in found):
         reasons.append(f"{counted(left, 'loop')} {agreeing(left, 'is')} not proved to the end")
+    reason = "; ".join(reasons)
     loops = Loops(
         sheet,
         tuple(found),
         skipped,
         UNDECIDED if reasons else PROVED,
-        "; ".join(reasons),
+        reason,
+        graph_of(problem, found, reason, runs, progress),
         time.perf_counter() - begun,
     )
     if not reasons and len(loops.matching) != 2 ** (len(problem.foldable) + 1):

@@ -34,9 +34,27 @@ _LONGEST: Final = 40
 """Characters of signs in a name."""
 
 
+@dataclass(frozen=True, repr=False)
+class FrameBounds:
+    """What is proved of the frames of a motion, one after the other.
+
+    Every coordinate of frame k is within `radii[k]` of that of one true configuration of the
+    branch's motion, which has a time between the two `times[k]`. Both in the unit of the pattern.
+    """
+
+    radii: tuple[float, ...]
+    times: tuple[tuple[float, float], ...]
+
+    def __repr__(self) -> str:
+        return f"<FrameBounds: {len(self.radii)} frames, radius {max(self.radii):.1e}>"
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class Motion(Picture):
-    """The sheet folding along a branch, in floats; `branch` is proved, the motion is not.
+    """The sheet folding along a branch; `branch` is proved, the motion is followed in floats.
+
+    With `bounds` its frames are proved: they are those of `prove(motion).motion`. Events, `at` and
+    `sampled` are in floats in any case.
 
     Faces stay rigid: every edge keeps its length to about 1e-13 of it. Time is the arclength of the
     curve of configurations: the length of the path in the coordinates of all corners that fold,
@@ -58,13 +76,14 @@ class Motion(Picture):
     events: tuple[Event, ...]
     end: str
     seconds: float = field(default=0.0, compare=False)
+    bounds: FrameBounds | None = None
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Motion):
             return NotImplemented
         return (
-            (self.branch, self.side, self.events, self.end)
-            == (other.branch, other.side, other.events, other.end)
+            (self.branch, self.side, self.events, self.end, self.bounds)
+            == (other.branch, other.side, other.events, other.end, other.bounds)
             and np.array_equal(self.times, other.times)
             and np.array_equal(self.coords, other.coords)
             and np.array_equal(self.angles, other.angles)
@@ -74,7 +93,13 @@ class Motion(Picture):
 
     @property
     def status(self) -> str:
-        """ "followed": in floats along a proved branch; "undecided" if the branch is not proved."""
+        """What is known of the motion.
+
+        "proved": its frames are enclosed (`bounds`); "followed": in floats along a proved branch;
+        "undecided": the branch is not proved.
+        """
+        if self.bounds is not None:
+            return str(PROVED)
         return FOLLOWED if self.branch.status is PROVED else str(self.branch.status)
 
     @property

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from exactfold.arrays import BigArray, FloatArray
-from exactfold.exact.numbers import over_common_denominator
-from exactfold.motion.arclength import Interval, length_between
+from exactfold.motion.arclength import Interval, length_between, parameter_after
 from exactfold.motion.contraction import SCALE, WEIGHT_BITS, Contraction, up
 from exactfold.motion.flat_patches import FlatPatch
 from exactfold.motion.framework import Framework
 from exactfold.motion.length_equations import Curve, LengthEquations, Row, squared, weights_of
+from exactfold.motion.node_stresses import Stresses
 from exactfold.motion.piece import PARAMETER_BITS, Ball, Piece
 from exactfold.motion.tube import longest
-from exactfold.rigidity.curvature import wheel_stress
 
 ROW_BITS = 20
 _BITS = 30
@@ -61,7 +59,7 @@ class NodeTube(Piece):
 
     def length(self, low: int, high: int) -> Interval:
         """Bounds of the length of the curve for low <= s <= high, in the framework's unit."""
-        rows = [tuple((k + 1) * a for a in row) for k, row in enumerate(self.coefficients)]
+        rows = self._slope_of_displacements
         most = max(abs(low), abs(high))
         error = [
             max(a, b) + 2
@@ -70,6 +68,16 @@ class NodeTube(Piece):
             )
         ]
         return length_between(rows, self.bits, error, PARAMETER_BITS, low, high)
+
+    def near(self, length: float, low: int, high: int) -> int:
+        """A parameter between `low` and `high` that is nearly this length after `low`."""
+        rows = np.array([self._floats(row) for row in self._slope_of_displacements])
+        return parameter_after(rows, length, PARAMETER_BITS, low, high)
+
+    @property
+    def _slope_of_displacements(self) -> list[Row]:
+        """The coefficients of the derivative of s p(s), over 2^bits."""
+        return [tuple((k + 1) * a for a in row) for k, row in enumerate(self.coefficients)]
 
 
 def prove_node_tube(
@@ -91,7 +99,7 @@ def prove_node_tube(
     node = patch.enclosed(near, equations.bits)
     if node is None:
         return None
-    stresses = _Stresses.of(equations, patch)
+    stresses = Stresses.of(equations, patch)
     found = _series(equations, stresses, node, along, order)
     if found is None:
         return None
@@ -103,56 +111,8 @@ def prove_node_tube(
     return NodeTube(framework, equations.bits, curve, weights, proof, reach, patch, node, row)
 
 
-@dataclass(frozen=True, repr=False)
-class _Stresses:
-    """The wheel stresses of the flat vertices on the edges: integers over 2^`bits`, one row each.
-
-    Row k takes the place of edge `replaced[k]`; the stresses on these edges are independent.
-    """
-
-    rows: BigArray
-    bits: int
-    replaced: tuple[int, ...]
-
-    @classmethod
-    def of(cls, equations: LengthEquations, patch: FlatPatch) -> _Stresses:
-        framework = equations.framework
-        place = {(int(i), int(j)): k for k, (i, j) in enumerate(framework.edges)}
-        rows = np.zeros((len(patch.flat), len(place)), dtype=object)
-        for k, v in enumerate(patch.flat):
-            stress = wheel_stress(framework.sheet, v)
-            whole, _ = over_common_denominator(stress.values())
-            for edge, value in zip(stress, whole, strict=True):
-                if edge in place:
-                    rows[k, place[edge]] = value
-        bits = max(int(abs(rows).max()).bit_length(), 1)
-        return cls(rows, bits, _independent(rows))
-
-    @property
-    def floats(self) -> FloatArray:
-        """The rows as floats."""
-        one = 1 << self.bits
-        return np.array([[x / one for x in row] for row in self.rows])
-
-
-def _independent(rows: BigArray) -> tuple[int, ...]:
-    """Columns on which the rows are independent, by exact elimination."""
-    left = [[Fraction(int(x)) for x in row] for row in rows]
-    chosen: list[int] = []
-    for k, row in enumerate(left):
-        column = max(range(len(row)), key=lambda c: abs(row[c]))
-        if not row[column]:
-            raise ArithmeticError("the wheel stresses of different vertices are dependent")
-        chosen.append(column)
-        for other in left[k + 1 :]:
-            factor = other[column] / row[column]
-            for c in range(len(row)):
-                other[c] -= factor * row[c]
-    return tuple(chosen)
-
-
 def _series(
-    equations: LengthEquations, stresses: _Stresses, node: Ball, along: FloatArray, order: int
+    equations: LengthEquations, stresses: Stresses, node: Ball, along: FloatArray, order: int
 ) -> tuple[Curve, Row, FloatArray, Row] | None:
     """The series of y in s, T, P and the weights, all from floats."""
     framework, w = equations.framework, stresses.floats
@@ -238,7 +198,7 @@ def _derivative(
 
 def _taylor(
     equations: LengthEquations,
-    stresses: _Stresses,
+    stresses: Stresses,
     kept: np.ndarray[tuple[int], np.dtype[np.bool_]],
     linear: FloatArray,
     row: FloatArray,
@@ -270,7 +230,7 @@ def _taylor(
 
 
 def _residuals(
-    equations: LengthEquations, stresses: _Stresses, node: Ball, curve: Curve, row: Row
+    equations: LengthEquations, stresses: Stresses, node: Ball, curve: Curve, row: Row
 ) -> list[BigArray]:
     """The coefficients of twice the equations at the centre, over 2^(2 bits + stresses.bits)."""
     bits, more = equations.bits, stresses.bits
@@ -301,7 +261,7 @@ def _residuals(
 
 def _corrected(
     equations: LengthEquations,
-    stresses: _Stresses,
+    stresses: Stresses,
     node: Ball,
     curve: Curve,
     row: Row,
@@ -321,7 +281,7 @@ def _corrected(
 
 def _bounds(
     equations: LengthEquations,
-    stresses: _Stresses,
+    stresses: Stresses,
     node: Ball,
     curve: Curve,
     row: Row,

@@ -43,13 +43,14 @@ class PanelContacts:
     pattern: PanelPattern
 
     @cached_property
-    def _cut(self) -> PanelPattern:
+    def cut(self) -> PanelPattern:
+        """The sheet with its panels cut into triangles."""
         return cut_panels(self.pattern)
 
     @cached_property
-    def _panel_of(self) -> dict[int, int]:
+    def panel_of(self) -> dict[int, int]:
         """The panel of each triangle: spread from the edges of the panels across the cuts."""
-        cut, sides = self._cut, self.pattern.sides
+        cut, sides = self.cut, self.pattern.sides
         found = {cut.sides[half]: panel for half, panel in sides.items()}
         inside = [edge for edge in cut.edges if edge not in set(self.pattern.edges)]
         while len(found) < len(cut.faces):
@@ -62,23 +63,24 @@ class PanelContacts:
 
     @cached_property
     def _panels(self) -> dict[tuple[int, ...], int]:
-        return {face: self._panel_of[k] for k, face in enumerate(self._cut.faces)}
+        return {face: self.panel_of[k] for k, face in enumerate(self.cut.faces)}
 
     @cached_property
-    def _crossings(self) -> Crossings:
+    def crossings(self) -> Crossings:
+        """Edges of triangles that run through others, in a sheet of size one."""
         # It takes no more of a framework than these.
         framework = SimpleNamespace(
-            sheet=self._cut, triangles=np.array(self._cut.faces, dtype=np.intp), flat=self._flat
+            sheet=self.cut, triangles=np.array(self.cut.faces, dtype=np.intp), flat=self._flat
         )
         return Crossings(cast("Framework", framework))
 
     @cached_property
     def _flat(self) -> FloatArray:
         points = np.array([(float(x), float(y)) for x, y in self.pattern.vertices])
-        return np.asarray(points / self._unit)
+        return np.asarray(points / self.unit)
 
     @cached_property
-    def _unit(self) -> float:
+    def unit(self) -> float:
         """The size of the sheet: crossings are looked for in a sheet of size one."""
         points = np.array([(float(x), float(y)) for x, y in self.pattern.vertices])
         return float(np.ptp(points, axis=0).max())
@@ -93,8 +95,8 @@ class PanelContacts:
         """
         for start in range(1, len(times), _CHUNK):
             some = np.asarray(times[start : start + _CHUNK], dtype=np.float64)
-            for k, there in enumerate(places(some) / self._unit, start):
-                if len(self._crossings.pairs(there)):
+            for k, there in enumerate(places(some) / self.unit, start):
+                if len(self.crossings.pairs(there)):
                     return self._enclosed(float(times[k - 1]), float(times[k]), places)
         return None
 
@@ -102,22 +104,22 @@ class PanelContacts:
         self, low: float, high: float, places: Callable[[FloatArray], FloatArray]
     ) -> Contact:
         def place(time: float) -> FloatArray:
-            return np.asarray(places(np.array([time]))[0] / self._unit)
+            return np.asarray(places(np.array([time]))[0] / self.unit)
 
         while low < (middle := 0.5 * (low + high)) < high and high - low > _CLOSE:
-            if len(self._crossings.pairs(place(middle))):
+            if len(self.crossings.pairs(place(middle))):
                 high = middle
             else:
                 low = middle
         there = place(high)
-        crossing = self._crossings.named(self._crossings.pairs(there)[0])
-        return Contact(low, high, self._who(crossing), self._crossings.kind(crossing, there))
+        crossing = self.crossings.named(self.crossings.pairs(there)[0])
+        return Contact(low, high, self.who(crossing), self.crossings.kind(crossing, there))
 
-    def _who(self, crossing: Crossing) -> tuple[int, int]:
+    def who(self, crossing: Crossing) -> tuple[int, int]:
         """The two panels of a crossing; of the two at an edge the one with less in common."""
         other = self._panels[crossing.face]
         corners = set(self.pattern.faces[other])
         i, j = crossing.edge
-        sides = [self._cut.sides.get(half) for half in ((i, j), (j, i))]
-        near = [self._panel_of[k] for k in sides if k is not None and self._panel_of[k] != other]
+        sides = [self.cut.sides.get(half) for half in ((i, j), (j, i))]
+        near = [self.panel_of[k] for k in sides if k is not None and self.panel_of[k] != other]
         return min(near, key=lambda p: len(corners & set(self.pattern.faces[p]))), other

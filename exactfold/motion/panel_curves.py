@@ -73,15 +73,18 @@ class LinearCurve:
         """The active folds, sorted."""
         return self.mode.folds
 
+    def exact_tangents(self, bits: int) -> dict[Edge, arb]:
+        """tan(angle / 2) of each fold at T = 1, up to a common factor, enclosed."""
+        with ctx.workprec(bits):
+            return {
+                fold: density.ball(bits) * _length(self.mode, fold)
+                for fold, density in self.mode.densities.items()
+            }
+
     @cached_property
     def _tangents(self) -> FloatArray:
-        """tan(angle / 2) of each fold at T = 1, up to a common factor."""
-        with ctx.workprec(_BITS):
-            values = [
-                density.ball(_BITS) * _length(self.mode, fold)
-                for fold, density in self.mode.densities.items()
-            ]
-            return np.array([float(value) for value in values])
+        """The same in floats."""
+        return np.array([float(value) for value in self.exact_tangents(_BITS).values()])
 
     @cached_property
     def driver(self) -> Edge:

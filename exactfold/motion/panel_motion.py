@@ -104,6 +104,11 @@ class PanelMotion(Picture):
         return "proved" if self.closes is PROVED else "followed"
 
     @property
+    def bounds(self) -> None:
+        """Frames of panels are not enclosed; `exactly` has exact positions."""
+        return None
+
+    @property
     def duration(self) -> float:
         """The time of the last frame."""
         return float(self.times[-1])

@@ -67,7 +67,7 @@ class Placing:
         return tuple(found)
 
     @cached_property
-    def _owners(self) -> Mapping[int, int]:
+    def owners(self) -> Mapping[int, int]:
         """For each vertex the first panel placed that has it as a corner."""
         owners: dict[int, int] = {}
         for panel in (self.held, *(step.panel for step in self.steps)):
@@ -100,7 +100,7 @@ class Placing:
             shift = flat[i] - spin @ flat[i]
             moved[panel] = np.einsum("tij,tj->ti", turned[before], shift) + moved[before]
         coords = np.empty((times, len(flat), 3))
-        for v, panel in self._owners.items():
+        for v, panel in self.owners.items():
             coords[:, v] = turned[panel] @ flat[v] + moved[panel]
         gap = 0.0
         for panel, face in enumerate(self.pattern.faces):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -49,6 +49,25 @@ class Ball:
             tuple(x << shift for x in self.centre),
             tuple(r << shift for r in self.radii),
         )
+
+    def misses(self, other: Ball) -> bool:
+        """Whether no point lies in both boxes.
+
+        >>> Ball(1, (2,), (1,)).misses(Ball(0, (3,), (1,)))
+        True
+        """
+        bits = max(self.bits, other.bits)
+        one, two = self.finer(bits), other.finer(bits)
+        return any(
+            abs(x - y) > r + s
+            for x, y, r, s in zip(one.centre, two.centre, one.radii, two.radii, strict=True)
+        )
+
+    @property
+    def mirrored(self) -> Ball:
+        """The box of the mirror images: every third unknown, z, has its sign reversed."""
+        signs = (1, 1, -1) * (len(self.centre) // 3)
+        return replace(self, centre=tuple(s * x for s, x in zip(signs, self.centre, strict=True)))
 
     @property
     def floats(self) -> FloatArray:

@@ -2,32 +2,49 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from exactfold.errors import NotProvedAtTheFlatStateError
-from exactfold.evidence.entries import Document
+from exactfold.evidence.entries import Document, write_certificate
 from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import ContactWatch, FirstContact
-from exactfold.motion.events import CONTACT, FLAT_FOLD, RETURN
-from exactfold.motion.loops import Loop, LoopFinder
+from exactfold.motion.enclosed import with_enclosed_frames
+from exactfold.motion.events import CONTACT, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
+from exactfold.motion.framework import Framework
+from exactfold.motion.loop_file import LoopFile
+from exactfold.motion.loop_frames import frame_of
+from exactfold.motion.loop_proofs import Loop, LoopProof
+from exactfold.motion.loops import LoopFinder
 from exactfold.motion.motion import Motion
-from exactfold.motion.tracks import Link, Track, follow_proved, half_branch
+from exactfold.motion.tracks import Frame, Link, Track, follow_proved, half_branch
+from exactfold.pattern.crease_pattern import Triangle
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
+
+BITS = 64, 128
+"""After the point, of the numbers in tubes: what is tried, one after the other."""
+
+_AT_ONCE = 1e-9
+_STRAYED = "the frames in floats are not near the proved curve: floats have left the branch"
 
 
 @dataclass(frozen=True, repr=False)
 class MotionProof:
     """What is proved of a motion: that it exists, without a gap, and what touches first.
 
-    `track`: the chain of tubes, None for a motion until its return. `contact`: how far no two faces
-    touch, and the first contact if the motion meets one; None until the return. `passed`: the
-    motion goes on after that contact, through the paper. `loop`: of a motion until its return.
-    `length` bounds how far it is proved, in the unit of the sheet.
+    `motion`: the motion with the frames of the proved curve, each with a bound of how far it is off
+    (`Motion.bounds`); as it was given where it is not proved to its end. `track`: the chain of
+    tubes, None for a motion until its return. `contact`: how far no two faces touch, and the first
+    contact if the motion meets one; None until the return. `passed`: the motion goes on after that
+    contact, through the paper. `looped`: the proof of a motion until its return. `length` bounds
+    how far it is proved, in the unit of the sheet.
 
     `status` is PROVED if all of the motion is, and its contact where it ends at one; else `reason`
     says what is missing.
@@ -35,18 +52,33 @@ class MotionProof:
 
     status: Verdict
     reason: str
+    motion: Motion
     length: Interval
     tubes: int
     track: Track | None = None
     contact: FirstContact | None = None
     passed: bool = False
-    loop: Loop | None = None
+    looped: LoopProof | None = None
+
+    @property
+    def loop(self) -> Loop | None:
+        """Of a motion until its return, where it ends."""
+        return None if self.looped is None else self.looped.outline
+
+    @property
+    def may_succeed_otherwise(self) -> bool:
+        """Whether tubes failed at a place where floats see nothing singular."""
+        if self.status is PROVED or self.motion.end == SINGULAR:
+            return False
+        if self.looped is None and _node_of(self.motion) is not None:
+            return False
+        return self.reason != _STRAYED and (self.track is None or self.track.status is not PROVED)
 
     def certificate(self) -> Document | None:
         """The evidence for `exactfold.checker`; None for a motion until its return.
 
-        The certificate of a loop is one of `exactfold motions`. Of a contact that the motion
-        passes nothing is claimed.
+        That of a loop has lines: `write` writes it. Of a contact that the motion passes nothing is
+        claimed.
         """
         if self.track is None:
             return None
@@ -54,9 +86,41 @@ class MotionProof:
             return self.track.certificate()
         return certificate_with_contact(self.track, self.contact)
 
+    def write(self, path: str | os.PathLike[str]) -> bool:
+        """Write the evidence for `exactfold.checker`; False if there is nothing to write.
+
+        A motion until its return is one loop in a file of loops (docs/motions.md), if it is proved
+        to its end; any other one has a certificate of its own as far as it is proved. Raises
+        `UnwritableFileError`.
+
+        >>> import os, tempfile
+        >>> from exactfold.checker import summary, verify
+        >>> from exactfold.count.find import find_branch
+        >>> from exactfold.motion.following import follow
+        >>> proof = prove(follow(find_branch("two-vertex", "+-"), until="return"))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "proof")
+        ...     proof.write(path), summary(verify(path))[:57]
+        (True, 'VALID: 1 loop of true motions, which match 2 of 8 half-br')
+        """
+        document = self.certificate()
+        if document is not None:
+            write_certificate(document, path)
+            return True
+        if self.looped is None or self.looped.landing is None:
+            return False
+        looped = self.looped
+        file = LoopFile.opened(path, looped.problem, resume=False, replace=True, like=looped.start)
+        try:
+            file.add(looped.loop, looped.line())
+            file.finish()
+        finally:
+            file.close()
+        return True
+
     def to_dict(self) -> dict[str, Any]:
         """The proof as `exactfold fold --json` prints it."""
-        contact = self.contact
+        contact, loop = self.contact, self.loop
         event = None if contact is None else contact.event
         return {
             "status": str(self.status),
@@ -65,41 +129,88 @@ class MotionProof:
             "length": list(in_floats(self.length)),
             "clear": None if contact is None else in_floats((contact.clear, contact.clear))[0],
             "contact": None if event is None else event.to_dict(),
-            "to": None
-            if self.loop is None or self.loop.target is None
-            else self.loop.target.to_dict(),
+            "to": None if loop is None or loop.target is None else loop.target.to_dict(),
         }
 
     def __repr__(self) -> str:
         return f"<MotionProof: {self.status}, {self.tubes} tubes>"
 
 
-def prove(motion: Motion, *, progress: Progress | None = None) -> MotionProof:
+def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = None) -> MotionProof:
     """Prove a motion as far as it was followed.
 
     Tubes hold one configuration for each parameter, from the flat state to the end of the motion
     (docs/motion.md), and separating planes show what does not touch (docs/contacts.md). A motion
     until its first contact is proved with that contact; any other one with how far it is clear.
     Nodes are passed where the motion returns to the flat state (docs/motions.md), and are its end
-    otherwise.
+    otherwise. The frames of the motion that is returned are those of the proved curve, each in a
+    box (`Motion.bounds`). `bits`: after the point, of all numbers in the tubes.
 
     Raises `UsageError` where the branch is not proved. UNDECIDED says nothing against the motion.
 
     >>> from exactfold.count.find import find_branch
     >>> from exactfold.motion.following import follow
     >>> proof = prove(follow(find_branch("two-vertex", "+-")))
-    >>> proof.status, proof.contact.event.kind
-    (<Verdict.PROVED: 'proved'>, 'flat-fold')
+    >>> proof.status, proof.contact.event.kind, max(proof.motion.bounds.radii) < 1e-14
+    (<Verdict.PROVED: 'proved'>, 'flat-fold', True)
     """
     try:
-        return _returning(motion) if motion.end == RETURN else _tracked(motion, progress)
+        if motion.end == RETURN:
+            return _returning(motion, bits, progress)
+        return _tracked(motion, bits, progress)
     except NotProvedAtTheFlatStateError as error:
-        return MotionProof(UNDECIDED, str(error), (Fraction(0), Fraction(0)), 0)
+        return MotionProof(UNDECIDED, str(error), motion, (Fraction(0), Fraction(0)), 0)
 
 
-def _tracked(motion: Motion, progress: Progress | None) -> MotionProof:
+def prove_persistently(
+    motion: Motion,
+    again: Callable[[Triangle], Motion],
+    *,
+    progress: Progress | None = None,
+) -> MotionProof:
+    """`prove`, and where tubes fail once more with more bits, then with another triangle held.
+
+    `again` follows the same motion with a triangle of the framework held: times are others then,
+    and so is `MotionProof.motion`. Where floats found a node or a singular configuration at the
+    end nothing more is tried. What was tried is in `MotionProof.reason`. Raises as `prove`.
+
+    >>> from exactfold.count.find import find_branch
+    >>> from exactfold.motion.following import follow
+    >>> branch = find_branch("two-vertex", "+-")
+    >>> motion = follow(branch, until="30deg", frames=2)
+    >>> prove_persistently(motion, lambda held: follow(branch, until="30deg", pinned=held)).status
+    <Verdict.PROVED: 'proved'>
+    """
+    found = prove(motion, progress=progress)
+    if not found.may_succeed_otherwise:
+        return found
+    other = _another(motion.curve.framework)
+    held = [motion.pinned]
+    finer = prove(motion, bits=BITS[1], progress=progress)
+    if finer.may_succeed_otherwise and other is not None:
+        turned = again(other)
+        held.append(turned.pinned)
+        by_turning = prove(turned, bits=BITS[1], progress=progress)
+        if by_turning.status is PROVED:
+            return by_turning
+    if not finer.may_succeed_otherwise:
+        return finer
+    faces = " and ".join("-".join(map(str, face)) for face in held)
+    tried = f"tried: steps down to 1e-7, {BITS[0]} and {BITS[1]} bits, face {faces} held"
+    best = max(found, finer, key=lambda proof: proof.length[0])
+    return replace(best, reason=f"{best.reason} ({tried})")
+
+
+def _another(framework: Framework) -> Triangle | None:
+    """The triangle to hold instead: one with as few of the same corners as possible."""
+    held = set(framework.pinned)
+    others = [t for t in framework.sheet.triangles if set(t) != held]
+    return min(others, key=lambda t: len(held & set(t)), default=None)
+
+
+def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProof:
     watch = ContactWatch()
-    to_contact = motion.end in (CONTACT, FLAT_FOLD)
+    to_contact = _ends_at_the_first_contact(motion)
     found: FirstContact | None = None
     links: list[Link] = []
 
@@ -119,17 +230,63 @@ def _tracked(motion: Motion, progress: Progress | None) -> MotionProof:
         return None
 
     until = None if to_contact else motion.duration
-    so_far = half_branch(motion.branch, motion.side)
-    track = follow_proved(motion.branch, motion.side, until=until, stop=stop)
+    pinned = motion.curve.framework.pinned
+    so_far = half_branch(motion.branch, motion.side, pinned, bits=bits)
+    track = follow_proved(
+        motion.branch, motion.side, until=until, stop=stop, pinned=pinned, bits=bits
+    )
     contact = watch.result(track) if found is None else found
     status, reason = track.status, "" if track.status is PROVED else track.reason
     if to_contact and status is PROVED and contact.status is not PROVED:
         status, reason = UNDECIDED, contact.reason
+    node = _node_of(motion)
+    if track.status is not PROVED and node is not None:
+        reason += (
+            f"; floats see a node at the time {node.time[1]:.6g}, through which only motions back "
+            "to the flat sheet are proved"
+        )
     passed = found is not None
-    return MotionProof(status, reason, track.length, len(track.links) + 1, track, contact, passed)
+    proof = MotionProof(
+        status, reason, motion, track.length, len(track.links) + 1, track, contact, passed
+    )
+    return _with_frames(proof, track.framework, track.frame)
 
 
-def _returning(motion: Motion) -> MotionProof:
-    problem = Problem.of(motion.branch.pattern)
-    loop = LoopFinder(problem).follow(motion.branch, motion.side).loop
-    return MotionProof(loop.status, loop.reason, loop.length, loop.tubes, loop=loop)
+def _node_of(motion: Motion) -> Event | None:
+    """The first node on a motion, as floats see it."""
+    return next((event for event in motion.events if event.kind == NODE), None)
+
+
+def _ends_at_the_first_contact(motion: Motion) -> bool:
+    """Whether nothing touches before the end of a motion, and something does there."""
+    touching = [event for event in motion.events if event.kind in (CONTACT, FLAT_FOLD)]
+    return motion.end in (CONTACT, FLAT_FOLD) and all(
+        event.time[1] >= motion.duration * (1 - _AT_ONCE) for event in touching
+    )
+
+
+def _returning(motion: Motion, bits: int, progress: Progress | None) -> MotionProof:
+    looped = LoopFinder(Problem.of(motion.branch.pattern)).follow(
+        motion.branch,
+        motion.side,
+        pinned=motion.curve.framework.pinned,
+        bits=bits,
+        progress=progress,
+    )
+    loop = looped.outline
+    proof = MotionProof(loop.status, loop.reason, motion, loop.length, loop.tubes, looped=looped)
+    return _with_frames(proof, looped.start.framework, partial(frame_of, looped))
+
+
+def _with_frames(
+    proof: MotionProof, framework: Framework, frame: Callable[[float], Frame]
+) -> MotionProof:
+    """The proof with enclosed frames; UNDECIDED if it is that of another motion."""
+    if proof.status is not PROVED:
+        return proof
+    longest = Fraction(proof.length[1])
+    times = [float(min(Fraction(time), longest)) for time in proof.motion.times.tolist()]
+    motion = with_enclosed_frames(proof.motion, framework, [frame(time) for time in times])
+    if motion is None:
+        return replace(proof, status=UNDECIDED, reason=_STRAYED)
+    return replace(proof, motion=motion)

@@ -28,9 +28,11 @@ The sums are computed in floats, u = 2^-53, and their roundings are bounded as f
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -48,13 +50,13 @@ class Swept:
     """Positions of all vertices on |s - middle| <= half: a + b (s - middle) + e, |e| <= error.
 
     Arrays of shape (V, 3), in units of the framework; `planar` if the third component is not
-    bounded and must not be used.
+    bounded and must not be used. For many intervals at once, they have one more axis in front.
     """
 
     start: FloatArray
     slope: FloatArray
     error: FloatArray
-    half: float
+    half: Any
     planar: bool = False
 
     @classmethod
@@ -62,44 +64,56 @@ class Swept:
         cls,
         coefficients: FloatArray,
         radius: FloatArray,
-        low: float,
-        high: float,
+        low: Any,
+        high: Any,
         *,
         planar: bool = False,
     ) -> Swept:
         """From p(s) = sum_k c_k s^k, shape (order + 1, V, 3), and |x - p| <= radius, shape (V, 3).
 
         The polynomial is expanded at the middle; what is beyond the slope goes into the error.
+        `low` and `high` are numbers, or arrays of shape (intervals, 1, 1).
         """
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        most = max(abs(low), abs(high))
+        most = np.maximum(np.abs(low), np.abs(high))
         sizes = np.abs(coefficients[-1])
         for row in coefficients[-2::-1]:
             sizes = most * sizes + np.abs(row)
-        rows = coefficients.copy()
+        shape = np.broadcast_shapes(np.shape(middle), radius.shape)
+        rows = [np.broadcast_to(row, shape).copy() for row in coefficients]
         for k in range(len(rows)):  # Horner's scheme, repeated: rows[k] is p^(k)(middle) / k!
             for m in range(len(rows) - 2, k - 1, -1):
                 rows[m] += middle * rows[m + 1]
-        error = radius.copy()
+        error = np.broadcast_to(radius, shape).copy()
         for k in range(2, len(rows)):
             error += np.abs(rows[k]) * half**k
         slope = rows[1] if len(rows) > 1 else np.zeros_like(rows[0])
-        if not (sizes.max() + radius.max() < _MOST and len(rows) <= _MOST_ROWS):
-            error = np.full_like(error, np.inf)
+        small = np.broadcast_to(sizes, shape).max(axis=(-1, -2)) + radius.max() < _MOST
+        error[~(small & (len(rows) <= _MOST_ROWS))] = np.inf
         return cls(rows[0], slope, error + _ROUND, half, planar)
 
 
-@dataclass(frozen=True, repr=False)
-class FacePairs:
-    """All pairs of faces of a sheet, by what they share.
+class AnyPairs(ABC):
+    """All pairs of faces of a sheet of triangles, by what they share."""
 
-    `apart`: rows of two faces without a common vertex. `corner`: rows (v, a, b, c, d), faces vab
-    and vcd. `folds`: rows (left, right) of corners across a fold, in the order of `sheet.folds`;
-    `closed`: their squared distance where the fold is closed, rounded up, in units of the
-    framework.
-    """
+    @property
+    @abstractmethod
+    def triangles(self) -> IndexArray:
+        """The faces, shape (F, 3)."""
 
-    framework: Framework
+    @property
+    @abstractmethod
+    def hinges(self) -> IndexArray:
+        """Each fold as (i, j, left, right): left and right are the corners across it."""
+
+    @property
+    @abstractmethod
+    def closed(self) -> FloatArray:
+        """|left - right|^2 of each fold where it is closed, not less than exact."""
+
+    def one_body(self, i: int, j: int) -> bool:
+        """Whether two faces are parts of one rigid body, so that nothing is to be proved."""
+        return False
 
     @cached_property
     def apart(self) -> IndexArray:
@@ -115,19 +129,42 @@ class FacePairs:
 
     @cached_property
     def _pairs(self) -> list[tuple[tuple[int, int], set[int]]]:
-        triangles = [set(t) for t in self.framework.sheet.triangles]
+        triangles = [set(t) for t in self.triangles.tolist()]
         pairs = combinations(range(len(triangles)), 2)
-        return [((i, j), triangles[i] & triangles[j]) for i, j in pairs]
+        return [((i, j), triangles[i] & triangles[j]) for i, j in pairs if not self.one_body(i, j)]
 
     @cached_property
     def corners(self) -> IndexArray:
         """For each row of `corner` the vertices (v, a, b, c, d), faces vab and vcd."""
-        rows = []
+        triangles, rows = self.triangles.tolist(), []
         for i, j in self.corner:
-            first, second = (self.framework.sheet.triangles[k] for k in (i, j))
+            first, second = triangles[i], triangles[j]
             (v,) = set(first) & set(second)
             rows.append([v, *(w for w in first if w != v), *(w for w in second if w != v)])
         return np.array(rows, dtype=np.intp).reshape(-1, 5)
+
+
+@dataclass(frozen=True, repr=False)
+class FacePairs(AnyPairs):
+    """All pairs of faces of a sheet, by what they share.
+
+    `apart`: rows of two faces without a common vertex. `corner`: rows (v, a, b, c, d), faces vab
+    and vcd. `folds`: rows (left, right) of corners across a fold, in the order of `sheet.folds`;
+    `closed`: their squared distance where the fold is closed, rounded up, in units of the
+    framework.
+    """
+
+    framework: Framework
+
+    @property
+    def triangles(self) -> IndexArray:
+        """Those of the framework."""
+        return self.framework.triangles
+
+    @property
+    def hinges(self) -> IndexArray:
+        """Those of the framework."""
+        return self.framework.hinges
 
     @cached_property
     def closed(self) -> FloatArray:
@@ -167,16 +204,16 @@ class Open:
         return bool(len(self.apart) or len(self.corner) or len(self.folds))
 
     @classmethod
-    def all_of(cls, pairs: FacePairs) -> Open:
+    def all_of(cls, pairs: AnyPairs) -> Open:
         """Everything."""
         sizes = len(pairs.apart), len(pairs.corner), len(pairs.closed)
         return cls(*(np.arange(size, dtype=np.intp) for size in sizes))
 
 
-def not_separated(pairs: FacePairs, swept: Swept, among: Open) -> Open:
+def not_separated(pairs: AnyPairs, swept: Swept, among: Open) -> Open:
     """Which of the pairs are not proved to stay apart on a stretch of the motion."""
     apart = np.array_split(among.apart, 1 + len(among.apart) * 9 * 23 // _PRODUCTS)
-    triangles = pairs.framework.triangles
+    triangles = pairs.triangles
     left = [part[~_apart(swept, triangles, pairs.apart[part])] for part in apart]
     return Open(
         np.concatenate(left),
@@ -186,7 +223,7 @@ def not_separated(pairs: FacePairs, swept: Swept, among: Open) -> Open:
 
 
 def clear_until(
-    pairs: FacePairs,
+    pairs: AnyPairs,
     coefficients: FloatArray,
     radius: FloatArray,
     low: float,
@@ -245,9 +282,9 @@ def _at_corner(swept: Swept, rows: IndexArray) -> BoolArray:
     return np.asarray((np.minimum(left, right) > _MARGIN).any(axis=1))
 
 
-def _open_folds(swept: Swept, pairs: FacePairs, rows: IndexArray) -> BoolArray:
+def _open_folds(swept: Swept, pairs: AnyPairs, rows: IndexArray) -> BoolArray:
     """Whether folds are proved not to be closed."""
-    hinges = pairs.framework.hinges[rows]
+    hinges = pairs.hinges[rows]
     left, right = hinges[:, 2], hinges[:, 3]
     gap = swept.start[left] - swept.start[right]
     spread = swept.half * np.abs(swept.slope[left] - swept.slope[right])

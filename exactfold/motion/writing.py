@@ -87,14 +87,18 @@ def fold_motion(motion: SheetInMotion, *, title: str | None = None) -> dict[str,
     branch, or those of panels at 30 degrees: a simulator that reads no more than this frame stays
     on the branch or mode (docs/export.md).
     """
-    folds = motion.pattern.folds
+    folds, bounds = motion.pattern.folds, motion.bounds
     frames = [
         MotionFrame(
             float(time),
             coords.tolist(),
             dict(zip(folds, np.degrees(row).tolist(), strict=True)),
+            None if bounds is None else bounds.times[k],
+            None if bounds is None else bounds.radii[k],
         )
-        for time, coords, row in zip(motion.times, motion.coords, motion.angles, strict=True)
+        for k, (time, coords, row) in enumerate(
+            zip(motion.times, motion.coords, motion.angles, strict=True)
+        )
     ]
     return motion_document(
         motion.pattern,

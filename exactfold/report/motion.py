@@ -54,12 +54,19 @@ def motion_report(
         ("end", f"time {motion.duration:.6g}: {ending_text(motion)}"),
         ("largest angles", _largest(motion)),
         ("lengths", f"kept to {motion.length_error:.1e} of each"),
-        ("frames", f"{len(motion.times)}, with face {_face(motion.pinned)} held"),
+        ("frames", _frames(motion)),
     ]
     if len(written) > 4:
         written = [written[0], "...", written[-1]]
     rows += [("written" if not k else "", name) for k, name in enumerate(written)]
     return Group(facts_table(rows), *_events(motion))
+
+
+def _frames(motion: SheetInMotion) -> str:
+    text = f"{len(motion.times)}, with face {_face(motion.pinned)} held"
+    if motion.bounds is None:
+        return text
+    return f"{text}; each within {max(motion.bounds.radii):.1e} of a proved configuration"
 
 
 def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:

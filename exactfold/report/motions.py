@@ -15,7 +15,7 @@ from exactfold.wording import counted
 
 if TYPE_CHECKING:
     from exactfold.motion.half_branches import HalfBranch
-    from exactfold.motion.loops import Loop
+    from exactfold.motion.loop_proofs import Loop
     from exactfold.motion.matching import Loops
 
 _LISTED = 40
@@ -30,7 +30,23 @@ def motions_report(found: Loops) -> Group:
     ]
     if found.reason:
         rows.append(("left", found.reason))
+    rows += _graph(found)
     return Group(facts_table(rows), Text(""), _table(found.loops), *_notes(found))
+
+
+def _graph(loops: Loops) -> list[tuple[str, RenderableType]]:
+    """What can be reached from the flat state, in a line or two."""
+    graph = loops.graph
+    arcs = counted(len(graph.arcs), "arc")
+    nodes = counted(len(graph.nodes), "node") if graph.nodes else "no nodes"
+    parts: list[str | Text] = [f"the flat state, {nodes}, {arcs}, ", status_text(graph.status)]
+    if graph.closed_curves:
+        curves = counted(len(graph.closed_curves), "closed curve")
+        parts.insert(1, f"{curves} beside the loops, ")
+    found: list[tuple[str, RenderableType]] = [("graph", Text.assemble(*parts))]
+    if graph.reason != loops.reason:
+        found.append(("", graph.reason))
+    return found
 
 
 def _table(loops: Iterable[Loop]) -> Table:

@@ -346,7 +346,8 @@ class Bench:
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
             for item, following in zip(chosen, [*chosen[1:], None], strict=True):
                 note.write_text(item.nodeid)
-                signal.alarm(10 + int(5 * self.seconds[item.nodeid]))
+                # Time of this process, so that a busy machine stops no mutant.
+                signal.setitimer(signal.ITIMER_PROF, 10 + 5 * self.seconds[item.nodeid])
                 item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
                 if self.failed:
                     os._exit(1)

@@ -15,6 +15,7 @@ import pytest
 from compact_files import bodies, chained, put, raw
 
 from exactfold import checker
+from exactfold.checker.command import main
 
 PACKAGE = Path(checker.__file__).parent
 FIXTURES = Path(__file__).parent.parent / "fixtures" / "certificates"
@@ -29,6 +30,7 @@ KINDS = {
     "branch-reflex.json": "VALID: exactly one branch has the vertex signs +0- (3); 10 of 10",
 }
 WAYS = ("folder", "zipapp", "module")
+USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]\n"
 
 
 @pytest.fixture(scope="module")
@@ -95,11 +97,17 @@ def test_exit_codes(run: Run) -> None:
         code, out, err = run(file)
         assert (code, out) == (3, "")
         assert err.startswith("not a certificate: ")
-    usage = (2, "", "usage: python exactfold/checker CERTIFICATE [WORKERS]\n")
-    assert run() == usage
-    assert run("a", "1", "2") == usage
-    for workers in ("x", "", "-1", "\u0662", "9" * 5000):
-        assert run("false.json", workers) == usage
+    assert run() == (2, "", USAGE)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["a", "1", "2"], *(["a", workers] for workers in ("x", "", "-1", "\u0662", "9" * 5000))],
+    ids=["three", "letter", "empty", "negative", "Arabic digit", "too many digits"],
+)
+def test_wrong_usage(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(arguments) == 2
+    assert capsys.readouterr() == ("", USAGE)
 
 
 def test_false_branches_are_refused(run: Run) -> None:
@@ -109,22 +117,29 @@ def test_false_branches_are_refused(run: Run) -> None:
     assert run("false.json") == (1, "INVALID: vertex 6 has another sign\n", "")
 
 
-def test_several_processes_say_the_same(run: Run) -> None:
+def test_several_processes_are_started_in_every_way(run: Run) -> None:
+    shutil.copy(FIXTURES / "compact-blocks-of-4.txt", run.folder / "good.txt")
+    assert run("good.txt", "2") == (0, run("good.txt")[1], "")
+
+
+def test_several_processes_say_the_same(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     written = (FIXTURES / "compact-blocks-of-4.txt").read_bytes()
-    (run.folder / "good.txt").write_bytes(written)
     lines = bodies(written)
     folds = raw(lines[2], "folds")
     folds[0] ^= 1
     put(lines[2], "folds", folds)
     false = chained(lines)
-    (run.folder / "bad.txt").write_bytes(false)
-    (run.folder / "cut.txt").write_bytes(written[:-1])
     rows = false.splitlines(keepends=True)
-    (run.folder / "both.txt").write_bytes(b"".join([*rows[:3], rows[3][:-9] + b"\n", *rows[4:]]))
+    both = b"".join([*rows[:3], rows[3][:-9] + b"\n", *rows[4:]])
     # Whichever comes first in the file is what is said, however many look at it.
-    for name, code in (("good", 0), ("bad", 1), ("cut", 3), ("both", 1)):
-        assert run(f"{name}.txt")[0] == code
-        assert run(f"{name}.txt", "2") == run(f"{name}.txt")
+    for content, code in ((written, 0), (false, 1), (written[:-1], 3), (both, 1)):
+        file = tmp_path / "file.txt"
+        file.write_bytes(content)
+        said = []
+        for workers in ("1", "2"):
+            assert main([str(file), workers]) == code
+            said.append(capsys.readouterr())
+        assert said[0] == said[1]
 
 
 def test_a_pipe_is_read_once(copies: dict[str, Path], tmp_path: Path) -> None:

@@ -312,6 +312,7 @@ def test_a_certificate_proves_the_motion_and_its_contact(tmp_path):
     low, high = found["proof"]["contact"]["time"]
     assert low <= found["duration"] <= high < low * 1.0001
     assert found["written"] == [str(path)]
+    assert found["status"] == "proved"
     assert run("check", str(path)).stdout.startswith("VALID: the motion along the half-branch +-")
 
 
@@ -320,9 +321,28 @@ def test_what_has_no_certificate_is_said(tmp_path):
     panels = run("fold", "zigzags", "--certificate", str(path))
     assert panels.exit_code == USAGE
     assert "along branches" in panels.stderr
-    back = ("fold", "two-vertex", "--signs", "+-", "--until", "return", "--certificate", str(path))
-    returned = run(*back)
-    assert returned.exit_code == OK
-    assert "exactfold motions --certificate" in returned.stderr
-    assert "it comes back along +-, saddle -" in " ".join(returned.stdout.split())
     assert not path.exists()
+
+
+def test_the_certificate_of_a_return_is_a_loop(tmp_path):
+    path, out = tmp_path / "proof.txt", tmp_path / "m.fold"
+    back = ("fold", "two-vertex", "--signs", "+-", "--until", "return", "--frames", 4)
+    returned = run(*back, "--certificate", str(path), "-o", str(out))
+    assert (returned.exit_code, returned.stderr) == (OK, "")
+    text = " ".join(returned.stdout.split())
+    assert "it comes back along +-, saddle -" in text
+    assert "of a proved configuration" in text
+    assert run("check", str(path)).stdout.startswith("VALID: 1 loop of true motions")
+    frames = json.loads(out.read_text())["file_frames"]
+    assert all(0 <= frame["frame_exactfold:radius"] < 1e-15 for frame in frames)
+
+
+@pytest.mark.parametrize("until", ["60deg", "0.8"])
+def test_motions_to_an_angle_or_a_length_are_proved(until, tmp_path):
+    path = tmp_path / "proof.json"
+    how = ("--signs", "+-", "--until", until, "--frames", 3, "--certificate", str(path))
+    data = json.loads(run("fold", "two-vertex", *how, "--json").stdout)
+    Draft202012Validator(schema("motion")).validate(data)
+    assert (data["status"], data["proof"]["status"]) == ("proved", "proved")
+    assert len(data["frames"]["radii"]) == len(data["frames"]["time_bounds"]) == 3
+    assert "no two faces touch before" in run("check", str(path)).stdout

@@ -57,6 +57,9 @@ LOOPS = exactfold.find_loops(ONE)
 FLAT_FOLDABLE = exactfold.decompose(panels(single_vertex(4)))
 PROVING = {
     "motion of panels": exactfold.motion.follow_panels(FLAT_FOLDABLE, frames=3),
+    "clearance of panels": exactfold.motion.prove_contacts(
+        exactfold.motion.follow_panels(FLAT_FOLDABLE, until="20deg", frames=2)
+    ),
     "component of panels": exactfold.motion.panel_components(FLAT_FOLDABLE)[0],
     "mode of panels": exactfold.motion.panel_modes(FLAT_FOLDABLE)[0],
     "track": TRACK,
@@ -70,6 +73,9 @@ PROVING = {
     "loops": LOOPS,
     "loop": LOOPS.loops[0],
     "half-branch": LOOPS.loops[0].source,
+    "range of a fold": LOOPS.loops[0].folds[0],
+    "configuration graph": LOOPS.graph,
+    "arc of a graph": LOOPS.graph.arcs[0],
     "proof of a loop": LoopFinder(Problem.of(ONE)).follow(LEAVING),
 }
 VALUES = {

@@ -442,3 +442,16 @@ def test_the_tree_of_boxes_finds_what_all_pairs_find():
             seen.append((bool(with_tree.graphs(x[None])[0]), len(crossing) > 0))
     assert (True, False) in seen
     assert (False, True) in seen
+
+
+def test_the_last_frame_of_a_return_is_the_flat_sheet():
+    """Its heights are rounding errors, which have no direction to correct it in."""
+    motion = follow(
+        find_branch(random_square(3, seed=1), "+-+"),
+        until="return",
+        through_nodes=True,
+        frames=4,
+    )
+    assert motion.end == "return"
+    assert np.abs(motion.coords[-1] - motion.coords[0]).max() < 1e-14
+    assert motion.length_error < 1e-12

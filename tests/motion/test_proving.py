@@ -1,12 +1,16 @@
 """`prove`: what is proved of a motion that was followed in floats, and its certificate."""
 
+from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from exactfold import checker, find_branch, follow, random_square
-from exactfold.motion import prove
-from exactfold.verdict import PROVED
+from exactfold.motion import prove, proving
+from exactfold.motion.events import Event
+from exactfold.motion.proving import MotionProof
+from exactfold.verdict import PROVED, UNDECIDED
 
 SHEET = random_square(3, seed=1)
 
@@ -55,3 +59,98 @@ def test_a_motion_back_to_the_flat_sheet_names_where_it_ends(branch):
     assert proof.loop.source.sign_text == "+-+"
     assert proof.to_dict()["to"] == proof.loop.target.to_dict()
     assert proof.certificate() is None
+
+
+# --- where tubes fail ----------------------------------------------------------------------------
+
+
+def holding_another(branch, held=None, **how):
+    """The motion with the first triangle held, or another one."""
+    held = branch.pattern.triangles[0] if held is None else held
+    return follow(branch, pinned=held, **how)
+
+
+@pytest.mark.parametrize("bits", [64, 128])
+def test_any_triangle_can_be_held_with_any_bits(branch, bits, tmp_path):
+    motion = holding_another(branch, until="40deg", frames=3)
+    assert set(motion.pinned) == set(SHEET.triangles[0]) != set(follow(branch).pinned)
+    proof = prove(motion, bits=bits)
+    assert proof.status is PROVED
+    document = proof.certificate()
+    assert document["evidence"]["bits"] == bits
+    assert tuple(document["evidence"]["pinned"]) == motion.pinned
+    assert checker.check(document)["vertex_signs"] == [1, -1, 1]
+    assert np.abs(proof.motion.coords[:, list(motion.pinned), 2]).max() == 0
+
+
+@pytest.mark.slow
+def test_a_loop_with_another_triangle_held_is_written_with_it(branch, tmp_path):
+    back = holding_another(branch, until="return", through_nodes=True, frames=3)
+    proof = prove(back, bits=128)
+    assert proof.status is PROVED
+    assert proof.write(tmp_path / "loop.txt")
+    assert checker.verify(tmp_path / "loop.txt")["loops"] == 1
+    header = (tmp_path / "loop.txt").read_text().splitlines()[0]
+    assert '"bits":128' in header
+    assert f'"pinned":{list(back.pinned)}'.replace(" ", "") in header
+
+
+def failing(until_attempt):
+    """`prove`, whose first attempts prove nothing; and the list of those that were made."""
+    made = []
+
+    def attempt(motion, *, bits=64, progress=None):
+        made.append((bits, motion.pinned))
+        if len(made) < until_attempt:
+            return MotionProof(UNDECIDED, "no tube", motion, (Fraction(0), Fraction(len(made))), 0)
+        return prove(motion, bits=bits)
+
+    return attempt, made
+
+
+@pytest.mark.parametrize("succeeds", [1, 2, 3, 4])
+def test_more_bits_and_another_triangle_are_tried(branch, succeeds, monkeypatch):
+    motion = follow(branch, until="20deg", frames=2)
+    attempt, made = failing(succeeds)
+    monkeypatch.setattr(proving, "prove", attempt)
+    proof = proving.prove_persistently(
+        motion, lambda held: follow(branch, until="20deg", frames=2, pinned=held)
+    )
+    assert [bits for bits, _ in made] == [64, 128, 128][:succeeds]
+    assert {pinned for _, pinned in made[:2]} == {motion.pinned}
+    if succeeds == 4:
+        other = made[2][1]
+        assert len(set(other) & set(motion.pinned)) < 3
+        assert proof.status is UNDECIDED
+        faces = " and ".join("-".join(map(str, face)) for face in (motion.pinned, other))
+        assert proof.reason == (
+            f"no tube (tried: steps down to 1e-7, 64 and 128 bits, face {faces} held)"
+        )
+    else:
+        assert proof.status is PROVED
+        assert proof.motion.pinned == made[-1][1]
+
+
+@pytest.mark.parametrize("where", ["singular end", "node"])
+def test_nothing_more_is_tried_at_a_singular_place(branch, where, monkeypatch):
+    motion = follow(branch, until="20deg", frames=2)
+    if where == "node":
+        motion = replace(motion, events=(Event("node", (0.1, 0.1)),))
+    else:
+        motion = replace(motion, end="singular")
+    attempt, made = failing(2)
+    monkeypatch.setattr(proving, "prove", attempt)
+    proof = proving.prove_persistently(motion, lambda held: motion)
+    assert (proof.status, proof.reason, len(made)) == (UNDECIDED, "no tube", 1)
+
+
+@pytest.mark.slow
+def test_a_motion_that_passes_a_node_is_proved_up_to_it():
+    branch = find_branch(random_square(8, seed=1), "------++")
+    motion = follow(branch, until="contact", through_nodes=True, frames=2)
+    assert motion.end == "flat-fold"
+    proof = prove(motion)
+    assert proof.status is UNDECIDED
+    assert "floats see a node at the time 1.72875" in proof.reason
+    assert proof.length[1] < 1.73 < motion.duration
+    assert checker.check(proof.certificate())["vertex_signs"] == [-1] * 6 + [1, 1]

@@ -80,9 +80,8 @@ class Pairs:
         self.corners = np.array(corners, dtype=np.intp).reshape(-1, 5)
         self.corner = self.corners[:, :2]
         self.closed = np.zeros(0)
-        self.framework = type("", (), {})()
-        self.framework.triangles = np.array(triangles, dtype=np.intp)
-        self.framework.hinges = np.zeros((0, 4), dtype=np.intp)
+        self.triangles = np.array(triangles, dtype=np.intp)
+        self.hinges = np.zeros((0, 4), dtype=np.intp)
 
 
 def apart(points, error=0.0):

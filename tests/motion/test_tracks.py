@@ -13,8 +13,8 @@ from fractions import Fraction
 import flint
 import numpy as np
 import pytest
-from flint import arb, arb_mat, fmpq
 from sheets import mapped, mirrored, nested_triangles, reflex_corners, relabelled, star_in, wheel
+from sixty_digits import holds, newton
 
 from exactfold import checker
 from exactfold.count.find import find_branch
@@ -22,7 +22,7 @@ from exactfold.errors import FlatVertexError, UsageError
 from exactfold.motion.angles import fold_angles_of
 from exactfold.motion.piece import PARAMETER_BITS, Ball
 from exactfold.motion.tracks import Track, follow_proved, half_branch
-from exactfold.motion.tube import ROW_BITS, Tube, prove_tube, sharpened
+from exactfold.motion.tube import prove_tube, sharpened
 from exactfold.motion.tube_start import ROOT_BITS
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, single_vertex
@@ -68,61 +68,26 @@ def track(request: pytest.FixtureRequest) -> Track:
 # --- every box holds what it says ----------------------------------------------------------------
 
 
-def newton(track: Track, tube: Tube, parameter: int) -> list[Fraction]:
-    """x(s) with 60 digits, by Newton's method from the middle of the tube."""
-    framework = track.framework
-    place = {int(v): 3 * k for k, v in enumerate(framework.free)}
-    flat = [[fmpq(x, 1 << framework.bits) for x in (*p, 0)] for p in framework.points]
-    one = 1 << tube.bits
-    centre = [fmpq(x, one) for x in tube.coefficients[0]]
-    row = [fmpq(t, 1 << ROW_BITS) for t in tube.row]
-    s = fmpq(parameter, 1 << PARAMETER_BITS)
-    n = len(centre)
-    x = [arb(fmpq(c, one)) for c in tube.enclosure(parameter).centre]
-    for _ in range(5):
-        matrix, right = [[arb(0)] * n for _ in range(n)], []
-        for e, (i, j) in enumerate(framework.edges.tolist()):
-            ends = [(place[v], sign) for v, sign in ((i, 1), (j, -1)) if v in place]
-            d = [sum((sign * x[k + a] for k, sign in ends), arb(0)) for a in range(3)]
-            u = [arb(p - q) for p, q in zip(flat[i], flat[j], strict=True)]
-            right.append([sum((a * b + b * b / 2 for a, b in zip(u, d, strict=True)), arb(0))])
-            for k, sign in ends:
-                for a in range(3):
-                    matrix[e][k + a] = sign * (u[a] + d[a])
-        matrix[n - 1] = [arb(t) for t in row]
-        gap = sum((arb(t) * (a - c) for t, a, c in zip(row, x, centre, strict=True)), arb(0))
-        right.append([gap - s])
-        step = arb_mat(matrix).solve(arb_mat(right))
-        x = [(a - step[k, 0]).mid() for k, a in enumerate(x)]
-    assert max(abs(float(step[k, 0])) for k in range(n)) < 1e-55
-    return [Fraction(int(q.p), int(q.q)) for q in (a.mid().fmpq() for a in x)]
-
-
-def holds(ball: Ball, x: list[Fraction]) -> bool:
-    one = 1 << ball.bits
-    return all(abs(a * one - c) <= r for a, c, r in zip(x, ball.centre, ball.radii, strict=True))
-
-
 def test_boxes_hold_a_recomputation_with_60_digits(track: Track) -> None:
     links = [track.links[0], track.links[len(track.links) // 2], track.links[-1]]
     with flint.ctx.workprec(240):
         for link in links:
             tube = link.tube
             for parameter in (link.exit, -tube.longest, tube.longest // 3 + 1):
-                x = newton(track, tube, parameter)
+                x = newton(track.framework, tube, parameter)
                 wide, fine = tube.enclosure(parameter), sharpened(tube, parameter)
                 assert holds(wide, x)
                 assert holds(fine, x)
                 assert max(fine.radii) < 1e-12 * (1 << fine.bits)
                 # And nothing is vaguely true: a point of the curve nearby is outside.
-                other = newton(track, tube, parameter // 2 + 12345)
+                other = newton(track.framework, tube, parameter // 2 + 12345)
                 assert not holds(wide, other)
 
 
 def test_velocities_hold_difference_quotients(track: Track) -> None:
     tube, step = track.links[-1].tube, 1 << 12
     with flint.ctx.workprec(240):
-        a, b = (newton(track, tube, step * k) for k in (-1, 1))
+        a, b = (newton(track.framework, tube, step * k) for k in (-1, 1))
         scale = Fraction(1 << PARAMETER_BITS, 2 * step)
         ball = tube.velocity(0)
         wider = replace(ball, radii=tuple(r + (1 << ball.bits - 50) for r in ball.radii))

@@ -139,6 +139,9 @@ TAKES_PATTERN = {
 }
 
 TAKES_PATTERN_ELSEWHERE = {
+    "bridges.to_networkx",
+    "bridges.to_pyrigi",
+    "bridges.to_trimesh",
     "count.BranchFinder",
     "count.find_branches",
     "branches.fold_angles",

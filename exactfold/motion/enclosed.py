@@ -1,0 +1,96 @@
+"""Frames of a proved motion: float coordinates, each with a proved bound of how far it is off."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+
+from exactfold.arrays import FloatArray
+from exactfold.exact.surds import float_bounds
+from exactfold.motion.angles import fold_angles_of, hinges_of
+from exactfold.motion.arclength import in_floats
+from exactfold.motion.framework import Framework
+from exactfold.motion.motion import FrameBounds, Motion
+from exactfold.motion.tracks import Frame
+from exactfold.problem.problem import Problem
+
+_NEAR = 1e-4
+"""In the unit of the framework: how far a motion in floats may be from the proved one."""
+
+
+@dataclass(frozen=True, repr=False)
+class EnclosedPositions:
+    """Coordinates of all vertices of a pattern, each with a bound of its error, shape (V, 3)."""
+
+    coords: FloatArray
+    radii: tuple[Fraction, ...]
+
+    @property
+    def radius(self) -> float:
+        """A bound for all of them, rounded up."""
+        return float_bounds(max(self.radii))[1]
+
+    def __repr__(self) -> str:
+        return f"<EnclosedPositions: {len(self.coords)} vertices, radius {self.radius:.1e}>"
+
+
+def positions_in(problem: Problem, framework: Framework, frame: Frame) -> EnclosedPositions:
+    """The vertices at a frame as the nearest floats, and how far each is at most off.
+
+    A coordinate in the unit and at the place of the pattern is X + unit d, X that of the flat
+    vertex, exactly, and |d - centre| <= radius in the box of the frame. What lies in a triangulated
+    triangle is a convex combination of its corners. Everything is rational until the last step.
+    """
+    pattern, ball = problem.pattern, frame.ball
+    one = 1 << ball.bits
+    scale = framework.unit / one
+    place = {int(v): 3 * k for k, v in enumerate(framework.free)}
+    exact: dict[int, tuple[list[Fraction], Fraction]] = {}
+    for v, label in enumerate(problem.labels):
+        x, y = pattern.vertices[label]
+        spot, radius = [Fraction(x), Fraction(y), Fraction(0)], Fraction(0)
+        if v in place:
+            k = place[v]
+            spot = [a + scale * c for a, c in zip(spot, ball.centre[k : k + 3], strict=True)]
+            radius = scale * max(ball.radii[k : k + 3])
+        exact[label] = spot, radius
+    for vertex, cycle, weights in problem.flat_inside:
+        corners = [exact[c] for c in cycle]
+        spot = [
+            sum((w * at[a] for w, (at, _) in zip(weights, corners, strict=True)), Fraction(0))
+            for a in range(3)
+        ]
+        exact[vertex] = spot, max(radius for _, radius in corners)
+    coords = np.array([[float(x) for x in exact[v][0]] for v in range(len(pattern.vertices))])
+    radii = tuple(
+        max(abs(Fraction(f) - x) for f, x in zip(row, exact[v][0], strict=True)) + exact[v][1]
+        for v, row in enumerate(coords.tolist())
+    )
+    return EnclosedPositions(coords, radii)
+
+
+def with_enclosed_frames(
+    motion: Motion, framework: Framework, frames: Sequence[Frame]
+) -> Motion | None:
+    """The motion with the frames of the proved one, one for each time of the motion.
+
+    None if they are not near those in floats: then these have left the branch somewhere.
+    """
+    problem = Problem.of(motion.pattern)
+    found = [positions_in(problem, framework, frame) for frame in frames]
+    coords = np.array([positions.coords for positions in found])
+    if np.abs(coords - motion.coords).max() > _NEAR * float(framework.unit):
+        return None
+    angles = fold_angles_of(coords, hinges_of(motion.pattern))
+    angles = angles + 2 * np.pi * np.rint((motion.angles - angles) / (2 * np.pi))
+    times = [
+        in_floats((min(low, Fraction(time)), max(high, Fraction(time))))
+        for (low, high), time in zip(
+            (frame.time for frame in frames), motion.times.tolist(), strict=True
+        )
+    ]
+    bounds = FrameBounds(tuple(positions.radius for positions in found), tuple(times))
+    return replace(motion, coords=coords, angles=angles, bounds=bounds)
