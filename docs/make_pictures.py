@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from exactfold import count_ways, find_branch, follow, load, open_pattern
+from exactfold import PROVED, count_ways, find_branch, follow, load, open_pattern
 from exactfold.data import example_path
-from exactfold.motion import follow_panels
+from exactfold.motion import follow_panels, prove
+from exactfold.pattern import CreasePattern
 from exactfold.report import (
     branch_way,
+    motion_animation,
     motion_stills,
     pattern_picture,
     sheet_of_multiples,
     ways_of,
 )
+from exactfold.report.crease_drawing import CreaseDrawing
+from exactfold.report.crease_lines import crease_lines
 from exactfold.report.folded import Amount, folded
+from exactfold.report.svg import element, number, picture, text
 
 FOLDER = Path(__file__).with_name("pictures")
 MOTIONS = {
@@ -40,7 +45,35 @@ def pictures() -> dict[str, str]:
     for name, (pattern, component) in PANELS.items():
         motion = follow_panels(count_ways(pattern), component=component)
         panels[f"{name}.svg"] = motion_stills(motion, 5, f"{pattern}, component {component}")
-    return branches | panels | drawings()
+    return branches | panels | drawings() | {"folding.svg": folding(), "rim.svg": rim()}
+
+
+def rim() -> str:
+    """Two squares with one vertex inside: four creases to the corners, and a fifth to a side."""
+    corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    hub, side = ("2/5", "11/20"), (1, "1/2")
+    four = CreasePattern([*corners, hub], [(k, (k + 1) % 4, 4) for k in range(4)])
+    five = CreasePattern(
+        [*corners, hub, side], [(0, 1, 4), (1, 5, 4), (5, 2, 4), (2, 3, 4), (3, 0, 4)]
+    )
+    size, gap, parts = 200.0, 60.0, []
+    for k, pattern in enumerate((four, five)):
+        drawing = CreaseDrawing(crease_lines(pattern, None), {}, {}, size, True, None)
+        wide, high = drawing.extent
+        left = 10 + k * (wide + gap)
+        parts.append(element("g", drawing.body(), transform=f"translate({number(left)} 6)"))
+        caption = f"{len(pattern.boundary)} vertices on the rim"
+        parts.append(text(caption, left + wide / 2, high + 22, anchor="middle", size=13))
+    return picture(2 * wide + gap + 20, high + 34, parts, "A crease that ends in a side")
+
+
+def folding() -> str:
+    """The sheet of the first page, which folds along a motion that is proved."""
+    motion = follow(find_branch(load("two-vertex"), "+-"))
+    found = prove(motion)
+    if found.status is not PROVED:
+        raise RuntimeError(f"the motion on the first page is not proved: {found.reason}")
+    return motion_animation(motion, title="two-vertex, branch +-")
 
 
 def drawings() -> dict[str, str]:

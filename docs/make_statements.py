@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+import textwrap
 from functools import cache
 from pathlib import Path
 
@@ -134,7 +135,24 @@ def entry(statement: Statement, proof: Proof) -> str:
     where = f"[`python -m proofs {proof.name}`](../proofs/{proof.name}.py)"
     code = f"; code: {code_links(statement.code)}" if statement.code else ""
     lines.append(f"- proof: {where}{code}")
-    return "\n".join(lines) + "\n\n"
+    return "\n".join(wrapped(line) for line in lines) + "\n\n"
+
+
+def wrapped(line: str) -> str:
+    """An item of a list in lines of at most 100 characters, where no formula or link is longer.
+
+    >>> print(wrapped("- printed: " + "a word, " * 12))
+    - printed: a word, a word, a word, a word, a word, a word, a word, a word, a word, a word, a
+      word, a word,
+    """
+    kept = re.sub(r"\$`.+?`\$|`[^`]+`", lambda code: code[0].replace(" ", "\0"), line)
+    rows: list[str] = []
+    for row in textwrap.wrap(kept, 98, break_long_words=False, break_on_hyphens=False):
+        if rows and re.match(r"[-+*>#|=]|\d+[.)]", row):  # would begin something else
+            rows[-1] += f" {row}"
+        else:
+            rows.append(row)
+    return "\n  ".join(rows).replace("\0", " ")
 
 
 def pages() -> dict[str, str]:
@@ -159,8 +177,9 @@ def pages() -> dict[str, str]:
         f"{len(stated)} statements: {summary}. Each is settled by a script that a machine runs "
         f"(`python -m proofs`, {len(steps)} steps; {tested} of them test exact cases rather than "
         f"prove, and say so). Each step refuses at least one of {mistakes} deliberate mistakes "
-        "(`tests/proofs`). Written by `python docs/make_statements.py`.\n"
+        "(`tests/proofs`). Written by `python docs/make_statements.py`."
     )
+    head = "\n".join(textwrap.fill(part, 100) for part in head.split("\n")) + "\n"
     body, errata, section = head, ERRATA, ""
     for statement, proof in stated:
         title = SECTIONS.get(statement.key.partition(".")[0].replace(" ", ""), "Further statements")
@@ -173,13 +192,14 @@ def pages() -> dict[str, str]:
     return {"statements.md": body.rstrip() + "\n", "errata.md": errata.rstrip() + "\n"}
 
 
-ERRATA = (
-    "# Errata of the paper\n\nWhat an author could act upon: every statement of Chen & Santangelo, "
-    '"Branches of triangulated origami near the unfolded state", that does not hold as printed, '
-    "with the correction and the script that checks it. None of them touches the paper's main "
-    "observation, which is a theorem ([all branches are real](theorem.md)). Written by "
-    "`python docs/make_statements.py`.\n\n"
-)
+ERRATA = """# Errata of the paper
+
+What an author could act upon: every statement of Chen & Santangelo, "Branches of triangulated
+origami near the unfolded state", that does not hold as printed, with the correction and the script
+that checks it. None of them touches the paper's main observation, which is a theorem
+([all branches are real](theorem.md)). Written by `python docs/make_statements.py`.
+
+"""
 
 
 if __name__ == "__main__":

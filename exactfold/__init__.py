@@ -11,7 +11,7 @@ starts to fold, proves it, and tells the ways apart by vertex signs and mountain
 ['--', '-+', '+-', '++']
 
 Here is what counting branches takes. The engines are in rooms of their own, such as
-`exactfold.algebra.groebner` and `exactfold.certify.krawczyk`; docs/reference.md lists them all.
+`exactfold.algebra.groebner` and `exactfold.certify.krawczyk`; the documentation lists them all.
 """
 
 from exactfold.lazy import attached

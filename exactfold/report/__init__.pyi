@@ -1,4 +1,5 @@
 from exactfold.report.actuation import actuation_report as actuation_report
+from exactfold.report.animation import motion_animation as motion_animation
 from exactfold.report.batch import batch_report as batch_report
 from exactfold.report.branch import branch_report as branch_report
 from exactfold.report.branch import branch_row as branch_row

@@ -1,0 +1,343 @@
+"""The pages of the site that follow from the code, written into docs/generated as it is built.
+
+Public names by topic, with signatures and examples from their docstrings; every command with its
+options; the JSON Schema of all output. `python docs/make_pages.py` writes them without a site.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import inspect
+import json
+import re
+from collections.abc import Iterator, Mapping
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Final
+
+import exactfold
+from exactfold.cli import app
+from exactfold.schemas import VERSIONS, schema
+
+FOLDER: Final = Path(__file__).with_name("generated")
+TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
+    "counting": (
+        "Counting and branches",
+        "Load a pattern, count its branches, or find one. Most programs need only this page.",
+        ("", "count", "branches"),
+    ),
+    "patterns": (
+        "Crease patterns and drawings",
+        "Sheets of triangles and of panels, families of them, and drawings in files.",
+        ("pattern", "pattern.families", "drawing", "data"),
+    ),
+    "panels": ("Rigid panels", "All ways in which a sheet of panels folds.", ("modes",)),
+    "motions": (
+        "Motions and torques",
+        "Follow a branch in space, prove the motion, and drive it.",
+        ("motion", "actuation"),
+    ),
+    "evidence": (
+        "Certificates",
+        "Write a certificate, read it back, and verify it.",
+        ("evidence", "checker"),
+    ),
+    "output": (
+        "Tables, pictures and other programs",
+        "What the command line prints and draws, and files for other programs.",
+        ("report", "bridges", "schemas"),
+    ),
+    "equations": (
+        "Equations of a sheet",
+        "Exact numbers, stresses, curvature forms, and the system of equations that is solved.",
+        ("problem", "rigidity", "exact"),
+    ),
+    "solving": (
+        "Solving and proving",
+        "Solvers propose points; exact tests prove that there is a solution next to them.",
+        ("solve", "algebra", "certify"),
+    ),
+    "errors": (
+        "Verdicts and errors",
+        "What is known, and what can go wrong.",
+        ("verdict", "errors"),
+    ),
+}
+"""Pages of public names: the title, a sentence, and the rooms; the empty name is the package."""
+
+
+def pages() -> dict[str, str]:
+    """The text of each page by its path in the folder."""
+    found = {f"api/{name}.md": _topic(*topic) for name, topic in TOPICS.items()}
+    found["api/index.md"] = _index()
+    found["commands.md"] = _commands()
+    found["schemas.md"] = _schemas()
+    return found
+
+
+def write() -> None:
+    """Write the pages that have changed."""
+    for name, content in pages().items():
+        path = FOLDER / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if not path.exists() or path.read_text(encoding="utf-8") != content:
+            path.write_text(content, encoding="utf-8")
+
+
+# Public names
+
+
+def rooms() -> dict[str, ModuleType]:
+    """Every package or module that is public: the package itself, and what it names."""
+    found = {"": exactfold}
+    for topic in TOPICS.values():
+        for room in topic[2]:
+            name = f"exactfold.{room}".rstrip(".")
+            found[room] = importlib.import_module(name)
+    return found
+
+
+def names(room: str) -> dict[str, Any]:
+    """The public names of a room that are no rooms; of one without a list, its own classes."""
+    module = rooms()[room]
+    listed = getattr(module, "__all__", None)
+    if listed is None:
+        members = inspect.getmembers(module, lambda x: inspect.isclass(x) or inspect.isfunction(x))
+        own = {name: value for name, value in members if value.__module__ == module.__name__}
+        return {name: value for name, value in own.items() if not name.startswith("_")}
+    values = {name: getattr(module, name) for name in listed}
+    return {name: value for name, value in values.items() if not inspect.ismodule(value)}
+
+
+@cache
+def homes() -> dict[str, dict[str, Any]]:
+    """By room, the names that are shown there: each name where it is met first."""
+    seen: dict[Any, str] = {}
+    found: dict[str, dict[str, Any]] = {}
+    for topic in TOPICS.values():
+        for room in topic[2]:
+            found[room] = {}
+            for name, value in names(room).items():
+                key = value if inspect.isclass(value) or inspect.isroutine(value) else (room, name)
+                if seen.setdefault(key, room) == room:
+                    found[room][name] = value
+    return found
+
+
+def _index() -> str:
+    rows = "\n".join(
+        f"| [{title}]({name}.md) | {text} |" for name, (title, text, _) in TOPICS.items()
+    )
+    entries = "\n".join(TOPICS)
+    return (
+        "# Public names\n\n"
+        "Every public name, by topic. `help(name)` shows the same text in Python.\n\n"
+        f"| topic | what it is for |\n|---|---|\n{rows}\n\n"
+        f"```{{toctree}}\n:hidden:\n\n{entries}\n```\n"
+    )
+
+
+def _topic(title: str, sentence: str, listed: tuple[str, ...]) -> str:
+    text = f"# {title}\n\n{sentence}\n"
+    for room in listed:
+        path = f"exactfold.{room}".rstrip(".")
+        text += f"\n## `{path}`\n\n"
+        if room:
+            text += f"{_markdown(_paragraph(rooms()[room]))}\n\n"
+        elsewhere = [name for name in names(room) if name not in homes()[room]]
+        if elsewhere:
+            links = ", ".join(f"{{py:obj}}`{name} <{_shown(room, name)}>`" for name in elsewhere)
+            text += f"Shown elsewhere: {links}.\n\n"
+        for name, value in sorted(homes()[room].items(), key=lambda item: item[0].lower()):
+            text += f"```{{eval-rst}}\n{_directive(path, name, value)}```\n\n"
+    return text.rstrip() + "\n"
+
+
+def _shown(room: str, name: str) -> str:
+    value = names(room)[name]
+    for home, found in homes().items():
+        for other, candidate in found.items():
+            if candidate is value:
+                return f"exactfold.{home}.{other}".replace("..", ".")
+    raise LookupError(f"{room}.{name} is shown nowhere")
+
+
+def _directive(path: str, name: str, value: Any) -> str:
+    if inspect.isclass(value):
+        kind = "autoexception" if issubclass(value, BaseException) else "autoclass"
+        members = "" if kind == "autoexception" else "   :members:\n"
+        return f".. {kind}:: {path}.{name}\n{members}"
+    if inspect.isroutine(value):
+        return f".. autofunction:: {path}.{name}\n"
+    text = "\n".join(f"   {escaped(line)}" for line in _comment(path, name).splitlines())
+    shown = "" if len(repr(value)) > 80 else f"   :value: {value!r}\n"
+    return f".. py:data:: {path}.{name}\n{shown}\n{text}\n"
+
+
+def _comment(path: str, name: str) -> str:
+    """The string below the line where a constant is defined."""
+    place = path
+    for node in _lines(_stub(path)):
+        if isinstance(node, ast.ImportFrom) and name in {alias.name for alias in node.names}:
+            place = node.module or path
+    if place != path:
+        return _comment(place, name)
+    body = list(_lines(importlib.import_module(path).__file__ or ""))
+    for node, after in pairwise(body):
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        named = any(isinstance(target, ast.Name) and target.id == name for target in targets)
+        if named and isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
+            return inspect.cleandoc(str(after.value.value))
+    return f"Of {path}."
+
+
+def _stub(path: str) -> str:
+    file = Path(importlib.import_module(path).__file__ or "")
+    stub = file.with_suffix(".pyi")
+    return str(stub if stub.exists() else file)
+
+
+def _lines(file: str) -> Iterator[ast.stmt]:
+    yield from ast.parse(Path(file).read_text(encoding="utf-8")).body
+
+
+def _paragraph(value: Any) -> str:
+    return " ".join((inspect.getdoc(value) or "").split("\n\n")[0].split())
+
+
+def _markdown(text: str) -> str:
+    return re.sub(r"([*_<>\[\]$])(?![^`]*`(?:[^`]*`[^`]*`)*[^`]*$)", r"\\\1", text)
+
+
+def escaped(line: str) -> str:
+    """A line of a docstring, which is plain text with code in backticks, as reStructuredText.
+
+    >>> escaped("the form `K_v`, at |h| = 1: a_b * c")
+    'the form ``K_v``, at \\\\|h\\\\| = 1: a\\\\_b \\\\* c'
+    """
+    parts = re.split(r"(`+[^`]+`+)", line)
+    return "".join(
+        f"``{part.strip('`')}``" if part.startswith("`") else re.sub(r"([\\*|_`])", r"\\\1", part)
+        for part in parts
+    )
+
+
+def resolved(_: Any, env: Any, node: Any, content: Any) -> Any:
+    """Where a type is shown that a signature names by its short name, or by where it is defined.
+
+    Types of other libraries, and those that are not public, stay without a link.
+    """
+    if node.get("refdomain") != "py" or node.get("reftype") != "class":
+        return None
+    from sphinx.util.nodes import make_refnode
+
+    target = node["reftarget"].rsplit(".", 1)[-1]
+    found = {
+        (entry.docname, entry.node_id): name
+        for name, entry in env.domaindata["py"]["objects"].items()
+        if name.rsplit(".", 1)[-1] == target and not entry.aliased
+    }
+    if len(found) != 1 or "refdoc" not in node:
+        return content
+    ((page, place), name) = next(iter(found.items()))
+    return make_refnode(env.app.builder, node["refdoc"], page, place, content, name)
+
+
+# Commands
+
+
+def commands() -> dict[str, Any]:
+    """Every command of the program by its name, in the order of `exactfold --help`."""
+    from typer.main import get_command
+
+    group = get_command(app)
+    return dict(group.commands)  # type: ignore[attr-defined]
+
+
+def _commands() -> str:
+    text = (
+        "# Commands\n\n"
+        "What `exactfold COMMAND --help` prints, for every command. Exit codes and files are on "
+        "the page [files and exit codes](../files.md).\n"
+    )
+    for name, command in commands().items():
+        context = command.make_context(f"exactfold {name}", [], resilient_parsing=True)
+        usage = " ".join(command.collect_usage_pieces(context))
+        about = inspect.cleandoc(command.help or "").replace("\f", "")
+        text += f"\n## exactfold {name}\n\n```text\nexactfold {name} {usage}\n```\n\n"
+        text += f"{_prose(about)}\n\n"
+        rows = [
+            row for parameter in command.get_params(context) if (row := _row(parameter, context))
+        ]
+        text += "| option | what it does |\n|---|---|\n" + "".join(rows)
+    return text
+
+
+def _row(parameter: Any, context: Any) -> str:
+    if parameter.param_type_name == "argument":
+        name = parameter.metavar or parameter.name.upper()
+        return f"| `{name}` | {_cell(parameter.help or '')} |\n"
+    record = parameter.get_help_record(context)
+    if record is None:
+        return ""
+    flags = record[0].strip().replace("|", "\\|")
+    return f"| `{flags}` | {_cell(record[1])} |\n"
+
+
+def _prose(text: str) -> str:
+    return "\n\n".join(_markdown(" ".join(part.split())) for part in text.split("\n\n"))
+
+
+def _cell(text: str) -> str:
+    return _markdown(" ".join(text.split())).replace("|", "\\|")
+
+
+# Schemas
+
+
+def _schemas() -> str:
+    text = (
+        "# JSON schemas\n\n"
+        "The JSON Schema (draft 2020-12) of everything that is printed with `--json`, and of the "
+        'lines of `--jsonl`. In Python `exactfold.schema("count")` returns the same. What the keys '
+        "mean is explained on the page [files and exit codes](../files.md).\n"
+    )
+    for name in VERSIONS:
+        found = schema(name)
+        text += f"\n## {name}\n\n{found.get('title', '')}; version {VERSIONS[name]}.\n\n"
+        text += _keys(found)
+        text += f":::{{dropdown}} The schema\n```json\n{json.dumps(found, indent=1)}\n```\n:::\n"
+    return text
+
+
+def _keys(found: Mapping[str, Any]) -> str:
+    required = set(found.get("required", ()))
+    rows = [
+        f"| `{key}` | {_kind(value)} | {_cell(str(value.get('description', '')))}"
+        f"{'' if key in required else ' (may be left out)'} |\n"
+        for key, value in found.get("properties", {}).items()
+    ]
+    return "| key | type | what it is |\n|---|---|---|\n" + "".join(rows) + "\n" if rows else ""
+
+
+def _kind(value: Mapping[str, Any]) -> str:
+    if "const" in value:
+        return f"`{json.dumps(value['const'])}`"
+    if "enum" in value:
+        return ", ".join(f"`{json.dumps(item)}`" for item in value["enum"])
+    if "$ref" in value:
+        return str(value["$ref"]).rsplit(":", 1)[-1].rsplit("/", 1)[-1]
+    if "type" in value:
+        kinds = value["type"] if isinstance(value["type"], list) else [value["type"]]
+        return " or ".join(kinds)
+    for key in ("anyOf", "oneOf"):
+        if key in value:
+            return " or ".join(_kind(item) for item in value[key])
+    return "any"
+
+
+if __name__ == "__main__":
+    write()
