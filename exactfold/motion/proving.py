@@ -101,7 +101,7 @@ class MotionProof:
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     path = os.path.join(folder, "proof")
         ...     proof.write(path), summary(verify(path))[:57]
-        (True, 'VALID: 1 loop of true motions, which match 2 of 8 half-br')
+        (True, 'VALID: 1 loop of true motions, which match 4 of 8 half-br')
         """
         document = self.certificate()
         if document is not None:
