@@ -19,7 +19,7 @@ from exactfold.pattern.fold_writing import fold_document
 from exactfold.pattern.opening import Opened, has_branches
 from exactfold.pattern.triangulating import triangles_of
 from exactfold.progress import Progress
-from exactfold.verdict import PROVED
+from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.viewer.ways import (
     Following,
     FollowingPanels,
@@ -234,12 +234,14 @@ def _branch_facts(found: _Branches) -> dict[str, Any]:
             "notes": [] if count.warning is None else [f"warning: {count.warning}"],
         }
     vertices = counted(len(found.pattern.foldable_vertices), "foldable vertex")
+    proved = all(branch.status is PROVED for branch in found.branches)
     return facts | {
         "answer": f"{counted(len(found.branches), 'branch')} of a sheet with {vertices}",
-        "status": str(PROVED),
+        "status": str(PROVED if proved else UNDECIDED),
         "complete": False,
-        "reason": "each branch was asked for by its vertex signs and proved alone; how many there "
-        "are was not asked",
+        "reason": "each branch was asked for by its vertex signs "
+        f"{'and proved alone' if proved else 'alone, and some are not proved'}; how many there are "
+        "was not asked",
         "notes": [],
     }
 
