@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shlex
-from contextlib import ExitStack, nullcontext
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +17,9 @@ from exactfold.count.pools import dask_pool, process_pool
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UsageError
 from exactfold.motion.matching import find_loops
+
+_FEW = 4
+"""With at most so many foldable vertices the loops are followed before other processes start."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,6 @@ class Wanted:
         if self.resume and self.certificate is None:
             raise UsageError("--resume continues a file: it goes with --certificate")
         apart(self.certificate, self.file)
-        ready = nullcontext(process_pool(self.workers or os.cpu_count() or 1))
         with Bar("reading") as bar:
             pattern = read(self.file, self.snap, self.sheet, "motions").pattern
             with ExitStack() as stack:
@@ -62,9 +64,11 @@ class Wanted:
                     require_file(self.certificate, self.resume)
                     stack.enter_context(resumable(self.certificate, self.again))
                 stack.enter_context(interruptible())
-                pool = stack.enter_context(
-                    ready if self.dask is None else dask_pool(self.dask, self.workers)
-                )
+                if self.dask is None:
+                    few = len(pattern.foldable_vertices) <= _FEW
+                    pool = process_pool(self.workers or (1 if few else os.cpu_count() or 1))
+                else:
+                    pool = stack.enter_context(dask_pool(self.dask, self.workers))
                 found = find_loops(
                     pattern,
                     pool=pool,

@@ -41,6 +41,8 @@ _CLOSE = 1e-3
 """Radians within which extreme angles are looked for."""
 _MOST_PARTS = 4000
 """Of a chain; with more, angles that turn too fast are given up, extreme ones are less close."""
+_MOST_NUMBERS = 2**20
+"""Coefficients of parts that are bounded at once."""
 _MICRO = 10**6
 
 
@@ -93,11 +95,6 @@ class Stretch:
             0.0,
             0.0,
         )
-
-    def swept(self, begin: FloatArray, end: FloatArray) -> Swept:
-        """Bounds of the positions on parts of it, from one parameter to another."""
-        low, high = np.minimum(begin, end), np.maximum(begin, end)
-        return Swept.of(self.coefficients, self.radius, low[:, None, None], high[:, None, None])
 
 
 @dataclass(frozen=True, repr=False)
@@ -167,7 +164,7 @@ def box_angles(framework: Framework, box: Ball) -> list[Interval]:
 
     It is the one in a box; angles are between -180 and 180, or a little more by their errors.
     """
-    (angle,), (spread,) = _angles_in(framework, box)
+    (angle,), (spread,) = angles_in(framework, box)
     return [_degrees(a - r, a + r) for a, r in zip(angle, spread, strict=True)]
 
 
@@ -206,6 +203,7 @@ class _Parts:
 
     def __init__(self, folds: Folds, chain: Sequence[Stretch]) -> None:
         self.folds, self.chain = folds, chain
+        self.terms = np.array([len(stretch.coefficients) for stretch in chain])
         self.stretch = np.arange(len(chain))
         self.ends = np.array([(stretch.begin, stretch.end) for stretch in chain])
         self.angles, self.spreads = self._angles(self.stretch, self.ends)
@@ -214,10 +212,12 @@ class _Parts:
         """As `Folds.angles`, of parts of several stretches."""
         shape = (len(stretch), len(self.folds.framework.hinges))
         angles, spreads = np.empty(shape), np.empty(shape)
-        for k in np.unique(stretch):
-            at = np.flatnonzero(stretch == k)
-            swept = self.chain[k].swept(*ends[at].T)
-            angles[at], spreads[at] = self.folds.angles(swept)
+        for terms in np.unique(self.terms[stretch]):
+            alike = np.flatnonzero(self.terms[stretch] == terms)
+            most = max(1, _MOST_NUMBERS // self.chain[0].radius.size // int(terms))
+            for at in np.split(alike, range(most, len(alike), most)):
+                swept = _swept([self.chain[k] for k in stretch[at]], *ends[at].T)
+                angles[at], spreads[at] = self.folds.angles(swept)
         return angles, spreads
 
     def _halved(self, wide: BoolArray) -> tuple[IndexArray, FloatArray]:
@@ -275,10 +275,21 @@ class _Parts:
         )
 
 
-def _angles_in(framework: Framework, box: Ball) -> tuple[FloatArray, FloatArray]:
+def angles_in(framework: Framework, box: Ball) -> tuple[FloatArray, FloatArray]:
     """As `Folds.angles`, of the configurations in a box."""
     none = np.zeros(1)
-    return Folds(framework).angles(Stretch.at(framework, box).swept(none, none))
+    return Folds(framework).angles(_swept([Stretch.at(framework, box)], none, none))
+
+
+def _swept(stretches: Sequence[Stretch], begin: FloatArray, end: FloatArray) -> Swept:
+    """Bounds of the positions on a part of each of them, from one parameter to another."""
+    low, high = np.minimum(begin, end), np.maximum(begin, end)
+    return Swept.of(
+        np.stack([stretch.coefficients for stretch in stretches], axis=1),
+        np.stack([stretch.radius for stretch in stretches]),
+        low[:, None, None],
+        high[:, None, None],
+    )
 
 
 def _degrees(low: float, high: float) -> Interval:

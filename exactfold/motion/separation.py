@@ -72,7 +72,8 @@ class Swept:
         """From p(s) = sum_k c_k s^k, shape (order + 1, V, 3), and |x - p| <= radius, shape (V, 3).
 
         The polynomial is expanded at the middle; what is beyond the slope goes into the error.
-        `low` and `high` are numbers, or arrays of shape (intervals, 1, 1).
+        `low` and `high` are numbers, or arrays of shape (intervals, 1, 1). Then each interval may
+        have a polynomial and a radius of its own: (order + 1, intervals, V, 3), (intervals, V, 3).
         """
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         most = np.maximum(np.abs(low), np.abs(high))
@@ -88,7 +89,7 @@ class Swept:
         for k in range(2, len(rows)):
             error += np.abs(rows[k]) * half**k
         slope = rows[1] if len(rows) > 1 else np.zeros_like(rows[0])
-        small = np.broadcast_to(sizes, shape).max(axis=(-1, -2)) + radius.max() < _MOST
+        small = (np.broadcast_to(sizes, shape) + radius).max(axis=(-1, -2)) < _MOST
         error[~(small & (len(rows) <= _MOST_ROWS))] = np.inf
         return cls(rows[0], slope, error + _ROUND, half, planar)
 

@@ -14,7 +14,7 @@ from exactfold import find_branch, find_loops, random_square
 from exactfold.count.pools import process_pool
 from exactfold.motion import graph_building, visits
 from exactfold.motion.configuration_graph import ConfigurationGraph, GraphArc, NodeEnd
-from exactfold.motion.fold_ranges import Folds, Stretch, box_angles, fold_ranges
+from exactfold.motion.fold_ranges import Stretch, angles_in, box_angles, fold_ranges
 from exactfold.motion.following import follow
 from exactfold.motion.framework import Framework
 from exactfold.motion.graph_building import graph_of
@@ -266,15 +266,15 @@ def test_at_every_vertex_an_even_number_of_folds_wind():
 def test_a_box_of_configurations_bounds_the_angles_of_all_of_them():
     box = node().point.ball
     wide = Ball(box.bits, box.centre, tuple(1 << box.bits - 12 for _ in box.radii))
-    (middle,), (spread,) = angles_in(wide)
-    (exact,), (small,) = angles_in(box)
+    (middle,), (spread,) = angles_in(FRAMEWORK, wide)
+    (exact,), (small,) = angles_in(FRAMEWORK, box)
     known = np.isfinite(spread)
     assert known.any()
     assert (small < 1e-6).all()
     assert (spread[known] > 2.0**-14).all()
     assert (np.abs(middle - exact)[known] <= spread[known]).all()
     far = Ball(box.bits, box.centre, tuple(1 << box.bits for _ in box.radii))
-    assert np.isinf(angles_in(far)[1]).all()
+    assert np.isinf(angles_in(FRAMEWORK, far)[1]).all()
 
 
 def test_angles_that_are_not_followed_are_not_guessed():
@@ -286,7 +286,3 @@ def test_angles_that_are_not_followed_are_not_guessed():
     assert all(fold.turns == 0 and fold.least[1] == fold.greatest[0] == 0 for fold in ranges)
     rough = replace(still, radius=np.full_like(still.radius, 0.3), end=1.0)
     assert fold_ranges(FRAMEWORK, [still, rough, still], names) is None
-
-
-def angles_in(box):
-    return Folds(FRAMEWORK).angles(Stretch.at(FRAMEWORK, box).swept(np.zeros(1), np.zeros(1)))
