@@ -29,7 +29,7 @@ copyright = f"2026, {author}"
 version = release = exactfold.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton", "sphinx_design"]
-exclude_patterns = ["_static", "gallery", "notebooks", "pictures"]
+exclude_patterns = ["_static", "notebooks", "pictures"]
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
 myst_links_external_new_tab = False

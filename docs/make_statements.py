@@ -146,9 +146,10 @@ def wrapped(line: str) -> str:
       word, a word,
     """
     kept = re.sub(r"\$`.+?`\$|`[^`]+`", lambda code: code[0].replace(" ", "\0"), line)
+    kept = re.sub(r" ([-+*=|<>]) ", "\0\\1\0", kept)
     rows: list[str] = []
     for row in textwrap.wrap(kept, 98, break_long_words=False, break_on_hyphens=False):
-        if rows and re.match(r"[-+*>#|=]|\d+[.)]", row):  # would begin something else
+        if rows and re.match(r"([-+*>#|=]|\d+[.)])( |$)", row):  # would begin something else
             rows[-1] += f" {row}"
         else:
             rows.append(row)
