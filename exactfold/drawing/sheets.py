@@ -54,12 +54,14 @@ def sheets(drawing: Drawing) -> tuple[Drawing, ...]:
 
     Raises `MalformedPatternError` if the lines enclose nothing, `HoleError` for a sheet with a
     hole, `CutEdgeError` for a line B or C between two panels, and `DisconnectedError` for creases
-    inside a panel that no line joins to the rest.
+    inside a panel that no line joins to the rest, and for lines that enclose nothing: none is
+    dropped here.
     """
     parts = _parts(drawing)
     if not parts:
         raise MalformedPatternError("the lines of the drawing enclose no face")
     places = floats(drawing.points)
+    _check_all(drawing, parts, places)
     for part in parts:
         _check_nested(part, parts, places)
         _check_inside(part, places)
@@ -117,6 +119,18 @@ def _area(places: FloatArray, cycle: Sequence[int]) -> float:
 
 def _sides(cycle: Sequence[int]) -> list[tuple[int, int]]:
     return list(zip(cycle, [*cycle[1:], cycle[0]], strict=True))
+
+
+def _check_all(drawing: Drawing, parts: Sequence[_Part], places: FloatArray) -> None:
+    held = {line for part in parts for line in part.lines}
+    left = [line for line in drawing.lines if line not in held and line.start != line.end]
+    if left:
+        x, y = places[left[0].start]
+        raise DisconnectedError(
+            f"{counted(len(left), 'line')} {agreeing(len(left), 'is')} joined to no panel, the "
+            f"first near ({x:.6g}, {y:.6g}): lines are to meet in common ends",
+            vertices=[left[0].start],
+        )
 
 
 def _check_nested(part: _Part, parts: Sequence[_Part], places: FloatArray) -> None:

@@ -77,6 +77,16 @@ def test_what_was_repaired_once_is_not_repaired_again(tmp_path: Path) -> None:
     assert len(open_pattern(path).sheet.vertices) == 5
 
 
+def test_creases_that_end_inside_of_sides_are_not_lost(tmp_path: Path) -> None:
+    """Without a cut there they are joined to nothing: the bare rim would do as a sheet."""
+    out = tmp_path / "out.fold"
+    refused = run("convert", "zigzags", out, "--no-repair")
+    assert refused.exit_code == BAD_INPUT
+    assert "8 lines are joined to no panel, the first near (0, -80)" in refused.stderr
+    assert run("convert", "zigzags", out).exit_code == PROVED
+    assert open_pattern(out).sheet.sha256 == open_pattern(example_path("zigzags")).sheet.sha256
+
+
 @pytest.mark.parametrize("writer", [as_cp, as_fold, as_ori, as_svg])
 def test_all_formats_give_one_file(tmp_path: Path, writer) -> None:
     source, out = tmp_path / "drawing", tmp_path / "out.fold"
