@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from exactfold.branches.result import BranchCount
 from exactfold.commands.branch import chosen
 from exactfold.commands.patterns import located, read_any
-from exactfold.commands.shell import EXIT, STDIN, Bar, apart, say
+from exactfold.commands.shell import EXIT, STDIN, Bar, apart, name_of, say
 from exactfold.count.ways import count_opened
 from exactfold.drawing.drawing import Drawing, Snap
 from exactfold.errors import (
@@ -78,7 +78,7 @@ class Wanted:
         if target is None:
             sys.stdout.write(text)
         else:
-            print(target)
+            print(f"written: {name_of(target)}")
         return EXIT[status]
 
     def _target(self) -> Path | None:

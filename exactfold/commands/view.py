@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from rich.text import Text
+
 from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import Bar, apart, interruptible, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UsageError
 from exactfold.pattern.opening import Opened
+from exactfold.report.terminal import show
 from exactfold.viewer.page import write_view
 from exactfold.viewer.server import view_server
 from exactfold.wording import counted
@@ -64,7 +67,7 @@ class Wanted:
         found = len(document["ways"])
         branches = document["kind"] == "branches"
         ways = counted(found, "branch") if branches else f"{counted(found, 'way')} to fold"
-        print(document["answer"])
+        show(Text(document["answer"]))
         print(f"written: {name_of(output)}, with {ways}")
 
     def _serve(self, opened: Opened, name: str) -> None:

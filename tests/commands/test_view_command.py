@@ -18,8 +18,8 @@ def test_the_page_is_written_beside_the_reader(tmp_path, monkeypatch):
     result = run("view", "single-vertex-4", "--frames", "3", "--workers", "1")
     assert (result.exit_code, result.stderr) == (OK, "")
     assert result.stdout.splitlines() == [
-        "2 ways to start folding - PROVED; all real, each counted once, every one continues to a "
-        "true motion",
+        "2 ways to start folding - PROVED; all real, each counted once, every one",
+        "continues to a true motion",
         "written: single-vertex-4.view.html, with 2 branches",
     ]
     assert Path("single-vertex-4.view.html").read_text("utf-8").startswith("<!doctype html>")
