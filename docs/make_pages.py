@@ -47,8 +47,8 @@ TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
     ),
     "output": (
         "Tables, pictures and other programs",
-        "What the command line prints and draws, and files for other programs.",
-        ("report", "bridges", "schemas"),
+        "What the command line prints and draws, the viewer, and files for other programs.",
+        ("report", "viewer", "bridges", "schemas"),
     ),
     "equations": (
         "Equations of a sheet",
