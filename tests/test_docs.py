@@ -35,7 +35,21 @@ def examples(page: Path) -> list[tuple[str, str]]:
     return found
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+IN_ORDER = ("README.md", "docs/tutorial.md")
+"""Pages of which all commands are run, one after the other in one place."""
+
+
+def shows(expected: str, printed: str) -> bool:
+    """Whether this is printed, with anything in the place of each `...`."""
+    pattern = re.escape(expected.rstrip()).replace(re.escape("..."), r"\S+")
+    return re.fullmatch(pattern, printed.rstrip()) is not None
+
+
+@pytest.mark.parametrize(
+    "page",
+    [page for page in PAGES if str(page.relative_to(ROOT)) not in IN_ORDER],
+    ids=lambda page: page.name,
+)
 def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> None:
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"}
     for command, expected in examples(page):
@@ -49,8 +63,7 @@ def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> Non
             text=True,
             check=False,
         )
-        pattern = re.escape(expected.rstrip()).replace(re.escape("..."), r"\S+")
-        assert re.fullmatch(pattern, run.stdout.rstrip()), f"{command}\n{run.stdout}{run.stderr}"
+        assert shows(expected, run.stdout), f"{command}\n{run.stdout}{run.stderr}"
 
 
 READ = re.compile(r"exactfold: (read zigzags: |coordinates in |12 vertices inside of lines: )")
@@ -63,7 +76,7 @@ def commands(page: Path) -> list[str]:
     return [a or b for a, b in re.findall(r"(?m)^(?:\$ (.*)|\| `(exactfold [^`]*)` \|.*)$", text)]
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/tutorial.md"])
+@pytest.mark.parametrize("name", IN_ORDER)
 def test_all_commands_run_as_printed_in_their_order(name: str, tmp_path: Path) -> None:
     """In an empty directory and a shell that finds `exactfold`, as after the first command."""
     program = tmp_path / "bin" / "exactfold"
@@ -73,14 +86,15 @@ def test_all_commands_run_as_printed_in_their_order(name: str, tmp_path: Path) -
     place = tmp_path / "empty"
     place.mkdir()
     path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
-    found = commands(ROOT / name)
+    found, shown = commands(ROOT / name), dict(examples(ROOT / name))
     assert len(found) > 2
+    assert shown.keys() <= set(found)
     for command in found:
         done = subprocess.run(
             command,
             shell=True,
             cwd=place,
-            env={**os.environ, "PYTHONPATH": str(ROOT), "PATH": path},
+            env={**os.environ, "PYTHONPATH": str(ROOT), "PATH": path, "COLUMNS": "80"},
             capture_output=True,
             text=True,
             check=False,
@@ -88,6 +102,8 @@ def test_all_commands_run_as_printed_in_their_order(name: str, tmp_path: Path) -
         told = [line for line in done.stderr.splitlines() if not READ.match(line)]
         assert (done.returncode, told) == (0, []), command
         assert done.stdout or "-o" in command
+        if command in shown:
+            assert shows(shown[command], done.stdout), f"{command}\n{done.stdout}"
 
 
 def test_the_first_commands_of_the_readme_leave_exactfold_where_a_shell_finds_it() -> None:

@@ -157,7 +157,7 @@ def rank_to_sixty_digits(branches):
         (random_square(2, seed=4), 0),
         (flat_vertex_square(), 1),
         (degenerate.gridded_square(), 0),
-        (hypar(1), 0),
+        pytest.param(hypar(1), 0, marks=pytest.mark.slow),
     ],
 )
 def test_the_dimension_is_that_of_sixty_digits(pattern, dimension):

@@ -147,6 +147,7 @@ def test_multiple_zeros_agree_with_the_groebner_basis(pattern):
     assert max(c.multiplicity for c in lifted.classes) > 1
 
 
+@pytest.mark.slow
 def test_multiple_zeros_in_six_unknowns():
     solution = groebner(chart_system(families.flat_octahedron_in_square()))
     assert solution.engine == "lifting"

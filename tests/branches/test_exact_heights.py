@@ -85,7 +85,13 @@ def test_multiple_roots_of_a_hypar():
 
 
 @pytest.mark.parametrize(
-    "pattern", [single_vertex(4), DART, two_vertex(), random_square(3, seed=1)]
+    "pattern",
+    [
+        single_vertex(4),
+        DART,
+        two_vertex(),
+        pytest.param(random_square(3, seed=1), marks=pytest.mark.slow),
+    ],
 )
 def test_heights_of_few_vertices_are_found_when_they_are_asked_for(pattern):
     exact = {branch.names: branch for branch in count_branches(pattern, method="groebner")}

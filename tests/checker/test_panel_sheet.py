@@ -42,7 +42,7 @@ def common(a: Point, b: Point, c: Point, d: Point) -> bool:
     return False
 
 
-@pytest.mark.parametrize(("columns", "rows"), [(3, 3), (4, 2)])
+@pytest.mark.parametrize(("columns", "rows"), [pytest.param(3, 3, marks=pytest.mark.slow), (4, 2)])
 def test_all_pairs_of_edges_of_a_small_grid(columns: int, rows: int) -> None:
     points = [(x, y) for x in range(columns) for y in range(rows)]
     edges = list(combinations(range(columns * rows), 2))

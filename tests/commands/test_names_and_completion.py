@@ -107,6 +107,7 @@ def completed(line: str, folder: Path) -> list[str]:
     return done.stdout.split()
 
 
+@pytest.mark.slow
 def test_the_shell_completes_names_files_and_methods(tmp_path: Path) -> None:
     (tmp_path / "two.fold").touch()
     (tmp_path / "two.txt").touch()

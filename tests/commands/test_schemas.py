@@ -23,6 +23,7 @@ from exactfold.schemas import VERSIONS
 
 LARGE = ("hypar-2", "random-8")
 """Too large for the exact engine within a test."""
+SOME = [pytest.param(x, marks=pytest.mark.slow) if x == "hypar-2" else x for x in SHEETS]
 
 
 def valid(data: dict[str, Any], kind: str) -> dict[str, Any]:
@@ -47,7 +48,7 @@ def test_a_kind_that_there_is_not() -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("name", SHEETS)
+@pytest.mark.parametrize("name", SOME)
 def test_counts(name: str, method: str) -> None:
     if name in LARGE and method == "groebner":
         method = "homotopy"
@@ -57,7 +58,7 @@ def test_counts(name: str, method: str) -> None:
     assert data["pattern"]["name"] == str(path)
 
 
-@pytest.mark.parametrize("name", SHEETS)
+@pytest.mark.parametrize("name", SOME)
 def test_every_other_command(name: str, tmp_path: Path) -> None:
     path, out, lines = example_path(name), tmp_path / "c.json", tmp_path / "o.jsonl"
     printed("info", "info", path)

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 from running import BAD_INPUT, INTERRUPTED, OUTPUT_FAILED, PROVED, UNDECIDED, run
@@ -60,7 +61,8 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-LIMITS = [60000, 200000, 300000]
+LIMITS: list[Any] = [200000]
+LIMITS += [pytest.param(k, marks=pytest.mark.slow) for k in (60000, 300000)]
 LIMITS += [
     pytest.param(k, marks=pytest.mark.survey)
     for k in (80000, 100000, 140000, 150000, 180000, 250000, 400000)

@@ -63,7 +63,15 @@ def test_undecided_where_signs_stay_open(monkeypatch):
     assert result.branches == ()
 
 
-@pytest.mark.parametrize("name", ["cross", "straight-path", "ring", "waterbomb-pair"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "cross",
+        "straight-path",
+        pytest.param("ring", marks=pytest.mark.slow),
+        pytest.param("waterbomb-pair", marks=pytest.mark.slow),
+    ],
+)
 def test_open_folds_cost_their_letters_and_not_the_count(monkeypatch, name):
     pattern = DEGENERATE[name]()
     known = count_branches(pattern)

@@ -355,6 +355,7 @@ def test_random_grid_creases_in_pixels_make_a_pattern_without_loss(seed):
     assert len(found.folds) == len(twin.folds)
 
 
+@pytest.mark.slow
 def test_three_thousand_lines_take_seconds():
     """A grid of 40 x 40 rectangles of sides sqrt 2 to 1, with 16 decimals."""
     count = 40

@@ -100,6 +100,7 @@ def test_patterns_have_real_zeros_only_and_perturbed_ones_have_not() -> None:
     assert control.even <= 4
 
 
+@pytest.mark.slow
 def test_the_page_shows_what_the_script_prints() -> None:
     page = (DOCS / "control.md").read_text(encoding="utf-8")
     script = runpy.run_path(str(DOCS / "control_experiment.py"))

@@ -73,6 +73,7 @@ def test_degree_counts():
     assert counts == {d: neighbours.count(d) for d in sorted(set(neighbours))}
 
 
+@pytest.mark.slow
 def test_large_patterns_cost_what_their_vertices_cost():
     # A dense matrix of this sheet has 6 * 10^7 entries; curvature forms are asked for one by one.
     asked = []

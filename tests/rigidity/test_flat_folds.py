@@ -44,7 +44,7 @@ def test_flat_fold_beside_a_straight_crease_makes_the_folds_across_flat():
     assert flat_folds(pattern, known) == {(1, 5), (2, 5), (4, 5)}
 
 
-@pytest.mark.parametrize("spokes", [4, 5])
+@pytest.mark.parametrize("spokes", [4, pytest.param(5, marks=pytest.mark.slow)])
 def test_the_checker_deduces_as_much(spokes):
     """By code of its own, on wheels of small integers, where creases are often collinear."""
     deduced = 0
