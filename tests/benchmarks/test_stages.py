@@ -45,7 +45,7 @@ def test_checker(benchmark: Any, interior: int) -> None:
     assert claims["distinct"] == 1 << interior
 
 
-@pytest.mark.parametrize("interior", [4, 6, pytest.param(8, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("interior", [4, 6, pytest.param(8, marks=pytest.mark.survey)])
 def test_parametrisation_from_roots(benchmark: Any, interior: int) -> None:
     chart = BranchSystem(random_square(interior, seed=1)).chart
     rounds = {"rounds": 1 if interior == 8 else 3, "iterations": 1}

@@ -116,7 +116,7 @@ def test_open_folds_cost_their_letters_and_not_the_count(monkeypatch, name):
         assert bool(result.undecided_folds) == (result.status is PROVED)
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_largest_straight_hypar_is_proved_but_for_one_letter():
     """Vi = 12: the folds across the middle square are flat on some simple roots."""
     result = count_branches(hypar(3, 0))
