@@ -307,7 +307,7 @@ def hinge(turn, begin, end, unit=1.0):
 def test_a_fold_that_turns_fast_where_stretches_meet_is_not_guessed():
     """Where within `SLACK` of its beginning a stretch meets the last one is not known.
 
-    Here it is where the fold is flat, not half a turn before: to follow all of it adds a turn.
+    If it is where the fold is flat, angles from before it are none of the chain.
     """
     framework, still = hinge(0.0, 0.0, 0.0)
     _, spin = hinge(0.0, -3.5, 0.0)
