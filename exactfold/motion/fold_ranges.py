@@ -10,6 +10,8 @@ where k1, k2, k3 are those of the flat sheet. `Swept` bounds the positions on a 
 (cos phi, sin phi) stays within a distance of a segment, and phi within `spread` of an angle. Where
 this is less than 1 radian on every part, and parts have a configuration in common with those next
 to them, the angle is followed continuously: next to each other the angles differ by less than pi.
+The configuration that a stretch has in common with the next is known to lie within `SLACK` of an
+end of both; so parts are not halved for this where they are shorter than twice that.
 
 Roundings: coordinates are less than 4 in size (`Swept`), differences less than 8, so that the sums
 above are sums of terms that add up to less than 6 * 8^3, each rounded less than 20 times: off by
@@ -37,6 +39,8 @@ from exactfold.pattern.crease_pattern import Edge
 _ROUND, _RELATIVE = 1e-11, 1e-12
 _WIDEST = 1.0
 """Radians that the angle may be off the middle one of a part."""
+SLACK = 2.0**-20
+"""How far, in its parameter, a stretch may go on beyond what it has in common with the next."""
 _CLOSE = 1e-3
 """Radians within which extreme angles are looked for."""
 _MOST_PARTS = 4000
@@ -162,10 +166,14 @@ class Folds:
 def box_angles(framework: Framework, box: Ball) -> list[Interval]:
     """Bounds of all fold angles, in degrees and in the order of the folds, of a configuration.
 
-    It is the one in a box; angles are between -180 and 180, or a little more by their errors.
+    It is the one in a box; angles are between -180 and 180, or a little more by their errors. Where
+    the box says nothing of an angle, they are -180 and 180.
     """
     (angle,), (spread,) = angles_in(framework, box)
-    return [_degrees(a - r, a + r) for a, r in zip(angle, spread, strict=True)]
+    whole = Fraction(-180), Fraction(180)
+    return [
+        _degrees(a - r, a + r) if r < np.pi else whole for a, r in zip(angle, spread, strict=True)
+    ]
 
 
 def fold_ranges(
@@ -173,7 +181,8 @@ def fold_ranges(
 ) -> tuple[FoldRange, ...] | None:
     """The ranges of all folds on a chain of stretches from the flat state to the flat state.
 
-    Each stretch has a configuration in common with the next. None if an angle is not followed.
+    Each stretch has a configuration in common with the next, within `SLACK` of the end of the one
+    and of the beginning of the other. None if an angle is not followed.
     """
     parts = _Parts(Folds(framework), chain)
     if not parts.narrow():
@@ -235,6 +244,8 @@ class _Parts:
             wide = self.spreads.max(axis=1, initial=0.0) >= _WIDEST
             if not wide.any():
                 return True
+            if (np.abs(np.diff(self.ends[wide])) < 2 * SLACK).any():
+                return False
             self._split(wide)
         return False
 

@@ -14,10 +14,10 @@ from exactfold.evidence.entries import Document
 from exactfold.evidence.loops import loop_line
 from exactfold.exact.numbers import format_rational
 from exactfold.motion.arclength import Interval, in_floats
-from exactfold.motion.fold_ranges import FoldRange, fold_ranges
+from exactfold.motion.fold_ranges import SLACK, FoldRange, fold_ranges
 from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.node_tube import NodeTube
-from exactfold.motion.piece import Ball
+from exactfold.motion.piece import PARAMETER_BITS, Ball
 from exactfold.motion.stretches import on_node_tube, on_start_tube, on_tube
 from exactfold.motion.tracks import Link
 from exactfold.motion.tube_start import StartTube
@@ -157,19 +157,24 @@ class LoopProof:
         if self.landing is None:
             return ()
         chain = [on_start_tube(self.start, 0, self.start.last)]
+        vague = 0
         for step, after in zip_longest(self.steps, self.steps[1:]):
             if isinstance(step, Passage):
                 chain.append(on_node_tube(step.tube, step.entry, step.exit))
                 continue
-            # To the point that lies on the next piece.
+            # To the point that lies on the next piece, which is known but for its box.
             end = step.exit
+            vague = max(vague, step.entry[1] - step.entry[0])
             if not isinstance(after, Link):
                 ball = self.landing.ball if after is None else after.tube.ball(after.entry)
                 found = step.tube.located(ball)
                 if found is None:
                     raise ArithmeticError("a loop has a gap")
                 end = found[1]
+                vague = max(vague, end - found[0])
             chain.append(on_tube(step.tube, step.entry[0], end))
+        if vague >= SLACK * (1 << PARAMETER_BITS):
+            return ()
         chain.append(on_start_tube(self.landing.start, self.landing.tau, 0))
         framework, labels = self.start.framework, self.problem.labels
         names = [

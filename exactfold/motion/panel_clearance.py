@@ -37,8 +37,10 @@ class PanelClearance:
 
     No two panels touch, but for the folds and corners they share, at any time from 0 until before
     `clear`. `event`: a contact, or folds that close, that is proved to happen in `event.time` =
-    (not before, at the latest), the first of all; None if the motion ends before, or nothing is
-    proved to touch. `open_panels`: pairs that are not proved to stay apart right after `clear`.
+    (not before, at the latest); None if the motion ends before, or nothing is proved to touch. The
+    first contact of all is between these times, too; whether it is of the same panels, or other
+    ones touch shortly before, is not proved. `open_panels`: pairs that are not proved to stay apart
+    right after `clear`.
 
     `status` is PROVED if the whole motion is clear or its first contact is enclosed within a
     thousandth of a radian; else `reason` says what is missing.

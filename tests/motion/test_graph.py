@@ -4,6 +4,8 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
+from math import factorial
+from types import SimpleNamespace
 
 import networkx as nx
 import numpy as np
@@ -14,7 +16,7 @@ from exactfold import find_branch, find_loops, random_square
 from exactfold.count.pools import process_pool
 from exactfold.motion import graph_building, visits
 from exactfold.motion.configuration_graph import ConfigurationGraph, GraphArc, NodeEnd
-from exactfold.motion.fold_ranges import Stretch, angles_in, box_angles, fold_ranges
+from exactfold.motion.fold_ranges import SLACK, Stretch, angles_in, box_angles, fold_ranges
 from exactfold.motion.following import follow
 from exactfold.motion.framework import Framework
 from exactfold.motion.graph_building import graph_of
@@ -186,8 +188,8 @@ def test_lines_that_are_missing_and_nodes_that_are_not_located_are_said(monkeypa
 
 
 def test_an_arc_that_is_not_followed_is_open(monkeypatch):
-    monkeypatch.setattr(LoopFinder, "_followed", lambda *_, **__: ([], None, "lost"))
     alone = replace(loop(), visits=loop().visits[:1])
+    monkeypatch.setattr(LoopFinder, "_followed", lambda *_, **__: ([], None, "lost"))
     found = graph_of(PROBLEM, [alone], "", process_pool(1))
     left = [arc for arc in found.arcs if arc.end is None]
     assert len(left) == 4
@@ -275,6 +277,7 @@ def test_a_box_of_configurations_bounds_the_angles_of_all_of_them():
     assert (np.abs(middle - exact)[known] <= spread[known]).all()
     far = Ball(box.bits, box.centre, tuple(1 << box.bits for _ in box.radii))
     assert np.isinf(angles_in(FRAMEWORK, far)[1]).all()
+    assert set(box_angles(FRAMEWORK, far)) == {(-180, 180)}  # nothing is known, and so it is said
 
 
 def test_angles_that_are_not_followed_are_not_guessed():
@@ -286,3 +289,30 @@ def test_angles_that_are_not_followed_are_not_guessed():
     assert all(fold.turns == 0 and fold.least[1] == fold.greatest[0] == 0 for fold in ranges)
     rough = replace(still, radius=np.full_like(still.radius, 0.3), end=1.0)
     assert fold_ranges(FRAMEWORK, [still, rough, still], names) is None
+
+
+def hinge(turn, begin, end, unit=1.0):
+    """A stretch on which one fold has the angle `turn` + s / `unit`, and its framework."""
+    points = ((0, 0), (0, 1), (-1, 0), (1, 0))
+    framework = SimpleNamespace(points=points, bits=4, hinges=np.array([[0, 1, 2, 3]]))
+    coefficients = np.zeros((21, 4, 3))
+    coefficients[0, :, :2] = np.array(points) / 16
+    for k in range(21):
+        quarter = turn + k * np.pi / 2
+        scale = 16 * factorial(k) * unit**k
+        coefficients[k, 2] = -np.cos(quarter) / scale, 0, np.sin(quarter) / scale
+    return framework, Stretch(coefficients, np.full((4, 3), 1e-7), begin * unit, end * unit)
+
+
+def test_a_fold_that_turns_fast_where_stretches_meet_is_not_guessed():
+    """Where within `SLACK` of its beginning a stretch meets the last one is not known.
+
+    If it is where the fold is flat, angles from before it are none of the chain.
+    """
+    framework, still = hinge(0.0, 0.0, 0.0)
+    _, spin = hinge(0.0, -3.5, 0.0)
+    ranges = fold_ranges(framework, [still, hinge(0.0, 0.0, -3.5)[1], spin, still], [(0, 1)])
+    assert [fold.turns for fold in ranges] == [0]
+    assert -201 < ranges[0].least[0] < np.degrees(-3.5) < ranges[0].least[1] < -200
+    _, fast = hinge(0.0, -3.5, 0.0, unit=SLACK / 4)
+    assert fold_ranges(framework, [still, fast, still], [(0, 1)]) is None
