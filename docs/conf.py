@@ -2,7 +2,8 @@
 
 Needs `pip install 'exactfold[docs]'` and no network, and the pages need none to be read: formulas
 become MathML, which browsers draw themselves, and the search runs in the page. Pages that follow
-from the code (names, commands, schemas) are written into docs/generated first.
+from the code (names, commands, schemas) are written into docs/generated first. Notebooks are shown
+with the outputs that are stored in them; the tests run them.
 """
 
 from __future__ import annotations
@@ -28,10 +29,11 @@ author = "The exactfold developers"
 copyright = f"2026, {author}"
 version = release = exactfold.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton", "sphinx_design"]
-exclude_patterns = ["_static", "notebooks", "pictures"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx_copybutton", "sphinx_design"]
+exclude_patterns = ["_static", "pictures"]
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
+nb_execution_mode = "off"
 myst_links_external_new_tab = False
 nitpicky = True
 

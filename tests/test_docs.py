@@ -25,6 +25,9 @@ ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
+GUIDES = [ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md"]
+
+
 def examples(page: Path) -> list[tuple[str, str]]:
     """(command, expected output) of each `$` line in the page's console blocks."""
     found = []
@@ -244,6 +247,7 @@ def test_the_navigation_lists_every_page_once() -> None:
     listed = trees((ROOT / "docs" / "index.md").read_text(encoding="utf-8"))
     listed += [f"generated/api/{name}" for name in trees(written["api/index.md"])]
     pages = [page.stem for page in (ROOT / "docs").glob("*.md") if page.stem != "index"]
+    pages += [f"notebooks/{page.stem}" for page in (ROOT / "docs" / "notebooks").glob("*.ipynb")]
     pages += [f"generated/{name.removesuffix('.md')}" for name in written]
     assert sorted(listed) == sorted(pages)
 
@@ -270,19 +274,14 @@ def test_links_lead_somewhere(page: Path) -> None:
             assert anchor in anchors(there), target
 
 
-NOT_YET = {"contacts.md", "folding.md", "motions.md", "mutation.md", "panel_motion.md"}
-"""Pages whose lines and examples are still to be brought into this form."""
-TIDY = [page for page in PAGES if page.name not in NOT_YET]
-
-
-@pytest.mark.parametrize("page", TIDY, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_examples_stand_in_fences(page: Path) -> None:
     """Elsewhere a Markdown renderer makes quotations of them."""
     text = page.read_text(encoding="utf-8")
     assert re.findall(r"(?m)^ *>>> .*$", re.sub(r"(?ms)^ *```.*?^ *```$", "", text)) == []
 
 
-@pytest.mark.parametrize("page", TIDY, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", [*PAGES, *GUIDES], ids=lambda page: page.name)
 def test_lines_are_not_too_long(page: Path) -> None:
     """Tables, formulas and what commands print may be."""
     text = re.sub(r"(?ms)^ *```.*?^ *```$", "", page.read_text(encoding="utf-8"))
