@@ -106,8 +106,8 @@ export function createPattern(holder, sheet, store, { onVertex, onHint, poppable
     onHint(target?.closest?.("[data-fold], [data-vertex]")?.getAttribute("aria-label") ?? "");
   }
 
-  for (const kind of ["pointerover", "focusin"]) picture.addEventListener(kind, hint);
-  for (const kind of ["pointerleave", "focusout"]) picture.addEventListener(kind, () => hint({}));
+  for (const kind of ["pointerover", "focusin"]) holder.addEventListener(kind, hint);
+  for (const kind of ["pointerleave", "focusout"]) holder.addEventListener(kind, () => hint({}));
   picture.addEventListener("click", (event) => (act(event.target), hint(event)));
   picture.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
