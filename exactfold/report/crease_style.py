@@ -18,12 +18,12 @@ COLOUR: Final = {
     "U": UNKNOWN,
     "B": "#000000",
 }
-_DASH: Final = {"V": (5.0, 3.0), "F": (0.1, 2.6), "U": (7.0, 2.2, 1.2, 2.2)}
+DASH: Final = {"V": (5.0, 3.0), "F": (0.1, 2.6), "U": (7.0, 2.2, 1.2, 2.2)}
 """Lengths of strokes and gaps; mountains are solid."""
 _NARROW, _WIDE, _USUAL = 0.9, 3.8, 1.9
 """Widths of a fold that hardly folds, of the one that folds most, and where this is not known."""
 _THIN: Final = {"F": 1.1, "B": 1.4, "U": 1.4}
-_FULL, _LEAST = 28.0, 0.3
+FULL, LEAST = 28.0, 0.3
 """Pixels between neighbours from which on lines have their full width; the least part of it."""
 
 
@@ -38,7 +38,7 @@ class Style:
     def of(cls, room: float) -> Style:
         """For a picture in which neighbouring points are about `room` pixels apart."""
         marker = min(0.17 * room, 7.0)
-        return cls(min(max(room / _FULL, _LEAST), 1.0), marker if marker >= 1.4 else 0.0)
+        return cls(min(max(room / FULL, LEAST), 1.0), marker if marker >= 1.4 else 0.0)
 
     def width(self, letter: str, share: float | None) -> float:
         """The width of a line that folds by `share` of the largest angle; None: not known.
@@ -53,7 +53,7 @@ class Style:
 
     def attributes(self, letter: str, *, alone: bool = False) -> dict[str, str | float | None]:
         """The attributes of a group of lines; `alone`: there are no other letters to tell apart."""
-        dash = () if alone and letter == "U" else _DASH.get(letter, ())
+        dash = () if alone and letter == "U" else DASH.get(letter, ())
         scale = max(self.scale, 0.5)
         return {
             "stroke": COLOUR[letter],

@@ -42,6 +42,8 @@ FRAMES: Final = 32
 
 _WORTH_A_PROCESS: Final = 6
 """Motions that take about as long as to start a process."""
+_LETTER: Final = {"M": "M", "V": "V", "F": "F", "J": "F"}
+"""Letters of a file as the page draws them; all others are not assigned."""
 _SECONDS: Final = re.compile(r" \(\d+\.\d+ s\)")
 
 J = TypeVar("J")
@@ -278,7 +280,10 @@ def _panels(opened: Opened, name: str, frames: int, progress: Progress | None) -
 
 
 def _sheet_json(opened: Opened) -> dict[str, Any]:
-    """The flat sheet: a FOLD object without letters, and what the page needs beside it."""
+    """The flat sheet: a FOLD object without letters, and what the page needs beside it.
+
+    `letters`: of the file, by fold, shown where there is no way to fold.
+    """
     pattern = opened.sheet
     if isinstance(pattern, CreasePattern):
         fold, foldable = fold_document(pattern), pattern.foldable_vertices
@@ -292,4 +297,7 @@ def _sheet_json(opened: Opened) -> dict[str, Any]:
         "triangles": [list(triangle) for triangle in triangles_of(pattern)],
         "interior": list(pattern.interior),
         "foldable": list(foldable),
+        "letters": "".join(
+            _LETTER.get(opened.assignment.get(edge, "U"), "U") for edge in pattern.folds
+        ),
     }

@@ -17,6 +17,7 @@ from exactfold.count.ways import Sheet
 from exactfold.pattern.fold_writing import write_text
 from exactfold.progress import Progress
 from exactfold.viewer.document import FRAMES, view_document
+from exactfold.viewer.look import look_css, look_script
 
 _ROOM: Final = Path(__file__).parent
 _PAGE: Final = _ROOM / "page"
@@ -38,7 +39,7 @@ def view_page(document: Mapping[str, Any]) -> str:
     3
     """
     library, script = _LIBRARY.read_text(encoding="utf-8"), _script()
-    style = (_PAGE / "style.css").read_text(encoding="utf-8")
+    style = look_css() + (_PAGE / "style.css").read_text(encoding="utf-8")
     parts = {
         "title": html.escape(f"{document['name']} - exactfold"),
         "policy": _policy([library, script], style, bool(document["served"])),
@@ -110,7 +111,7 @@ def _script() -> str:
         parts.append(f"// --- {name} ---\n\n" + _EXPORT.sub("", _IMPORT.sub("", text)).strip())
 
     add("main.js")
-    return '"use strict";\n\n' + "\n\n".join(parts) + "\n"
+    return '"use strict";\n\n' + look_script() + "\n" + "\n\n".join(parts) + "\n"
 
 
 def _policy(scripts: Sequence[str], style: str, served: bool) -> str:

@@ -10,6 +10,7 @@ import pytest
 from browser import chromium
 
 from exactfold import count_branches, find_branch, follow, load, open_pattern
+from exactfold.report.crease_style import COLOUR
 from exactfold.viewer import view_server, write_view
 
 pytestmark = pytest.mark.slow
@@ -105,7 +106,7 @@ def test_clicks_on_folds_ask_for_letters_and_the_list_shrinks(browser, pages):
     for letter in "MV":  # of the two mirror images of a branch one agrees
         browser.click(selector)
         sides = sum(branch.assignment[i, j] in "MV" for branch in count)
-        assert browser.text("#count") == f"{sides} of {total} branches"
+        assert browser.text("#count") == f"{sides} of {total} branches {_agree(sides)}"
         _, letters, mirrored = browser.shown()
         shown = letters.translate(str.maketrans("MV", "VM")) if mirrored else letters
         assert shown[-1] == letter
@@ -116,12 +117,41 @@ def test_clicks_on_folds_ask_for_letters_and_the_list_shrinks(browser, pages):
         for branch in count
     )
     assert 0 < both < total
-    assert browser.text("#count") == f"{both} of {total} branches"
+    assert browser.text("#count") == f"{both} of {total} branches {_agree(both)}"
     assert browser.run("document.querySelectorAll('.way').length") == both
     browser.click(f'[data-fold="{k}-{m}"] .reach')
     browser.click(f'[data-fold="{k}-{m}"] .reach')
     browser.click(selector)  # any
     assert browser.text("#count") == f"{total} branches"
+
+
+def _agree(number):
+    return "agrees" if number == 1 else "agree"
+
+
+def test_the_hint_says_what_a_click_does(browser, pages):
+    browser.open(pages["h1-4"])
+    count = count_branches("h1-4")
+    signs, letters, _ = browser.shown()
+    vertex, (i, j) = count.pattern.interior[1], count.pattern.folds[-1]
+    browser.run(f"document.querySelector('[data-vertex=\"{vertex}\"]').focus()")
+    way, back = ("down", "up") if signs[1] == "-" else ("up", "down")
+    assert browser.text("#pattern-hint") == f"Vertex {vertex}: popped {way}. Click: pop it {back}."
+    browser.run(f"document.querySelector('[data-fold=\"{i}-{j}\"]').focus()")
+    name = {"M": "mountain", "V": "valley"}[letters[-1]]
+    assert browser.text("#pattern-hint") == (f"Fold {i}–{j}: {name}. Click: ask for a mountain.")
+    browser.run("document.activeElement.blur()")
+    assert browser.text("#pattern-hint") == "Click a vertex or a fold"
+
+
+def test_lines_have_the_colours_of_pictures(browser, pages):
+    browser.open(pages["h1-4"])
+    shown = browser.run(
+        "Array.from(document.querySelectorAll('.fold .line'), (n) => getComputedStyle(n).stroke)"
+    )
+    _, letters, _ = browser.shown()
+    colours = [tuple(int(COLOUR[letter][k : k + 2], 16) for k in (1, 3, 5)) for letter in letters]
+    assert shown == [f"rgb{colour}" for colour in colours]
 
 
 def test_everything_is_reached_by_keys(browser, pages):
@@ -178,7 +208,9 @@ def test_the_list_is_searched_by_signs_and_letters(browser, pages):
     rows = browser.run("document.querySelectorAll('.way').length")
     assert rows == len(set(wanted) | mirrored)
     browser.press("??")  # more signs than vertices
-    assert browser.text("#ways") == "No branch agrees."
+    assert browser.text("#ways") == (
+        'No branch of this sheet agrees with the search. "Clear" shows all again.'
+    )
     browser.click("#clear")
     assert browser.text("#count") == f"{len(count)} branches"
 
@@ -259,7 +291,7 @@ def test_panels_are_followed_or_have_a_reason(browser, pages):
     names = browser.run(
         "Array.from(document.querySelectorAll('.way .signs'), (n) => n.textContent)"
     )
-    assert names[-1] == "mode 4refuted, not followed"
+    assert names[-1] == "mode 4does not fold on"
     browser.click(".way:last-child")
     assert "does not close" in browser.text("#empty")
     assert browser.run("document.getElementById('play').disabled")

@@ -9,11 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from exactfold import count_branches, count_ways, find_branch, follow, random_square
+from exactfold import (
+    count_branches,
+    count_ways,
+    find_branch,
+    follow,
+    random_square,
+)
 from exactfold.certify import algebraic
+from exactfold.count.ways import open_sheet
 from exactfold.errors import UsageError
 from exactfold.motion import panel_components, prove
 from exactfold.pattern.families import single_vertex
+from exactfold.report import crease_style
 from exactfold.viewer import page as page_module
 from exactfold.viewer import view_document, view_page
 from exactfold.viewer.coding import coded_frames, decoded_frames, levelled
@@ -127,6 +135,24 @@ def test_an_undecided_count_shows_what_is_known(monkeypatch):
     assert "finiteness is not proved" in document["reason"]
     assert "UNDECIDED" in document["answer"]
     assert [way["signs"] for way in document["ways"]] == [b.sign_text for b in known]
+
+
+def test_lines_look_as_in_pictures(two_vertex):
+    page = view_page(two_vertex)
+    for letter, colour in crease_style.COLOUR.items():
+        assert f"--{letter}: {colour}" in page
+    look = json.loads(re.search(r"^const LOOK = (.*);$", page, re.MULTILINE)[1])
+    style = crease_style.Style.of(100.0)
+    for letter, line in look["letters"].items():
+        assert line["most"] == style.width(letter, 1.0)
+        dash = style.attributes(letter)["stroke_dasharray"]
+        assert " ".join(f"{x:g}" for x in line["dash"]) == (dash or "")
+
+
+def test_a_sheet_without_ways_keeps_the_letters_of_its_file():
+    sheet = view_document("waterbomb")["sheet"]
+    opened = open_sheet("waterbomb")
+    assert sheet["letters"] == "".join(opened.assignment.get(e, "U") for e in opened.sheet.folds)
 
 
 def test_no_name_runs_as_code_or_breaks_the_page():

@@ -29,14 +29,15 @@ function wayFacts(page, way) {
   const noun = page.kind === "branches" ? "branch" : "way to fold";
   const facts = [];
   if (way.status === "proved") facts.push(["good", `This ${noun}: proved`, way.reason]);
+  else if (way.status === "refuted") facts.push(["good", "It starts to fold, and does not fold on: proved", way.reason]);
   else facts.push(["open", `This ${noun}: ${way.status}`, way.reason]);
   if (way.multiplicity > 1) facts.push(["note", `Counted ${way.multiplicity} times`, "as flat vertices count double"]);
   if (way.motion) {
     const drawn = way.motion.said;
-    facts.push(way.motion.proved ? ["good", "The motion drawn: proved", drawn] : ["open", "The motion drawn: not proved", drawn]);
+    facts.push(way.motion.proved ? ["good", "The motion: proved", drawn] : ["open", "The motion: not proved", drawn]);
     facts.push(["note", "It ends", way.motion.ending]);
   } else if (way.why && way.status === "proved") {
-    facts.push(["open", "Not followed", way.why]);
+    facts.push(["open", "No motion is drawn", way.why]);
   }
   return facts;
 }
@@ -44,6 +45,7 @@ function wayFacts(page, way) {
 // How the drawing was read, to be opened: it is the same for every way.
 function reading(lines) {
   const node = item(["note", "", ""]);
+  node.className = "wide";
   const details = document.createElement("details");
   details.append(Object.assign(document.createElement("summary"), { textContent: "How the drawing was read" }));
   for (const line of lines) details.append(Object.assign(document.createElement("small"), { textContent: line }));

@@ -1,6 +1,7 @@
 // The list of ways: those that agree with what is asked for, one of them shown.
 
 import { agreeing, difference, seen } from "./choose.js";
+import { sentence } from "./facts.js";
 
 const NOUNS = { branches: ["branch", "branches"], panels: ["way", "ways"] };
 
@@ -21,12 +22,20 @@ export function createList(page, store) {
     found = agreeing(ways, asks, text);
     const narrowed = asks.size > 0 || text.trim() !== "";
     const total = `${ways.length} ${ways.length === 1 ? one : many}`;
-    count.textContent = narrowed ? `${found.length} of ${total}` : total;
+    count.textContent = narrowed ? `${found.length} of ${total} ${found.length === 1 ? "agrees" : "agree"}` : ways.length ? total : "";
     clear.hidden = !narrowed;
     box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored)));
-    if (!found.length) box.append(paragraph(ways.length ? `No ${one} agrees.` : `No ${one} is listed.`));
+    search.hidden = !ways.length;
+    if (!found.length) box.append(paragraph(ways.length ? nothing() : `Nothing to list. ${sentence(page.answer.split(" - ")[0])}.`));
     settle();
     mark();
+  }
+
+  function nothing() {
+    const { asks } = store.get();
+    const of = page.complete ? `No ${one} of this sheet agrees` : `No ${one} that is listed agrees`;
+    const wish = asks.size ? `with the letters asked of ${asks.size} ${asks.size === 1 ? "fold" : "folds"}` : "with the search";
+    return `${of} ${wish}. "Clear" shows all again.`;
   }
 
   // If what is shown is no longer in the list, the most similar that is.
@@ -98,8 +107,9 @@ function row(way, k, mirrored) {
   const signs = span(side.signs ? "signs" : "signs plain", side.signs ? side.signs.replaceAll("-", "−") : way.name);
   const notes = [];
   if (mirrored) notes.push("mirror image");
-  if (way.status !== "proved") notes.push(way.status);
-  if (way.why) notes.push("not followed");
+  if (way.status === "refuted") notes.push("does not fold on");
+  else if (way.status !== "proved") notes.push(way.status);
+  else if (way.why) notes.push("no motion drawn");
   if (notes.length) signs.append(Object.assign(document.createElement("small"), { textContent: notes.join(", ") }));
   node.append(number, signs, lettersNode(side.letters));
   return node;

@@ -71,7 +71,7 @@ function describe() {
   byId("download").disabled = !shown;
   const waiting = page.served && shown && !shown.motion && !shown.why;
   byId("empty").hidden = Boolean(shown?.motion);
-  byId("empty").textContent = !shown ? sentence(`no motion is drawn: ${page.answer}`) : waiting ? "Following the motion …" : `Not followed: ${shown.why}`;
+  byId("empty").textContent = !shown ? "The sheet lies flat here: there is no motion to show." : waiting ? "Following the motion …" : sentence(`no motion is drawn: ${shown.why}`);
   if (waiting) follow(way);
 }
 
@@ -146,16 +146,24 @@ byId("answer").append(...page.answer.split(/\b(PROVED|UNDECIDED)\b/).map((part) 
   if (part !== "PROVED" && part !== "UNDECIDED") return part.replace(/ - $/, " – ");
   return Object.assign(document.createElement("b"), { textContent: part, className: part === "PROVED" ? "" : "open" });
 }));
-byId("pattern-hint").textContent = !page.ways.length ? "" : page.kind === "branches" ? "Click a vertex or a fold" : "Click a fold";
-byId("pattern-hint").title = "A vertex pops through; of a fold a mountain or a valley is asked for";
-byId("legend").append(...legendItems(page.kind, page.ways.map((way) => way.letters).join("") || "-").map((parts) => {
+const HINT = !page.ways.length ? "Letters of the file" : page.kind === "branches" ? "Click a vertex or a fold" : "Click a fold";
+function hint(text) {
+  byId("pattern-hint").textContent = text || HINT;
+}
+hint("");
+byId("pattern").parentElement.classList.toggle("idle", !page.ways.length);
+const all = (key) => page.ways.map((way) => way[key]).join("");
+byId("legend").append(...legendItems(page.ways.length ? all("letters") : sheet.letters, all("signs"), !page.ways.length).map((parts) => {
   const node = document.createElement("li");
   node.append(...parts);
   return node;
 }));
 
 const transport = createTransport(store);
-createPattern(byId("pattern"), sheet, store, { onVertex: pop });
+createPattern(byId("pattern"), sheet, store, {
+  onVertex: pop, onHint: hint,
+  poppable: (at) => page.served || popped(store.get().ways, store.get().way, store.get().mirrored, at) !== null,
+});
 const list = createList(page, store);
 const radius = flat.reduce((most, _, i) => (i % 3 ? most : Math.max(most, Math.hypot(flat[i], flat[i + 1]))), 1e-12);
 try {

@@ -1,11 +1,12 @@
 // The crease pattern: letters as colours, vertex signs as marks, both to be clicked.
 
-import { NAMES, seen } from "./choose.js";
+import { NAMES, seen, turned } from "./choose.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = 26;
 const MOST_INDICES = 60;
 const ASKED = [undefined, "M", "V"];
+const FILE_NAMES = { M: "mountain in the file", V: "valley in the file", F: "flat in the file", U: "no letter in the file" };
 
 export function svg(tag, attributes = {}, ...children) {
   const node = document.createElementNS(SVG, tag);
@@ -14,10 +15,21 @@ export function svg(tag, attributes = {}, ...children) {
   return node;
 }
 
-export function createPattern(holder, sheet, store, { onVertex }) {
+// A line as pictures draw it (`LOOK` is made from them): `share` of the largest angle, null: not known.
+function drawLine(node, letter, share, scale = 1) {
+  const { width, least, most, dash, cap } = LOOK.letters[letter];
+  const wide = share === null || !"MVU".includes(letter) ? width : least + share * (most - least);
+  node.setAttribute("class", `line ${letter}`);
+  node.setAttribute("stroke-width", (scale * wide).toFixed(2));
+  node.setAttribute("stroke-linecap", cap);
+  node.setAttribute("stroke-dasharray", dash.map((x) => (Math.max(scale, 0.5) * x).toFixed(2)).join(" ") || "none");
+  return node;
+}
+
+export function createPattern(holder, sheet, store, { onVertex, onHint, poppable }) {
   const picture = svg("svg", { role: "group", "aria-label": "Crease pattern" });
   holder.append(picture);
-  let folds = [], vertices = [], place = null;
+  let folds = [], vertices = [], place = null, scale = 1;
 
   function layout() {
     const width = holder.clientWidth, height = holder.clientHeight;
@@ -26,13 +38,15 @@ export function createPattern(holder, sheet, store, { onVertex }) {
     picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const at = sheet.points.map(place);
     const d = (corners) => corners.map((v, k) => `${k ? "L" : "M"}${at[v][0]} ${at[v][1]}`).join("");
-    const size = markSize(sheet, at);
+    const room = roomOf(sheet, at);
+    const size = Math.max(2.5, Math.min(8.5, room / 7));
+    scale = Math.min(Math.max(room / LOOK.full, LOOK.smallest), 1);
     const focus = document.activeElement?.dataset;
     const kept = focus && (focus.fold ? ["fold", focus.fold] : focus.vertex ? ["vertex", focus.vertex] : null);
     folds = sheet.folds.map((edge, k) => foldNode(edge, k, at, d(edge), size));
     vertices = sheet.interior.map((v, k) => vertexNode(v, k, at, size, sheet));
     const faces = svg("path", { class: "face", d: sheet.faces.map((face) => `${d(face)}Z`).join("") });
-    const border = svg("path", { class: "line B", d: sheet.boundary.map(d).join("") });
+    const border = drawLine(svg("path", { d: sheet.boundary.map(d).join("") }), "B", null, scale);
     picture.replaceChildren(
       faces,
       svg("g", { role: "group", "aria-label": "Folds: ask for a mountain or a valley" }, ...folds),
@@ -47,27 +61,28 @@ export function createPattern(holder, sheet, store, { onVertex }) {
   function paint() {
     const { ways, way, mirrored, asks } = store.get();
     const shown = ways[way];
-    const side = shown ? seen(shown, mirrored) : { letters: "", signs: "" };
+    const side = shown ? seen(shown, mirrored) : { letters: sheet.letters, signs: "" };
     const largest = (shown?.angles ?? []).reduce((most, angle) => Math.max(most, Math.abs(angle)), 1e-9);
     folds.forEach((node, k) => {
       const letter = side.letters[k] ?? "U", asked = asks.get(k);
-      const part = shown?.angles.length ? Math.abs(shown.angles[k]) / largest : 0.4;
-      const line = node.querySelector(".line");
-      line.setAttribute("class", `line ${letter}`);
-      line.style.strokeWidth = letter === "F" || letter === "U" ? 1.2 : (1.3 + 2.2 * Math.sqrt(part)).toFixed(2);
+      const part = shown?.angles.length ? Math.abs(shown.angles[k]) / largest : null;
+      drawLine(node.querySelector(".line"), letter, part, scale);
       const badge = node.querySelector(".badge");
       badge.toggleAttribute("hidden", !asked);
       badge.querySelector("text").textContent = asked ?? "";
       badge.querySelector("circle").setAttribute("class", asked ?? "");
       const [i, j] = sheet.folds[k];
       const wish = asked ? `, asked to be a ${NAMES[asked]}` : "";
-      name(node, `Fold ${i}–${j}: ${shown ? NAMES[letter] : "not known"}${wish}`);
+      const next = { M: "valley", V: "either" }[asked] ?? "mountain";
+      const click = !ways.length ? "" : next === "either" ? " Click: no longer ask." : ` Click: ask for a ${next}.`;
+      name(node, `Fold ${i}–${j}: ${shown ? NAMES[letter] : FILE_NAMES[letter]}${wish}.${click}`);
     });
     vertices.forEach((node, k) => {
       const sign = side.signs[k];
       node.querySelector(".mark").replaceWith(mark(sign, Number(node.dataset.size), sheet.foldable.has(sheet.interior[k])));
       const words = { "+": "popped up", "-": "popped down", "0": "flat" };
-      name(node, `Vertex ${sheet.interior[k]}${sign ? `: ${words[sign] ?? "undecided"}` : ""}`);
+      const click = node.classList.contains("still") || !shown ? "" : !poppable(k) ? " No listed branch differs here only." : ` Click: pop it ${sign === "+" ? "down" : "up"}.`;
+      name(node, `Vertex ${sheet.interior[k]}${sign ? `: ${words[sign] ?? "undecided"}` : ""}.${click}`);
     });
   }
 
@@ -86,11 +101,21 @@ export function createPattern(holder, sheet, store, { onVertex }) {
     else onVertex(Number(node.dataset.place));
   }
 
-  picture.addEventListener("click", (event) => act(event.target));
+  // What is under the pointer or has the focus, and what a click does there.
+  function hint({ target }) {
+    onHint(target?.closest?.("[data-fold], [data-vertex]")?.getAttribute("aria-label") ?? "");
+  }
+
+  for (const kind of ["pointerover", "focusin"]) holder.addEventListener(kind, hint);
+  for (const kind of ["pointerleave", "focusout"]) holder.addEventListener(kind, () => hint({}));
+  picture.addEventListener("click", (event) => (act(event.target), hint(event)));
   picture.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
     const nodes = event.target.dataset.fold ? folds : vertices.filter((node) => node.hasAttribute("tabindex"));
-    if (event.key === "Enter" || event.key === " ") act(event.target);
+    if (event.key === "Enter" || event.key === " ") {
+      act(event.target);
+      hint(event);
+    }
     else if (step) roam(nodes, nodes.indexOf(event.target), step);
     else return;
     event.preventDefault();
@@ -117,11 +142,10 @@ function fitted(points, width, height) {
   return ([x, y]) => [left + scale * (x - low[0]), height - top - scale * (y - low[1])].map((c) => Math.round(c * 100) / 100);
 }
 
-// Marks as large as the distances between vertices leave room for.
-function markSize(sheet, at) {
+// Pixels between neighbouring vertices: lines and marks are as large as these leave room for.
+function roomOf(sheet, at) {
   const lengths = sheet.folds.map(([i, j]) => Math.hypot(at[i][0] - at[j][0], at[i][1] - at[j][1])).sort((a, b) => a - b);
-  const short = lengths[Math.floor(lengths.length / 5)] ?? 100;
-  return Math.max(2.5, Math.min(8.5, short / 7));
+  return lengths[Math.floor(lengths.length / 5)] ?? 100;
 }
 
 function foldNode([i, j], k, at, d, size) {
@@ -167,8 +191,8 @@ function widestGap(angles) {
 export function mark(sign, size, foldable = true) {
   const s = size;
   const paths = {
-    "+": `M0 ${-s}L${s} ${0.75 * s}H${-s}Z`,
-    "-": `M0 ${s}L${s} ${-0.75 * s}H${-s}Z`,
+    "+": `M0 ${-s}L${0.866 * s} ${0.5 * s}H${-0.866 * s}Z`,
+    "-": `M0 ${s}L${0.866 * s} ${-0.5 * s}H${-0.866 * s}Z`,
   };
   const r = sign === undefined || !foldable ? 0.4 * s : 0.75 * s;
   const level = !(sign in paths) && sign !== undefined && foldable;
@@ -181,13 +205,15 @@ function name(node, text) {
   node.querySelector("title").textContent = text;
 }
 
-export function legendItems(kind, letters) {
-  const line = (letter, text) => [svg("svg", { "aria-hidden": "true" }, svg("path", { class: `line ${letter}`, d: "M1 5H21" })), text];
+// `letters` and `signs`: all that are shown; `letters` of the file where there are no ways to fold.
+export function legendItems(letters, signs, ofFile) {
+  const line = (letter, text) => [svg("svg", { "aria-hidden": "true" }, drawLine(svg("path", { d: "M0 5H24" }), letter, null)), text];
   const point = (sign, text) => [svg("svg", { "aria-hidden": "true", class: "small", viewBox: "-6 -6 12 12" }, mark(sign, 5)), text];
-  if (letters === "-") return [line("U", "fold")];
-  const items = [line("M", "mountain"), line("V", "valley")];
-  if (letters.includes("F")) items.push(line("F", "flat"));
-  if (letters.includes("U")) items.push(line("U", "undecided"));
-  if (kind === "branches") items.push(point("+", "vertex up"), point("-", "vertex down"));
-  return items;
+  const names = { M: "mountain", V: "valley", F: "flat", U: ofFile ? "no letter" : "undecided" };
+  const marks = { "+": "vertex up", "-": "vertex down", "0": "vertex flat" };
+  const seenBoth = (text) => text + turned(text);  // a mirror image is one click away
+  return [
+    ...Object.keys(names).filter((letter) => seenBoth(letters).includes(letter)).map((letter) => line(letter, names[letter])),
+    ...Object.keys(marks).filter((sign) => seenBoth(signs).includes(sign)).map((sign) => point(sign, marks[sign])),
+  ];
 }

@@ -3,6 +3,7 @@
 const UPPER = 0x56b4e9, LOWER = 0xf0e442;  // the side that is +z in the flat sheet, and the other
 const EDGE = 0x1d1c1a;
 const AZIMUTH = -62, ELEVATION = 34, VIEW = 30;
+const TURNS = [0, 18, -18, 36, -36, 54, 72, 90, 108, 126, 144, 162, 180, 198, 216, 234, 252, 270, 288];
 const FILLED = 0.9;  // of the picture
 
 export function createScene(canvas, sheet, flat, radius) {
@@ -27,11 +28,13 @@ export function createScene(canvas, sheet, flat, radius) {
   const inner = lines(sheet.folds, 1.3), outer = lines(sheet.boundary, 2.4);
   scene.add(inner.object, outer.object);
 
-  scene.add(new THREE.HemisphereLight(0xffffff, 0xe2ddd3, 1.75));
-  const lamp = new THREE.DirectionalLight(0xffffff, 1.4);
-  lamp.position.set(0.35, -0.5, 0.79);
-  const torch = new THREE.DirectionalLight(0xffffff, 0.95);  // so that no side is dark
-  scene.add(lamp, torch);
+  // Fixed to the sheet, so that faces of different directions differ and keep their shade.
+  scene.add(new THREE.HemisphereLight(0xffffff, 0xffffff, 1.1));
+  for (const [strength, ...from] of [[2.1, -0.55, -0.35, 0.76], [0.75, 0.8, 0.1, -0.6], [0.5, 0.2, 0.9, 0.3]]) {
+    const lamp = new THREE.DirectionalLight(0xffffff, strength);
+    lamp.position.set(...from);
+    scene.add(lamp);
+  }
 
   // The border in the colour of text, so that it is seen on light and on dark ground.
   const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -57,7 +60,7 @@ export function createScene(canvas, sheet, flat, radius) {
 
   // From where a picture of a fold is usually seen, with all of these shapes in the picture.
   function home() {
-    const a = AZIMUTH * (Math.PI / 180), e = ELEVATION * (Math.PI / 180);
+    const e = ELEVATION * (Math.PI / 180), a = azimuth(e);
     const towards = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
     const right = [-Math.sin(a), Math.cos(a), 0];
     const up = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
@@ -76,6 +79,25 @@ export function createScene(canvas, sheet, flat, radius) {
     controls.target.set(...[0, 1, 2].map((c) => x * right[c] + y * up[c]));
     place(a, Math.PI / 2 - e, distance);
     camera.userData.touched = false;
+  }
+
+  // Of directions round the sheet the one from which much of it is seen, and of both its sides.
+  function azimuth(e) {
+    const shape = fitted[Math.min(2, fitted.length - 1)];
+    const normals = sheet.triangles.map((corners) => normalOf(shape, corners));
+    const scores = TURNS.map((turn) => {
+      const a = (AZIMUTH + turn) * (Math.PI / 180);
+      const towards = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
+      let upper = 0, lower = 0;
+      for (const n of normals) {
+        const part = n[0] * towards[0] + n[1] * towards[1] + n[2] * towards[2];
+        if (part > 0) upper += part;
+        else lower -= part;
+      }
+      return upper + lower + 0.8 * Math.min(upper, lower);
+    });
+    const best = scores.reduce((found, score, k) => (score > 1.04 * scores[found] ? k : found), 0);
+    return (AZIMUTH + TURNS[best]) * (Math.PI / 180);
   }
 
   // The camera on a sphere round its target.
@@ -126,7 +148,6 @@ export function createScene(canvas, sheet, flat, radius) {
   function draw() {
     wanted = false;
     if (controls.enabled) controls.update();
-    torch.position.copy(camera.position);
     renderer.render(scene, camera);
     if (!drawn) performance.mark("first picture");
     drawn += 1;
@@ -138,6 +159,13 @@ export function createScene(canvas, sheet, flat, radius) {
   new ResizeObserver(resize).observe(canvas.parentElement);
   resize();
   return { show, move, home, fit, drawn: () => drawn };
+}
+
+// At right angles to a triangle, as long as twice its area.
+function normalOf(shape, [a, b, c]) {
+  const side = (v) => [0, 1, 2].map((k) => shape[3 * v + k] - shape[3 * a + k]);
+  const [[x, y, z], [u, v, w]] = [side(b), side(c)];
+  return [y * w - z * v, z * u - x * w, x * v - y * u];
 }
 
 // Right, up and towards the eye, for every vertex.

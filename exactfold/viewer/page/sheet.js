@@ -13,6 +13,7 @@ export function readSheet(json) {
     faces: fold.faces_vertices,
     triangles: json.triangles,
     folds: json.folds,
+    letters: json.letters,
     boundary,
     interior: json.interior,
     foldable: new Set(json.foldable),
