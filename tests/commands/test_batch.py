@@ -202,7 +202,9 @@ def test_the_line_of_progress_tells_of_what_is_not_proved(
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "sent", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
+)
 def test_an_interruption_leaves_a_file_that_goes_on(tmp_path: Path, sent: signal.Signals) -> None:
     """No worker is left behind, although one is in the middle of a long count."""
     paths, out = squares(tmp_path, 3), tmp_path / "o.jsonl"
@@ -215,7 +217,7 @@ def test_an_interruption_leaves_a_file_that_goes_on(tmp_path: Path, sent: signal
         assert started.poll() is None
         time.sleep(0.05)
     started.send_signal(sent)
-    _, errors = started.communicate(timeout=10)  # also waits for every worker's end of the pipe
+    _, errors = started.communicate(timeout=60)  # also waits for every worker's end of the pipe
     assert started.returncode == INTERRUPTED
     assert errors == "exactfold: interrupted; the same command goes on\n"
     kept = out.read_bytes()

@@ -23,7 +23,7 @@ from exactfold.schemas import VERSIONS
 
 LARGE = ("hypar-2", "random-8")
 """Too large for the exact engine within a test."""
-SOME = [pytest.param(x, marks=pytest.mark.slow) if x == "hypar-2" else x for x in SHEETS]
+SOME = [pytest.param(x, marks=pytest.mark.slow) if x in LARGE else x for x in SHEETS]
 
 
 def valid(data: dict[str, Any], kind: str) -> dict[str, Any]:

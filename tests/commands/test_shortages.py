@@ -128,6 +128,7 @@ def test_a_library_that_ends_the_process_is_seen(files: Path, tmp_path: Path, co
     assert done.stderr == "exactfold: ended without an answer: not enough memory\n"
 
 
+@pytest.mark.slow
 def test_answers_and_errors_pass_through_the_guard(files: Path, tmp_path: Path) -> None:
     write_fold(scrambled(5, HEXAGON, 4, loose=True), tmp_path / "open.fold")
     (files / "bad.json").write_text(

@@ -239,7 +239,7 @@ if __name__ == "__main__":
 @pytest.mark.parametrize(
     ("sent", "engine"),
     [
-        ("group", "--workers 2"),
+        pytest.param("group", "--workers 2", marks=pytest.mark.slow),
         ("process", "--workers 2"),
         ("lost", "--workers 1"),
         pytest.param("group", "--dask local", marks=pytest.mark.slow),

@@ -75,7 +75,7 @@ def test_json_has_the_warning_that_is_said(
     assert json.loads(run("info", example_path("flat-vertex"), "--json").stdout)["warnings"] == []
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("jobs", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_a_batch_names_the_patterns_with_a_warning(
     moved: Path, monkeypatch: pytest.MonkeyPatch, jobs: int
 ) -> None:

@@ -52,7 +52,7 @@ def half_branch(entry, pattern):
     "pattern",
     [
         random_square(1, seed=0),
-        random_square(2, seed=3),
+        pytest.param(random_square(2, seed=3), marks=pytest.mark.slow),
         pytest.param(random_square(3, seed=2), marks=pytest.mark.slow),
         pytest.param(nested_triangles(), marks=pytest.mark.slow),
     ],
