@@ -234,7 +234,7 @@ def discriminant_of_rank_two(matrix):
     return d.numerator * d.denominator
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_no_vertex_of_degree_four_symmetric_group():
     """The icosahedron without an edge: all degrees 5, all branches conjugate, none in radicals."""
     pattern = random_square(8, seed=147)

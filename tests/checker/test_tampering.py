@@ -86,8 +86,13 @@ def test_changed_evidence_is_rejected_or_proves_the_same(name):
     assert outcomes[True] > 0 or KINDS[name] == "single vertex"
 
 
-@pytest.mark.slow
-@names
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(x, marks=getattr(pytest.mark, "slow" if x == "flat vertex" else "survey"))
+        for x in SHEETS
+    ],
+)
 def test_values_of_other_types_are_rejected_or_harmless(name):
     truth = statement(document(name)["claims"])
     for _, changed in tampered(name, ["pattern", "claims", "evidence"], type_changes):

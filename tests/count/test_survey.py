@@ -7,8 +7,13 @@ import pytest
 from exactfold import PROVED, certificate, checker, count_branches, random_square
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("interior", range(2, 9))
+@pytest.mark.parametrize(
+    "interior",
+    [
+        pytest.param(k, marks=getattr(pytest.mark, "slow" if k < 7 else "survey"))
+        for k in range(2, 9)
+    ],
+)
 def test_hundred_random_squares_are_proved(interior: int) -> None:
     for seed in range(100):
         pattern = random_square(interior, seed)

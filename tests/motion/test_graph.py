@@ -156,8 +156,13 @@ def test_the_arcs_of_a_loop_are_as_long_as_the_loop(graph):
     assert high - low <= sum(arc.length[1] - arc.length[0] for arc in parts) < Fraction(1, 1000)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("number", "seed"), [(4, 75), (5, 0)])
+@pytest.mark.parametrize(
+    ("number", "seed"),
+    [
+        pytest.param(4, 75, marks=pytest.mark.slow),
+        pytest.param(5, 0, marks=pytest.mark.survey),
+    ],
+)
 def test_the_whole_component_of_the_flat_state(number, seed):
     """Arcs followed from nodes are those of the loops; each node of f stars has 2^(f + 1) sides."""
     found = find_loops(random_square(number, seed=seed))

@@ -54,7 +54,7 @@ def half_branch(entry, pattern):
         random_square(1, seed=0),
         pytest.param(random_square(2, seed=3), marks=pytest.mark.slow),
         pytest.param(random_square(3, seed=2), marks=pytest.mark.slow),
-        pytest.param(nested_triangles(), marks=pytest.mark.slow),
+        pytest.param(nested_triangles(), marks=pytest.mark.survey),
     ],
     ids=["one", "two", "three", "triangles"],
 )

@@ -206,7 +206,7 @@ def test_what_is_too_large_for_the_roundings_is_never_apart():
         assert len(not_separated(pairs, swept, Open.all_of(pairs)).apart) == left
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_moving_triangles_are_clear_until_they_meet():
     rng = np.random.default_rng(8)
     pairs = Pairs([(0, 1)], [], [(0, 1, 2), (3, 4, 5)])

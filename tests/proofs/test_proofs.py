@@ -50,8 +50,18 @@ def test_every_proof_holds_and_the_pages_show_it() -> None:
         assert (folder / name).read_text(encoding="utf-8") == text
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", MODULES)
+LONGEST = {*LONG, "curvature_expansion", "discussion_counts", "hub_balance", "inertia"}
+LONGEST |= {"multiplicity", "panels", "wheel_stress"}
+"""Those whose changes take more than five seconds to try: by hand, with `-m survey`."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(x, marks=getattr(pytest.mark, "survey" if x in LONGEST else "slow"))
+        for x in MODULES
+    ],
+)
 def test_every_change_is_refused_and_every_step_refuses_one(name: str) -> None:
     module, proof = importlib.import_module(f"proofs.{name}"), load(name)
     assert proof.changes, "a proof that cannot be broken proves nothing"
