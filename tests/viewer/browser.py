@@ -64,6 +64,7 @@ class Browser:
             deviceScaleFactor=1,
             mobile=width < 500,
         )
+        self.command("Emulation.setFocusEmulationEnabled", enabled=True)  # as a window in front
         features = {
             "prefers-color-scheme": "dark" if dark else "light",
             "prefers-reduced-motion": "reduce" if calm else "no-preference",
@@ -121,6 +122,10 @@ class Browser:
             "(() => { const slider = document.getElementById('time');"
             f" slider.value = {value}; slider.dispatchEvent(new Event('input')) }})()"
         )
+
+    def says(self, selector, text):
+        """Wait until an element has this text."""
+        self.until(f"document.querySelector({selector!r}).textContent === {text!r}", 20)
 
     def text(self, selector):
         return self.run(f"document.querySelector({selector!r}).textContent")

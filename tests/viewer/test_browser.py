@@ -136,12 +136,12 @@ def test_the_hint_says_what_a_click_does(browser, pages):
     vertex, (i, j) = count.pattern.interior[1], count.pattern.folds[-1]
     browser.run(f"document.querySelector('[data-vertex=\"{vertex}\"]').focus()")
     way, back = ("down", "up") if signs[1] == "-" else ("up", "down")
-    assert browser.text("#pattern-hint") == f"Vertex {vertex}: popped {way}. Click: pop it {back}."
+    browser.says("#pattern-hint", f"Vertex {vertex}: popped {way}. Click: pop it {back}.")
     browser.run(f"document.querySelector('[data-fold=\"{i}-{j}\"]').focus()")
     name = {"M": "mountain", "V": "valley"}[letters[-1]]
-    assert browser.text("#pattern-hint") == (f"Fold {i}–{j}: {name}. Click: ask for a mountain.")
+    browser.says("#pattern-hint", f"Fold {i}–{j}: {name}. Click: ask for a mountain.")
     browser.run("document.activeElement.blur()")
-    assert browser.text("#pattern-hint") == "Click a vertex or a fold"
+    browser.says("#pattern-hint", "Click a vertex or a fold")
 
 
 def test_lines_have_the_colours_of_pictures(browser, pages):
