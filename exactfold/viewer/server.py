@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 import threading
 from collections.abc import Sequence
 from http import HTTPStatus
@@ -81,6 +82,11 @@ class ViewServer(ThreadingHTTPServer):
     def page(self) -> bytes:
         """The page."""
         return self._page
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Say nothing of a browser that left before its answer ended; of anything else, say it."""
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
 
     def motion(self, number: int) -> dict[str, Any]:
         """The motion of the way with a number, from 0; raises `UsageError` if there is none."""

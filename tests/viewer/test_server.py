@@ -37,6 +37,18 @@ def test_it_listens_on_the_loopback_address_only(server):
     assert server.address == f"http://127.0.0.1:{server.server_port}/"
 
 
+@pytest.mark.parametrize(
+    ("failure", "said"),
+    [(ConnectionResetError(), False), (BrokenPipeError(), False), (ValueError("a defect"), True)],
+)
+def test_a_browser_that_leaves_early_is_no_failure(server, capfd, failure, said):
+    try:
+        raise failure
+    except type(failure):
+        server.handle_error(None, ("127.0.0.1", 0))
+    assert (type(failure).__name__ in capfd.readouterr().err) == said
+
+
 def test_the_page_lists_branches_without_motions(server):
     status, body = get(server, "/")
     assert status == 200
