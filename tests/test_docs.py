@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from running import run
 
 import exactfold
 from exactfold.cli import app
@@ -53,20 +54,16 @@ def shows(expected: str, printed: str) -> bool:
     [page for page in PAGES if str(page.relative_to(ROOT)) not in IN_ORDER],
     ids=lambda page: page.name,
 )
-def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> None:
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "80"}
+def test_console_examples_print_what_is_shown(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
     for command, expected in examples(page):
         words = shlex.split(command)
         assert words[0] == "exactfold"
-        run = subprocess.run(
-            [sys.executable, "-c", "from exactfold.cli import main; main()", *words[1:]],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert shows(expected, run.stdout), f"{command}\n{run.stdout}{run.stderr}"
+        done = run(*words[1:])
+        assert shows(expected, done.stdout), f"{command}\n{done.stdout}{done.stderr}"
 
 
 READ = re.compile(r"exactfold: (read zigzags: |coordinates in |12 vertices inside of lines: )")
@@ -201,6 +198,12 @@ def script(name: str) -> dict[str, Any]:
     return runpy.run_path(str(ROOT / "docs" / f"{name}.py"))
 
 
+@cache
+def written_pages() -> dict[str, str]:
+    """The pages that are written with the site."""
+    return script("make_pages")["pages"]()
+
+
 def test_every_public_name_is_shown_once() -> None:
     """In the pages of names: those of the package, and those of every room in the stub."""
     rooms, names, homes = (script("make_pages")[key] for key in ("rooms", "names", "homes"))
@@ -217,7 +220,7 @@ def test_every_public_name_is_shown_once() -> None:
 
 
 def test_every_command_and_every_option_is_shown() -> None:
-    pages, commands = script("make_pages")["pages"](), script("make_pages")["commands"]()
+    pages, commands = written_pages(), script("make_pages")["commands"]()
     parts = re.split(r"(?m)^## exactfold ", pages["commands.md"])[1:]
     sections = {part.partition("\n")[0]: part for part in parts}
     assert [*sections] == [*commands]
@@ -229,7 +232,7 @@ def test_every_command_and_every_option_is_shown() -> None:
 
 
 def test_every_schema_is_shown() -> None:
-    page = script("make_pages")["pages"]()["schemas.md"]
+    page = written_pages()["schemas.md"]
     assert re.findall(r"(?m)^## (.+)$", page) == list(VERSIONS)
     shown = [json.loads(block) for block in re.findall(r"```json\n(.*?)```", page, re.DOTALL)]
     assert shown == [schema(name) for name in VERSIONS]
@@ -243,7 +246,7 @@ def trees(text: str) -> list[str]:
 
 
 def test_the_navigation_lists_every_page_once() -> None:
-    written = script("make_pages")["pages"]()
+    written = written_pages()
     listed = trees((ROOT / "docs" / "index.md").read_text(encoding="utf-8"))
     listed += [f"generated/api/{name}" for name in trees(written["api/index.md"])]
     pages = [page.stem for page in (ROOT / "docs").glob("*.md") if page.stem != "index"]
@@ -262,7 +265,7 @@ def anchors(text: str) -> set[str]:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_links_lead_somewhere(page: Path) -> None:
     """Relative links to files that are there or are written with the site, and their anchors."""
-    written = {f"docs/generated/{k}": v for k, v in script("make_pages")["pages"]().items()}
+    written = {f"docs/generated/{k}": v for k, v in written_pages().items()}
     text = re.sub(r"(?s)```.*?```|`[^`\n]*`", "", page.read_text(encoding="utf-8"))
     for target in re.findall(r"\]\((?!https?:)([^)\s]+)\)", text):
         path, _, anchor = target.partition("#")

@@ -17,7 +17,6 @@ from .panel_reduction import BITS, enclosed, reduced, rest_of
 from .panel_sheet import Edge
 from .panel_spaces import Space, Spaces
 from .reading import require
-from .towers import Number
 
 SHIFTS = 40
 DIRECTIONS = 24
@@ -91,10 +90,10 @@ def _rank(squares: Sequence[tuple[Interval, Place]]) -> int:
 
 def _directions(spaces: Spaces, v: int, room: Sequence[Place]) -> Iterator[Place]:
     """The vectors of a basis where the form is not 0, then such sums and differences of two."""
-    pairs = list(combinations([u for u in room if spaces.gradient(v, u, _enclosed)], 2))
+    pairs = list(combinations([u for u in room if spaces.gradient(v, u, BITS)], 2))
     sums = (_plus(a, _whole(sign), b) for a, b in pairs for sign in (1, -1))
     for u in chain(room, sums):
-        if _value(spaces.gradient(v, u, _enclosed), u).sign():
+        if _value(spaces.gradient(v, u, BITS), u).sign():
             yield u
 
 
@@ -106,7 +105,7 @@ def _sides(
     The lines go through the places, each shifted in the space that the forms before do not depend
     on, so that it stays a zero of them: as it is, and after steps to where D is critical.
     """
-    slopes = spaces.gradient(v, u, _enclosed)
+    slopes = spaces.gradient(v, u, BITS)
     last = _value(slopes, u)
     found: list[Place] = []
     below = False
@@ -116,7 +115,7 @@ def _sides(
             for k, vector in enumerate(room):
                 w = _plus(w, _shift(number, k), vector)
             middle = _value(slopes, w)
-            first = _value(spaces.gradient(v, w, _enclosed), w)
+            first = _value(spaces.gradient(v, w, BITS), w)
             square = middle * middle - first * last
             if square.sign() > 0 and len(found) < KEPT:
                 found.append(_plus(w, (square.root() - middle) / last, u))
@@ -132,9 +131,9 @@ def _whole(value: int) -> Interval:
 
 def _centred(spaces: Spaces, v: int, w: Place, room: Sequence[Place], u: Place) -> Place:
     """A place shifted to where the discriminant is critical, nearly: along each vector in turn."""
-    slopes = spaces.gradient(v, u, _enclosed)
+    slopes = spaces.gradient(v, u, BITS)
     last = _value(slopes, u)
-    bends = [spaces.gradient(v, b, _enclosed) for b in room]
+    bends = [spaces.gradient(v, b, BITS) for b in room]
     for _ in range(SWEEPS):
         for b, bend in zip(room, bends, strict=True):
             across = _value(slopes, b)
@@ -150,10 +149,6 @@ def _shift(number: int, k: int) -> Interval:
     """The weight of a vector of a basis in one of the shifts, from small ones to large ones."""
     weight = pow(31 * number + k + 2, 5, 101) % 7 - 3
     return Interval.of(weight * Fraction(8) ** (number % 5 - 1), BITS)
-
-
-def _enclosed(value: Number) -> Interval:
-    return value.enclosed(BITS)
 
 
 def _value(weights: Place, w: Place) -> Interval:

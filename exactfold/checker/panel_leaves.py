@@ -194,7 +194,7 @@ def _rank(spaces: Spaces, place: Place) -> int:
     basis = [enclosed(motion) for motion in spaces.first_order]
     rows = []
     for v in spaces.near:
-        weights = spaces.gradient(v, place, lambda x: x.enclosed(BITS))
+        weights = spaces.gradient(v, place, BITS)
         row = {}
         for k, motion in enumerate(basis):
             terms = (weights[fold] * motion[fold] for fold in weights.keys() & motion.keys())

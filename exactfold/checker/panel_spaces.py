@@ -8,7 +8,7 @@ several are left, `panel_cones` is to show that they are one component.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -76,7 +76,7 @@ class Spaces:
         self, sheet: PanelSheet, near: Mapping[int, list[int]], work: Work | None = None
     ) -> None:
         self.sheet, self.near, self.work = sheet, near, work or Work()
-        self._known: dict[int, list[tuple[Edge, Edge, Number]]] = {}
+        self._known: dict[tuple[int, int | None], list[tuple[Edge, Edge, Any]]] = {}
         self.first_order = self._first_order()
 
     def leaves(self) -> list[Leaf]:
@@ -206,7 +206,7 @@ class Spaces:
 
     def squares(self, v: int, space: Space) -> Squares:
         """The form of a vertex as sum d_k l_k^2, with the values of the l_k on the basis."""
-        gradients = [self.gradient(v, motion, lambda x: x) for motion in space]
+        gradients = [self.gradient(v, motion) for motion in space]
         work = [[self._value(weights, motion) for motion in space] for weights in gradients]
         found: Squares = []
         while True:
@@ -228,27 +228,30 @@ class Spaces:
                 for row, a in zip(work, values, strict=True)
             ]
 
-    def gradient(self, v: int, motion: Vector, of: Callable[[Number], Any]) -> dict[Edge, Any]:
-        """The derivatives of sum_{k<j} w_k w_j [d_k, d_j] at a motion; `of` converts numbers."""
+    def gradient(self, v: int, motion: Vector, bits: int | None = None) -> dict[Edge, Any]:
+        """The derivatives of sum_{k<j} w_k w_j [d_k, d_j] at a motion of numbers, or intervals."""
         found: dict[Edge, Any] = {}
-        for start, end, bracket in self._brackets(v):
+        for start, end, bracket in self._brackets(v, bits):
             for fold, other in ((start, end), (end, start)):
                 if other in motion:
                     self.work.count(1, motion[other])
-                    term = of(bracket) * motion[other]
+                    term = bracket * motion[other]
                     found[fold] = found[fold] + term if fold in found else term
         return found
 
     def form(self, v: int, a: Motion, b: Motion) -> Number:
         """The bilinear form whose square is twice sum_{k<j} w_k w_j [d_k, d_j]."""
-        return self._value(self.gradient(v, a, lambda x: x), b)
+        return self._value(self.gradient(v, a), b)
 
-    def _brackets(self, v: int) -> list[tuple[Edge, Edge, Number]]:
-        if v not in self._known:
+    def _brackets(self, v: int, bits: int | None) -> list[tuple[Edge, Edge, Any]]:
+        if (v, bits) not in self._known:
             spokes = [(pair(v, u), self.sheet.vector(v, u)) for u in self.near[v]]
             pairs = combinations(spokes, 2)
-            self._known[v] = [(f, g, cross(c, d)) for (f, c), (g, d) in pairs]
-        return self._known[v]
+            found: list[tuple[Edge, Edge, Any]] = [(f, g, cross(c, d)) for (f, c), (g, d) in pairs]
+            if bits is not None:
+                found = [(f, g, bracket.enclosed(bits)) for f, g, bracket in found]
+            self._known[v, bits] = found
+        return self._known[v, bits]
 
     def _factors(self, products: Sequence[Squares], space: Space) -> Iterator[list[Number]]:
         """d l^2 + e m^2, signs apart, is d (l - r m)(l + r m) with r^2 = -e / d.

@@ -116,20 +116,19 @@ class Sheet:
         spoke = {j: (self.points[j][0] - x, self.points[j][1] - y) for j in ring}
         form: Form = {}
 
-        def add(
-            i: int, j: int, weight: Fraction
-        ) -> None:  # weight * x_i * x_j, with x_i = h_i - h_v
-            for a, s in ((i, 1), (vertex, -1)):
-                for b, t in ((j, 1), (vertex, -1)):
-                    form[a, b] = form.get((a, b), 0) + weight * s * t / 2
-                    form[b, a] = form.get((b, a), 0) + weight * s * t / 2
+        def add(i: int, j: int, half: Fraction) -> None:
+            """Twice the half of x_i * x_j, with x_i = h_i - h_v: four products of heights."""
+            for a, b, weight in ((i, j, half), (i, vertex, -half), (vertex, j, -half)):
+                form[a, b] = form.get((a, b), 0) + weight
+                form[b, a] = form.get((b, a), 0) + weight
+            form[vertex, vertex] = form.get((vertex, vertex), 0) + 2 * half
 
         for i, j in zip(ring, ring[1:] + ring[:1], strict=True):
             (ax, ay), (bx, by) = spoke[i], spoke[j]
             c, s = Fraction(ax * by - ay * bx), ax * bx + ay * by
-            add(i, j, 1 / c)
-            add(i, i, -s / (2 * c) / (ax * ax + ay * ay))
-            add(j, j, -s / (2 * c) / (bx * bx + by * by))
+            add(i, j, 1 / (2 * c))
+            add(i, i, -s / (4 * c * (ax * ax + ay * ay)))
+            add(j, j, -s / (4 * c * (bx * bx + by * by)))
         return form
 
     def sign_of_vertex(self, vertex: int) -> dict[int, Fraction]:

@@ -39,7 +39,7 @@ def test_the_motion_is_a_regular_zero_of_all_forms(pattern: PanelPattern) -> Non
     assert place is not None
     derivatives = []
     for v in found.near:
-        slopes = found.gradient(v, place, lambda x: x.enclosed(BITS))
+        slopes = found.gradient(v, place, BITS)
         value = total(slopes, place)
         assert value.low <= 0 <= value.high
         assert value.high - value.low < 1 << 60  # of 2^256
