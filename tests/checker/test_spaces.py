@@ -121,7 +121,7 @@ def test_the_point_of_a_cone_is_on_it() -> None:
             assert place is not None
             assert found.form(at, plain, plain).sign() != 0
             assert inside([plain], part)
-            slopes = found.gradient(at, place, lambda x: x.enclosed(BITS))
+            slopes = found.gradient(at, place, BITS)
             terms = (slopes[e] * place[e] for e in slopes.keys() & place.keys())
             value = sum(terms, start=Interval(0, 0, BITS))
             assert value.low <= 0 <= value.high

@@ -4,7 +4,7 @@ import copy
 import pickle
 import random
 from fractions import Fraction
-from itertools import combinations, pairwise, product
+from itertools import combinations, product
 from math import acos, cos, inf, pi, radians, sin, sqrt, tan
 
 import numpy as np
@@ -109,7 +109,7 @@ def checked(motion):
 
 def newell(corners):
     """The unit normal of a polygon in space."""
-    total = sum(np.cross(a, b) for a, b in pairwise([*corners, corners[0]]))
+    total = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
     return total / np.linalg.norm(total)
 
 
