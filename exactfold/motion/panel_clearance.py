@@ -14,10 +14,11 @@ from exactfold.arrays import FloatArray, IndexArray
 from exactfold.exact.surds import ball
 from exactfold.modes.stars import dot
 from exactfold.motion.events import CONTACT, FLAT_FOLD, Event
+from exactfold.motion.face_pairs import AnyPairs, Open
 from exactfold.motion.panel_contacts import PanelContacts
 from exactfold.motion.panel_motion import PanelMotion
 from exactfold.motion.panel_pieces import PanelPieces
-from exactfold.motion.separation import AnyPairs, Open, Swept, clear_until, through
+from exactfold.motion.separation import Swept, clear_until, through
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 Panel = tuple[int, ...]
