@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
 from exactfold.arrays import FloatArray, IndexArray
 from exactfold.motion.angles import fold_angles_of
 from exactfold.motion.curve import LostCurveError, Piece, expansion, orientation_at, piece_of
 from exactfold.motion.framework import Framework
+from exactfold.motion.zeros import zero_of
 
 _BISECTIONS = 50
 _PIECES = 12
@@ -44,7 +44,7 @@ def flat_star_in(framework: Framework, piece: Piece) -> tuple[float, float] | No
         def angle(s: float, hinge: IndexArray = hinge) -> float:
             return float(fold_angles_of(framework.positions(piece.at(s)), hinge)[0])
 
-        s = float(brentq(angle, 0.0, piece.reach, xtol=1e-15))
+        s = zero_of(angle, 0.0, piece.reach)
         star = fold_angles_of(framework.positions(piece.at(s)), framework.hinges[at])
         if np.abs(star).max() < _EXACTLY_FLAT:
             return s, s

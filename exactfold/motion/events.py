@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
 from exactfold.arrays import FloatArray
 from exactfold.motion.angles import angle_rates, fold_angles_of
@@ -14,6 +13,7 @@ from exactfold.motion.crossing_curves import crossing_in, flat_star_in, flat_ver
 from exactfold.motion.crossings import Crossings
 from exactfold.motion.curve import Piece
 from exactfold.motion.framework import Framework
+from exactfold.motion.zeros import least_of, zero_of
 from exactfold.pattern.crease_pattern import Edge, Triangle
 
 CONTACT, FLAT_FOLD, TURNING = "contact", "flat-fold", "turning"
@@ -187,10 +187,9 @@ class Watch:
 
         # The polynomial is good a little beyond its piece: near the flat sheet pieces are short.
         ends = grid[max(k - 1, 0)], grid[k + 1] if k < _SAMPLES else 2.5 * piece.reach
-        least = minimize_scalar(bend, bounds=ends, method="bounded", options={"xatol": 1e-13})
-        if least.fun > _FLAT:
+        s, least = least_of(bend, *ends, within=1e-13)
+        if least > _FLAT:
             return []
-        s = float(least.x)
         return [self._event(piece, RETURN, s, s)]
 
     def _contacts(
@@ -239,6 +238,6 @@ def _bracket(function: Callable[[float], float], low: float, high: float) -> tup
     if at_low == 0 or at_high == 0:
         s = low if at_low == 0 else high
         return s, s
-    s = float(brentq(function, low, high, xtol=1e-15, rtol=1e-14))
+    s = zero_of(function, low, high)
     gap = 1e-12 * (high - low)
     return max(low, s - gap), min(high, s + gap)

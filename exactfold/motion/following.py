@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time as clock
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import islice
 from math import isfinite, radians
 
 import numpy as np
-from scipy.optimize import brentq
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
@@ -28,6 +28,7 @@ from exactfold.motion.events import (
 from exactfold.motion.framework import Framework
 from exactfold.motion.motion import Motion, angles_at, in_space
 from exactfold.motion.start import Start
+from exactfold.motion.zeros import zero_of
 from exactfold.pattern.crease_pattern import Edge, Triangle
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
@@ -239,10 +240,10 @@ def landing(framework: Framework, piece: Piece) -> Piece | None:
     goal, held = x[start.held], start.held
     if abs(leaving.at(leaving.reach)[held]) < abs(goal):
         return None
-    t = brentq(lambda t: leaving.at(t)[held] - goal, 0.0, leaving.reach, xtol=1e-15)
+    t = zero_of(lambda t: leaving.at(t)[held] - goal, 0.0, leaving.reach)
     if np.max(np.abs(leaving.at(t) - x)) > 1e-8:
         return None
-    return leaving.turned(float(t), piece.time)
+    return leaving.turned(t, piece.time)
 
 
 def _at_equal_angles(problem: Problem, curve: Curve, by: Edge, frames: int) -> FloatArray:
@@ -264,11 +265,14 @@ def _at_equal_angles(problem: Problem, curve: Curve, by: Edge, frames: int) -> F
             f"fold {by[0]}-{by[1]} turns back at time {coarse[back]:.4g}: its angle does not name "
             "the frames; choose another fold, or stop earlier"
         )
+
+    def beyond(time: float, goal: float) -> float:
+        return float(angles(np.array([time]))[0]) - goal
+
     found = [0.0]
     for goal in np.linspace(0.0, values[-1], frames)[1:-1]:
         k = int(np.searchsorted(np.abs(values), abs(goal))) - 1
-        ends = coarse[k], coarse[k + 1]
-        found.append(float(brentq(lambda t, g=goal: angles(np.array([t]))[0] - g, *ends)))
+        found.append(zero_of(partial(beyond, goal=goal), coarse[k], coarse[k + 1]))
     return np.array([*found, coarse[-1]])
 
 

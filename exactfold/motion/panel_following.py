@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Mapping, Sequence
+from functools import partial
 from math import isfinite, pi, radians
 
 import numpy as np
-from scipy.optimize import brentq
 
 from exactfold.arrays import BoolArray, FloatArray
 from exactfold.errors import NotFollowedError, UsageError
@@ -24,6 +24,7 @@ from exactfold.motion.panel_contacts import PanelContacts
 from exactfold.motion.panel_curves import FollowedCurve, LinearCurve, curve_of
 from exactfold.motion.panel_motion import AnglesAt, PanelMotion, all_angles, sampled_times
 from exactfold.motion.panel_places import Placing
+from exactfold.motion.zeros import zero_of
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.verdict import PROVED
 
@@ -242,7 +243,7 @@ def _when(angles_at: AnglesAt, goal: float) -> tuple[float, float]:
     def excess(time: float) -> float:
         return float(np.abs(angles_at(np.array([time]))).max()) - goal
 
-    time = float(brentq(excess, 0.0, pi, xtol=1e-15, rtol=1e-14))
+    time = zero_of(excess, 0.0, pi)
     return max(time - 1e-13, 0.0), min(time + 1e-13, pi)
 
 
@@ -261,5 +262,5 @@ def _at_equal_angles(
         return abs(float(angles_at(np.array([time]))[0, at])) - goal
 
     goals = np.linspace(0.0, abs(last), len(times))[1:-1]
-    found = [float(brentq(excess, 0.0, times[-1], args=(goal,), xtol=1e-15)) for goal in goals]
+    found = [zero_of(partial(excess, goal=goal), 0.0, times[-1]) for goal in goals]
     return np.array([0.0, *found, times[-1]])

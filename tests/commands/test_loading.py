@@ -20,6 +20,7 @@ HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
         (["info"], ("numpy", "multiprocessing", *HEAVY)),
         (["branch", "--up", "4"], ("flint", "mpmath", "sympy", "networkx", "exactfold.algebra")),
         (["count"], HEAVY),
+        (["motions"], ("scipy.optimize",)),
     ],
     ids=lambda value: value[0],
 )
