@@ -16,18 +16,19 @@ from exactfold.commands.parameters import (
     Json,
     Pattern,
     Patterns,
+    Resume,
     Sheet,
     Snap,
     complete_method,
     distance,
     flag,
     method_name,
-    whole,
+    number,
+    written,
 )
 from exactfold.commands.shell import (
     OUTPUT_FAILED,
     Bar,
-    not_a_dash,
     output_failed,
     reported,
     standard_input,
@@ -67,47 +68,37 @@ def count(
     ] = "auto",
     certificate: Annotated[
         Path | None,
-        typer.Option(
-            callback=not_a_dash,
-            metavar="OUT.json",
-            help="Write a certificate if proved. With --stream, only where other methods had to "
+        written(
+            "Write a certificate if proved. With --stream, only where other methods had to "
             "prove what it left open.",
+            "OUT.json",
         ),
     ] = None,
     stream: Annotated[
         Path | None,
-        typer.Option(
-            callback=not_a_dash,
-            metavar="FILE",
-            help="Prove block by block and write each branch to FILE, a compact certificate: the "
+        written(
+            "Prove block by block and write each branch to FILE, a compact certificate: the "
             "way for 14 foldable vertices and more. Memory: 100 MB for each worker and 100 MB "
-            "more, whatever the size; disk: 200 bytes a branch.",
+            "more, whatever the size; disk: 200 bytes a branch."
         ),
     ] = None,
-    resume: Annotated[
-        bool, flag("--resume", text="Continue the FILE that an interrupted run left.")
-    ] = False,
+    resume: Resume = False,
     workers: Annotated[
         int | None,
-        typer.Option(
-            parser=whole(1), metavar="N", help="Processes of --stream. Default: all cores."
-        ),
+        number("Processes of --stream. Default: all cores."),
     ] = None,
     jsonl: Annotated[
         Path | None,
-        typer.Option(
-            callback=not_a_dash,
-            metavar="OUT.jsonl",
-            help="Write a line of JSON for each pattern as it is ready; files that were "
+        written(
+            "Write a line of JSON for each pattern as it is ready; files that were "
             "counted there already are skipped, so the same command goes on after an interruption; "
             "files that failed are tried again.",
+            "OUT.jsonl",
         ),
     ] = None,
     jobs: Annotated[
         int | None,
-        typer.Option(
-            parser=whole(1), metavar="N", help="Processes for several patterns. Default: all cores."
-        ),
+        number("Processes for several patterns. Default: all cores."),
     ] = None,
     dask: Annotated[
         str | None,
@@ -120,9 +111,7 @@ def count(
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
-    seed: Annotated[
-        int, typer.Option(parser=whole(0), metavar="S", help="Seed of the complex homotopy.")
-    ] = 0,
+    seed: Annotated[int, number("Seed of the complex homotopy.", "S", least=0)] = 0,
     everything: Annotated[bool, flag("--all", text="List every way.")] = False,
     verbose: Annotated[
         bool, flag("--verbose", text="Also say how it was found and proved.")
@@ -181,11 +170,9 @@ def check(
     as_json: Json = False,
     workers: Annotated[
         int | None,
-        typer.Option(
-            parser=whole(1),
-            metavar="N",
-            help="Processes for a compact certificate (`count --stream`) or one of `motions`. "
-            "Default: all cores.",
+        number(
+            "Processes for a compact certificate (`count --stream`) or one of `motions`. "
+            "Default: all cores."
         ),
     ] = None,
 ) -> None:
@@ -202,16 +189,12 @@ for command in (*PICTURES, *BRANCHES):
 @app.command("random", cls=Command)
 @reported
 def random_(
-    interior: Annotated[
-        int, typer.Option(parser=whole(1), metavar="N", help="Number of interior vertices.")
-    ],
+    interior: Annotated[int, number("Number of interior vertices.")],
     seed: Annotated[
         int,
-        typer.Option(parser=whole(), metavar="S", help="Seed; the same seed, the same pattern."),
+        number("Seed; the same seed, the same pattern.", "S", least=None),
     ],
-    denominator: Annotated[
-        int, typer.Option(parser=whole(2), metavar="D", help="Coordinates are multiples of 1/D.")
-    ] = 1024,
+    denominator: Annotated[int, number("Coordinates are multiples of 1/D.", "D", least=2)] = 1024,
     redraw: Annotated[
         bool,
         flag(

@@ -11,6 +11,7 @@ from exactfold.commands.parameters import (
     Json,
     Pattern,
     Place,
+    Resume,
     Sheet,
     Signs,
     Snap,
@@ -18,14 +19,14 @@ from exactfold.commands.parameters import (
     degrees,
     flag,
     fold_name,
+    number,
     numbers,
     one_side,
-    whole,
+    written,
 )
 from exactfold.commands.shell import (
     EXIT,
     apart,
-    not_a_dash,
     reported,
 )
 from exactfold.errors import UsageError
@@ -52,9 +53,7 @@ def branch(
     ] = None,
     certificate: Annotated[
         Path | None,
-        typer.Option(
-            callback=not_a_dash, metavar="OUT.json", help="Of one branch: write a certificate."
-        ),
+        written("Of one branch: write a certificate.", "OUT.json"),
     ] = None,
     as_json: Json = False,
     snap: Snap = None,
@@ -137,11 +136,10 @@ def fold(
     ] = False,
     component: Annotated[
         int | None,
-        typer.Option(
-            parser=whole(1),
-            metavar="K",
-            help="Of panels: the K-th component of their motions, those with most folds first. "
+        number(
+            "Of panels: the K-th component of their motions, those with most folds first. "
             "Default: 1.",
+            "K",
         ),
     ] = None,
     modes: Annotated[
@@ -161,9 +159,7 @@ def fold(
             "time.",
         ),
     ] = "contact",
-    frames: Annotated[
-        int, typer.Option(parser=whole(2), metavar="N", help="Number of frames.")
-    ] = 60,
+    frames: Annotated[int, number("Number of frames.", least=2)] = 60,
     by: Annotated[
         Any,
         typer.Option(
@@ -174,34 +170,28 @@ def fold(
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option(
+        written(
+            "Write the frames: FILE.fold; .glb or .gltf with an animation; or .obj, a file "
+            "for each, FILE_0000.obj and on.",
+            "FILE",
             "-o",
             "--output",
-            callback=not_a_dash,
-            metavar="FILE",
-            help="Write the frames: FILE.fold; .glb or .gltf with an animation; or .obj, a file "
-            "for each, FILE_0000.obj and on.",
         ),
     ] = None,
     plot: Annotated[
         Path | None,
-        typer.Option(
-            callback=not_a_dash, metavar="FILE.svg", help="Draw all fold angles along the motion."
-        ),
+        written("Draw all fold angles along the motion.", "FILE.svg"),
     ] = None,
     picture: Annotated[
         Path | None,
-        typer.Option(
-            callback=not_a_dash, metavar="FILE.svg", help="Draw the sheet at five times, in space."
-        ),
+        written("Draw the sheet at five times, in space.", "FILE.svg"),
     ] = None,
     certificate: Annotated[
         Path | None,
-        typer.Option(
-            callback=not_a_dash,
-            metavar="OUT.json",
-            help="Of a branch: prove the motion and its first contact, and write the evidence for "
+        written(
+            "Of a branch: prove the motion and its first contact, and write the evidence for "
             "`exactfold check`.",
+            "OUT.json",
         ),
     ] = None,
     as_json: Json = False,
@@ -253,7 +243,7 @@ def motions(
     pattern: Pattern,
     workers: Annotated[
         int | None,
-        typer.Option(parser=whole(1), metavar="N", help="Processes. Default: all cores."),
+        number("Processes. Default: all cores."),
     ] = None,
     dask: Annotated[
         str | None,
@@ -265,15 +255,9 @@ def motions(
     ] = None,
     certificate: Annotated[
         Path | None,
-        typer.Option(
-            callback=not_a_dash,
-            metavar="FILE",
-            help="Write the proof of each loop to FILE as it is found, for `check`.",
-        ),
+        written("Write the proof of each loop to FILE as it is found, for `check`."),
     ] = None,
-    resume: Annotated[
-        bool, flag("--resume", text="Continue the FILE that an interrupted run left.")
-    ] = False,
+    resume: Resume = False,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
@@ -297,7 +281,7 @@ def actuate(
     up: Up = None,
     creases: Annotated[
         int | None,
-        typer.Option(parser=whole(1), metavar="K", help="Drive at most K creases. Default: all."),
+        number("Drive at most K creases. Default: all.", "K"),
     ] = None,
     torques: Annotated[
         Path | None,

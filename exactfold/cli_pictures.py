@@ -7,8 +7,17 @@ from typing import Annotated, Any
 
 import typer
 
-from exactfold.commands.parameters import Pattern, Sheet, Snap, Up, flag, sign_vectors, whole
-from exactfold.commands.shell import not_a_dash, reported
+from exactfold.commands.parameters import (
+    Pattern,
+    Sheet,
+    Snap,
+    Up,
+    flag,
+    number,
+    sign_vectors,
+    written,
+)
+from exactfold.commands.shell import reported
 from exactfold.errors import UsageError
 
 # Each command imports what it needs, as in `cli`.
@@ -33,7 +42,7 @@ def draw(
     ] = False,
     most: Annotated[
         int | None,
-        typer.Option(parser=whole(1), metavar="N", help="Of --all: the first N. Default: 64."),
+        number("Of --all: the first N. Default: 64."),
     ] = None,
     folded: Annotated[
         str | None,
@@ -84,13 +93,7 @@ def view(
     pattern: Pattern,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            callback=not_a_dash,
-            metavar="VIEW.html",
-            help="Default: PATTERN.view.html in this folder.",
-        ),
+        written("Default: PATTERN.view.html in this folder.", "VIEW.html", "-o", "--output"),
     ] = None,
     branches: Annotated[
         Any,
@@ -101,18 +104,14 @@ def view(
             "vertices; of larger sheets the one with all vertices up, and its neighbours.",
         ),
     ] = None,
-    frames: Annotated[
-        int, typer.Option(parser=whole(2), metavar="N", help="Frames of each motion.")
-    ] = 32,
+    frames: Annotated[int, number("Frames of each motion.", least=2)] = 32,
     prove: Annotated[
         bool,
         flag("--prove", text="Of branches: prove each motion and its first contact, too."),
     ] = False,
     workers: Annotated[
         int | None,
-        typer.Option(
-            parser=whole(1), metavar="N", help="Processes that follow motions. Default: all cores."
-        ),
+        number("Processes that follow motions. Default: all cores."),
     ] = None,
     serve: Annotated[
         bool,
@@ -124,7 +123,7 @@ def view(
     ] = False,
     port: Annotated[
         int | None,
-        typer.Option(parser=whole(1), metavar="P", help="Of --serve. Default: any that is free."),
+        number("Of --serve. Default: any that is free.", "P"),
     ] = None,
     snap: Snap = None,
     sheet: Sheet = None,

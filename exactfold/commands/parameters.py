@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from exactfold.commands.shell import standard_input
+from exactfold.commands.shell import not_a_dash, standard_input
 from exactfold.count.registry import ALIASES, METHODS
 from exactfold.drawing.drawing import Snap as Snapping
 from exactfold.errors import NotANumberError
@@ -56,6 +56,16 @@ def whole(least: int | None = None) -> Callable[[object], int]:
         return number
 
     return read
+
+
+def number(text: str, metavar: str = "N", *names: str, least: int | None = 1) -> Any:
+    """An option that takes a whole number, from `least` on."""
+    return typer.Option(*names, parser=whole(least), metavar=metavar, help=text)
+
+
+def written(text: str, metavar: str = "FILE", *names: str) -> Any:
+    """An option that names a file to write, which is not `-`."""
+    return typer.Option(*names, callback=not_a_dash, metavar=metavar, help=text)
 
 
 def degrees(text: object) -> float:
@@ -155,12 +165,7 @@ Snap = Annotated[
         "(auto: the rule for drawings); or take them as written (exact).",
     ),
 ]
-Sheet = Annotated[
-    int | None,
-    typer.Option(
-        "--sheet", parser=whole(1), metavar="N", help="Of a drawing with several sheets: the N-th."
-    ),
-]
+Sheet = Annotated[int | None, number("Of a drawing with several sheets: the N-th.", "N", "--sheet")]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]
 Signs = Annotated[
     str | None,
@@ -173,9 +178,5 @@ Up = Annotated[
     typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
 ]
 
-Place = Annotated[
-    int | None,
-    typer.Option(
-        "--branch", parser=whole(1), metavar="N", help="Instead: the N-th that `count` lists."
-    ),
-]
+Place = Annotated[int | None, number("Instead: the N-th that `count` lists.", "N", "--branch")]
+Resume = Annotated[bool, flag("--resume", text="Continue the FILE that an interrupted run left.")]
