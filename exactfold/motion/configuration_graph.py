@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from exactfold.motion.arclength import Interval, in_floats
+from exactfold.motion.fold_ranges import angle_in_floats
 from exactfold.motion.half_branches import HalfBranch
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.verdict import PROVED, Verdict
@@ -72,7 +73,7 @@ class GraphNode:
             "curves": self.curves,
             "status": str(self.status),
             "angles": [
-                {"fold": list(fold), "angle": list(in_floats(angle))}
+                {"fold": list(fold), "angle": list(angle_in_floats(angle))}
                 for fold, angle in self.angles.items()
             ],
             "mirror": self.mirror,

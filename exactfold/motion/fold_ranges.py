@@ -30,7 +30,8 @@ from math import ceil, floor
 import numpy as np
 
 from exactfold.arrays import BoolArray, FloatArray, IndexArray
-from exactfold.motion.arclength import Interval, in_floats
+from exactfold.exact.surds import float_bounds
+from exactfold.motion.arclength import Interval
 from exactfold.motion.framework import Framework
 from exactfold.motion.piece import Ball
 from exactfold.motion.separation import Swept
@@ -67,8 +68,8 @@ class FoldRange:
         """The range as `exactfold motions --json` prints it."""
         return {
             "fold": list(self.fold),
-            "least": list(in_floats(self.least)),
-            "greatest": list(in_floats(self.greatest)),
+            "least": list(angle_in_floats(self.least)),
+            "greatest": list(angle_in_floats(self.greatest)),
         }
 
     def __repr__(self) -> str:
@@ -205,6 +206,16 @@ def fold_ranges(
             )
         )
     return tuple(found)
+
+
+def angle_in_floats(bounds: Interval) -> tuple[float, float]:
+    """Bounds of an angle as floats, rounded outwards: unlike those of lengths they have signs.
+
+    >>> low, high = angle_in_floats((Fraction(-1, 3), Fraction(-1, 3)))
+    >>> Fraction(low) < Fraction(-1, 3) < Fraction(high)
+    True
+    """
+    return float_bounds(bounds[0])[0], float_bounds(bounds[1])[1]
 
 
 class _Parts:

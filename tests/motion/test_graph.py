@@ -261,7 +261,12 @@ def test_extreme_angles_and_turns_agree_with_floats():
         assert fold.least[1] - fold.least[0] < Fraction(1, 10)
         assert fold.greatest[1] - fold.greatest[0] < Fraction(1, 10)
         assert fold.turns == seen.turns[k]
+        printed = fold.to_dict()
+        for key, exact in (("least", fold.least), ("greatest", fold.greatest)):
+            assert printed[key] == pytest.approx([float(x) for x in exact], abs=1e-9)
+            assert printed[key][0] <= exact[0] <= exact[1] <= printed[key][1]
     assert any(fold.turns for fold in found.folds)
+    assert any(fold.least[1] < -1 for fold in found.folds)
 
 
 def test_at_every_vertex_an_even_number_of_folds_wind():
