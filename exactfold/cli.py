@@ -46,7 +46,8 @@ app = typer.Typer(
     help="Proven branch counts of triangulated origami near the unfolded state.",
     epilog="Exit codes: 0 proved or valid; 1 refuted, or certificate invalid; 2 wrong usage; "
     "3 bad input; 4 undecided, or a sheet of a kind that is not counted; 70 a process died, or a "
-    "defect of exactfold; 71 not enough memory; 74 the output cannot be written; 130 interrupted.",
+    "defect of exactfold; 71 not enough memory; 74 standard output cannot be written; 130 "
+    "interrupted.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     cls=Group,

@@ -180,11 +180,11 @@ def fold(
     ] = None,
     plot: Annotated[
         Path | None,
-        written("Draw all fold angles along the motion.", "FILE.svg"),
+        written("Draw all fold angles along the motion: FILE.svg, .png or .pdf."),
     ] = None,
     picture: Annotated[
         Path | None,
-        written("Draw the sheet at five times, in space.", "FILE.svg"),
+        written("Draw the sheet at five times, in space: FILE.svg, .png or .pdf."),
     ] = None,
     certificate: Annotated[
         Path | None,

@@ -14,12 +14,13 @@ from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
-from exactfold.motion.following import follow
+from exactfold.motion.following import Goal, follow
 from exactfold.motion.motion import Motion
 from exactfold.motion.writing import checked_ending, write_motion
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
-from exactfold.pattern.fold_writing import write_text
+from exactfold.pattern.fold_writing import require_folder
 from exactfold.pattern.opening import Opened, has_branches
+from exactfold.report.picture_files import checked_picture, write_picture
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
 
@@ -66,8 +67,7 @@ class Wanted:
         """
         from exactfold import report
 
-        if self.output is not None:
-            checked_ending(self.output)  # before the work
+        self._check_outputs()  # before the work
         with Bar("reading") as bar:
             opened = read_any(self.file, self.snap, self.sheet)
             sheet = opened.sheet
@@ -96,6 +96,17 @@ class Wanted:
             return EXIT[motion.branch.status]
         return EXIT[PROVED if proof is None else proof.status]
 
+    def _check_outputs(self) -> None:
+        """Raise `UsageError` for an ending, `UnwritableFileError` for a folder that is missing."""
+        if self.output is not None:
+            checked_ending(self.output)
+        for drawn in (self.plot, self.picture):
+            if drawn is not None:
+                checked_picture(drawn)
+        for path in (self.output, self.plot, self.picture, self.certificate):
+            if path is not None:
+                require_folder(path)
+
     @property
     def _title(self) -> str | None:
         return None if str(self.file) == "/dev/stdin" else self.file.stem
@@ -109,13 +120,16 @@ class Wanted:
             "motions of rigid panels, and this sheet of triangles folds along branches: name one "
             "by --signs, --up or --branch",
         )
+        Goal.of(self.until)  # before the work
         if (self.signs, self.up, self.place) != (None, None, None):
             return chosen(pattern, self.signs, self.up, self.place, bar)
+        up = ",".join(map(str, pattern.foldable_vertices))
+        branch = chosen(pattern, None, up, None, bar)
         say(
             "no branch was named (--signs, --up, --branch): this is the one on which all "
             "vertices pop up"
         )
-        return chosen(pattern, None, ",".join(map(str, pattern.foldable_vertices)), None, bar)
+        return branch
 
     def _along(self, branch: Branch, bar: Bar, pinned: Triangle | None = None) -> Motion:
         return follow(
@@ -147,6 +161,11 @@ class Wanted:
             "branches of triangulated sheets with four corners, and this sheet folds along modes "
             "of rigid panels: name them by --component or --modes",
         )
+        if self.certificate is not None:
+            raise UsageError(
+                "--certificate is for motions along branches of triangulated sheets with four "
+                "corners; `exactfold count --certificate` proves how panels fold"
+            )
         ways = cast("Decomposition", count_opened(opened, progress=bar))
         if ways.warning is not None:
             say(f"warning: {ways.warning}")
@@ -166,13 +185,8 @@ class Wanted:
     # --- proof -----------------------------------------------------------------------------------
 
     def _proof(self, motion: Motion | PanelMotion, bar: Bar) -> MotionProof | None:
-        if self.certificate is None:
+        if self.certificate is None or not isinstance(motion, Motion):
             return None
-        if not isinstance(motion, Motion):
-            raise UsageError(
-                "--certificate is for motions along branches of triangulated sheets with four "
-                "corners; `exactfold count --certificate` proves how panels fold"
-            )
         from exactfold.motion.proving import prove_persistently
 
         branch = motion.branch
@@ -187,11 +201,11 @@ class Wanted:
         if self.output is not None:
             written = [str(f) for f in write_motion(motion, self.output, title=self._title)]
         if self.plot is not None:
-            write_text(self.plot, report.angles_plot(motion, title))
+            write_picture(report.angles_plot(motion, title), self.plot)
             written.append(str(self.plot))
         if self.picture is not None:
             name = f"{title}, {motion.name}" if title else motion.name
-            write_text(self.picture, report.motion_stills(motion, title=name))
+            write_picture(report.motion_stills(motion, title=name), self.picture)
             written.append(str(self.picture))
         if self.certificate is not None and proof is not None:
             if proof.write(self.certificate):

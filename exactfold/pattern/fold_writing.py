@@ -128,6 +128,16 @@ def write_text(path: str | PathLike[str], text: str) -> None:
     write_bytes(path, text.encode("utf-8"))
 
 
+def require_folder(path: str | PathLike[str]) -> None:
+    """Raise `UnwritableFileError` if a file cannot be written because its folder is not there.
+
+    That is known before the work whose result it is to hold; `write_bytes` says the rest.
+    """
+    folder = os.path.dirname(os.path.realpath(path))
+    if not os.path.isdir(folder):
+        raise UnwritableFileError(f"cannot write {path}: there is no folder {folder}")
+
+
 def write_bytes(path: str | PathLike[str], content: bytes) -> None:
     """Write a file whole or not at all, by renaming a temporary file beside it.
 

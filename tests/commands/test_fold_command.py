@@ -227,6 +227,9 @@ def test_the_picture_of_a_branch(tmp_path):
         (["--modes", "1,x"], "'x' is not a whole number"),
         (["--signs", "++", "--plot", "a.svg", "--picture", "a.svg"], "name another file"),
         (["--signs", "++", "-o", "m.stl"], "a motion is written as .fold"),
+        (["--signs", "++", "--plot", "a.jpg"], "a.jpg: the name of a picture ends in .svg"),
+        (["--signs", "++", "--picture", "a"], "a: the name of a picture ends in .svg"),
+        (["--until", "400deg"], "until '400deg'"),
         (["--signs", "++", "-o", "-"], "an output has a name of its own"),
         (["--signs", "++", "-o", "a.fold", "--plot", "a.fold"], "name another file"),
     ],
@@ -255,6 +258,7 @@ def test_sheets_that_have_no_single_motion(pattern, words, tmp_path):
     result = run("fold", tmp_path / "p.fold")
     assert result.exit_code == UNDECIDED
     assert words in result.stderr
+    assert result.stderr.count("\n") == 1
 
 
 def test_a_branch_with_a_flat_vertex_is_not_followed():
@@ -285,8 +289,27 @@ def test_folds_that_stay_flat_do_not_turn_back(tmp_path):
     assert max(abs(data["largest_angles"][fold]) for fold in flat) < 1e-9
 
 
+@pytest.mark.parametrize("option", ["-o", "--plot", "--picture", "--certificate"])
+def test_a_folder_that_is_missing_is_said_before_the_work(option, tmp_path, monkeypatch):
+    monkeypatch.setattr("exactfold.commands.fold.chosen", None)
+    name = "m.fold" if option in ("-o", "--certificate") else "m.svg"
+    result = run("fold", "two-vertex", "--up", "4", option, tmp_path / "none" / name)
+    assert result.exit_code == BAD_INPUT
+    assert result.stderr.count("\n") == 1
+    assert f"cannot write {tmp_path / 'none' / name}: there is no folder" in result.stderr
+
+
+def test_plots_are_written_in_the_format_that_their_names_say(tmp_path):
+    plot, picture = tmp_path / "a.png", tmp_path / "p.pdf"
+    result = run("fold", "two-vertex", "--frames", 5, "--plot", plot, "--picture", picture)
+    assert result.exit_code == OK
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    assert picture.read_bytes().startswith(b"%PDF")
+
+
 def test_files_that_cannot_be_written(tmp_path, monkeypatch):
-    result = run("fold", "two-vertex", "--up", "4", "-o", tmp_path / "none" / "m.fold")
+    (tmp_path / "m.fold").mkdir()
+    result = run("fold", "two-vertex", "--up", "4", "-o", tmp_path / "m.fold")
     assert result.exit_code == BAD_INPUT
     assert "cannot write" in result.stderr
     monkeypatch.setattr(meshes, "find_spec", lambda name: None)
