@@ -21,6 +21,8 @@ from exactfold.cli import app
 from exactfold.commands.guard import INTERRUPTED, NO_MEMORY
 from exactfold.commands.shell import BAD_INPUT, EXIT, INTERNAL, OUTPUT_FAILED, USAGE
 from exactfold.schemas import VERSIONS, schema
+from proofs import MODULES
+from proofs import __main__ as proofs
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -55,15 +57,36 @@ def shows(expected: str, printed: str) -> bool:
     ids=lambda page: page.name,
 )
 def test_console_examples_print_what_is_shown(
-    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    page: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
     for command, expected in examples(page):
         words = shlex.split(command)
-        assert words[0] == "exactfold"
-        done = run(*words[1:])
-        assert shows(expected, done.stdout), f"{command}\n{done.stdout}{done.stderr}"
+        if words[:3] == ["python", "-m", "proofs"]:
+            assert proofs.main(words[3:]) == 0
+            printed, told = capsys.readouterr()
+        else:
+            assert words[0] == "exactfold"
+            done = run(*words[1:])
+            printed, told = done.stdout, done.stderr
+        assert shows(expected, printed), f"{command}\n{printed}{told}"
+
+
+def test_the_paper_is_reproduced_without_gaps() -> None:
+    """The page names proofs that there are, and every erratum of the paper."""
+    text = (ROOT / "docs" / "reproduce.md").read_text(encoding="utf-8")
+    found = re.findall(r"python -m proofs ([a-z_ ]+)[`\n]", text)
+    named = {name for names in found for name in names.split()}
+    assert len(named) > 15
+    assert named <= set(MODULES)
+    errata = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")
+    numbers = set(re.findall(r"(?m)^\*\*([IVABCD]+\.\d+)\*\*", errata))
+    assert len(numbers) > 20
+    assert numbers - set(re.findall(r"\b[IVABCD]+\.\d+\b", text)) == set()
 
 
 READ = re.compile(r"exactfold: (read zigzags: |coordinates in |12 vertices inside of lines: )")
