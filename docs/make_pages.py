@@ -286,7 +286,7 @@ def cited(text: str) -> list[str | Citation]:
     found: list[str | Citation] = []
     at = 0
     for page in re.finditer(r"docs/([a-z_-]+)\.md", text):
-        if page[1] not in {path.stem for path in FOLDER.parent.glob("*.md")}:
+        if page[1] not in _pages():
             continue
         found.append(text[at : page.start()])
         start, at, first = page.start(), page.end(), True
@@ -302,6 +302,11 @@ def cited(text: str) -> list[str | Citation]:
         if first:
             found.append(Citation(text[start:at], page[1], ""))
     return [part for part in [*found, text[at:]] if part]
+
+
+@cache
+def _pages() -> frozenset[str]:
+    return frozenset(path.stem for path in FOLDER.parent.glob("*.md"))
 
 
 @cache
