@@ -85,11 +85,11 @@ def _formulas(_: Sphinx, __: str, source: list[str]) -> None:
 
 def _docstring(_: Sphinx, __: str, name: str, ___: Any, ____: Any, lines: list[str]) -> None:
     """Docstrings are plain text with code in single backticks, not reStructuredText."""
-    text, in_example = [], False
-    for line in lines:
-        in_example = line.lstrip().startswith(">>>") or (in_example and bool(line.strip()))
-        text.append(line if in_example else make_pages.escaped(line))
-    lines[:] = text
+    text = "\n".join(lines)
+    parts = re.split(r"(?m)(^[ \t]*>>>.*\n(?:.*\S.*(?:\n|\Z))*)", f"{text}\n")
+    lines[:] = "".join(
+        part if part.lstrip().startswith(">>>") else make_pages.escaped(part) for part in parts
+    ).splitlines()
 
 
 def _signature(

@@ -12,6 +12,7 @@ import inspect
 import json
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -172,7 +173,7 @@ def _directive(path: str, name: str, value: Any) -> str:
         return f".. {kind}:: {path}.{name}\n{members}"
     if inspect.isroutine(value):
         return f".. autofunction:: {path}.{name}\n"
-    text = "\n".join(f"   {escaped(line)}" for line in _comment(path, name).splitlines())
+    text = "\n".join(f"   {line}" for line in escaped(_comment(path, name)).splitlines())
     shown = "" if len(repr(value)) > 80 else f"   :value: {value!r}\n"
     return f".. py:data:: {path}.{name}\n{shown}\n{text}\n"
 
@@ -209,20 +210,145 @@ def _paragraph(value: Any) -> str:
 
 
 def _markdown(text: str) -> str:
+    """Plain text with code in backticks as Markdown, with links where pages are cited."""
+    return "".join(
+        _plain_markdown(part) if isinstance(part, str) else part.in_markdown()
+        for part in cited(text)
+    )
+
+
+def _plain_markdown(text: str) -> str:
     return re.sub(r"([*_<>\[\]$])(?![^`]*`(?:[^`]*`[^`]*`)*[^`]*$)", r"\\\1", text)
 
 
-def escaped(line: str) -> str:
-    """A line of a docstring, which is plain text with code in backticks, as reStructuredText.
+def escaped(text: str) -> str:
+    """Text of a docstring, which is plain with code in backticks, as reStructuredText.
 
-    >>> escaped("the form `K_v`, at |h| = 1: a_b * c")
-    'the form ``K_v``, at \\\\|h\\\\| = 1: a\\\\_b \\\\* c'
+    >>> escaped("the form `K_v`, at |h| = 1: a_b * c (docs/mathematics.md, Curvature form)")
+    'the form ``K_v``, at \\\\|h\\\\| = 1: a\\\\_b \\\\* c
+    (:ref:`docs/mathematics.md, Curvature form <def-curvature-form>`)'
     """
-    parts = re.split(r"(`+[^`]+`+)", line)
+    return "".join(
+        _plain_rst(part) if isinstance(part, str) else part.in_rst() for part in cited(text)
+    )
+
+
+def _plain_rst(text: str) -> str:
+    parts = re.split(r"(`+[^`]+`+)", text)
     return "".join(
         f"``{part.strip('`')}``" if part.startswith("`") else re.sub(r"([\\*|_`])", r"\\\1", part)
         for part in parts
     )
+
+
+# What docstrings cite
+
+
+@dataclass(frozen=True)
+class Citation:
+    """A page that a docstring cites, or a place on it: "docs/mathematics.md, Completeness".
+
+    `target` is the label of the place, "#" and the heading that it is below, or "" for the page.
+    """
+
+    text: str
+    page: str
+    target: str
+
+    @property
+    def label(self) -> str:
+        """The label, or "" if none leads to the place."""
+        return "" if self.target.startswith("#") else self.target
+
+    def in_rst(self) -> str:
+        """As reStructuredText, on a page of public names."""
+        if self.label:
+            return f":ref:`{self.text} <{self.label}>`"
+        if self.target:
+            return f"`{self.text} <../../{self.page}.html{self.target}>`__"
+        return f":doc:`{self.text} </{self.page}>`"
+
+    def in_markdown(self) -> str:
+        """As Markdown of Sphinx."""
+        if self.label:
+            return f"{{ref}}`{self.text} <{self.label}>`"
+        return f"{{doc}}`{self.text} </{self.page}>`"
+
+
+def cited(text: str) -> list[str | Citation]:
+    """Text cut at the pages and the places on them that it cites.
+
+    A place is named by its number or by its title: "docs/theorem.md, 3 and Theorem 4" cites two.
+
+    >>> cited("(docs/theorem.md, Key lemma)")[1].target
+    'thm-key-lemma'
+    """
+    found: list[str | Citation] = []
+    at = 0
+    for page in re.finditer(r"docs/([a-z_-]+)\.md", text):
+        if page[1] not in _pages():
+            continue
+        found.append(text[at : page.start()])
+        start, at, first = page.start(), page.end(), True
+        while place := re.match(_separated(page[1]), text[at:]):
+            name = " ".join(place["name"].split())
+            if not first:
+                found.append(text[at : at + place.start("name")])
+                start = at + place.start("name")
+            at += place.end()
+            shown = " ".join(text[start:at].split())
+            found.append(Citation(shown, page[1], places(page[1])[name]))
+            first = False
+        if first:
+            found.append(Citation(text[start:at], page[1], ""))
+    return [part for part in [*found, text[at:]] if part]
+
+
+@cache
+def _pages() -> frozenset[str]:
+    return frozenset(path.stem for path in FOLDER.parent.glob("*.md"))
+
+
+@cache
+def _separated(page: str) -> str:
+    """A pattern of what goes before the name of a place, and the name."""
+    names = sorted(places(page), key=len, reverse=True)
+    either = "|".join(re.escape(name).replace(r"\ ", r"\s+") for name in names) or "(?!)"
+    return rf"(?:,|,?\s+and|,?\s+to)\s+(?P<name>{either})(?!\w)"
+
+
+@cache
+def places(page: str) -> dict[str, str]:
+    """Where the numbers and titles of a page lead: headings, and statements in bold type.
+
+    A line `(label)=` before one of them gives it a label; else the heading above it is named.
+    """
+    text = (FOLDER.parent / f"{page}.md").read_text(encoding="utf-8")
+    found: dict[str, str] = {}
+    label = heading = ""
+    for line in re.sub(r"(?ms)^ *```.*?^ *```$", "", text).splitlines():
+        if given := re.fullmatch(r"\(([a-z0-9-]+)\)=", line):
+            label = given[1]
+            continue
+        if title := re.fullmatch(r"##+ (.+)", line):
+            named = title[1]
+            heading = f"#{_anchor(named)}"
+        elif title := re.match(r"(?:> )?\*\*(.+?)\*\*", line):
+            named = title[1]
+        else:
+            label = label if not line else ""
+            continue
+        number, _, rest = named.rstrip(".").partition(". ")
+        for name in (number, rest) if number.isdigit() else (named.rstrip("."),):
+            if name:
+                found.setdefault(name, label or heading)
+        label = ""
+    return found
+
+
+def _anchor(heading: str) -> str:
+    """The name that a heading has in HTML."""
+    return re.sub(r"[^a-z0-9]+", "-", heading.lower()).strip("-").lstrip("-0123456789")
 
 
 def resolved(_: Any, env: Any, node: Any, content: Any) -> Any:

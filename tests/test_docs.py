@@ -1,5 +1,6 @@
 """Every console example in README and docs is run and its output compared."""
 
+import ast
 import importlib
 import json
 import os
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import tomllib
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,8 @@ from exactfold.cli import app
 from exactfold.commands.guard import INTERRUPTED, NO_MEMORY
 from exactfold.commands.shell import BAD_INPUT, EXIT, INTERNAL, OUTPUT_FAILED, USAGE
 from exactfold.schemas import VERSIONS, schema
+from proofs import MODULES
+from proofs import __main__ as proofs
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -55,15 +59,36 @@ def shows(expected: str, printed: str) -> bool:
     ids=lambda page: page.name,
 )
 def test_console_examples_print_what_is_shown(
-    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    page: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
     for command, expected in examples(page):
         words = shlex.split(command)
-        assert words[0] == "exactfold"
-        done = run(*words[1:])
-        assert shows(expected, done.stdout), f"{command}\n{done.stdout}{done.stderr}"
+        if words[:3] == ["python", "-m", "proofs"]:
+            assert proofs.main(words[3:]) == 0
+            printed, told = capsys.readouterr()
+        else:
+            assert words[0] == "exactfold"
+            done = run(*words[1:])
+            printed, told = done.stdout, done.stderr
+        assert shows(expected, printed), f"{command}\n{printed}{told}"
+
+
+def test_the_paper_is_reproduced_without_gaps() -> None:
+    """The page names proofs that there are, and every erratum of the paper."""
+    text = (ROOT / "docs" / "reproduce.md").read_text(encoding="utf-8")
+    found = re.findall(r"python -m proofs ([a-z_ ]+)[`\n]", text)
+    named = {name for names in found for name in names.split()}
+    assert len(named) > 15
+    assert named <= set(MODULES)
+    errata = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")
+    numbers = set(re.findall(r"(?m)^\*\*([IVABCD]+\.\d+)\*\*", errata))
+    assert len(numbers) > 20
+    assert numbers - set(re.findall(r"\b[IVABCD]+\.\d+\b", text)) == set()
 
 
 READ = re.compile(r"exactfold: (read zigzags: |coordinates in |12 vertices inside of lines: )")
@@ -236,6 +261,74 @@ def test_every_schema_is_shown() -> None:
     assert re.findall(r"(?m)^## (.+)$", page) == list(VERSIONS)
     shown = [json.loads(block) for block in re.findall(r"```json\n(.*?)```", page, re.DOTALL)]
     assert shown == [schema(name) for name in VERSIONS]
+
+
+def docstrings() -> dict[str, list[str]]:
+    """By module that names pages: docstrings, and strings below lines that define constants."""
+    found = {}
+    for path in sorted((ROOT / "exactfold").rglob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        if "docs/" not in text:
+            continue
+        tree = ast.parse(text)
+        strings = [
+            node.value.value
+            for node in ast.walk(tree)
+            if isinstance(node, ast.Expr)
+            and isinstance(node.value, ast.Constant)
+            and isinstance(node.value.value, str)
+        ]
+        found[path.relative_to(ROOT).as_posix()] = strings
+    return found
+
+
+LABELLED = {"mathematics", "theorem", "panels", "branch", "conventions"}
+"""Pages on which definitions and theorems have labels."""
+
+
+def test_what_docstrings_cite_is_there() -> None:
+    """Pages exist; places have a label, or a heading where the page gives no labels."""
+    cited, pages = script("make_pages")["cited"], {page.stem for page in PAGES}
+    labels, wrong = [], []
+    for module, strings in docstrings().items():
+        for text in strings:
+            parts = [*cited(text), ""]
+            for part, after in pairwise(parts):
+                if isinstance(part, str):
+                    wrong += [(module, name) for name in re.findall(r"docs/[\w-]+\.md", part)]
+                    continue
+                assert part.page in pages
+                if part.label:
+                    labels.append(part.label)
+                elif part.target and part.page in LABELLED:
+                    wrong.append((module, part.text))
+                if isinstance(after, str) and re.match(
+                    r",\s+(?:\d|[A-Z]|section|statement)|\s+(?:and|to)\s+\d", after
+                ):
+                    wrong.append((module, f"{part.text}{after[:20]}"))
+    assert wrong == []
+    assert len(set(labels)) > 25
+    there = [
+        label
+        for page in PAGES
+        for label in re.findall(r"(?m)^\(([a-z0-9-]+)\)=$", page.read_text(encoding="utf-8"))
+    ]
+    assert len(there) == len(set(there))
+    assert set(labels) <= set(there)
+
+
+def test_a_place_that_is_not_there_is_found() -> None:
+    cited = script("make_pages")["cited"]
+    given = "docs/theorem.md, Key lemma and Theorem 2; docs/theorem.md, Theorem 9; docs/none.md, 1"
+    found = [part if isinstance(part, str) else part.target for part in cited(given)]
+    assert found == [
+        "thm-key-lemma",
+        " and ",
+        "thm-all-real",
+        "; ",
+        "",
+        ", Theorem 9; docs/none.md, 1",
+    ]
 
 
 def trees(text: str) -> list[str]:

@@ -71,6 +71,7 @@ def area_product(pattern: CreasePattern, vertex: int) -> Fraction:
 def split_form(pattern: PatternLike, vertex: int) -> Splitting:
     """The two linear forms of a vertex of degree four, checked by multiplying out.
 
+    What they say of a branch: docs/mathematics.md, Conjugate branches.
     Raises `NotApplicableError` unless the vertex is interior of degree four, `ArithmeticError` if
     the check fails (an internal error).
 

@@ -2,7 +2,8 @@
 
 Newton's method gives the zeros to any length, products over them the rational univariate
 representation as real numbers, and lattice reduction the common denominator of its coefficients.
-All of that is a proposal; exact substitution proves it (docs/mathematics.md, 13).
+All of that is a proposal; exact substitution proves it (docs/mathematics.md, Exact
+parametrisation).
 """
 
 from __future__ import annotations
@@ -48,7 +49,8 @@ def parametrisation_from_roots(
     w_j = c sum_i x_ij prod_{k != i} (T - l(x_k)) have rational coefficients for a rational c, and
     x_j = w_j / q' at the zeros (Rouillier 1999). What is returned passed `RootClass.verify`: q
     is squarefree of degree 2^n, so by Bezout there are no other zeros, all are simple and none is
-    at infinity, whatever the approximations were worth.
+    at infinity, whatever the approximations were worth (docs/mathematics.md, Exact
+    parametrisation).
 
     None if there are not 2^n different points, if Newton's method does not converge at each, or if
     none of the first few forms separates them. That says nothing about the zeros. Random squares

@@ -167,7 +167,7 @@ def branch_tower(pattern: CreasePattern) -> BranchTower:
 
     When w is joined to v1, v2, v3, the form of v2 is the only new equation: a x^2 + 2 b x + c = 0
     in x = h_w, with b and c polynomials in the heights known before and the rational number
-    a = -c_13 / (2 c_1w c_w3), not 0 (docs/mathematics.md, 1). So x = -b/a + r with
+    a = -c_13 / (2 c_1w c_w3), not 0 (docs/mathematics.md, Curvature form). So x = -b/a + r with
     r^2 = (b/a)^2 - c/a: each move adds a square root, and the field of a branch has a power of 2 as
     its degree. No branch is missing: where the first fold is flat, all heights are zero.
 

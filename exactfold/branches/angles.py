@@ -24,9 +24,9 @@ class FoldAngles:
     """Fold angles of the heights t h to first order in the amplitude t.
 
     Fold e of length L_e, between faces of twice the areas c and c', bends by
-    t f_e(h) L_e / (c c') radians, positive for a valley (docs/branch.md, 1; docs/export.md).
-    `densities`: proved bounds of f_e(h) / (c c'), exact rationals, by fold (i, j), i < j. `bends`:
-    the bends at t = 1 in radians, rational approximations that prove nothing.
+    t f_e(h) L_e / (c c') radians, positive for a valley (docs/branch.md, The forms on folds;
+    docs/export.md). `densities`: proved bounds of f_e(h) / (c c'), exact rationals, by fold (i, j),
+    i < j. `bends`: the bends at t = 1 in radians, rational approximations that prove nothing.
     """
 
     densities: Mapping[Edge, Bounds]

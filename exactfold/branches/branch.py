@@ -26,7 +26,7 @@ Bounds = tuple[Fraction, Fraction]
 
 @dataclass(frozen=True, repr=False)
 class Branch(Picture):
-    """One branch of a pattern, shown by one of its two rays.
+    """One branch of a pattern, shown by one of its two rays (docs/mathematics.md, Branch).
 
     `vertex_signs`: interior vertex -> +1 popped up, -1 popped down, 0 proved flat. `assignment`:
     fold (i, j), i < j -> "M" mountain, "V" valley, "F" proved flat, "U" undecided, seen from +z.

@@ -29,7 +29,7 @@ def of_enclosure(
     """The branch with vertex signs `signs`, by vertex of the pattern, that the enclosure proves.
 
     PROVED if no vertex may be flat to within the error; a vertex that is proved flat has sign 0,
-    whatever was asked (docs/branch.md, 2 and 3).
+    whatever was asked (docs/branch.md, Theorem 5).
     """
     problem, labels, unit = sheet.problem, sheet.labels, sheet.height_unit
     pattern = problem.pattern

@@ -47,12 +47,12 @@ class BranchCount(Page):
     missing; `why` says why the method was chosen. `distinct` counts branches as lines (for D = 1),
     `with_multiplicity` the solutions of the branch system with multiplicity, `real` and `nonreal`
     its distinct solutions by reality. `true_branches` is PROVED when the count is also that of the
-    true configuration space (docs/mathematics.md, 5). `dimension` and `degree` are those of the
-    cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi where that is proved
-    (docs/mathematics.md, 10), else None. `branches` holds every branch decided, all of
-    them if PROVED and D = 1; for D > 1 a branch is not a line, and none is listed. `proof` is what
-    a certificate is written from. `open_questions` is what is missing; if PROVED, folds with the
-    letter "U".
+    true configuration space (docs/mathematics.md, True branches). `dimension` and `degree` are
+    those of the cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi where
+    that is proved (docs/mathematics.md, Single vertex), else None. `branches` holds every branch
+    decided, all of them if PROVED and D = 1; for D > 1 a branch is not a line, and none is listed.
+    `proof` is what a certificate is written from. `open_questions` is what is missing; if PROVED,
+    folds with the letter "U".
 
     `len(result)`, iteration and `result["+-"]` or `result[3]` are about `branches`.
     """

@@ -17,10 +17,11 @@ from exactfold.solve.least_squares import least_squares
 
 @dataclass(frozen=True)
 class SecondOrderSheet:
-    """X = U + t^2 u + t h z (docs/mathematics.md, 5): the edges keep their lengths to order t^2.
+    """X = U + t^2 u + t h z: the edges keep their lengths to order t^2.
 
-    The heights are those above the plane that fits them best, in the mean: planes belong to no
-    branch, and of all planes this one changes the lengths little.
+    The equations for u are those of docs/mathematics.md, True branches. The heights are those above
+    the plane that fits them best, in the mean: planes belong to no branch, and of all planes this
+    one changes the lengths little.
 
     `coords`: by vertex, x, y and z in the length unit of the pattern, in floats. `length_error`:
     the largest relative change of the length of an edge, of order t^4 for the heights of a branch.

@@ -22,11 +22,11 @@ FlatBox = tuple[FlatSheets, IsolatingBox]
 class AlgebraicProof:
     """Root classes with the vertices flat there, boxes, and multipliers of a definite stress.
 
-    The stress leaves no zero on a hyperplane of P^n (docs/mathematics.md, 8), so there are
-    finitely many zeros and their multiplicities add up to 2^n. The multiplicity of an isolated
-    zero is at least the product of the orders of the equations, hence at least 2^f where f
-    vertices are flat; where these bounds and the boxes, each with one regular zero, add up
-    to 2^n, they are exact and no zero is missing.
+    The stress leaves no zero on a hyperplane of P^n (docs/mathematics.md, Multiple solutions), so
+    there are finitely many zeros and their multiplicities add up to 2^n. The multiplicity of an
+    isolated zero is at least the product of the orders of the equations, hence at least 2^f where f
+    vertices are flat; where these bounds and the boxes, each with one regular zero, add up to 2^n,
+    they are exact and no zero is missing.
     """
 
     classes: tuple[tuple[RootClass, tuple[int, ...]], ...]

@@ -10,6 +10,7 @@ from fractions import Fraction
 class IsolatingBox:
     """A box proved to hold exactly one zero of a system, a regular one.
 
+    What proves it is, for one, docs/mathematics.md, Krawczyk's test.
     Centre (real + i imag) / 2^bits, radius / 2^bits in the sup norm over the unknowns; in a
     complex box real and imaginary parts each keep within the radius (a box of R^2n). `imag` is
     empty if the zero is proved real.

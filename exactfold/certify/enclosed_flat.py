@@ -1,6 +1,7 @@
 """What is exactly flat on a branch: folds deduced at their vertices, or heights that are rational.
 
-No error bound can prove a fold flat. Both ways here are exact (docs/branch.md, 3).
+No error bound can prove a fold flat. Both ways here are exact (docs/branch.md, What is computed and
+what is proved).
 """
 
 from __future__ import annotations

@@ -76,9 +76,9 @@ def enclose(
 ) -> Enclosure | tuple[int, ...]:
     """The branches near rational heights, or the vertices at which the test fails.
 
-    *Theorem 5* (docs/branch.md, 2). Let the boundary be convex, let h' have the given rim heights
-    and K_v(h') > 0 for all interior v, and let e_v be the nappe of h' at v. Then K_v(h) = k_v has
-    exactly one solution in the closed nappes e, and it satisfies
+    *Theorem 5* (docs/branch.md, How far heights are from a branch). Let the boundary be convex, let
+    h' have the given rim heights and K_v(h') > 0 for all interior v, and let e_v be the nappe of h'
+    at v. Then K_v(h) = k_v has exactly one solution in the closed nappes e, and it satisfies
 
         int |grad(h - h')|^2 <= sum_v m_v (sqrt K_v(h') - sqrt k_v)^2,  m_v = R^2 - |U_v - c|^2,
 

@@ -45,8 +45,8 @@ def krawczyk(
     With m dyadic, Y any dyadic matrix, r > 0 and sup norms let eta = |Y F(m)|,
     k0 = |I - Y F'(m)| and M = max_i sum_jk |sum_p Y_ip (H_p)_jk|. If k0 + r M < 1 and
     eta + (k0 + r M) r < r, then x -> x - Y F(x) maps the box |x - m| <= r into its interior and
-    contracts: the box holds exactly one zero, a regular one (Krawczyk 1969; statement 3 of
-    docs/mathematics.md).
+    contracts: the box holds exactly one zero, a regular one (Krawczyk 1969; docs/mathematics.md,
+    Krawczyk's test).
 
     `points` has shape (m, n); coordinates as in `exact_candidates`, so that rationals tell
     clusters apart that doubles cannot. A candidate whose imaginary parts are negligible is tried

@@ -27,7 +27,8 @@ class Isolation:
 
     Refined Bezout (Fulton, Intersection Theory, 8.4.6): the degrees of the components of the common
     zero set of n quadrics in P^n add up to at most 2^n. So 2^n disjoint boxes are all the zeros:
-    all simple, none at infinity, no component of positive dimension. `complete` is PROVED exactly
+    all simple, none at infinity, no component of positive dimension (docs/mathematics.md,
+    Completeness). `complete` is PROVED exactly
     then; otherwise UNDECIDED, and `failures` says around which candidates no box was found.
     """
 

@@ -25,9 +25,10 @@ def is_too_many(pattern: CreasePattern, limit: int | None = None) -> bool:
 def too_many(pattern: CreasePattern) -> BranchCount:
     """The count of a sheet with four boundary vertices, as far as it follows without solving.
 
-    By Theorem 2 (docs/theorem.md, 4) the branch system of every triangulated quadrilateral, convex
-    or with a reflex corner, has exactly 2^Vi solutions with multiplicity, all real, and none at
-    infinity. How many are distinct depends on flat vertices, so the count is UNDECIDED.
+    By Theorem 2 (docs/theorem.md, Four boundary vertices) the branch system of every triangulated
+    quadrilateral, convex or with a reflex corner, has exactly 2^Vi solutions with multiplicity, all
+    real, and none at infinity. How many are distinct depends on flat vertices, so the count is
+    UNDECIDED.
 
     >>> from exactfold.pattern.random_squares import sample_random_square
     >>> result = too_many(sample_random_square(50, seed=1, redraw=True).pattern)

@@ -45,12 +45,12 @@ def count_branches(
     """The number of branches at the unfolded state, proved, and what distinguishes them.
 
     For D = 1: solve the branch system of the sheet without rigid parts, isolate every solution by
-    an exact test, prove by refined Bezout that there are no others (docs/mathematics.md, 3 to 5),
-    and decide all vertex signs and folds exactly. For Ve = 3 the sheet is rigid: 0 branches. For
-    D >= 2 only the single-vertex pattern is counted. `method` is one of `METHODS`; "auto" takes
-    Newton's method, one start for each sign vector, and turns to the exact engine where that does
-    not settle a small pattern. With more than 20 foldable vertices nothing is kept in memory:
-    `too_many` says what is known, at once; `stream_branches` goes on to 40.
+    an exact test, prove by refined Bezout that there are no others (docs/mathematics.md, Krawczyk's
+    test to True branches), and decide all vertex signs and folds exactly. For Ve = 3 the sheet is
+    rigid: 0 branches. For D >= 2 only the single-vertex pattern is counted. `method` is one of
+    `METHODS`; "auto" takes Newton's method, one start for each sign vector, and turns to the exact
+    engine where that does not settle a small pattern. With more than 20 foldable vertices nothing
+    is kept in memory: `too_many` says what is known, at once; `stream_branches` goes on to 40.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
     `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.

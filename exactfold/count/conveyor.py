@@ -5,8 +5,8 @@
     roots   = conveyor.prove(block)      # proved roots with their letters, or what is open and why
 
 In the chart of `Problem` zeros with different vertex signs are different, so a proved zero with the
-signs asked for in each of the 2^n chambers is the proof that these are all (docs/mathematics.md, 4
-and 12).
+signs asked for in each of the 2^n chambers is the proof that these are all (docs/mathematics.md,
+Completeness and Nappes).
 """
 
 from __future__ import annotations

@@ -46,10 +46,10 @@ def find_branch(
     `signs`: text such as "+-+" in the order of the interior vertices ("0", or nothing at all, for
     those in triangulated triangles, which stay flat), a sequence of +1 and -1, or a mapping from
     vertex to sign. `up`: instead, the vertices that pop up; the others pop down. Newton's method on
-    the nappes proposes heights (docs/mathematics.md, 12); they are refined in exact arithmetic and
-    enclosed by a theorem that needs no factorisation (docs/branch.md, `enclose`), so that the cost
-    of the proof grows like the number of folds. Gauge: see `Branch`. With `rim`, heights of all
-    boundary vertices of a convex boundary of any length, the branch of that rim. A vertex that
+    the nappes proposes heights (docs/mathematics.md, Nappes); they are refined in exact arithmetic
+    and enclosed by a theorem that needs no factorisation (docs/branch.md, `enclose`), so that the
+    cost of the proof grows like the number of folds. Gauge: see `Branch`. With `rim`, heights of
+    all boundary vertices of a convex boundary of any length, the branch of that rim. A vertex that
     is proved flat on the branch gets the sign 0: either sign leads to that branch, and so does 0.
 
     Raises `UsageError` for signs that do not fit the pattern, among them a 0 where no branch with
@@ -199,7 +199,8 @@ class BranchFinder:
 
         A vertex with the sign 0 has to be proved flat on it. The branches with (s, 0) and with (s,
         +1) both lie in the closed nappes of (s, +1), which hold one branch only (docs/theorem.md,
-        4): if the one proved there has not the signs asked for, none has, which is a `UsageError`.
+        Four boundary vertices): if the one proved there has not the signs asked for, none has,
+        which is a `UsageError`.
         """
         flat = [v for v, sign in signs.items() if sign == 0]
         found = self._found({**signs, **dict.fromkeys(flat, 1)}, start, progress)

@@ -99,9 +99,10 @@ def stream_branches(
 
     Each of the 2^n sign vectors leads to one candidate; a box around it with one zero whose signs
     are those asked for makes the zeros pairwise different, and by refined Bezout complete
-    (docs/mathematics.md, 4 and 12). Memory does not grow with 2^n: a block of 1024 roots, and two
-    waiting for each worker. Where sign vectors stay open, as at multiple roots, the pattern is
-    handed over to `count_branches` if it has at most 12 foldable vertices; not without `hand_over`.
+    (docs/mathematics.md, Completeness and Nappes). Memory does not grow with 2^n: a block of 1024
+    roots, and two waiting for each worker. Where sign vectors stay open, as at multiple roots, the
+    pattern is handed over to `count_branches` if it has at most 12 foldable vertices; not without
+    `hand_over`.
 
     Up to `workers` processes share the blocks, fewer if there is little to do; a script that asks
     for several needs the usual `if __name__ == "__main__"`. With `resume`, a file left by an

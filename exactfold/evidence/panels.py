@@ -25,7 +25,7 @@ from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 def certificate_of_panels(result: Decomposition) -> Document:
     """The certificate of a complete decomposition, as a JSON object for `exactfold.checker`.
 
-    It holds the pattern and the claims (docs/certificate.md, panels); the checker finds all of them
+    It holds the pattern and the claims (docs/certificate.md, Panels); the checker finds all of them
     again. Raises `NotApplicableError` if the decomposition is not proved.
 
     >>> from exactfold.modes.decomposition import decompose

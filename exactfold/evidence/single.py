@@ -16,7 +16,7 @@ from exactfold.verdict import PROVED
 
 
 def branch_certificate(branch: Branch) -> dict[str, Any]:
-    """The proof of a branch as a JSON object (docs/branch.md, 6).
+    """The proof of a branch as a JSON object (docs/branch.md, Certificates).
 
     Raises `UsageError` unless the branch is proved.
 

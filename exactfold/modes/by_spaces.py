@@ -193,7 +193,7 @@ def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -
 
     At w on the line the derivatives `dK_v(w)` of all vertices leave in the space of first-order
     motions that line alone, shown by balls; then one curve of true motions at most is tangent to it
-    (docs/panels.md, 5).
+    (docs/panels.md, Vertices with more folds).
     """
     if leaf.size != 1 or leaf.vertices:
         return False

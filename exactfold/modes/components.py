@@ -17,12 +17,12 @@ _MOST_CLIQUES: Final = 1_000_000
 def components(supports: Sequence[Support], free_folds: int) -> dict[int, int]:
     """{dimension: number} of the components of all motions to second order.
 
-    Structure theorem (docs/panels.md, 2): where every vertex has at most four folds the motions are
-    the union of the spans of sets of elementary modes without a common vertex, each together with
-    the folds that have both ends on the border. The components are the maximal such sets, real
-    linear spaces; each dimension counts modes and free folds. Maximal sets of supports are the
-    maximal cliques of the graph of disjoint supports; each stands for the product of their counts.
-    A sheet that cannot move has one component, the flat state, of dimension 0.
+    Where every vertex has at most four folds, the motions are the union of the spans of sets of
+    elementary modes without a common vertex, each together with the folds that have both ends on
+    the border (docs/panels.md, Structure theorem). The components are the maximal such
+    sets, real linear spaces; each dimension counts modes and free folds. Maximal sets of supports
+    are the maximal cliques of the graph of disjoint supports; each stands for the product of their
+    counts. A sheet that cannot move has one component, the flat state, of dimension 0.
 
     Raises `TooManyModesError` beyond a million maximal sets of supports.
 

@@ -28,13 +28,14 @@ def cone_motion(
 ) -> Balls | None:
     """A motion of a space where the forms of these vertices vanish, if it shows that they are one.
 
-    Theorem of double covers (docs/panels.md, 5). The forms are put in an order; for each there is a
-    direction u in which it is not 0, and which those before do not depend on. The line along u
-    through a point w meets its zeros in the two roots of a quadratic polynomial, which are real if
-    the discriminant D(w) is positive. If D has both signs at regular zeros of the forms before, it
-    is no square, and the zeros of the form are one component with those before. The first form has
-    rank 3 at least, and needs no more. The motion is enclosed in balls; the derivatives of the
-    forms are independent there. None decides nothing; of more than 16 forms none is tried.
+    The theorem is docs/panels.md, Double covers. The forms are put in an
+    order; for each there is a direction u in which it is not 0, and which those before do not
+    depend on. The line along u through a point w meets its zeros in the two roots of a quadratic
+    polynomial, which are real if the discriminant D(w) is positive. If D has both signs at regular
+    zeros of the forms before, it is no square, and the zeros of the form are one component with
+    those before. The first form has rank 3 at least, and needs no more. The motion is enclosed in
+    balls; the derivatives of the forms are independent there. None decides nothing; of more than 16
+    forms none is tried.
     """
     if len(vertices) > _MOST_FORMS:
         return None
@@ -171,7 +172,8 @@ def is_one_family(
 
     So it is if the leaf is all of the first-order motions, of dimension `size`, on which the form
     of each vertex with more than two folds is left, and the conditions of first order are
-    independent, two for each of these vertices and one for each straight pair (docs/panels.md, 5).
+    independent, two for each of these vertices and one for each straight pair (docs/panels.md,
+    Vertices with more folds).
 
     >>> right = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))
     >>> is_one_family({0: right}, 2, 2, [0]), is_one_family({0: right}, 2, 1, [0])

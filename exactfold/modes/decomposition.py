@@ -37,12 +37,12 @@ def decompose(
 
     First the folds that cannot fold in any real motion are found (`stars`), at any size. What is
     left falls into independent parts. Where all vertices have at most four folds the structure
-    theorem gives all components (docs/panels.md, 2); elsewhere linear spaces are split vertex by
-    vertex (`leaves`), if the first-order motions have dimension 16 or less or the spaces turn out
-    to be few; else components are found one by one (`found_components`). A motion of true
-    configurations has its lowest order in the second-order motions, so a sheet without these is
-    rigid. `flat` holds folds flat that are in the drawing but are not to fold; up to `listed` modes
-    are listed one by one.
+    theorem gives all components (docs/panels.md, Structure theorem); elsewhere linear spaces are
+    split vertex by vertex (`leaves`), if the first-order motions have dimension 16 or less or the
+    spaces turn out to be few; else components are found one by one (`found_components`). A motion
+    of true configurations has its lowest order in the second-order motions, so a sheet without
+    these is rigid. `flat` holds folds flat that are in the drawing but are not to fold; up to
+    `listed` modes are listed one by one.
 
     UNDECIDED means that a part is too large or needs too many square roots; `reason` says which.
 

@@ -29,7 +29,7 @@ _MOST_STEPS: Final = 60_000
 class Support:
     """A set of vertices that are active together, and in how many ways: `count` elementary modes.
 
-    `example` is one of these modes, as its local modes.
+    `example` is one of these modes, as its local modes (docs/panels.md, Structure theorem).
     """
 
     vertices: tuple[int, ...]

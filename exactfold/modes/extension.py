@@ -29,7 +29,8 @@ Loops: TypeAlias = "dict[tuple[object, ...], Extension]"
 class Extension:
     """Whether a mode is tangent to a true motion: PROVED, REFUTED or UNDECIDED, and by what.
 
-    `cycle` is the loop of vertices that does not close, at `order` in the fold angle, if REFUTED.
+    `cycle` is the loop of vertices that does not close, at `order` in the fold angle, if REFUTED
+    (docs/panels.md, Extension theorem).
     """
 
     verdict: Verdict
@@ -49,9 +50,9 @@ def extension(
     Each local mode continues to one analytic curve of true motions of its vertex, so a mode extends
     if its active graph is a forest; or if all transmissions round its loops are linear, as they
     then close because the mode does; or if round every loop of a cycle basis they close up to the
-    odd order 2^k + 1, with k nonlinear transmissions (docs/panels.md, 4: the composite has bidegree
-    at most (2^k, 2^k), and meets the diagonal at the origin no more often unless it is the
-    diagonal). The first order that fails proves that it does not extend.
+    odd order 2^k + 1, with k nonlinear transmissions (docs/panels.md, Which modes truly fold: the
+    composite has bidegree at most (2^k, 2^k), and meets the diagonal at the origin no more often
+    unless it is the diagonal). The first order that fails proves that it does not extend.
 
     `known` keeps what was found of loops, for other modes of the same sheet.
 

@@ -51,8 +51,9 @@ def found_components(
     them; the steps are taken again exactly, which gives a space on which all forms but some vanish.
     Where these have a common zero near w with independent derivatives on the space, and the
     derivatives of all forms leave no more room in the space of `rows`, w lies on exactly one
-    component (docs/panels.md, 6). The work is limited to `most` steps, as in `leaves`. The second
-    value says whether the search in floating point came to its end, which proves nothing.
+    component (docs/panels.md, Regular points). The work is limited to `most` steps, as in `leaves`.
+    The second value says whether the search in floating point came to its end, which proves
+    nothing.
     """
     forms = Forms(moving)
     whole = in_balls(rows)

@@ -180,7 +180,7 @@ def is_component(forms: Forms, rows: BallRows, size: int, w: Balls, dimension: i
     """Whether the motions near w have this dimension at most, in the space of these rows.
 
     That is so if the derivatives at w of all forms have the rank `size - dimension` on the space
-    (docs/panels.md, 6).
+    (docs/panels.md, Regular points).
     """
     before = ctx.prec
     ctx.prec = BITS
@@ -196,7 +196,8 @@ def truly_folds(stars: Mapping[int, Star], w: Balls) -> bool:
 
     Folds that are not in w are held flat. True if then the conditions of first order are
     independent, two for each vertex and one for a straight pair, and the derivatives of all forms
-    at w are independent on the first-order motions (docs/panels.md, 6). False decides nothing.
+    at w are independent on the first-order motions (docs/panels.md, Regular points). False decides
+    nothing.
     """
     active = {v: star.only(w) for v, star in stars.items() if set(star.folds) & set(w)}
     full = [v for v, star in active.items() if len(star.folds) != 2]

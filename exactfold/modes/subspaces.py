@@ -31,7 +31,7 @@ class Leaf:
     `rows` gives each active fold's density as a linear function of `size` parameters. `vertices`
     are those whose form does not vanish on the space; all of these forms have one sign once and the
     other at least twice. `dimension` is that of the real solutions, if they are one component: with
-    two forms or more that is to be shown (`cones`).
+    two forms or more that is to be shown (docs/panels.md, Double covers).
     """
 
     rows: Mapping[Edge, tuple[Number, ...]]

@@ -18,7 +18,7 @@ class Transmission:
     """tau_end = tau_start * u(tau_start^2) along one mode, with tau = tan(angle / 2) / length.
 
     For four folds with directions d_1, ..., d_4, x = tau_1, y = tau_2, z = tau_3 and
-    c_ij = [d_i, d_j], s_ij = d_i . d_j (docs/panels.md, 3):
+    c_ij = [d_i, d_j], s_ij = d_i . d_j (docs/panels.md, All fold angles):
 
         c_41 c_13 x^2 + 2 c_23 c_41 x y - c_23 c_24 y^2 = Q x^2 y^2,
         Q = c_12 (c_34 s_12 + c_12 s_34);

@@ -60,8 +60,8 @@ class PanelMode:
         """Whether it closes for every T if `tau_e = c_e T` on all folds; proved exactly if it does.
 
         With `tau = tan(angle / 2) / length` a vertex closes iff the vector part of the product of
-        the quaternions `1 + tau_j d_j` vanishes (docs/panels.md, 3). On the line of its local mode
-        it is a polynomial in T; it is expanded, and all its coefficients are 0.
+        the quaternions `1 + tau_j d_j` vanishes (docs/panels.md, All fold angles). On the line of
+        its local mode it is a polynomial in T; it is expanded, and all its coefficients are 0.
         """
         pairs = zip(self.stars, self.choice, strict=True)
         return all(closes_always(star.directions, mode.values) for star, mode in pairs)
@@ -115,7 +115,8 @@ class PanelComponent:
     """Modes that share no vertex, each of which truly folds, and the folds that are free.
 
     The true configurations near the flat state that belong to it are the products of one curve for
-    each mode and an interval for each free fold (docs/panels.md, 4). `modes` are numbers.
+    each mode and an interval for each free fold (docs/panels.md, Which modes truly fold). `modes`
+    are numbers.
     """
 
     modes: tuple[int, ...]

@@ -119,7 +119,8 @@ class LinearCurve:
 
 @dataclass(frozen=True, repr=False)
 class FollowedCurve:
-    """A mode with nonlinear transmissions, in floats from closed formulas (docs/panels.md, 3).
+    """A mode with nonlinear transmissions, in floats from closed formulas (docs/panels.md, All fold
+    angles).
 
     Up to the first fold at 180 degrees all fold angles of a mode grow strictly with each other
     (docs/panel_motion.md, 2). `driver` is found by trying: a fold is closed, and where a vertex

@@ -47,10 +47,10 @@ def follow_panels(
     """The motion of a sheet of rigid panels along a component, from the flat sheet until an event.
 
     A component is a set of elementary modes that truly fold and share no vertex, with the folds
-    that go from border to border (docs/panels.md, 4). A mode all of whose vertices are linear in
-    the half-angle tangents folds in proportion to the flat-folded sheet, which is proved
-    (`PanelMotion.closes`); others are followed in floats by the transmissions of their vertices, up
-    to the first fold at 180 degrees (docs/panel_motion.md).
+    that go from border to border (docs/panels.md, Which modes truly fold). A mode all of whose
+    vertices are linear in the half-angle tangents folds in proportion to the flat-folded sheet,
+    which is proved (`PanelMotion.closes`); others are followed in floats by the transmissions of
+    their vertices, up to the first fold at 180 degrees (docs/panel_motion.md).
 
     `sheet`: a decomposition, or a pattern to decompose. `component`: its number in
     `panel_components`, from 1, by default the first, with most active folds; or `modes`, the

@@ -1,8 +1,8 @@
 """Patterns that are not generic, one builder for each way of not being so; all rational.
 
 Triangulated triangles, straight crease paths, crosses, symmetry and chords: where branches fall
-together, vertices stay flat, or a part of the sheet is rigid (docs/mathematics.md, 6 to 8). All
-have four boundary vertices.
+together, vertices stay flat, or a part of the sheet is rigid (docs/mathematics.md, Definite stress
+to Multiple solutions). All have four boundary vertices.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ def with_vertex(
     """The pattern with a new vertex of degree 3, the last, inside a face.
 
     `weights` are the positive barycentric weights of its place. The face is replaced by three,
-    which come last; the new vertex is rigid in it (docs/mathematics.md, 7). Raises `UsageError` for
-    a face that does not exist or weights that are not positive.
+    which come last; the new vertex is rigid in it (docs/mathematics.md, Triangulated triangles).
+    Raises `UsageError` for a face that does not exist or weights that are not positive.
 
     >>> with_vertex(cross_square(), 0).Vt
     1

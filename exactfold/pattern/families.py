@@ -20,7 +20,8 @@ _CORNERS: Final = ((0, 0), (1, 0), (1, 1), (0, 1))
 def collinear_folds(pattern: CreasePattern) -> tuple[tuple[int, int, int], ...]:
     """The crease paths (i, v, j) that run straight through an interior vertex v, i < j.
 
-    Straight paths are the usual cause of branches with flat vertices (docs/mathematics.md, 8).
+    Straight paths are the usual cause of branches with flat vertices (docs/mathematics.md, Multiple
+    solutions).
 
     >>> collinear_folds(waterbomb())
     ((0, 6, 2), (1, 6, 3), (4, 6, 5))

@@ -20,10 +20,10 @@ from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functi
 class BranchSystem:
     """K_v(h) = 0 for every interior vertex v, with three non-collinear vertices pinned at h = 0.
 
-    Vi homogeneous quadrics in the Vi + D heights of `variables` (docs/mathematics.md, 2). Pinning
-    removes the affine functions, on which all curvature forms vanish. By default the pinned
-    vertices lie on the boundary; for D = 1 they are the boundary vertices but the one whose height
-    the chart `saddle = 1` then fixes to 1.
+    Vi homogeneous quadrics in the Vi + D heights of `variables` (docs/mathematics.md, Branch
+    system). Pinning removes the affine functions, on which all curvature forms vanish. By default
+    the pinned vertices lie on the boundary; for D = 1 they are the boundary vertices but the one
+    whose height the chart `saddle = 1` then fixes to 1.
 
     Raises `CollinearPointsError` if the pinned vertices are collinear, `UsageError` if they are not
     three different vertices.
@@ -89,9 +89,10 @@ class BranchSystem:
 def notch_chart(pattern: CreasePattern) -> Chart:
     """For a quadrilateral with a reflex corner r: the chart `K_r(t, h) = 1` of the closed sheet.
 
-    With the notch closed by a triangle, K_r > 0 on every solution (docs/theorem.md, section 4), so
-    the sign functional of r vanishes on none: unlike the saddle, it leaves no branch at infinity.
-    Pinned are the other three corners. Raises `NotApplicableError` for other boundaries.
+    With the notch closed by a triangle, K_r > 0 on every solution (docs/theorem.md, Four boundary
+    vertices), so the sign functional of r vanishes on none: unlike the saddle, it leaves no branch
+    at infinity. Pinned are the other three corners. Raises `NotApplicableError` for other
+    boundaries.
     """
     corner = pattern.reflex_corner
     if corner is None or pattern.Ve != 4:
@@ -105,7 +106,8 @@ def notch_chart(pattern: CreasePattern) -> Chart:
 
 
 def chamber_chart(pattern: CreasePattern) -> Chart:
-    """The chart in which each branch is named by its vertex signs alone (docs/theorem.md, 4).
+    """The chart in which each branch is named by its vertex signs alone (docs/theorem.md, Four
+    boundary vertices).
 
     `saddle = 1` for a convex boundary, the chart of the closed notch for one with a reflex corner:
     neither leaves a branch at infinity. Raises `NotApplicableError` unless Ve = 4.
@@ -126,8 +128,8 @@ class Chart:
     """The part of projective space where a linear functional of the heights is 1.
 
     `eliminated` is the vertex whose height that equation expresses by the others; `variables` are
-    the remaining unknowns, and `system` the Vi affine quadrics in them. Zeros at infinity of the
-    chart are the branches on which the functional vanishes.
+    the remaining unknowns, and `system` the Vi affine quadrics in them (docs/conventions.md,
+    Heights). Zeros at infinity of the chart are the branches on which the functional vanishes.
     """
 
     branch_system: BranchSystem

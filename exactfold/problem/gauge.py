@@ -19,7 +19,7 @@ SADDLE, CORNER, RIM = "saddle", "corner", "rim"
 class Gauge:
     """Given heights of the rim of `sheet`, and the one vertex, if any, with a given curvature.
 
-    `kind` is one of three (docs/conventions.md):
+    `kind` is one of three (docs/conventions.md, Heights):
 
     - "saddle": a convex quadrilateral. One boundary vertex has height 1, the others 0, so that the
       boundary saddle (`saddle_functional`) is +1.
@@ -29,7 +29,8 @@ class Gauge:
     - "rim": a convex boundary of any length, with heights that were given.
 
     In all three there is exactly one solution in the closed nappes of each sign vector
-    (docs/theorem.md, 4). `sheet` has the vertices of the sheet that was given, and no others.
+    (docs/theorem.md, Four boundary vertices). `sheet` has the vertices of the sheet that was given,
+    and no others.
     """
 
     kind: str

@@ -18,7 +18,7 @@ class Reality:
     `solutions` counts with multiplicity: branches as lines for D = 1, solutions for any given
     boundary heights for D > 1, 0 for a rigid sheet; None if undecided. `multipliers` is the
     definite stress that proves it, by interior vertex of the sheet (its notch closed if it has
-    one).
+    one). The theorem is docs/theorem.md, Theorem 2.
     """
 
     verdict: Verdict

@@ -1,4 +1,4 @@
-"""Curvature forms and wheel stresses of the interior vertices (docs/mathematics.md, 1)."""
+"""Curvature forms and wheel stresses of interior vertices (docs/mathematics.md, Curvature form)."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ def wheel_stress(pattern: PatternLike, vertex: int) -> dict[Edge, Fraction]:
         rim   w_{j,j+1} = -1 / c_j
         spoke w_j = 1/c_j + 1/c_{j-1} - (s_j/c_j + s_{j-1}/c_{j-1}) / L_j^2
 
-    (the paper's Eq. wheelstress divided by the edge lengths, so that everything is rational).
+    (the paper's Eq. wheelstress divided by the edge lengths, so that everything is rational;
+    docs/mathematics.md, Wheel stress).
     Unit: 1 / length^2. Raises `UsageError` unless `vertex` is interior.
     """
     pattern = as_pattern(pattern)
@@ -55,7 +56,7 @@ def curvature_form(pattern: PatternLike, vertex: int) -> QuadraticForm:
 
         K_v(h) = sum_j x_j x_{j+1} / c_j - (s_j / 2 c_j) (x_j^2 / L_j^2 + x_{j+1}^2 / L_{j+1}^2)
 
-    with x_j = h_j - h_v (docs/mathematics.md, 1). Labels: the hub first, then the ring
+    with x_j = h_j - h_v (docs/mathematics.md, Curvature form). Labels: the hub first, then the ring
     counter-clockwise. Unit: curvature in radians when heights and lengths share a unit.
     Inertia (1, N - 3, 3) for degree N. Raises `UsageError` unless `vertex` is interior.
 

@@ -31,7 +31,8 @@ def definite_stress(pattern: PatternLike) -> dict[int, Fraction] | None:
 
     R^2 - |U_v - c|^2 for a disk about the centroid c of the boundary vertices (docs/theorem.md, Key
     lemma), verified exactly. Unit: squared length. None if the combination is not definite, which
-    can happen for a boundary with reflex corners only, and decides nothing.
+    can happen for a boundary with reflex corners only, and decides nothing. What it proves:
+    docs/mathematics.md, Definite stress.
 
     >>> from exactfold.pattern.crease_pattern import CreasePattern
     >>> pyramid = [(0, 0), (3, 0), (0, 3), (1, 1)]

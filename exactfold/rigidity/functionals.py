@@ -14,7 +14,8 @@ def vertex_sign_functional(pattern: CreasePattern, vertex: int) -> dict[int, int
     """Integer coefficients of h -> K_v(t, h), t timelike and pointing up, by vertex.
 
     On the null cone of K_v its sign is +1 where the vertex is popped up, -1 where it is popped
-    down, and 0 exactly where the star of the vertex is flat (docs/conventions.md).
+    down, and 0 exactly where the star of the vertex is flat (docs/conventions.md, Signs of
+    vertices).
     """
     coefficients = curvature_form(pattern, vertex).functional(round_cone(pattern, vertex))
     integers, _ = over_common_denominator(coefficients.values())

@@ -18,7 +18,8 @@ def rigidity_matrix(pattern: PatternLike) -> list[list[Fraction]]:
     """Rows by `pattern.edges`, columns (x_0, y_0, x_1, y_1, ...): entries +-(U_i - U_j).
 
     The paper's compatibility matrix C with row (i, j) multiplied by the length of the edge; its
-    left kernel therefore consists of stress densities. Rank 2V - 3 for every triangulated disk.
+    left kernel therefore consists of stress densities (docs/mathematics.md, Self stress). Rank
+    2V - 3 for every triangulated disk.
     """
     pattern = as_pattern(pattern)
     rows = []
@@ -63,8 +64,9 @@ def rigidity_rank(pattern: PatternLike, primes: Sequence[int] = _PRIMES) -> tupl
 def self_stresses(pattern: PatternLike) -> list[dict[Edge, Fraction]]:
     """A basis of the self stresses as stress densities by edge (left kernel of the matrix).
 
-    Found by elimination, without the wheel stresses, of which it is an independent check; there
-    are exactly Vi of them for every triangulated disk.
+    docs/mathematics.md, Self stress, has the definition. Found by elimination, without the wheel
+    stresses, of which it is an independent check; there are exactly Vi of them for every
+    triangulated disk.
     """
     pattern = as_pattern(pattern)
     matrix = rigidity_matrix(pattern)

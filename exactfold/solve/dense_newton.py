@@ -5,10 +5,10 @@ K_v = 0 with vertex sign e_v says l_v = e_v |A_v h|. For given boundary heights 
 
     g_v(h) = l_v(h) - e_v |A_v h|    for every interior vertex v.
 
-*g is a homeomorphism of R^n with Lipschitz inverse* (docs/mathematics.md, 12), so that there is one
-zero for each e, and Newton's steps are defined wherever g is differentiable. A zero where a star is
-flat, a multiple root of K = 0, is no worse conditioned than others. Floating point: nothing here
-is proved.
+*g is a homeomorphism of R^n with Lipschitz inverse* (docs/mathematics.md, Nappes), so that there is
+one zero for each e, and Newton's steps are defined wherever g is differentiable. A zero where a
+star is flat, a multiple root of K = 0, is no worse conditioned than others. Floating point: nothing
+here is proved.
 
 A block of sign vectors is solved at once by dense arrays, which takes a fraction of the time of one
 after the other; `sparse_newton` is for one sign vector of a sheet of any size, and `refined_newton`

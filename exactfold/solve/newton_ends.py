@@ -20,8 +20,8 @@ def newton(chart: Chart, *, progress: Steps | None = None) -> Candidates:
     """Candidates for all 2^Vi branches (Ve = 4), each by Newton's method on the nappes.
 
     For each vector e of vertex signs the equations l_v = e_v |A_v h| of `NappeSystem` have one
-    solution (docs/mathematics.md, 12), found by damped Newton steps, a block of sign vectors at a
-    time. Flat stars do not slow them down: where branches coincide, so do the candidates. Sign
+    solution (docs/mathematics.md, Nappes), found by damped Newton steps, a block of sign vectors at
+    a time. Flat stars do not slow them down: where branches coincide, so do the candidates. Sign
     vectors for which they did not converge are named in `lost`; their last point is still a
     candidate. Floating point throughout: nothing here is proved.
 

@@ -1,4 +1,4 @@
-"""The popping homotopy: one real path for each vector of vertex signs (docs/mathematics.md, 11)."""
+"""The popping homotopy: one path for each sign vector (docs/mathematics.md, Popping homotopy)."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ def popping(chart: Chart, *, progress: Steps | None = None) -> Candidates:
         (1 - T) (l_v(h)^2 - k) + T K_v(h) = 0,   e_v l_v(h) > 0,   from T = 0 to T = 1.
 
     For a convex boundary the path is regular for T < 1 and is the only solution in its chamber, so
-    a converged corrector with the right signs cannot have jumped (docs/mathematics.md, 11). A
-    reflex corner is made interior by the triangle that closes the notch, and is given curvature k
-    in place of 0. Predictor: a Taylor series of order 8 from one inverse per step; all paths of a
-    block advance together. Paths that stall before T = 1, as they do where a vertex star ends flat,
-    are named in `lost`; where they stalled is still a candidate. Floating point throughout: nothing
-    here is proved.
+    a converged corrector with the right signs cannot have jumped (docs/mathematics.md, Popping
+    homotopy). A reflex corner is made interior by the triangle that closes the notch, and is given
+    curvature k in place of 0. Predictor: a Taylor series of order 8 from one inverse per step; all
+    paths of a block advance together. Paths that stall before T = 1, as they do where a vertex star
+    ends flat, are named in `lost`; where they stalled is still a candidate. Floating point
+    throughout: nothing here is proved.
 
     Raises `NotApplicableError` unless the pattern has four boundary vertices.
 

@@ -66,7 +66,7 @@ def equations(
         g = E / (l + e r),   dg = -E / (r (r + e l)) dl + e / (2 r) dK      where e l > 0.
 
     Where r is lost in rounding, as on a regular cone, its gradient is noise: dg = dl is taken,
-    which is as good (docs/mathematics.md, 12, with u_v = 0).
+    which is as good (docs/mathematics.md, Nappes, with u_v = 0).
     """
     lines, excess = point.lines, point.excess
     squared = lines * lines
@@ -86,7 +86,7 @@ def solve(
     start: FloatArray | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> End:
-    """The zero of all g_v (docs/mathematics.md, 12) by damped Newton steps.
+    """The zero of all g_v (docs/mathematics.md, Nappes) by damped Newton steps.
 
     g is a homeomorphism with one zero for each sign vector. Starts at the solution of the linear
     system l_v = e_v c, or at `start`, such as a neighbouring branch.

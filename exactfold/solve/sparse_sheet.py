@@ -22,8 +22,8 @@ class FloatSheet:
     """K_v, its round-cone line l_v, and Jacobians, on fold arrays; unit of length: the sheet.
 
     Unknown k is vertex `unknowns[k]`. K_v is scaled by `scale` so that l_v^2 - K_v >= 0 for
-    the functional l_v of hub coefficient 1 (docs/mathematics.md, 11). Shapes: n unknowns, E folds,
-    V vertices.
+    the functional l_v of hub coefficient 1 (docs/mathematics.md, Popping homotopy). Shapes: n
+    unknowns, E folds, V vertices.
     """
 
     unknowns: IndexArray

@@ -208,7 +208,8 @@ Patterns are random Delaunay squares (`random_square(Vi, seed)`, seeds {seeds});
 that of the chart *boundary saddle = 1*, `Vi` quadrics in `Vi` unknowns with integer coefficients,
 and the same for everybody. Every program is a process of its own with one thread. The machine was
 shared with other work, so that what counts is **processor time** of the process and its children,
-not the clock; read ratios rather than seconds. Starting Python and loading every library used
+not the clock. Another machine or another run gives other seconds: compare only the numbers of
+this page with each other, and read ratios. Starting Python and loading every library used
 here takes {start} s. exactfold loads what it needs; that is most of its time at small sizes, and is
 included.
 
