@@ -13,13 +13,12 @@ from exactfold.report import (
     motion_animation,
     motion_stills,
     pattern_picture,
-    sheet_of_multiples,
-    ways_of,
 )
 from exactfold.report.crease_drawing import CreaseDrawing
 from exactfold.report.crease_lines import crease_lines
 from exactfold.report.folded import Amount, folded
 from exactfold.report.svg import element, number, picture, text
+from exactfold.report.way_sheets import sheet_of_ways
 
 FOLDER = Path(__file__).with_name("pictures")
 MOTIONS = {
@@ -80,20 +79,13 @@ def drawings() -> dict[str, str]:
     """Those of the page on drawing, as `exactfold draw` makes them."""
     opened = open_pattern(example_path("zigzags"))
     branch = find_branch("random-8", "+-++--+-")
-    all_branches, all_modes = count_ways("two-vertex"), count_ways("zigzags")
-    octahedron = ways_of(count_ways("flat-octahedron"))
-    title = "{}: {} ways to start folding, proved"
     return {
         "draw-zigzags.svg": pattern_picture(opened.sheet, opened.assignment, title="zigzags"),
         "draw-branch.svg": branch_way(branch).picture("random-8"),
         "draw-folded.svg": folded(follow(branch), Amount.of("60deg"), "random-8").text,
-        "draw-all.svg": sheet_of_multiples(octahedron, title.format("flat-octahedron", 8)),
-        "draw-two-vertex.svg": sheet_of_multiples(
-            ways_of(all_branches), title.format("two-vertex", len(all_branches))
-        ),
-        "draw-modes.svg": sheet_of_multiples(
-            ways_of(all_modes), "zigzags: 5 modes, 4 of them known to truly fold"
-        ),
+        "draw-all.svg": sheet_of_ways(count_ways("flat-octahedron"), "flat-octahedron"),
+        "draw-two-vertex.svg": sheet_of_ways(count_ways("two-vertex"), "two-vertex"),
+        "draw-modes.svg": sheet_of_ways(count_ways("zigzags"), "zigzags"),
     }
 
 
