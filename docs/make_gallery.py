@@ -137,18 +137,14 @@ class Card:
         """What makes the pictures: commands, or Python for what is no file."""
         name, number = self.name, number_listed(self.found)
         if name in BUILT:
+            follow = ", follow" if self.way else ""
             (module,) = re.findall(r"^\w+", BUILT[name])
-            home = "exactfold.pattern" if module == "degenerate" else "exactfold"
-            start = [
-                "from exactfold import count_branches, follow",
-                f"from {home} import {module}",
-            ]
-            if home == "exactfold":
-                start = [f"from exactfold import count_branches, {module}, follow"]
-            count = [*start, f"found = count_branches({BUILT[name]})"]
-            return (
-                [*count, f"motion = follow(found.branches[{self.way - 1}])"] if self.way else count
-            )
+            imports = [f"from exactfold import count_branches, {module}{follow}", ""]
+            if module == "degenerate":
+                imports = [f"from exactfold import count_branches{follow}"]
+                imports += ["from exactfold.pattern import degenerate", ""]
+            lines = [*imports, f"found = count_branches({BUILT[name]})"]
+            return [*lines, f"motion = follow(found.branches[{self.way - 1}])"] if follow else lines
         count, draw = f"exactfold count {name}", f"exactfold draw {name}"
         if not number:
             return [count, f"{draw} -o {name}.svg"]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from exactfold import PROVED, count_ways, find_branch, follow, load, open_pattern
 from exactfold.data import example_path
-from exactfold.motion import follow_panels, prove
+from exactfold.motion import follow_panels
 from exactfold.pattern import CreasePattern
 from exactfold.report import (
     branch_way,
@@ -68,11 +68,10 @@ def rim() -> str:
 
 def folding() -> str:
     """The sheet of the first page, which folds along a motion that is proved."""
-    motion = follow(find_branch(load("two-vertex"), "+-"))
-    found = prove(motion)
-    if found.status is not PROVED:
-        raise RuntimeError(f"the motion on the first page is not proved: {found.reason}")
-    return motion_animation(motion, title="two-vertex, branch +-")
+    motion = follow_panels(count_ways("miura"), modes=[8])
+    if motion.closes is not PROVED:
+        raise RuntimeError("the motion on the first page is not proved")
+    return motion_animation(motion, title="miura")
 
 
 def drawings() -> dict[str, str]:

@@ -325,6 +325,18 @@ def check_gallery(name: str) -> Any:
     return card
 
 
+def test_the_lines_of_the_first_page_make_its_picture(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs" / "index.md").read_text("utf-8")
+    (lines,) = re.findall(r"(?ms)^```python\n(.+?)```$", page)
+    assert len([line for line in lines.splitlines() if line]) == 3
+    exec(lines, {})
+    shown = (ROOT / "docs" / "pictures" / "folding.svg").read_text("utf-8")
+    assert (tmp_path / "folding.svg").read_text("utf-8") == shown
+
+
 @pytest.mark.slow
 def test_the_pictures_are_up_to_date() -> None:
     made = script("make_pictures")["pictures"]()
