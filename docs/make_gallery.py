@@ -21,7 +21,6 @@ from exactfold.data import DRAWINGS, SHEETS, example_path, examples
 from exactfold.errors import NotFollowedError
 from exactfold.modes import Decomposition
 from exactfold.motion import Motion, PanelMotion, follow_panels
-from exactfold.pattern import degenerate
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.report import pattern_picture, ways_of
 from exactfold.report.count import answer
@@ -36,8 +35,8 @@ PAGE: Final = Path(__file__).with_name("gallery.md")
 FOLDER: Final = Path(__file__).with_name("gallery")
 MOST: Final = 12
 """Ways that are drawn of each pattern."""
-STILL, SMALL = 380.0, 150.0
-"""Widths of a folded sheet on the page, and in the table at the top."""
+STILL, ALONE, SMALL = 380.0, 300.0, 150.0
+"""Widths of a folded sheet, of a pattern without a list, and of those in the table at the top."""
 AMOUNT: Final = "90deg"
 """How far a sheet is folded on its still."""
 COLUMNS: Final = 4
@@ -70,7 +69,7 @@ BUILT: Final[dict[str, str]] = {
     "hypar-1": "families.hypar(1)",
     "hypar-straight": "families.hypar(1, twist=0)",
     "h1-3": "families.h1_sequence(3)",
-    **{name: f'degenerate.DEGENERATE["{name}"]()' for name in DEGENERATES},
+    **{name: f'DEGENERATE["{name}"]()' for name in DEGENERATES},
 }
 """Sheets that are no files: the Python expression that builds each."""
 SHOWN: Final = {
@@ -140,9 +139,9 @@ class Card:
             follow = ", follow" if self.way else ""
             (module,) = re.findall(r"^\w+", BUILT[name])
             imports = [f"from exactfold import count_branches, {module}{follow}", ""]
-            if module == "degenerate":
+            if module == "DEGENERATE":
                 imports = [f"from exactfold import count_branches{follow}"]
-                imports += ["from exactfold.pattern import degenerate", ""]
+                imports += ["from exactfold.pattern.degenerate import DEGENERATE", ""]
             lines = [*imports, f"found = count_branches({BUILT[name]})"]
             return [*lines, f"motion = follow(found.branches[{self.way - 1}])"] if follow else lines
         count, draw = f"exactfold count {name}", f"exactfold draw {name}"
@@ -158,7 +157,8 @@ class Card:
         """What the page says of the pattern."""
         number, more = self.answer
         language = "python" if self.name in BUILT else "sh"
-        pictures = [image(self.name, f"The ways to fold {self.name}", width(self.ways))]
+        wide = width(self.ways) if number_listed(self.found) else ALONE
+        pictures = [image(self.name, f"The ways to fold {self.name}", wide)]
         if self.still is not None:
             about = f"{self.name}, folded along way {self.way}"
             pictures.append(image(f"{self.name}-folded", about, STILL))
@@ -198,7 +198,7 @@ def names() -> list[str]:
 def counted(name: str) -> BranchCount | Decomposition:
     """All ways to fold an entry of the gallery."""
     if name in BUILT:
-        return count_branches(eval(BUILT[name], {"families": families, "degenerate": degenerate}))
+        return count_branches(eval(BUILT[name], {"families": families, "DEGENERATE": DEGENERATE}))
     return count_ways(name) if name in DRAWINGS else count_branches(name)
 
 
