@@ -1,131 +1,269 @@
 """Write docs/gallery.md and its pictures: shipped patterns and families, each with its branches.
 
 `python docs/make_gallery.py` writes all, with names only these. Each pattern is counted, and what
-the page says of it is what the count says.
+the page says of it is what the count says. The lines below each make the same pictures.
 """
 
 from __future__ import annotations
 
+import re
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import Final
+from xml.etree import ElementTree
 
-from exactfold import count_branches, count_ways, families
+from exactfold import count_branches, count_ways, families, follow, open_pattern
 from exactfold.branches import BranchCount
-from exactfold.data import DRAWINGS, examples
+from exactfold.data import DRAWINGS, SHEETS, example_path, examples
+from exactfold.errors import NotFollowedError
 from exactfold.modes import Decomposition
-from exactfold.pattern import CreasePattern
+from exactfold.motion import Motion, PanelMotion, follow_panels
 from exactfold.pattern.degenerate import DEGENERATE
-from exactfold.report.crease_drawing import pattern_picture
-from exactfold.report.drawn_ways import ways_of
-from exactfold.report.multiples import sheet_of_multiples
+from exactfold.report import pattern_picture, ways_of
+from exactfold.report.count import answer
+from exactfold.report.drawn_ways import DrawnWay
+from exactfold.report.folded import Amount, folded
+from exactfold.report.panels import panels_answer
+from exactfold.report.stills import motion_still
+from exactfold.report.way_sheets import number_listed, sheet_of_ways
+from exactfold.verdict import PROVED
 
 PAGE: Final = Path(__file__).with_name("gallery.md")
 FOLDER: Final = Path(__file__).with_name("gallery")
 MOST: Final = 12
 """Ways that are drawn of each pattern."""
+STILL, ALONE, SMALL = 380.0, 300.0, 150.0
+"""Widths of a folded sheet, of a pattern without a list, and of those in the table at the top."""
+AMOUNT: Final = "90deg"
+"""How far a sheet is folded on its still."""
+COLUMNS: Final = 4
+"""Of the table at the top."""
 HEAD: Final = """# Gallery
 
-Every pattern that comes with exactfold, and one sheet of each family that it can build. Below each
-title is every way to fold it, up to twelve, drawn on its crease pattern: mountains are red, valleys
-are blue and dashed, folds that stay flat are grey. A triangle that points up marks a vertex that
-pops up, one that points down a vertex that pops down. The width of a line grows with the fold
-angle. Ways with the same mountain and valley letters are framed together: only the vertex signs
-tell them apart.
+The patterns that come with exactfold, and one sheet of each family that it can build. Each has all
+its ways to fold, up to twelve, drawn on the crease pattern, and one of them folded in space.
 
-The page is written by `python docs/make_gallery.py`, which counts every pattern anew.
+Mountains are red, valleys are blue and dashed, folds that stay flat are grey. A triangle that
+points up marks a vertex that pops up, one that points down a vertex that pops down. The width of a
+line grows with the fold angle. Ways with the same mountain and valley letters are framed together:
+only the vertex signs tell them apart. A folded sheet is blue above and yellow below.
 """
-FAMILIES: Final[dict[str, tuple[str, Callable[[], CreasePattern]]]] = {
-    "single-vertex-5": (
-        "families.single_vertex(5)",
-        lambda: families.single_vertex(5),
-    ),
-    "hypar-1": ("families.hypar(1)", lambda: families.hypar(1)),
-    "hypar-straight": (
-        "families.hypar(1, twist=0)",
-        lambda: families.hypar(1, twist=0),
-    ),
-    "h1-3": ("families.h1_sequence(3)", lambda: families.h1_sequence(3)),
-    **{
-        name: (f'pattern.degenerate.DEGENERATE["{name}"]()', DEGENERATE[name])
-        for name in (
-            "nested-triangles",
-            "several-triangles",
-            "chord",
-            "cross",
-            "straight-path",
-            "bent-off-path",
-            "ring",
-            "grid",
-            "waterbomb-pair",
-            "notched",
-        )
-    },
+FOOT: Final = """## How this page is made
+
+`python docs/make_gallery.py` counts every pattern anew and writes what the count says. The commands
+below a pattern make the same pictures; of the Python lines a notebook shows what they return.
+
+The windmill, fish and bird bases are traditional forms. The Miura fold is Koryo Miura's, the
+Yoshimura pattern is named after Yoshimaru Yoshimura, who described how thin tubes buckle. All files
+were drawn for exactfold and come with its licence.
+"""
+DEGENERATES: Final = tuple(
+    name for name in DEGENERATE if name not in ("flat-vertex", "hypar-straight")
+)
+"""Those that are shown nowhere else."""
+BUILT: Final[dict[str, str]] = {
+    "single-vertex-5": "families.single_vertex(5)",
+    "hypar-1": "families.hypar(1)",
+    "hypar-straight": "families.hypar(1, twist=0)",
+    "h1-3": "families.h1_sequence(3)",
+    **{name: f'DEGENERATE["{name}"]()' for name in DEGENERATES},
 }
-"""Sheets that are no files: the Python expression that builds each, and the same as a function."""
+"""Sheets that are no files: the Python expression that builds each."""
+SHOWN: Final = {
+    "single-vertex-5": "One interior vertex with five folds.",
+    "hypar-1": "A square, turned a little, in another square.",
+    "hypar-straight": "The same without the turn, so that creases on the diagonals line up.",
+    "h1-3": "Three interior vertices, made one by one by H1 moves.",
+    "nested-triangles": "A triangle that is triangulated twice over: what is inside stays flat.",
+    "several-triangles": "Two vertices of degree four beside two triangulated triangles.",
+    "chord": "A crease from corner to corner: both halves are rigid, and only this crease folds.",
+    "cross": "Two straight creases that cross: the sheet folds along one or the other.",
+    "straight-path": "Two vertices on a straight crease from corner to corner.",
+    "bent-off-path": "A straight crease from corner to corner, with a vertex on either side.",
+    "ring": "A square round a smaller one with a vertex in its middle.",
+    "grid": "Four vertices on a grid with diagonals.",
+    "waterbomb-pair": "Two cells of the waterbomb tiling on top of each other.",
+    "notched": "A sheet with four corners, one of them reflex.",
+}
+"""What each of them is, in one line."""
+GROUPS: Final[dict[str, tuple[str, ...]]] = {
+    "Drawings": tuple(DRAWINGS),
+    "Triangulated sheets": SHEETS,
+    "Families": tuple(name for name in BUILT if name not in DEGENERATES),
+    "Flat vertices and straight creases": DEGENERATES,
+}
+
+
+@dataclass(frozen=True)
+class Card:
+    """What the page shows of a pattern: a picture of its ways, a small one, and a way folded.
+
+    `way` is the number of the way that is folded, 0 if there is none.
+    """
+
+    name: str
+    found: BranchCount | Decomposition
+    ways: str
+    small: str
+    still: str | None = None
+    way: int = 0
+
+    @property
+    def files(self) -> dict[str, str]:
+        """The pictures by the names of their files."""
+        stills = {} if self.still is None else {f"{self.name}-folded.svg": self.still}
+        return {f"{self.name}.svg": self.ways, f"{self.name}-small.svg": self.small} | stills
+
+    @property
+    def answer(self) -> tuple[str, str]:
+        """How many ways there are, and what else the count says, without the time it took."""
+        found = self.found
+        said = answer(found) if isinstance(found, BranchCount) else panels_answer(found)
+        timeless = re.sub(r" \(\d+\.\d\d s\)", "", said.plain)
+        number, _, more = timeless.partition(f" - {str(PROVED).upper()}")
+        return number, more
+
+    @property
+    def what(self) -> str:
+        """What the pattern is, in one line."""
+        return SHOWN[self.name] if self.name in BUILT else examples()[self.name]
+
+    @property
+    def lines(self) -> list[str]:
+        """What makes the pictures: commands, or Python for what is no file."""
+        name, number = self.name, number_listed(self.found)
+        if name in BUILT:
+            follow = ", follow" if self.way else ""
+            (module,) = re.findall(r"^\w+", BUILT[name])
+            imports = [f"from exactfold import count_branches, {module}{follow}", ""]
+            if module == "DEGENERATE":
+                imports = [f"from exactfold import count_branches{follow}"]
+                imports += ["from exactfold.pattern.degenerate import DEGENERATE", ""]
+            lines = [*imports, f"found = count_branches({BUILT[name]})"]
+            return [*lines, f"motion = follow(found.branches[{self.way - 1}])"] if follow else lines
+        count, draw = f"exactfold count {name}", f"exactfold draw {name}"
+        if not number:
+            return [count, f"{draw} -o {name}.svg"]
+        most = f" --most {MOST}" if number > MOST else ""
+        lines = [count, f"{draw} --all{most} -o {name}.svg"]
+        still = f"{draw} --branch {self.way} --folded {AMOUNT} -o {name}-folded.svg"
+        return [*lines, still] if self.way else lines
+
+    @property
+    def section(self) -> str:
+        """What the page says of the pattern."""
+        number, more = self.answer
+        language = "python" if self.name in BUILT else "sh"
+        wide = width(self.ways) if number_listed(self.found) else ALONE
+        pictures = [image(self.name, f"The ways to fold {self.name}", wide)]
+        if self.still is not None:
+            about = f"{self.name}, folded along way {self.way}"
+            pictures.append(image(f"{self.name}-folded", about, STILL))
+        parts = [
+            f"### {self.name}",
+            fill(f"**{number[:1].upper()}{number[1:]}**: proved{more}.", 100),
+            self.what,
+            "\n".join(pictures),
+            "\n".join([f"```{language}", *self.lines, "```"]),
+        ]
+        return "\n\n".join(parts) + "\n"
+
+    @property
+    def cell(self) -> str:
+        """The place of the pattern in the table at the top."""
+        number, _ = self.answer
+        short = re.sub(r"( of ways)? to (start )?fold(ing)?|,.*", "", number)
+        shown = image(f"{self.name}-small", f"{self.name}, {short}", SMALL)
+        return f"[{shown}](#{self.name})<br>[{self.name}](#{self.name})<br>{short}"
+
+
+def image(name: str, words: str, wide: float) -> str:
+    """A picture of this width in pixels, for Markdown and for the site."""
+    return f'<img src="gallery/{name}.svg" alt="{words}" width="{wide:.0f}">'
+
+
+def width(picture: str) -> float:
+    """The width of an SVG picture in pixels."""
+    return float(ElementTree.fromstring(picture).get("width", "0"))
 
 
 def names() -> list[str]:
     """Everything in the gallery, in its order."""
-    return [*examples(), *FAMILIES]
+    return [name for group in GROUPS.values() for name in group]
 
 
-def count(name: str) -> BranchCount | Decomposition:
+def counted(name: str) -> BranchCount | Decomposition:
     """All ways to fold an entry of the gallery."""
-    if name in FAMILIES:
-        return count_branches(FAMILIES[name][1]())
+    if name in BUILT:
+        return count_branches(eval(BUILT[name], {"families": families, "DEGENERATE": DEGENERATE}))
     return count_ways(name) if name in DRAWINGS else count_branches(name)
 
 
-def picture(name: str, found: BranchCount | Decomposition) -> str:
-    """All ways, or the first of them, as one SVG file; the pattern alone where none is listed."""
-    ways = ways_of(found)
-    if ways:
-        more = len(ways) if len(ways) > MOST else None
-        return sheet_of_multiples(ways[:MOST], name, number=more)
-    return pattern_picture(found.pattern, title=name, size=200, keyed=False)
+def card(name: str) -> Card:
+    """An entry of the gallery: the pattern counted, drawn and folded."""
+    found = counted(name)
+    if number_listed(found):
+        ways, (way, motion) = sheet_of_ways(found, name, MOST), fullest(found)
+        still = folded(motion, Amount.of(AMOUNT), name).text
+        time = Amount.of(AMOUNT).time(motion)
+        return Card(name, found, ways, motion_still(motion, time, "", name, SMALL), still, way)
+    sheet, letters = found.pattern, {}
+    if name not in BUILT:
+        opened = open_pattern(example_path(name))
+        sheet, letters = opened.sheet, opened.assignment
+    small = pattern_picture(sheet, letters, size=SMALL, keyed=False, labelled=False)
+    return Card(name, found, pattern_picture(sheet, letters, title=name), small)
 
 
-def words(name: str, found: BranchCount | Decomposition) -> str:
-    """What there is to know, in a few lines of Markdown."""
-    if name in FAMILIES:
-        made = f"In Python: `{FAMILIES[name][0]}`."
-    else:
-        made = f"{' '.join(examples()[name].split())}\n\n`exactfold count {name}`:"
-    status = found.status.value
-    if isinstance(found, Decomposition):
-        sizes = ", ".join(f"{number} of dimension {d}" for d, number in found.true.items())
-        return f"{made} {sum(found.true.values())} families of ways to fold, {sizes}; {status}."
-    if not found.branches:
-        return (
-            f"{made} one family of ways to start folding, of dimension {found.dimension}; {status}."
-        )
-    ways = "1 way" if found.distinct == 1 else f"{found.distinct} ways"
-    many = found.with_multiplicity
-    more = f" ({many} with multiplicity)" if many not in (None, found.distinct) else ""
-    return f"{made} {ways} to start folding{more}; {status}."
+def fullest(found: BranchCount | Decomposition) -> tuple[int, Motion | PanelMotion]:
+    """Of the ways that can be followed, one that folds most creases, in both senses; its number."""
+    for way in sorted(ways_of(found), key=folds, reverse=True):
+        number = way.number or 1
+        try:
+            if isinstance(found, BranchCount):
+                return number, follow(found.branches[number - 1])
+            return number, follow_panels(found, modes=(number,))
+        except NotFollowedError:
+            continue
+    raise NotFollowedError("no way of the list can be followed")
 
 
-def entry(name: str) -> str:
-    """The section of the page on a pattern; its picture is written beside."""
-    found = count(name)
-    path = FOLDER / f"{name}.svg"
-    path.parent.mkdir(exist_ok=True)
-    path.write_text(picture(name, found), encoding="utf-8")
-    return section(name, found)
+def folds(way: DrawnWay) -> tuple[int, int]:
+    """How many creases fold, and how many at least are mountains and are valleys."""
+    mountains, valleys = (way.text.count(letter) for letter in "MV")
+    return mountains + valleys, min(mountains, valleys)
 
 
-def section(name: str, found: BranchCount | Decomposition) -> str:
-    """What the page says of a pattern."""
-    return f"## {name}\n\n{words(name, found)}\n\n![The ways to fold {name}](gallery/{name}.svg)\n"
+def written(name: str) -> Card:
+    """An entry of which the pictures are written."""
+    made = card(name)
+    FOLDER.mkdir(exist_ok=True)
+    for file, text in made.files.items():
+        (FOLDER / file).write_text(text, encoding="utf-8")
+    return made
+
+
+def page(cards: Iterable[Card]) -> str:
+    """The page on all of these."""
+    by_name = {made.name: made for made in cards}
+    cells = [made.cell for made in by_name.values()]
+    cells += [""] * (-len(cells) % COLUMNS)
+    rows = [cells[k : k + COLUMNS] for k in range(0, len(cells), COLUMNS)]
+    table = [rows[0], [":---:"] * COLUMNS, *rows[1:]]
+    parts = [HEAD, "\n".join(f"| {' | '.join(row)} |" for row in table) + "\n"]
+    for title, group in GROUPS.items():
+        parts += [f"## {title}\n", *(by_name[name].section for name in group)]
+    return "\n".join([*parts, FOOT])
 
 
 def write(wanted: Iterable[str]) -> None:
     """Write the pictures of these, and the page if all are wanted."""
-    sections = [entry(name) for name in wanted]
-    if len(sections) == len(names()):
-        PAGE.write_text("\n".join([HEAD, *sections]), encoding="utf-8")
+    cards = [written(name) for name in wanted]
+    if len(cards) == len(names()):
+        PAGE.write_text(page(cards), encoding="utf-8")
 
 
 if __name__ == "__main__":

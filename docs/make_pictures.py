@@ -6,20 +6,19 @@ from pathlib import Path
 
 from exactfold import PROVED, count_ways, find_branch, follow, load, open_pattern
 from exactfold.data import example_path
-from exactfold.motion import follow_panels, prove
+from exactfold.motion import follow_panels
 from exactfold.pattern import CreasePattern
 from exactfold.report import (
     branch_way,
     motion_animation,
     motion_stills,
     pattern_picture,
-    sheet_of_multiples,
-    ways_of,
 )
 from exactfold.report.crease_drawing import CreaseDrawing
 from exactfold.report.crease_lines import crease_lines
 from exactfold.report.folded import Amount, folded
 from exactfold.report.svg import element, number, picture, text
+from exactfold.report.way_sheets import sheet_of_ways
 
 FOLDER = Path(__file__).with_name("pictures")
 MOTIONS = {
@@ -69,31 +68,23 @@ def rim() -> str:
 
 def folding() -> str:
     """The sheet of the first page, which folds along a motion that is proved."""
-    motion = follow(find_branch(load("two-vertex"), "+-"))
-    found = prove(motion)
-    if found.status is not PROVED:
-        raise RuntimeError(f"the motion on the first page is not proved: {found.reason}")
-    return motion_animation(motion, title="two-vertex, branch +-")
+    motion = follow_panels(count_ways("miura"), modes=[8])
+    if motion.closes is not PROVED:
+        raise RuntimeError("the motion on the first page is not proved")
+    return motion_animation(motion, title="miura")
 
 
 def drawings() -> dict[str, str]:
     """Those of the page on drawing, as `exactfold draw` makes them."""
     opened = open_pattern(example_path("zigzags"))
     branch = find_branch("random-8", "+-++--+-")
-    all_branches, all_modes = count_ways("two-vertex"), count_ways("zigzags")
-    octahedron = ways_of(count_ways("flat-octahedron"))
-    title = "{}: {} ways to start folding, proved"
     return {
         "draw-zigzags.svg": pattern_picture(opened.sheet, opened.assignment, title="zigzags"),
         "draw-branch.svg": branch_way(branch).picture("random-8"),
         "draw-folded.svg": folded(follow(branch), Amount.of("60deg"), "random-8").text,
-        "draw-all.svg": sheet_of_multiples(octahedron, title.format("flat-octahedron", 8)),
-        "draw-two-vertex.svg": sheet_of_multiples(
-            ways_of(all_branches), title.format("two-vertex", len(all_branches))
-        ),
-        "draw-modes.svg": sheet_of_multiples(
-            ways_of(all_modes), "zigzags: 5 modes, 4 of them known to truly fold"
-        ),
+        "draw-all.svg": sheet_of_ways(count_ways("flat-octahedron"), "flat-octahedron"),
+        "draw-two-vertex.svg": sheet_of_ways(count_ways("two-vertex"), "two-vertex"),
+        "draw-modes.svg": sheet_of_ways(count_ways("zigzags"), "zigzags"),
     }
 
 

@@ -22,6 +22,7 @@ import exactfold
 from exactfold.cli import app
 from exactfold.commands.guard import INTERRUPTED, NO_MEMORY
 from exactfold.commands.shell import BAD_INPUT, EXIT, INTERNAL, OUTPUT_FAILED, USAGE
+from exactfold.data import EXAMPLES as DATA
 from exactfold.schemas import VERSIONS, schema
 from proofs import MODULES
 from proofs import __main__ as proofs
@@ -393,20 +394,84 @@ def test_the_gallery_is_up_to_date(name: str) -> None:
 
 @pytest.mark.slow
 def test_all_of_the_gallery_is_up_to_date() -> None:
-    page = (ROOT / "docs" / "gallery.md").read_text(encoding="utf-8")
-    names = script("make_gallery")["names"]()
-    assert re.findall(r"(?m)^## (.+)$", page) == names
-    for name in names:
-        check_gallery(name)
-
-
-def check_gallery(name: str) -> None:
-    """What the page says of a pattern, and its picture, are what a count gives."""
     gallery = script("make_gallery")
-    found = gallery["count"](name)
-    assert gallery["section"](name, found) in gallery["PAGE"].read_text(encoding="utf-8")
-    drawn = (gallery["FOLDER"] / f"{name}.svg").read_text(encoding="utf-8")
-    assert drawn == gallery["picture"](name, found)
+    names = gallery["names"]()
+    assert len(names) == len({*names}) > 25
+    assert {*DATA} <= {*names}
+    page = gallery["PAGE"].read_text(encoding="utf-8")
+    assert re.findall(r"(?m)^### (.+)$", page) == names
+    cards = [check_gallery(name) for name in names]
+    assert page == gallery["page"](cards)
+    written = {file for card in cards for file in card.files}
+    assert written == {path.name for path in gallery["FOLDER"].iterdir()}
+
+
+def check_gallery(name: str) -> Any:
+    """What the page says of a pattern, and its pictures, are what a count gives."""
+    gallery = script("make_gallery")
+    card = gallery["card"](name)
+    page = gallery["PAGE"].read_text(encoding="utf-8")
+    assert card.section in page
+    assert card.cell in page
+    for file, text in card.files.items():
+        assert (gallery["FOLDER"] / file).read_text(encoding="utf-8") == text, file
+    return card
+
+
+def test_the_lines_of_the_first_page_make_its_picture(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs" / "index.md").read_text("utf-8")
+    (lines,) = re.findall(r"(?ms)^```python\n(.+?)```$", page)
+    assert len([line for line in lines.splitlines() if line]) == 3
+    exec(lines, {})
+    shown = (ROOT / "docs" / "pictures" / "folding.svg").read_text("utf-8")
+    assert (tmp_path / "folding.svg").read_text("utf-8") == shown
+
+
+@pytest.mark.slow
+def test_the_pictures_are_up_to_date() -> None:
+    made = script("make_pictures")["pictures"]()
+    for name, text in made.items():
+        assert (ROOT / "docs" / "pictures" / name).read_text("utf-8") == text, name
+    assert {path.name for path in (ROOT / "docs" / "pictures").glob("*.svg")} == {*made}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "two-vertex",
+        pytest.param("miura", marks=pytest.mark.slow),
+        pytest.param("random-8", marks=pytest.mark.slow),
+        pytest.param("yoshimura", marks=pytest.mark.slow),
+    ],
+)
+def test_the_commands_of_the_gallery_make_its_pictures(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    section = (ROOT / "docs" / "gallery.md").read_text("utf-8").split(f"\n### {name}\n")[1]
+    lines = re.findall(r"(?ms)^```sh\n(.+?)\n```$", section)[0].splitlines()
+    assert len(lines) in (2, 3)
+    for line in lines:
+        assert run(*shlex.split(line)[1:]).exit_code == 0, line
+    drawn = [path.name for path in tmp_path.iterdir()]
+    assert len(drawn) == len(lines) - 1
+    for file in drawn:
+        shown = (ROOT / "docs" / "gallery" / file).read_text("utf-8")
+        assert (tmp_path / file).read_text("utf-8") == shown, file
+
+
+@pytest.mark.parametrize("name", ["hypar-1", pytest.param("ring", marks=pytest.mark.slow)])
+def test_the_python_lines_of_the_gallery_run(name: str) -> None:
+    section = (ROOT / "docs" / "gallery.md").read_text("utf-8").split(f"\n### {name}\n")[1]
+    names: dict[str, Any] = {}
+    exec(re.findall(r"(?ms)^```python\n(.+?)\n```$", section)[0], names)
+    count = re.search(r"\*\*(\d+) ways to start folding\*\*: proved", section)
+    assert count is not None
+    assert int(count[1]) == names["found"].distinct
+    assert names["motion"].branch in names["found"].branches
 
 
 def test_the_help_and_the_page_have_the_same_exit_codes() -> None:
@@ -432,6 +497,9 @@ def test_every_picture_of_a_page_is_there_and_well_formed() -> None:
     for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
         markdown = page.read_text("utf-8")
         shown = re.findall(r"!\[([^]]*)\]\(([^)]+)\)", markdown)
+        shown += [
+            (b, a) for a, b in re.findall(r'<img src="(\S+)" alt="(.+?)" width="\d+">', markdown)
+        ]
         shown += [(b, a) for a, b in re.findall(r"```\{image\} (\S+)\n:alt: (.+)\n", markdown)]
         for text, name in shown:
             path = (page.parent / name).resolve()

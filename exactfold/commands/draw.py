@@ -25,10 +25,10 @@ from exactfold.errors import (
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import Opened, has_branches
 from exactfold.report.crease_drawing import pattern_picture
-from exactfold.report.drawn_ways import DrawnWay, branch_way, mode_way, ways_of
+from exactfold.report.drawn_ways import branch_way, mode_way
 from exactfold.report.folded import Amount, Folded, folded
-from exactfold.report.multiples import sheet_of_multiples
 from exactfold.report.picture_files import checked_picture, write_picture
+from exactfold.report.way_sheets import number_listed, sheet_of_ways
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import counted
 
@@ -201,32 +201,16 @@ class Wanted:
         """All ways that are listed, as small multiples."""
         result = self._counted(opened, bar)
         bar("drawing")
-        ways = ways_of(result, self.most)
-        number = len(result.branches) if isinstance(result, BranchCount) else len(result.modes)
-        number = max(number, len(ways))
-        if not ways:
+        number = number_listed(result)
+        if not number:
             raise NotCountedError(
                 "`exactfold count` lists no single way to fold this pattern: draw it without --all"
             )
-        if number > len(ways):
-            say(f"the first {len(ways)} of {number} are drawn: --most N draws more")
-        title = _all_title(result, ways, number)
-        if self._title:
-            title = f"{self._title}: {title}"
-        return sheet_of_multiples(ways, title, number=number), result.status
+        if number > self.most:
+            say(f"the first {self.most} of {number} are drawn: --most N draws more")
+        return sheet_of_ways(result, self._title, self.most), result.status
 
 
 def on_a_terminal() -> bool:
     """Whether a picture on standard output would be shown as text."""
     return sys.stdout.isatty()
-
-
-def _all_title(result: BranchCount | Decomposition, ways: Sequence[DrawnWay], number: int) -> str:
-    """How many ways a count lists, in words; `ways` are the first of them."""
-    if isinstance(result, BranchCount):
-        known = "proved" if result.status is PROVED else "proved to exist"
-        return f"{counted(number, 'way')} to start folding, {known}"
-    if number > len(ways):
-        return counted(number, "mode")
-    folding = sum(not way.note for way in ways)
-    return f"{counted(number, 'mode')}, {folding} of them known to truly fold"

@@ -24,7 +24,20 @@ SHEETS: Final = (
 )
 """Triangulated sheets, which `load` takes."""
 
-DRAWINGS: Final = MappingProxyType({"zigzags": "zigzags.svg"})
+DRAWINGS: Final = MappingProxyType(
+    {
+        name: f"{name}.svg"
+        for name in (
+            "zigzags",
+            "miura",
+            "square-twist",
+            "windmill",
+            "fish-base",
+            "bird-base",
+            "yoshimura",
+        )
+    }
+)
 """Files as people draw them, by name: sheets of panels, whose points are found by reading."""
 
 EXAMPLES: Final = (*DRAWINGS, *SHEETS)

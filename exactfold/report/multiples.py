@@ -23,6 +23,9 @@ _GAP: Final = 8.0
 _CAPTION: Final = 34.0
 _NOTE: Final = 12.0
 _HEAD: Final = 30.0
+_TITLE: Final = 14.0
+_LETTER: Final = 0.5
+"""Of the size of the title: the mean width of a letter, rather more than less."""
 _FRAME: Final = 18.0
 """Room for the words on the frame of ways with the same letters."""
 _MOST_COLUMNS: Final = 8
@@ -68,11 +71,12 @@ def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, number: int | No
     high = first.extent[1] + _CAPTION + (_NOTE if any(way.note for way in ways) else 0)
     columns = _columns(len(ways), high)
     parts = []
-    top, width = _HEAD, columns * _CELL + 2 * _GAP
+    inside = max(columns * _CELL, _LETTER * _TITLE * len(title))
+    top, width, margin = _HEAD, inside + 2 * _GAP, _GAP + (inside - columns * _CELL) / 2
     for row in _rows(blocks, columns):
         framed = any(len(block.ways) > 1 for block in row)
         inner = top + (_FRAME if framed else 0)
-        left, rows = _GAP, 0
+        left, rows = margin, 0
         for block in row:
             wide, deep = block.shape(columns)
             if len(block.ways) > 1:
@@ -90,7 +94,7 @@ def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, number: int | No
     signs = {sign for way in ways for sign in way.signs.values()}
     key = legend(letters, signs, Style.of(100), by_angle=any(way.angles for way in ways))
     below, height = key.placed(width, top)
-    head = svg.text(title, width / 2, 19, anchor="middle", size=14)
+    head = svg.text(title, width / 2, 19, anchor="middle", size=_TITLE)
     return svg.picture(width, height, [head, *parts, *below], title)
 
 

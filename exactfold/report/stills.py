@@ -37,7 +37,7 @@ def motion_stills(motion: SheetInMotion, number: int = 5, title: str = "") -> st
     places = np.linspace(0, len(motion.times) - 1, max(2, number)).round().astype(int)
     shapes = [_levelled(motion.coords[k], motion.coords[0]) for k in places]
     captions = [
-        f"{_largest(motion.angles[k]):.0f}° at {motion.times[k]:.3g}" if k else "flat"
+        f"{_largest(motion.angles[k]):.0f}°, t = {motion.times[k]:.3g}" if k else "flat"
         for k in places
     ]
     earlier = [_levelled(motion.coords[max(k - 1, 0)], motion.coords[0]) for k in places]

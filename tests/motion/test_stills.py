@@ -35,7 +35,7 @@ def test_every_still_has_every_face_and_a_caption():
     captions = [t.text for t in tree.iter(f"{NAME}text")]
     assert len(captions) == 4
     assert captions[0] == "flat"
-    assert captions[-1].startswith("180° at ")
+    assert captions[-1].startswith("180°, t = ")
     assert tree.find(f"{NAME}title").text == "a & b: the sheet as it folds"
 
 

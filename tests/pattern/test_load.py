@@ -59,7 +59,13 @@ def test_unknown_pattern_error_lists_the_names(what, here):
     assert len(str(caught.value)) < 250
 
 
-@pytest.mark.parametrize("name", DRAWINGS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] if name == "bird-base" else [])
+        for name in DRAWINGS
+    ],
+)
 def test_a_drawing_is_no_sheet_of_triangles_error(name):
     with pytest.raises(UsageError, match=rf"^{name} is a drawing .* `count_ways` takes it$"):
         load(name)

@@ -49,6 +49,18 @@ def test_captions_tell_number_signs_and_letters():
     assert said[0] == "two & more"
 
 
+def test_a_title_wider_than_the_ways_is_not_cut():
+    ways = ways_of(count_ways("two-vertex"))[:1]
+    narrow, wide = (tree(sheet_of_multiples(ways, title)) for title in ("one", 40 * "wide "))
+    assert float(narrow.get("width")) < 200
+    assert float(wide.get("width")) > 200 * 6.5
+    middle = float(wide.get("width")) / 2
+    (way,) = [one for one in wide.iter(f"{NAME}g") if one.get("class") == "way"]
+    captions = [float(one.get("x")) for one in way.iter(f"{NAME}text")]
+    assert captions == pytest.approx([middle] * len(captions), abs=0.1)
+    assert len(captions) == 2
+
+
 def test_ways_with_the_same_letters_stand_in_one_frame():
     ways = list(ways_of(count_ways("two-vertex")))
     same = [ways[0], ways[1], replace(ways[3], letters=ways[0].letters, number=3), ways[2]]
