@@ -106,7 +106,11 @@ def view(
     ] = 32,
     prove: Annotated[
         bool,
-        flag("--prove", text="Of branches: prove each motion and its first contact, too."),
+        flag(
+            "--prove",
+            text="Prove each motion along a branch and its first contact, too; of panels the "
+            "contacts.",
+        ),
     ] = False,
     workers: Annotated[
         int | None,

@@ -38,7 +38,9 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
     result = run("view", "zigzags", "-o", target, "--frames", "2")
     assert result.exit_code == OK
     assert result.stdout.startswith("3 families of ways to fold")
-    assert result.stdout.endswith(f"written: {target}, with 4 ways to fold\n")
+    assert result.stdout.endswith(
+        f"written: {target}, with 3 ways to fold, and 1 mode not followed\n"
+    )
     assert "read zigzags: SVG" in result.stderr
 
 
