@@ -12,6 +12,7 @@ from exactfold.commands.parameters import (
     Pattern,
     Place,
     Sheet,
+    Side,
     Signs,
     Snap,
     Up,
@@ -19,7 +20,6 @@ from exactfold.commands.parameters import (
     flag,
     fold_name,
     numbers,
-    one_side,
     whole,
 )
 from exactfold.commands.shell import (
@@ -123,14 +123,7 @@ def fold(
     signs: Signs = None,
     up: Up = None,
     place: Place = None,
-    side: Annotated[
-        Any,
-        typer.Option(
-            parser=one_side,
-            metavar="+|-",
-            help="Of a branch. -: the mirror image, with all signs reversed.",
-        ),
-    ] = None,
+    side: Side = None,
     through_nodes: Annotated[
         bool,
         flag("--through-nodes", text="Of a branch: go straight on where another motion crosses."),

@@ -7,7 +7,16 @@ from typing import Annotated, Any
 
 import typer
 
-from exactfold.commands.parameters import Pattern, Sheet, Snap, Up, flag, sign_vectors, whole
+from exactfold.commands.parameters import (
+    Pattern,
+    Sheet,
+    Side,
+    Snap,
+    Up,
+    flag,
+    sign_vectors,
+    whole,
+)
 from exactfold.commands.shell import not_a_dash, reported
 from exactfold.errors import UsageError
 
@@ -43,6 +52,7 @@ def draw(
             "through this part of its motion up to the first contact.",
         ),
     ] = None,
+    side: Side = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -72,10 +82,11 @@ def draw(
         raise UsageError("--most goes with --all")
     if folded is not None and way is None and up is None:
         raise UsageError("--folded goes with --branch or --up")
+    if side is not None and folded is None:
+        raise UsageError("--side goes with --folded")
     amount = None if folded is None else Amount.of(folded)
-    wanted = Wanted(
-        pattern, snap, sheet, way, up, everything, MOST if most is None else most, amount, output
-    )
+    first = MOST if most is None else most
+    wanted = Wanted(pattern, snap, sheet, way, up, everything, first, amount, side, output)
     raise typer.Exit(wanted.answer())
 
 

@@ -173,6 +173,15 @@ Up = Annotated[
     typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
 ]
 
+Side = Annotated[
+    Any,
+    typer.Option(
+        parser=one_side,
+        metavar="+|-",
+        help="Of a branch. -: the mirror image, with all signs reversed.",
+    ),
+]
+
 Place = Annotated[
     int | None,
     typer.Option(

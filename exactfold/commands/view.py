@@ -15,7 +15,7 @@ from exactfold.drawing.drawing import Snap
 from exactfold.errors import UsageError
 from exactfold.pattern.opening import Opened
 from exactfold.report.terminal import show
-from exactfold.viewer.page import write_view
+from exactfold.viewer.page import checked_page, write_view
 from exactfold.viewer.server import view_server
 from exactfold.wording import counted
 from exactfold.workers import available_cores
@@ -48,7 +48,9 @@ class Wanted:
             raise UsageError("--port goes with --serve")
         name = "sheet" if str(self.file) == "/dev/stdin" else self.file.stem
         output = self.output or Path(f"{name}.view.html")
-        apart(None if self.serve else output, self.file)
+        if not self.serve:
+            apart(output, self.file)
+            checked_page(output)  # before the work
         with Bar("reading") as bar, interruptible():
             opened = read_any(self.file, self.snap, self.sheet)
             if not self.serve:

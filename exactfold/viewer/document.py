@@ -20,6 +20,7 @@ from exactfold.pattern.fold_writing import fold_document
 from exactfold.pattern.opening import Opened, has_branches
 from exactfold.pattern.triangulating import triangles_of
 from exactfold.progress import Progress
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.viewer.ways import (
     Following,
@@ -40,6 +41,7 @@ MOST_LISTED: Final = 10
 MOST_NEIGHBOURS: Final = 24
 MOST_COMPONENTS: Final = 200
 FRAMES: Final = 32
+MOST_FRAMES: Final = 1000
 
 _WORTH_A_PROCESS: Final = 6
 """Motions that take about as long as to start a process."""
@@ -112,8 +114,8 @@ class Known:
         progress: Progress | None = None,
     ) -> Known:
         """What is known of a sheet; see `view_document`."""
-        if frames < 2:
-            raise UsageError(f"{frames} frames: a motion has at least 2")
+        if not 2 <= frames <= MOST_FRAMES:
+            raise UsageError(f"{frames} frames: a motion in a page has 2 to {MOST_FRAMES}")
         opened = open_sheet(sheet)
         title = name or (
             Path(sheet).stem if isinstance(sheet, str | PathLike) else "crease pattern"
@@ -158,8 +160,7 @@ class Known:
     def document(self, ways: Sequence[Mapping[str, Any]], served: bool = False) -> dict[str, Any]:
         """The whole document; `served`: motions that are missing can be asked for."""
         return {
-            "format": "exactfold view",
-            "version": 1,
+            **headed("view"),
             "name": self.name,
             "sheet": _sheet_json(self.opened),
             "read": list(self.opened.lines),

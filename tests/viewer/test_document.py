@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator, ValidationError
 
 from exactfold import (
     CreasePattern,
@@ -16,6 +17,7 @@ from exactfold import (
     find_branch,
     follow,
     random_square,
+    schema,
 )
 from exactfold.certify import algebraic
 from exactfold.count.ways import open_sheet
@@ -117,6 +119,15 @@ def test_panels_list_what_is_followed_and_what_is_not():
     assert set(left["letters"]) == {"M", "V"}
     assert [way["motion"]["proved"] for way in followed].count(True) == 1
     assert all(way["motion"]["exists"] for way in followed)
+
+
+@pytest.mark.parametrize("name", ["flat-vertex", "zigzags", "waterbomb"])
+def test_documents_are_what_their_schema_says(name):
+    document = json.loads(json.dumps(view_document(name, frames=2)))
+    Draft202012Validator(schema("view")).validate(document)
+    wrong = document | {"complete": "yes"}
+    with pytest.raises(ValidationError, match="'yes' is not of type 'boolean'"):
+        Draft202012Validator(schema("view")).validate(wrong)
 
 
 def test_it_says_what_is_proved_of_a_motion_of_panels():
