@@ -13,6 +13,7 @@ from exactfold.commands.parameters import (
     Place,
     Resume,
     Sheet,
+    Side,
     Signs,
     Snap,
     Up,
@@ -21,7 +22,6 @@ from exactfold.commands.parameters import (
     fold_name,
     number,
     numbers,
-    one_side,
     written,
 )
 from exactfold.commands.shell import (
@@ -122,14 +122,7 @@ def fold(
     signs: Signs = None,
     up: Up = None,
     place: Place = None,
-    side: Annotated[
-        Any,
-        typer.Option(
-            parser=one_side,
-            metavar="+|-",
-            help="Of a branch. -: the mirror image, with all signs reversed.",
-        ),
-    ] = None,
+    side: Side = None,
     through_nodes: Annotated[
         bool,
         flag("--through-nodes", text="Of a branch: go straight on where another motion crosses."),

@@ -10,6 +10,7 @@ import typer
 from exactfold.commands.parameters import (
     Pattern,
     Sheet,
+    Side,
     Snap,
     Up,
     flag,
@@ -52,6 +53,7 @@ def draw(
             "through this part of its motion up to the first contact.",
         ),
     ] = None,
+    side: Side = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -81,10 +83,11 @@ def draw(
         raise UsageError("--most goes with --all")
     if folded is not None and way is None and up is None:
         raise UsageError("--folded goes with --branch or --up")
+    if side is not None and folded is None:
+        raise UsageError("--side goes with --folded")
     amount = None if folded is None else Amount.of(folded)
-    wanted = Wanted(
-        pattern, snap, sheet, way, up, everything, MOST if most is None else most, amount, output
-    )
+    first = MOST if most is None else most
+    wanted = Wanted(pattern, snap, sheet, way, up, everything, first, amount, side, output)
     raise typer.Exit(wanted.answer())
 
 
@@ -107,7 +110,11 @@ def view(
     frames: Annotated[int, number("Frames of each motion.", least=2)] = 32,
     prove: Annotated[
         bool,
-        flag("--prove", text="Of branches: prove each motion and its first contact, too."),
+        flag(
+            "--prove",
+            text="Prove each motion along a branch and its first contact, too; of panels the "
+            "contacts.",
+        ),
     ] = False,
     workers: Annotated[
         int | None,

@@ -42,7 +42,8 @@ if TYPE_CHECKING:
 class Wanted:
     """What was asked for on the command line; at most one of `way`, `up` and `everything`.
 
-    `way` is a number as `exactfold count` lists it, or vertex signs.
+    `way` is a number as `exactfold count` lists it, or vertex signs. `side` is None where none was
+    given.
     """
 
     file: Path
@@ -53,6 +54,7 @@ class Wanted:
     everything: bool
     most: int
     amount: Amount | None
+    side: int | None
     output: Path | None
 
     def answer(self) -> int:
@@ -149,11 +151,13 @@ class Wanted:
         from exactfold.motion.following import follow
 
         bar("following")
-        motion = follow(branch, progress=bar)
+        motion = follow(branch, side=self.side or 1, progress=bar)
         return self._folded(folded(motion, self.amount, self._title)), branch.status
 
     def _mode(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
         """A mode of panels, by its number, and whether it truly folds."""
+        if self.side is not None:
+            raise UsageError("--side is of a branch, and this sheet folds along modes")
         if self._place is None:
             raise UsageError(
                 "vertex signs are for triangulated sheets with four corners, and this sheet folds "

@@ -180,3 +180,11 @@ Up = Annotated[
 
 Place = Annotated[int | None, number("Instead: the N-th that `count` lists.", "N", "--branch")]
 Resume = Annotated[bool, flag("--resume", text="Continue the FILE that an interrupted run left.")]
+Side = Annotated[
+    Any,
+    typer.Option(
+        parser=one_side,
+        metavar="+|-",
+        help="Of a branch. -: the mirror image, with all signs reversed.",
+    ),
+]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rich.text import Text
 
@@ -14,7 +15,7 @@ from exactfold.drawing.drawing import Snap
 from exactfold.errors import UsageError
 from exactfold.pattern.opening import Opened
 from exactfold.report.terminal import show
-from exactfold.viewer.page import write_view
+from exactfold.viewer.page import checked_page, write_view
 from exactfold.viewer.server import view_server
 from exactfold.wording import counted
 from exactfold.workers import available_cores
@@ -47,7 +48,9 @@ class Wanted:
             raise UsageError("--port goes with --serve")
         name = "sheet" if str(self.file) == "/dev/stdin" else self.file.stem
         output = self.output or Path(f"{name}.view.html")
-        apart(None if self.serve else output, self.file)
+        if not self.serve:
+            apart(output, self.file)
+            checked_page(output)  # before the work
         with Bar("reading") as bar, interruptible():
             opened = read_any(self.file, self.snap, self.sheet)
             if not self.serve:
@@ -64,11 +67,8 @@ class Wanted:
         if self.serve:
             self._serve(opened, name)
             return
-        found = len(document["ways"])
-        branches = document["kind"] == "branches"
-        ways = counted(found, "branch") if branches else f"{counted(found, 'way')} to fold"
         show(Text(document["answer"]))
-        print(f"written: {name_of(output)}, with {ways}")
+        print(f"written: {name_of(output)}, with {_contents(document)}")
 
     def _serve(self, opened: Opened, name: str) -> None:
         with Bar("counting") as bar:
@@ -91,3 +91,16 @@ class Wanted:
                     server.serve_forever(poll_interval=0.2)
             except KeyboardInterrupt:
                 say("the server has ended")
+
+
+def _contents(document: Mapping[str, Any]) -> str:
+    """What a page shows beside the pattern, in words."""
+    ways = document["ways"]
+    if not ways:
+        return "the pattern only: no single way to fold is known"
+    if document["kind"] == "branches":
+        return counted(len(ways), "branch")
+    folding = sum(way["motion"] is not None for way in ways)
+    left = len(ways) - folding
+    text = counted(folding, "way") + " to fold"
+    return f"{text}, and {counted(left, 'mode')} not followed" if left else text

@@ -27,6 +27,7 @@ from exactfold.wording import counted
 
 MOST_COMPONENTS: Final = 100_000
 LINEAR: Final = "linear transmissions"
+_REASONS: Final = 3
 
 
 @dataclass(frozen=True, repr=False)
@@ -282,3 +283,20 @@ def open_reason(mode: PanelMode) -> str:
     if mode.extends.verdict is UNDECIDED:
         return f"whether mode {mode.number} truly folds is undecided: {mode.extends.by}"
     return f"mode {mode.number} does not truly fold: {mode.extends.by}"
+
+
+def why_nothing_follows(result: Decomposition, known: Sequence[PanelMode]) -> str:
+    """Why a sheet without a component (`panel_components`) is not followed."""
+    if known:
+        more = f"; and so on for {len(known) - _REASONS} more" if len(known) > _REASONS else ""
+        return "; ".join(open_reason(mode) for mode in known[:_REASONS]) + more
+    families = any(d > 1 for d in {**(result.found_true or {}), **(result.true or {})})
+    what = (
+        "the sheet folds in families of several dimensions only"
+        if families
+        else "no motion is known that is one mode"
+    )
+    return (
+        f"{what}; where vertices have more than four folds, only motions with one parameter that "
+        "are linear in the half-angle tangents are followed"
+    )

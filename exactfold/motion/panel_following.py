@@ -19,6 +19,7 @@ from exactfold.motion.followable import (
     open_reason,
     panel_components,
     panel_modes,
+    why_nothing_follows,
 )
 from exactfold.motion.panel_contacts import PanelContacts
 from exactfold.motion.panel_curves import FollowedCurve, LinearCurve, curve_of
@@ -30,7 +31,6 @@ from exactfold.verdict import PROVED
 
 _LEAST_SAMPLES = 180
 _AT_180 = 1e-9
-_REASONS = 3
 
 
 def follow_panels(
@@ -151,28 +151,12 @@ def _chosen(
         raise NotFollowedError("the sheet is rigid - PROVED: there is nothing to follow")
     components = panel_components(result, known)
     if not components:
-        raise NotFollowedError(f"there is nothing to follow: {_why_nothing(result, known)}")
+        raise NotFollowedError(f"there is nothing to follow: {why_nothing_follows(result, known)}")
     at = 1 if component is None else component
     if not 1 <= at <= len(components):
         raise UsageError(f"there is no component {at}: they are 1 to {len(components)}")
     inside = set(components[at - 1].modes)
     return at, tuple(mode for mode in known if mode.number in inside)
-
-
-def _why_nothing(result: Decomposition, known: Sequence[PanelMode]) -> str:
-    if known:
-        more = f"; and so on for {len(known) - _REASONS} more" if len(known) > _REASONS else ""
-        return "; ".join(open_reason(mode) for mode in known[:_REASONS]) + more
-    families = any(d > 1 for d in {**(result.found_true or {}), **(result.true or {})})
-    what = (
-        "the sheet folds in families of several dimensions only"
-        if families
-        else "no motion is known that is one mode"
-    )
-    return (
-        f"{what}; where vertices have more than four folds, only motions with one parameter that "
-        "are linear in the half-angle tangents are followed"
-    )
 
 
 def _named_modes(known: Sequence[PanelMode], numbers: Sequence[int]) -> tuple[PanelMode, ...]:

@@ -99,6 +99,17 @@ class PanelMotion(Picture):
         return PROVED if linear else UNDECIDED
 
     @property
+    def exists(self) -> Verdict:
+        """PROVED if the sheet is proved to fold so until a fold is at 180 degrees; else UNDECIDED.
+
+        Modes that close exactly do, and those that truly fold and have at most four active folds
+        at each vertex (docs/panel_motion.md, 1 and 2); modes that share no vertex move
+        independently. That no panels touch on the way is not part of it.
+        """
+        known = all(isinstance(curve, LinearCurve) or _continues(curve) for curve in self.curves)
+        return PROVED if known else UNDECIDED
+
+    @property
     def status(self) -> str:
         """ "proved" where `closes` is; else "followed": in floats, along modes that truly fold."""
         return "proved" if self.closes is PROVED else "followed"
@@ -162,6 +173,10 @@ class PanelMotion(Picture):
                 "all vertices close exactly at all fold angles"
                 if self.curves
                 else "folds from border to border are free"
+            )
+        if self.exists is PROVED:
+            return (
+                "each mode folds until a fold is at 180 degrees; its angles were followed in floats"
             )
         return "each mode truly folds; its angles were followed in floats"
 
@@ -310,6 +325,12 @@ class PanelMotion(Picture):
             f"<PanelMotion: {self.name}, {self.status}, {len(self.times)} frames to "
             f"{self.end} at {self.duration:.6g}>"
         )
+
+
+def _continues(curve: FollowedCurve) -> bool:
+    """Whether the theorem of docs/panel_motion.md, 2, holds of a mode."""
+    mode = curve.mode
+    return mode.extends.verdict is PROVED and all(len(star.folds) <= 4 for star in mode.stars)
 
 
 def all_angles(

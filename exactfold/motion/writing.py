@@ -16,7 +16,7 @@ from exactfold.motion.events import RETURN
 from exactfold.motion.in_motion import SheetInMotion
 from exactfold.motion.motion import Motion
 from exactfold.motion.panel_motion import PanelMotion
-from exactfold.pattern.fold_writing import document_text, write_bytes, write_text
+from exactfold.pattern.fold_writing import checked_target, document_text, write_bytes, write_text
 from exactfold.pattern.triangulating import triangles_of
 
 ENDINGS = (".fold", ".glb", ".gltf", ".obj")
@@ -69,15 +69,8 @@ def write_motion(
 
 
 def checked_ending(path: Path) -> str:
-    """The format that a path names; raises `UsageError` for one that is not written.
-
-    >>> checked_ending(Path("a.b/Motion.GLB"))
-    '.glb'
-    """
-    ending = path.suffix.lower()
-    if ending not in ENDINGS:
-        raise UsageError(f"{path}: a motion is written as {', '.join(ENDINGS)}; name one of these")
-    return ending
+    """The format that the path of a motion names; raises as `checked_target`."""
+    return checked_target(path, ENDINGS, "a motion")
 
 
 def fold_motion(motion: SheetInMotion, *, title: str | None = None) -> dict[str, Any]:

@@ -165,6 +165,23 @@ def write_bytes(path: str | PathLike[str], content: bytes) -> None:
         raise UnwritableFileError(f"cannot write {path}: {reason}") from None
 
 
+def checked_target(path: Path, endings: Sequence[str], what: str) -> str:
+    """The ending of a file to be written, in small letters, before the work that fills it.
+
+    Raises `UsageError` if it is none of `endings`, and `UnwritableFileError` if the folder does not
+    exist; `what` is written there.
+
+    >>> checked_target(Path("Sheet.SVG"), (".svg", ".png"), "a picture")
+    '.svg'
+    """
+    ending = path.suffix.lower()
+    if ending not in endings:
+        raise UsageError(f"{path}: {what} is written as {', '.join(endings)}; name one of these")
+    if not path.parent.is_dir():
+        raise UnwritableFileError(f"cannot write {path}: the folder {path.parent} does not exist")
+    return ending
+
+
 def _targets(
     letters: Mapping[Edge, str], angles: Mapping[Edge, float] | None
 ) -> list[int] | list[float]:

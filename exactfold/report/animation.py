@@ -9,7 +9,7 @@ import numpy as np
 from exactfold.arrays import FloatArray
 from exactfold.pattern.triangulating import triangles_by_face
 from exactfold.report.painting import back_to_front
-from exactfold.report.stills import _drawn, _faces, _levelled, _seen
+from exactfold.report.stills import faces_of, levelled, seen_from_above, shaded
 from exactfold.report.svg import INK, element, number, picture
 
 if TYPE_CHECKING:
@@ -38,8 +38,8 @@ def motion_animation(
     """
     places = np.linspace(0, len(motion.times) - 1, max(2, frames)).round().astype(int)
     places = np.unique(places)
-    shapes = [_levelled(motion.coords[k], motion.coords[0]) for k in places]
-    earlier = [_levelled(motion.coords[max(k - 1, 0)], motion.coords[0]) for k in places]
+    shapes = [levelled(motion.coords[k], motion.coords[0]) for k in places]
+    earlier = [levelled(motion.coords[max(k - 1, 0)], motion.coords[0]) for k in places]
     groups, height = _frames(motion, shapes, earlier)
     style = element("style", _style(len(places), seconds))
     heading = f"{title or motion.name}: the sheet folds and unfolds"
@@ -50,19 +50,19 @@ def _frames(
     motion: SheetInMotion, shapes: list[FloatArray], earlier: list[FloatArray]
 ) -> tuple[list[str], float]:
     """A group for each shape, all in one scale and place, and the height of the picture."""
-    seen = [_seen(shape) for shape in shapes]
+    seen = [seen_from_above(shape) for shape in shapes]
     low = np.min([view.min(axis=0) for view in seen], axis=0)[:2]
     high = np.max([view.max(axis=0) for view in seen], axis=0)[:2]
     scale = (_SIZE - 2 * _MARGIN) / float(max(*(high - low), 1e-12))
     left = (_SIZE - float((high - low)[0]) * scale) / 2
-    pieces, faces = triangles_by_face(motion.pattern), _faces(motion.pattern)
+    pieces, faces = triangles_by_face(motion.pattern), faces_of(motion.pattern)
     groups = []
     for k, (shape, view, before) in enumerate(zip(shapes, seen, earlier, strict=True)):
-        order = back_to_front(_seen((1 - _EARLIER) * shape + _EARLIER * before), pieces)
+        order = back_to_front(seen_from_above((1 - _EARLIER) * shape + _EARLIER * before), pieces)
         flat = np.column_stack(
             [left + (view[:, 0] - low[0]) * scale, _MARGIN + (high[1] - view[:, 1]) * scale]
         )
-        drawn = _drawn(shape, flat, [faces[f] for f in order])
+        drawn = shaded(shape, flat, [faces[f] for f in order])
         groups.append(element("g", drawn, class_=f"f f{k}", stroke=INK))
     return groups, float((high - low)[1]) * scale + 2 * _MARGIN
 

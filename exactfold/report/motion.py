@@ -104,8 +104,11 @@ def _proof(proof: MotionProof) -> RenderableType:
 def _proved(motion: Motion | PanelMotion) -> RenderableType:
     if isinstance(motion, Motion):
         return "followed in floats: not proved (--certificate proves it)"
-    if motion.closes is not PROVED:
+    if motion.exists is not PROVED:
         return "followed in floats: not proved"
+    if motion.closes is not PROVED:
+        said = ": it exists until a fold is at 180 degrees; its angles and contacts are floats"
+        return Text.assemble(status_text(PROVED), said)
     return Text.assemble(status_text(PROVED), f": {motion.reason}; contacts are not")
 
 

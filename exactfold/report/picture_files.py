@@ -6,8 +6,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Final
 
-from exactfold.errors import PicturesMissingError, UsageError
-from exactfold.pattern.fold_writing import write_bytes
+from exactfold.errors import PicturesMissingError
+from exactfold.pattern.fold_writing import checked_target, write_bytes
 
 ENDINGS: Final = (".svg", ".png", ".pdf")
 _SCALE: Final = 2.0
@@ -15,15 +15,8 @@ _SCALE: Final = 2.0
 
 
 def checked_picture(path: Path) -> str:
-    """The format that a path names; raises `UsageError` for one that is not written.
-
-    >>> checked_picture(Path("a.b/Sheet.SVG"))
-    '.svg'
-    """
-    ending = path.suffix.lower()
-    if ending not in ENDINGS:
-        raise UsageError(f"{path}: the name of a picture ends in {', '.join(ENDINGS)}")
-    return ending
+    """The format that the path of a picture names; raises as `checked_target`."""
+    return checked_target(path, ENDINGS, "a picture")
 
 
 def write_picture(text: str, path: str | PathLike[str]) -> None:

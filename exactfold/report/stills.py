@@ -35,18 +35,18 @@ def motion_stills(motion: SheetInMotion, number: int = 5, title: str = "") -> st
     Layers that lie on each other are drawn as they came there.
     """
     places = np.linspace(0, len(motion.times) - 1, max(2, number)).round().astype(int)
-    shapes = [_levelled(motion.coords[k], motion.coords[0]) for k in places]
+    shapes = [levelled(motion.coords[k], motion.coords[0]) for k in places]
     captions = [
         f"{_largest(motion.angles[k]):.0f}°, t = {motion.times[k]:.3g}" if k else "flat"
         for k in places
     ]
-    earlier = [_levelled(motion.coords[max(k - 1, 0)], motion.coords[0]) for k in places]
+    earlier = [levelled(motion.coords[max(k - 1, 0)], motion.coords[0]) for k in places]
     layered = [
         (1 - _EARLIER) * shape + _EARLIER * before
         for shape, before in zip(shapes, earlier, strict=True)
     ]
     pieces = triangles_by_face(motion.pattern)
-    faces = _faces(motion.pattern)
+    faces = faces_of(motion.pattern)
     heading = f"{title or motion.name}: the sheet as it folds"
     return stills(shapes, faces, captions, heading, pieces=pieces, layered=layered)
 
@@ -54,8 +54,8 @@ def motion_stills(motion: SheetInMotion, number: int = 5, title: str = "") -> st
 def motion_still(motion: SheetInMotion, time: float, caption: str, title: str, size: float) -> str:
     """The sheet at one time of a motion, `size` pixels wide, as an SVG file."""
     flat = motion.coords[0]
-    shape, before = (_levelled(motion.at(t), flat) for t in (time, (1 - _EARLIER) * time))
-    pieces, faces = triangles_by_face(motion.pattern), _faces(motion.pattern)
+    shape, before = (levelled(motion.at(t), flat) for t in (time, (1 - _EARLIER) * time))
+    pieces, faces = triangles_by_face(motion.pattern), faces_of(motion.pattern)
     return stills([shape], faces, [caption], title, pieces=pieces, layered=[before], panel=size)
 
 
@@ -79,7 +79,7 @@ def stills(
     >>> stills([flat], [(0, 1, 2), (0, 2, 3)], ["a & b"], "two faces").count("<path")
     2
     """
-    seen = [_seen(np.asarray(shape, dtype=np.float64)) for shape in shapes]
+    seen = [seen_from_above(np.asarray(shape, dtype=np.float64)) for shape in shapes]
     low = np.min([view.min(axis=0) for view in seen], axis=0)[:2]
     high = np.max([view.max(axis=0) for view in seen], axis=0)[:2]
     span = float(max(*(high - low), 1e-12))
@@ -89,20 +89,20 @@ def stills(
     cut = pieces or [[face] for face in faces]
     apart = shapes if layered is None else layered
     for k, (shape, view, caption) in enumerate(zip(shapes, seen, captions, strict=True)):
-        order = back_to_front(_seen(np.asarray(apart[k], dtype=np.float64)), cut)
+        order = back_to_front(seen_from_above(np.asarray(apart[k], dtype=np.float64)), cut)
         left = k * panel + _MARGIN + ((panel - 2 * _MARGIN) - float((high - low)[0]) * scale) / 2
         flat = np.column_stack(
             [left + (view[:, 0] - low[0]) * scale, _MARGIN + (high[1] - view[:, 1]) * scale]
         )
         parts.append(
-            element("g", _drawn(np.asarray(shape), flat, [faces[k] for k in order]), stroke=INK)
+            element("g", shaded(np.asarray(shape), flat, [faces[k] for k in order]), stroke=INK)
         )
         centre = (k + 0.5) * panel
         parts.append(text(caption, centre, height + 12, anchor="middle", size=12))
     return picture(len(shapes) * panel, height + _CAPTION, parts, title)
 
 
-def _levelled(shape: FloatArray, flat: FloatArray) -> FloatArray:
+def levelled(shape: FloatArray, flat: FloatArray) -> FloatArray:
     """The shape moved and turned to be as close to the flat sheet as can be (Kabsch)."""
     a, b = shape - shape.mean(axis=0), flat - flat.mean(axis=0)
     u, _, v = np.linalg.svd(a.T @ b)
@@ -110,7 +110,7 @@ def _levelled(shape: FloatArray, flat: FloatArray) -> FloatArray:
     return np.asarray(a @ turn)
 
 
-def _seen(shape: FloatArray) -> FloatArray:
+def seen_from_above(shape: FloatArray) -> FloatArray:
     """Right, up and towards the eye, for every vertex: an orthographic view from above."""
     a, e = radians(_AZIMUTH), radians(_ELEVATION)
     right = np.array([-sin(a), cos(a), 0.0])
@@ -119,13 +119,14 @@ def _seen(shape: FloatArray) -> FloatArray:
     return np.asarray(shape @ np.array([right, up, towards]).T)
 
 
-def _faces(pattern: CreasePattern | PanelPattern) -> Sequence[Sequence[int]]:
+def faces_of(pattern: CreasePattern | PanelPattern) -> Sequence[Sequence[int]]:
+    """The faces of a sheet: triangles, or panels as they are."""
     return pattern.triangles if isinstance(pattern, CreasePattern) else pattern.faces
 
 
-def _drawn(shape: FloatArray, flat: FloatArray, faces: Sequence[Sequence[int]]) -> str:
+def shaded(shape: FloatArray, flat: FloatArray, faces: Sequence[Sequence[int]]) -> str:
     """The faces in this order, each in the colour of the side that is seen."""
-    towards = _seen(np.eye(3))[:, 2]
+    towards = seen_from_above(np.eye(3))[:, 2]
     light = np.array(_LIGHT) / np.linalg.norm(_LIGHT)
     drawn = []
     for face in faces:

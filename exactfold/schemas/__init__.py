@@ -17,6 +17,7 @@ VERSIONS: Final = {
     "export": 1,
     "motion": 1,
     "motions": 1,
+    "view": 1,
     "actuate": 1,
     "info": 1,
     "convert": 1,

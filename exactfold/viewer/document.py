@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -19,6 +20,7 @@ from exactfold.pattern.fold_writing import fold_document
 from exactfold.pattern.opening import Opened, has_branches
 from exactfold.pattern.triangulating import triangles_of
 from exactfold.progress import Progress
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.viewer.ways import (
     Following,
@@ -39,6 +41,7 @@ MOST_LISTED: Final = 10
 MOST_NEIGHBOURS: Final = 24
 MOST_COMPONENTS: Final = 200
 FRAMES: Final = 32
+MOST_FRAMES: Final = 1000
 
 _WORTH_A_PROCESS: Final = 6
 """Motions that take about as long as to start a process."""
@@ -66,7 +69,8 @@ def view_document(
     pop up and its neighbours; or those with the vertex signs `branches`. Of any other sheet the
     components of the motions of its rigid panels, up to 200, and the modes that are not followed.
     Each is followed in `frames` frames to the first contact; one that cannot be has the reason.
-    With `proving`, motions along branches are proved, too (`prove`). `workers`: processes that
+    With `proving`, motions along branches are proved, too (`prove`), and the first contacts of
+    motions of panels that close exactly (`prove_contacts`). `workers`: processes that
     share the work. `name` names the sheet.
 
     Raises the errors of `open_sheet`, `UsageError` for signs that do not fit, and
@@ -110,8 +114,8 @@ class Known:
         progress: Progress | None = None,
     ) -> Known:
         """What is known of a sheet; see `view_document`."""
-        if frames < 2:
-            raise UsageError(f"{frames} frames: a motion has at least 2")
+        if not 2 <= frames <= MOST_FRAMES:
+            raise UsageError(f"{frames} frames: a motion in a page has 2 to {MOST_FRAMES}")
         opened = open_sheet(sheet)
         title = name or (
             Path(sheet).stem if isinstance(sheet, str | PathLike) else "crease pattern"
@@ -129,7 +133,7 @@ class Known:
                 facts, follower = _branch_facts(found), Following(frames, proving)
                 listed = tuple((branch_way(branch), branch) for branch in found.branches)
                 return cls(opened, title, follower, listed, facts)
-            return _panels(opened, title, frames, progress)
+            return _panels(opened, title, frames, proving, progress)
         except (InputError, UsageError, WorkerDiedError):
             raise
         except ExactfoldError as error:
@@ -156,8 +160,7 @@ class Known:
     def document(self, ways: Sequence[Mapping[str, Any]], served: bool = False) -> dict[str, Any]:
         """The whole document; `served`: motions that are missing can be asked for."""
         return {
-            "format": "exactfold view",
-            "version": 1,
+            **headed("view"),
             "name": self.name,
             "sheet": _sheet_json(self.opened),
             "read": list(self.opened.lines),
@@ -248,8 +251,15 @@ def _branch_facts(found: _Branches) -> dict[str, Any]:
     }
 
 
-def _panels(opened: Opened, name: str, frames: int, progress: Progress | None) -> Known:
-    from exactfold.motion.followable import open_reason, panel_components, panel_modes
+def _panels(
+    opened: Opened, name: str, frames: int, proving: bool, progress: Progress | None
+) -> Known:
+    from exactfold.motion.followable import (
+        open_reason,
+        panel_components,
+        panel_modes,
+        why_nothing_follows,
+    )
     from exactfold.report.panels import panels_answer
 
     ways: Decomposition = count_opened(opened, progress=progress)  # type: ignore[assignment]
@@ -267,16 +277,18 @@ def _panels(opened: Opened, name: str, frames: int, progress: Progress | None) -
     if left:
         notes.append(f"{counted(left, 'more component')} left out")
     if not components and ways.rigid is not PROVED:
-        notes.append("no motion is known that can be followed")
+        notes.append(f"no motion can be followed: {why_nothing_follows(ways, modes)}")
     facts = {
         "kind": "panels",
         "answer": _SECONDS.sub("", panels_answer(ways).plain),
         "status": str(ways.status),
-        "complete": ways.true is not None and ways.ways == len(shown),
+        "complete": ways.true is not None
+        and Counter(component.dimension for component in shown)
+        == {dimension: number for dimension, number in ways.true.items() if dimension},
         "reason": ways.reason,
         "notes": notes,
     }
-    return Known(opened, name, FollowingPanels(ways, frames), tuple(listed), facts)
+    return Known(opened, name, FollowingPanels(ways, frames, proving), tuple(listed), facts)
 
 
 def _sheet_json(opened: Opened) -> dict[str, Any]:
@@ -286,7 +298,8 @@ def _sheet_json(opened: Opened) -> dict[str, Any]:
     """
     pattern = opened.sheet
     if isinstance(pattern, CreasePattern):
-        fold, foldable = fold_document(pattern), pattern.foldable_vertices
+        fold = fold_document(pattern)
+        foldable = pattern.foldable_vertices if has_branches(pattern) else ()
     else:
         from exactfold.pattern.panel_writing import converted
 

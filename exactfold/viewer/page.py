@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from exactfold.count.ways import Sheet
-from exactfold.pattern.fold_writing import write_text
+from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.progress import Progress
 from exactfold.viewer.document import FRAMES, view_document
 from exactfold.viewer.look import look_css, look_script
 
+_ENDINGS: Final = (".html", ".htm")
 _ROOM: Final = Path(__file__).parent
 _PAGE: Final = _ROOM / "page"
 _LIBRARY: Final = _ROOM / "vendor" / "three.bundle.min.js"
@@ -84,6 +85,11 @@ def write_view(
     )
     write_text(Path(path), view_page(document))
     return document
+
+
+def checked_page(path: Path) -> str:
+    """The ending of the path of a page; raises as `checked_target`."""
+    return checked_target(path, _ENDINGS, "a page")
 
 
 def script_json(value: object) -> str:

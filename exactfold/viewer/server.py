@@ -23,6 +23,7 @@ from exactfold.viewer.ways import Following, branch_way
 HEADER: Final = "X-Exactfold"
 """Sent by the page with each request: no other page may send it without leave."""
 _LOOPBACK: Final = "127.0.0.1"
+_MOST_PORT: Final = 65535
 
 
 def view_server(
@@ -40,12 +41,15 @@ def view_server(
     `serve_forever` runs it, `address` is where; port 0 is any that is free. Branches are listed as
     by `view_document`; none is followed before the page asks, and any other is found by its signs.
 
-    Raises the errors of `view_document`, and `OSError` for a port that is taken.
+    Raises the errors of `view_document`, `UsageError` for a number that is no port, and `OSError`
+    for a port that is taken.
 
     >>> with view_server("two-vertex") as server:
     ...     server.address.startswith("http://127.0.0.1:")
     True
     """
+    if not 0 <= port <= _MOST_PORT:
+        raise UsageError(f"port {port}: ports are numbers up to {_MOST_PORT}")
     known = Known.of(
         sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from exactfold.branches.export import AMOUNT
 from exactfold.errors import ExactfoldError, WorkerDiedError
+from exactfold.motion.followable import LINEAR
 from exactfold.motion.following import follow
 from exactfold.motion.proving import prove
 from exactfold.report.motion import ending_text, event_text
@@ -21,10 +22,9 @@ if TYPE_CHECKING:
     from exactfold.motion.followable import PanelComponent, PanelMode
     from exactfold.motion.in_motion import SheetInMotion
     from exactfold.motion.motion import Motion
+    from exactfold.motion.panel_motion import PanelMotion
     from exactfold.pattern.crease_pattern import CreasePattern, Edge
     from exactfold.pattern.panel_pattern import PanelPattern
-
-_KEPT = "faces stay rigid, to {:.0e} of each length"
 
 
 @dataclass(frozen=True)
@@ -53,10 +53,14 @@ class Following:
 
 @dataclass(frozen=True)
 class FollowingPanels:
-    """The same for the components of the motions of rigid panels, by their numbers from 1."""
+    """The same for the components of the motions of rigid panels, by their numbers from 1.
+
+    `proving`: the first contact of a motion that closes exactly is proved, too.
+    """
 
     ways: Decomposition
     frames: int
+    proving: bool = False
 
     def __call__(self, component: int) -> dict[str, Any]:
         """The motion along a component to the first contact, or why there is none."""
@@ -64,21 +68,21 @@ class FollowingPanels:
 
         try:
             found = follow_panels(self.ways, component=component, frames=self.frames)
+            way = motion_way(found)
+            way["motion"].update(_proof_of_panels(found, self.proving))
         except WorkerDiedError:
             raise
         except ExactfoldError as error:
             return not_followed(str(error))
         return {
-            **motion_way(found),
+            **way,
             "letters": letters_of(found.pattern, found.assignment),
             "angles": _angles(found.pattern, found.leading_angles),
         }
 
 
 def motion_way(motion: SheetInMotion) -> dict[str, Any]:
-    """The keys of a way that belong to its motion."""
-    proved = motion.status == "proved"
-    kept = _KEPT.format(max(motion.length_error, 1e-16))
+    """The keys of a way that belong to its motion, as it is known before any proof."""
     return {
         "motion": {
             **coded_frames(levelled(motion.coords)),
@@ -89,15 +93,16 @@ def motion_way(motion: SheetInMotion) -> dict[str, Any]:
                 {"time": event.time[1], "kind": event.kind, "text": event_text(event)}
                 for event in motion.events
             ],
-            "proved": proved,
-            "said": (
-                "every vertex closes exactly at all fold angles; contacts were found in floats"
-                if proved
-                else f"followed in floats, not proved; {kept}"
-            ),
+            "proved": False,
+            "exists": False,
+            "said": f"followed in floats; {_kept(motion)}",
         },
         "why": "",
     }
+
+
+def _kept(motion: SheetInMotion) -> str:
+    return f"faces stay rigid, to {max(motion.length_error, 1e-16):.0e} of each length"
 
 
 def _proof(motion: Motion) -> dict[str, Any]:
@@ -110,7 +115,39 @@ def _proof(motion: Motion) -> dict[str, Any]:
     if event is not None:
         low, high = event.time
         parts.append(f"its first contact is between the times {low:.8g} and {high:.8g}")
-    return {"proved": True, "said": f"{'; '.join(parts)}; the frames are floats close to it"}
+    said = f"{'; '.join(parts)}; the frames are floats close to it"
+    return {"proved": True, "exists": True, "said": said}
+
+
+def _proof_of_panels(motion: PanelMotion, contacts: bool) -> dict[str, Any]:
+    """What docs/panel_motion.md proves of a motion of panels, and of its first contact if asked."""
+    if motion.closes is PROVED:
+        said = (
+            "every vertex closes exactly at all fold angles"
+            if motion.curves
+            else "only folds from border to border turn, and they may turn by any angles"
+        )
+        touching = _proved_contact(motion) if contacts else "contacts were found in floats"
+        return {"proved": True, "exists": True, "said": f"{said}; {touching}"}
+    if motion.exists is PROVED:
+        said = (
+            "until a fold is at 180 degrees, all angles growing; what is drawn, and contacts, are "
+            f"floats; {_kept(motion)}"
+        )
+        return {"exists": True, "said": said}
+    return {}
+
+
+def _proved_contact(motion: PanelMotion) -> str:
+    from exactfold.motion.panel_clearance import prove_contacts
+
+    found = prove_contacts(motion)
+    if found.status is not PROVED:
+        return f"its contacts are undecided: {found.reason}"
+    if found.event is None:
+        return "no panels touch on the way: proved"
+    low, high = found.event.time
+    return f"its first contact is between the times {low:.12g} and {high:.12g}: proved"
 
 
 def not_followed(why: str) -> dict[str, Any]:
@@ -149,24 +186,26 @@ def component_way(
     if not folding:
         letters.update(dict.fromkeys(component.free, "V"))
     numbers = ", ".join(map(str, component.modes))
-    parts = [f"mode{'s' if len(folding) > 1 else ''} {numbers}"] if folding else []
-    if component.free:
-        parts.append("free folds")
-    by = "; ".join(sorted({mode.extends.by for mode in folding}))
-    family = (
-        f"; one of a family of dimension {component.dimension}, all modes at the same rate"
-        if component.dimension > 1 and folding
-        else ""
-    )
-    return _panel_way(
-        ways.pattern,
-        " and ".join(parts),
-        letters,
-        str(PROVED),
-        f"that it truly folds is shown by: {by}{family}"
-        if by
-        else "folds from border to border are free",
-    )
+    name = f"mode{'s' if len(folding) > 1 else ''} {numbers}" if folding else "free folds"
+    shown = sorted({_shown_by(mode.extends.by) for mode in folding})
+    why = " and ".join(shown) or "folds from border to border are free"
+    if component.dimension > 1:
+        what = "modes" if folding else "folds"
+        still = ", free folds flat" if folding and component.free else ""
+        why += (
+            f"; one motion of a family of dimension {component.dimension}: all {what} at the same "
+            f"rate{still}"
+        )
+    return _panel_way(ways.pattern, name, letters, str(PROVED), f"it truly folds, as {why}")
+
+
+def _shown_by(by: str) -> str:
+    """Why a mode truly folds, in a sentence (docs/panels.md, 4)."""
+    if by == "forest":
+        return "its vertices form no loop"
+    if by == LINEAR:
+        return "all its fold angles stay in proportion, as half-angle tangents"
+    return f"its loops of vertices close ({by})"
 
 
 def mode_way(mode: PanelMode, why: str) -> dict[str, Any]:

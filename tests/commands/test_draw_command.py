@@ -7,11 +7,12 @@ from xml.etree import ElementTree
 import pytest
 from running import BAD_INPUT, PROVED, UNDECIDED, USAGE, run
 
-from exactfold import count_ways, find_branch, load, open_pattern
+from exactfold import count_ways, find_branch, follow, load, open_pattern
 from exactfold.commands import draw
 from exactfold.data import example_path
 from exactfold.motion import panel_modes
 from exactfold.report import branch_way, mode_way, pattern_picture, sheet_of_multiples, ways_of
+from exactfold.report.folded import Amount, folded
 
 NAME = "{http://www.w3.org/2000/svg}"
 HOLE = """<svg xmlns="http://www.w3.org/2000/svg" width="60" height="60">
@@ -86,6 +87,16 @@ def test_the_folded_sheet_is_drawn_in_space():
     assert title(text) == "two-vertex, branch +-, folded to 60°"
     assert text.count("<path") == len(load("two-vertex").triangles)
     assert title(drawn("zigzags", "--branch", "1", "--folded", "45deg")).endswith("to 45°")
+
+
+def test_the_other_side_of_a_branch_is_its_mirror_image():
+    asked = ("two-vertex", "--branch", "+-", "--folded", "60deg")
+    motion = follow(find_branch("two-vertex", "+-"), side=-1)
+    mirror = drawn(*asked, "--side", "-")
+    assert mirror == folded(motion, Amount.of("60deg"), "two-vertex").text
+    assert mirror != drawn(*asked) == drawn(*asked, "--side", "+")
+    refused = run("draw", "zigzags", "--branch", "1", "--folded", "45deg", "--side", "-")
+    assert (refused.exit_code, "--side is of a branch" in refused.stderr) == (USAGE, True)
 
 
 def test_a_drawing_with_a_hole_is_drawn_and_the_reason_told(tmp_path):
@@ -168,6 +179,7 @@ def test_png_without_cairosvg_names_the_extra(tmp_path, monkeypatch):
         (("--branch", "1", "--up", "4"), "give one of"),
         (("--most", "3"), "--most goes with --all"),
         (("--folded", "60deg"), "--folded goes with"),
+        (("--branch", "1", "--side", "-"), "--side goes with --folded"),
         (("--branch", "1", "--folded", "60"), "60deg"),
         (("--branch", "1", "--folded", "190deg"), "up to 180deg"),
         (("--branch", "1", "--folded", "nan"), "60deg"),

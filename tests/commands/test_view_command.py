@@ -38,7 +38,9 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
     result = run("view", "zigzags", "-o", target, "--frames", "2")
     assert result.exit_code == OK
     assert result.stdout.startswith("3 families of ways to fold")
-    assert result.stdout.endswith(f"written: {target}, with 4 ways to fold\n")
+    assert result.stdout.endswith(
+        f"written: {target}, with 3 ways to fold, and 1 mode not followed\n"
+    )
     assert "read zigzags: SVG" in result.stderr
 
 
@@ -50,6 +52,10 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
         (["two-vertex", "--serve", "-o", "a.html"], USAGE, "--serve writes no file"),
         (["two-vertex", "--port", "8000"], USAGE, "--port goes with --serve"),
         (["missing.fold"], BAD_INPUT, "missing.fold"),
+        (["two-vertex", "-o", "page.txt"], USAGE, "a page is written as .html, .htm"),
+        (["two-vertex", "-o", "no/a.html"], BAD_INPUT, "the folder no does not exist"),
+        (["two-vertex", "--frames", "100000"], USAGE, "a motion in a page has 2 to 1000"),
+        (["two-vertex", "--serve", "--port", "99999"], USAGE, "ports are numbers up to 65535"),
         (["two-vertex", "-o", "-"], USAGE, "an output has a name of its own"),
     ],
 )

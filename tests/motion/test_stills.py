@@ -11,7 +11,7 @@ from exactfold import find_branch, follow, random_square
 from exactfold.motion import follow_panels
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.report.painting import back_to_front
-from exactfold.report.stills import _seen, motion_stills, stills
+from exactfold.report.stills import motion_stills, seen_from_above, stills
 
 NAME = "{http://www.w3.org/2000/svg}"
 BLUE, YELLOW = (86, 180, 233), (240, 228, 66)
@@ -53,7 +53,7 @@ def test_nearer_faces_are_drawn_later():
     for faces in ([(0, 1, 2), (3, 5, 4)], [(3, 5, 4), (0, 1, 2)]):
         drawn = faces_of(stills([both], faces, [""], "t"))
         assert [is_blue(face["fill"]) for face in drawn] == [True, False]
-    assert _seen(both)[3:, 2].min() > _seen(both)[:3, 2].min()
+    assert seen_from_above(both)[3:, 2].min() > seen_from_above(both)[:3, 2].min()
 
 
 @pytest.mark.parametrize("turn", [0.4, 2.0])
@@ -88,7 +88,7 @@ def test_panels_are_polygons_that_keep_their_corners():
 
 def turned_to_the_eye(corners):
     """Points given by right, up and depth."""
-    return np.array(corners, dtype=float) @ np.linalg.inv(_seen(np.eye(3)))
+    return np.array(corners, dtype=float) @ np.linalg.inv(seen_from_above(np.eye(3)))
 
 
 @pytest.mark.parametrize("turn", [1, -1])
@@ -102,7 +102,7 @@ def test_a_long_face_lies_under_a_near_one_whatever_its_mean_depth(turn):
     assert order == ([0, 1] if turn > 0 else [1, 0])
     assert view[:4, 2].mean() > view[4:, 2].mean()
     shape = turned_to_the_eye(view)
-    assert _seen(shape) == pytest.approx(view)
+    assert seen_from_above(shape) == pytest.approx(view)
     polygons = [(0, 1, 2, 3), (4, 5, 6, 7)][::turn]
     drawn = faces_of(stills([shape], polygons, [""], "t", pieces=pieces))
     places = [list(map(float, f["d"][1:-1].replace("L", " ").split()))[::2] for f in drawn]

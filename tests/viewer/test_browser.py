@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from browser import chromium
+from test_document import CORNER_AND_CENTRE
 
 from exactfold import count_branches, find_branch, follow, load, open_pattern
 from exactfold.report.crease_style import COLOUR
@@ -34,6 +35,7 @@ def pages(folder, browser):
     """Addresses of the pages of three sheets, written once there is a browser."""
     for name in ("h1-4", "zigzags", "waterbomb"):
         write_view(name, folder / f"{name}.html", name=name)
+    write_view(CORNER_AND_CENTRE, folder / "free-corner.html", frames=4)
     return {path.stem: path.as_uri() for path in folder.glob("*.html")}
 
 
@@ -43,6 +45,7 @@ def test_it_opens_without_a_complaint_and_asks_nothing_of_a_network(browser, pag
         assert browser.complaints() == [], name
         asked = browser.run("performance.getEntriesByType('resource').map((e) => e.name)")
         assert [one for one in asked if not one.startswith("data:")] == []
+    browser.open(pages["waterbomb"])
     assert browser.run("document.title") == "waterbomb - exactfold"
     assert "one family of dimension 3" in browser.text("#answer")
     assert browser.run("document.getElementById('play').disabled")

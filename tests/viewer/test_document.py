@@ -8,18 +8,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator, ValidationError
 
 from exactfold import (
+    CreasePattern,
     count_branches,
     count_ways,
     find_branch,
     follow,
     random_square,
+    schema,
 )
 from exactfold.certify import algebraic
 from exactfold.count.ways import open_sheet
 from exactfold.errors import UsageError
-from exactfold.motion import panel_components, prove
+from exactfold.motion import follow_panels, panel_components, prove, prove_contacts
 from exactfold.pattern.families import single_vertex
 from exactfold.report import crease_style
 from exactfold.viewer import page as page_module
@@ -27,6 +30,11 @@ from exactfold.viewer import view_document, view_page
 from exactfold.viewer.coding import coded_frames, decoded_frames, levelled
 
 PAGE = Path(page_module.__file__).parent / "page"
+HEXAGON = [(4, 0), (2, 3), (-2, 3), (-4, 0), (-2, -3), (2, -3)]
+CORNER_AND_CENTRE = CreasePattern(
+    [*HEXAGON, (0, 0), (5, 3)], [*((k, (k + 1) % 6, 6) for k in range(6)), (0, 7, 1)]
+)
+"""A hexagon with a vertex in the middle, and a corner with a fold from border to border."""
 
 
 @pytest.fixture(scope="module")
@@ -110,6 +118,37 @@ def test_panels_list_what_is_followed_and_what_is_not():
     assert "does not close" in left["why"]
     assert set(left["letters"]) == {"M", "V"}
     assert [way["motion"]["proved"] for way in followed].count(True) == 1
+    assert all(way["motion"]["exists"] for way in followed)
+
+
+@pytest.mark.parametrize("name", ["flat-vertex", "zigzags", "waterbomb"])
+def test_documents_are_what_their_schema_says(name):
+    document = json.loads(json.dumps(view_document(name, frames=2)))
+    Draft202012Validator(schema("view")).validate(document)
+    wrong = document | {"complete": "yes"}
+    with pytest.raises(ValidationError, match="'yes' is not of type 'boolean'"):
+        Draft202012Validator(schema("view")).validate(wrong)
+
+
+def test_it_says_what_is_proved_of_a_motion_of_panels():
+    said = [way["motion"]["said"] for way in view_document("zigzags", frames=2)["ways"][:3]]
+    assert said[0].startswith("until a fold is at 180 degrees, all angles growing; what is drawn")
+    exact = "every vertex closes exactly at all fold angles; "
+    assert said[2] == exact + "contacts were found in floats"
+    way = view_document("zigzags", frames=2, proving=True)["ways"][2]
+    event = prove_contacts(follow_panels(count_ways("zigzags"), component=3)).event
+    low, high = event.time
+    times = f"its first contact is between the times {low:.12g} and {high:.12g}: proved"
+    assert way["motion"]["said"] == exact + times
+
+
+def test_free_folds_alone_are_not_the_whole_of_a_larger_family():
+    document = view_document(CORNER_AND_CENTRE, frames=2)
+    assert document["answer"].startswith("1 family of ways to fold, of dimension 4 - PROVED")
+    [way] = document["ways"]
+    assert (way["name"], way["letters"].count("V")) == ("free folds", 1)
+    assert not document["complete"]
+    assert document["sheet"]["foldable"] == []  # nothing pops: there are no vertex signs
 
 
 @pytest.mark.parametrize(

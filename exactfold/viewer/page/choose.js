@@ -59,6 +59,7 @@ function fits(text, wanted) {
 // boundary saddle, then with the letters that differ least. Null if none is listed.
 export function popped(ways, shown, mirrored, at) {
   const here = seen(ways[shown], mirrored);
+  if (!here.signs) return null;
   const same = (signs) => signs.length === here.signs.length
     && [...signs].every((sign, k) => (k === at ? sign !== here.signs[k] : sign === here.signs[k]));
   let best = null;

@@ -18,11 +18,17 @@ export function showFacts(page, way) {
 function countFact(page) {
   if (!page.ways.length) {
     const known = page.status === "proved";
-    return [known ? "good" : "open", known ? "The answer: proved" : "The answer: undecided", page.reason || page.answer];
+    return [known ? "good" : "open", known ? "The answer: proved" : "The answer: undecided", own(page)];
   }
-  if (page.complete) return ["good", "All are listed: proved", page.reason];
-  if (page.status === "proved") return ["note", "Not all are listed", page.reason || page.answer];
-  return ["open", "The count is undecided", page.reason || page.answer];
+  if (page.complete) return ["good", "All are listed: proved", own(page)];
+  if (page.status !== "proved") return ["open", "The count is undecided", own(page)];
+  if (page.kind === "branches") return ["note", "Not all are listed", own(page)];
+  return ["note", "Listed: ways that can be followed", own(page)];
+}
+
+// The reason, unless the heading of the page says it.
+function own(page) {
+  return page.answer.includes(page.reason) ? "" : page.reason;
 }
 
 function wayFacts(page, way) {
@@ -34,7 +40,9 @@ function wayFacts(page, way) {
   if (way.multiplicity > 1) facts.push(["note", `Counted ${way.multiplicity} times`, "as flat vertices count double"]);
   if (way.motion) {
     const drawn = way.motion.said;
-    facts.push(way.motion.proved ? ["good", "The motion: proved", drawn] : ["open", "The motion: not proved", drawn]);
+    if (way.motion.proved) facts.push(["good", "The motion: proved", drawn]);
+    else if (way.motion.exists) facts.push(["good", "The motion exists: proved", drawn]);
+    else facts.push(["open", "The motion: not proved", drawn]);
     facts.push(["note", "It ends", way.motion.ending]);
   } else if (way.why && way.status === "proved") {
     facts.push(["open", "No motion is drawn", way.why]);

@@ -4,6 +4,7 @@ const UPPER = 0x56b4e9, LOWER = 0xf0e442;  // the side that is +z in the flat sh
 const EDGE = 0x1d1c1a;
 const AZIMUTH = -62, ELEVATION = 34, VIEW = 30;
 const TURNS = [0, 18, -18, 36, -36, 54, 72, 90, 108, 126, 144, 162, 180, 198, 216, 234, 252, 270, 288];
+const FOLD = 1.3, FINEST = 0.3, ROOM = 14;  // pixels: a line of the sheet, and between lines this wide
 const FILLED = 0.9;  // of the picture
 
 export function createScene(canvas, sheet, flat, radius) {
@@ -25,7 +26,7 @@ export function createScene(canvas, sheet, flat, radius) {
     mesh.frustumCulled = false;
     scene.add(mesh);
   }
-  const inner = lines(sheet.folds, 1.3), outer = lines(sheet.boundary, 2.4);
+  const inner = lines(sheet.folds, FOLD), outer = lines(sheet.boundary, 2.4);
   scene.add(inner.object, outer.object);
 
   // Fixed to the sheet, so that faces of different directions differ and keep their shade.
@@ -54,8 +55,16 @@ export function createScene(canvas, sheet, flat, radius) {
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
     for (const { material } of [inner, outer]) material.resolution.set(width, height);
+    inner.material.linewidth = Math.min(Math.max(FOLD * room(Math.min(width, height)) / ROOM, FINEST), FOLD);
     if (!touched) home();
     draw();
+  }
+
+  // Pixels between the lines of the flat sheet, about: a share of its area for each of them.
+  function room(pixels) {
+    const area = sheet.triangles.reduce((sum, corners) => sum + Math.hypot(...normalOf(flat, corners)) / 2, 0);
+    const length = sheet.folds.reduce((sum, [i, j]) => sum + Math.hypot(flat[3 * i] - flat[3 * j], flat[3 * i + 1] - flat[3 * j + 1]), 0);
+    return (area / Math.max(length, 1e-12)) * (pixels / (2 * radius));
   }
 
   // From where a picture of a fold is usually seen, with all of these shapes in the picture.
