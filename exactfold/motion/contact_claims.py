@@ -8,8 +8,9 @@ from exactfold.checker.motion_lengths import Path
 from exactfold.evidence.entries import Document
 from exactfold.exact.numbers import format_rational
 from exactfold.motion.contacts import FirstContact
+from exactfold.motion.links import Link
 from exactfold.motion.piece import PARAMETER_BITS, REACH_BITS
-from exactfold.motion.tracks import Link, Track
+from exactfold.motion.tracks import Track
 from exactfold.motion.tube_start import ROOT_BITS
 from exactfold.verdict import PROVED
 

@@ -15,9 +15,10 @@ from exactfold.motion.arclength import in_floats
 from exactfold.motion.contraction import SCALE, WEIGHT_BITS
 from exactfold.motion.crossings import Crossing, Crossings
 from exactfold.motion.events import CONTACT, FLAT_FOLD, Event
+from exactfold.motion.links import Link
 from exactfold.motion.piece import PARAMETER_BITS, Piece
 from exactfold.motion.separation import FacePairs, Open, Swept, bends, clear_until, through
-from exactfold.motion.tracks import Link, Track, follow_proved
+from exactfold.motion.tracks import Track, follow_proved
 from exactfold.motion.tube_start import ROOT_BITS, StartTube
 from exactfold.pattern.crease_pattern import Triangle
 from exactfold.verdict import PROVED, UNDECIDED, Verdict

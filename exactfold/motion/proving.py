@@ -17,12 +17,13 @@ from exactfold.motion.contacts import ContactWatch, FirstContact
 from exactfold.motion.enclosed import with_enclosed_frames
 from exactfold.motion.events import CONTACT, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
 from exactfold.motion.framework import Framework
+from exactfold.motion.links import Link
 from exactfold.motion.loop_file import LoopFile
 from exactfold.motion.loop_frames import frame_of
 from exactfold.motion.loop_proofs import Loop, LoopProof
 from exactfold.motion.loops import LoopFinder
 from exactfold.motion.motion import Motion
-from exactfold.motion.tracks import Frame, Link, Track, follow_proved, half_branch
+from exactfold.motion.tracks import Frame, Track, follow_proved, half_branch
 from exactfold.pattern.crease_pattern import Triangle
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress

@@ -13,8 +13,9 @@ from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
 from exactfold.motion.flat_patches import FlatPatch
 from exactfold.motion.following import follow
 from exactfold.motion.framework import Framework
-from exactfold.motion.loops import LoopFinder, Passage
+from exactfold.motion.loops import LoopFinder
 from exactfold.motion.node_tube import prove_node_tube
+from exactfold.motion.passages import Passage
 from exactfold.motion.piece import PARAMETER_BITS
 from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED
