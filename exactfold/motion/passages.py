@@ -47,7 +47,7 @@ class Passage:
     @property
     def to_the_node(self) -> Passage:
         """The part of it that ends at the node."""
-        return replace(self, exit=0, left=self._after(0))
+        return replace(self, exit=0, left=self.time(0))
 
     @property
     def what(self) -> str:
@@ -63,7 +63,7 @@ class Passage:
 
     def visit(self, unit: Fraction) -> Visit:
         """Where and when the node is passed, with times in the unit of the sheet."""
-        low, high = self._after(0)
+        low, high = self.time(0)
         return Visit.of(self.tube, (low * unit, high * unit))
 
     def near(self, time: Fraction) -> tuple[Interval, Ball]:
@@ -74,10 +74,10 @@ class Passage:
         at = self.exit
         if time < self.left[0]:
             at = self.tube.near(float(time - self.entered[0]), self.entry, self.exit)
-        return _refined(self.tube, at, self._after(at))
+        return _refined(self.tube, at, self.time(at))
 
-    def _after(self, parameter: int) -> Interval:
-        """Bounds of the time at a parameter after the entry."""
+    def time(self, parameter: int) -> Interval:
+        """Bounds of the time at a parameter of the arc after the entry."""
         shortest, longest = self.tube.length(self.entry, parameter)
         return self.entered[0] + shortest, self.entered[1] + longest
 
