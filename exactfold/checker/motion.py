@@ -3,20 +3,24 @@
 Why it is a proof: the first piece is a curve of zeros of the equations in blown-up coordinates,
 which at the flat state solve the second-order equations with the vertex signs claimed: it belongs
 to the one branch with these signs (docs/theorem.md, 3 and 4). Every tube holds one curve of
-configurations; where it begins, the one before ends on it and goes the same way.
+configurations; where it begins, the one before ends on it and goes the same way. A motion may end
+at a node: its last piece is an arc through it, a point of which lies on the last tube.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from math import isqrt
 from typing import Any
 
-from .formats import MOST_TUBES, MOST_WORK, MOTION, MOTION_BITS, MOTION_VERSION
-from .motion_contacts import Link, check_contacts, said
+from .formats import MOST_TUBES, MOST_WORK, MOTION, MOTION_BITS, MOTION_VERSION, NODE_WORK
+from .motion_contacts import check_contacts, said
 from .motion_equations import SPARE, LengthEquations
-from .motion_tubes import Ball, Start, Tube
+from .motion_nodes import NodeTube
+from .motion_patches import Patch
+from .motion_paths import Path
+from .motion_stretches import Arc, Link
+from .motion_tubes import Start, Tube
 from .reading import (
     MALFORMED,
     CertificateError,
@@ -52,7 +56,9 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     long in the space of the vertices (unit of the sheet, one triangle held). `side` is the sign of
     the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch closed.
     With `clear`, no two faces touch beyond what they share before this length of the motion; with
-    `contact`, some do between two lengths (docs/contacts.md).
+    `contact`, some do between two lengths (docs/contacts.md). With `node` the motion ends at a
+    configuration in which the stars of the vertices `flat` are flat; all before it are regular. If
+    `clear` is true there, no two faces touch up to it, nor in it.
     """
     try:
         return _check(data)
@@ -65,33 +71,49 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     claims, evidence = data["claims"], data["evidence"]
     more = ["clear"] if "clear" in claims else []
     more = ["clear", "contact"] if "contact" in claims else more
-    keys(claims, " ".join(["vertex_signs side length", *more]), "claims")
-    names = "emptied pinned bits start tubes"
-    keys(evidence, f"{names} contacts" if more else names, "evidence")
+    ends = ["node"] if "node" in claims else []
+    keys(claims, " ".join(["vertex_signs side length", *more, *ends]), "claims")
+    found = ["contacts"] if more else []
+    keys(evidence, " ".join(["emptied pinned bits start tubes", *found, *ends]), "evidence")
     equations, removed = framework(given, evidence)
-    bits = equations.bits
     tubes = items(evidence["tubes"], "tubes")
-    check_work(equations, len(tubes))
+    check_work(equations, len(tubes) + NODE_WORK * len(ends))
     start, tau = first_piece(equations, evidence["start"])
     _check_names(given, removed, start, claims)
-    ball, velocity = start.configuration(tau)
-    length = Fraction(0)
-    before = Ball([0] * equations.size, [0] * equations.size)
+    path = Path(start.configuration(tau), equations.bits)
     links: list[Link] = []
-    for entry in tubes:
-        length += chord(before, ball, bits)
-        keys(entry, "centre row reach exit", "tube")
-        tube = tube_of(equations, entry)
-        end = Fraction(natural(entry["exit"], "exit"), 1 << PARAMETER_BITS)
-        require(tube.entered(ball, velocity) <= end, "a motion leaves a tube before it enters")
+    for k, entry in enumerate(tubes):
+        onwards = k + 1 < len(tubes) or not ends
+        keys(entry, "centre row reach exit" if onwards else "centre row reach", "tube")
+        tube, ball, end = tube_of(equations, entry), path.here, None
+        path.enter(tube)
+        if onwards:
+            end = Fraction(natural(entry["exit"], "exit"), 1 << PARAMETER_BITS)
+            path.leave(end)
         links.append((tube, ball, end))
-        before, ball, velocity = ball, tube.enclosure(end), tube.velocity(end)
-    length += chord(before, ball, bits)
+    arc = _to_the_node(equations, path, claims["node"], evidence["node"]) if ends else None
     claimed = parse_rational(claims["length"])
-    require(claimed <= length * equations.unit, "the motion is shorter than claimed")
+    require(claimed <= path.length * equations.unit, "the motion is shorter than claimed")
     if more:
-        check_contacts(start, tau, links, claims, evidence["contacts"])
+        check_contacts(start, tau, links, claims, evidence["contacts"], arc)
+    if ends and claims["node"]["clear"]:
+        given_end = (evidence["contacts"]["tube"], evidence["contacts"]["clear"]) if more else None
+        shown_to_be = given_end == (len(tubes) + 1, 0)
+        require(shown_to_be, "the motion is not shown to be clear up to its node")
     return {"sha256": digest, "tubes": len(tubes), **claims}
+
+
+def _to_the_node(equations: LengthEquations, path: Path, claim: Any, entry: Any) -> Arc:
+    """The arc on which a motion comes to a node, and where it meets the tube before."""
+    keys(claim, "flat clear", "node")
+    require(type(claim["clear"]) is bool, "clear is not true or false")
+    keys(entry, "node centre row reach entry", "node")
+    arc = arc_of(equations, claim["flat"], entry)
+    begin = Fraction(integer(entry["entry"]), 1 << PARAMETER_BITS)
+    require(begin < 0, "an arc does not come to its node")
+    path.meet(*arc.configuration(begin))
+    path.go(*arc.configuration(Fraction(0)))
+    return arc, begin
 
 
 def framework(given: Sheet, evidence: Any) -> tuple[LengthEquations, set[int]]:
@@ -119,6 +141,19 @@ def tube_of(equations: LengthEquations, entry: Any) -> Tube:
     return Tube(
         equations,
         vector(entry["centre"], "centre", size, equations.bits),
+        vector(entry["row"], "row", size, 0),
+        reach_of(entry["reach"]),
+    )
+
+
+def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> NodeTube:
+    """An arc through a node at which some vertices are flat, of its keys."""
+    size, bits = equations.size, equations.bits
+    patch = Patch(equations, [natural(v, "flat vertex") for v in items(flat, "flat")])
+    return NodeTube(
+        patch,
+        patch.node(vector(entry["node"], "node", size, bits)),
+        vector(entry["centre"], "centre", size, bits),
         vector(entry["row"], "row", size, 0),
         reach_of(entry["reach"]),
     )
@@ -157,13 +192,6 @@ def start_of(equations: LengthEquations, entry: Any) -> Start:
     require(held in equations.place, "the vertex held at its height is pinned, or none")
     place = equations.place[held] + 2
     return Start(equations, centre, halvings, place, reach_of(entry["reach"]))
-
-
-def chord(a: Ball, b: Ball, bits: int) -> Fraction:
-    """A lower bound of the distance of two points in boxes."""
-    squared = sum((x - y) ** 2 for x, y in zip(a.centre, b.centre, strict=True))
-    off = sum((x + y) ** 2 for x, y in zip(a.radii, b.radii, strict=True))
-    return Fraction(max(0, isqrt(squared) - isqrt(off) - 1), 1 << bits)
 
 
 def _check_names(given: Sheet, removed: set[int], start: Start, claims: Any) -> None:
@@ -215,6 +243,19 @@ def summary(claims: dict[str, Any]) -> str:
     tubes = counted(claims["tubes"], "tube", "tubes")
     return (
         f"VALID: the motion along the half-branch {letters} ({len(signs)}), side {side}, is one "
-        f"curve without a gap of length {shown(claims['length'])} or more{said(claims)}; {tubes}; "
+        f"curve without a gap of length {shown(claims['length'])} or more{_end(claims)}"
+        f"{said(claims)}; {tubes}; "
         f"sha256 {claims['sha256']}"
+    )
+
+
+def _end(claims: dict[str, Any]) -> str:
+    """Where a motion ends, if it is claimed to be at a node."""
+    if "node" not in claims:
+        return ""
+    flat = claims["node"]["flat"]
+    several = len(flat) > 1
+    names = " and ".join(map(str, flat))
+    return f", to a node where {'vertices' if several else 'vertex'} {names} " + (
+        "are flat" if several else "is flat"
     )

@@ -29,13 +29,11 @@ from .motion_boxes import (
     volume_sign,
 )
 from .motion_equations import LengthEquations
-from .motion_lengths import GRID, Path, entry
-from .motion_tubes import Ball, Start, Tube
+from .motion_lengths import GRID, Path
+from .motion_stretches import Arc, Link, stretches_of
+from .motion_tubes import Start
 from .reading import integer, items, keys, natural, parse_rational, require, shown
 from .sheet import Edge
-
-Link = tuple[Tube, Ball, Fraction]
-"""A tube, the box in which the motion enters it, and the parameter at which it leaves it."""
 
 _KINDS = "contact", "flat-fold"
 _PARAMETER_BITS = 40
@@ -179,46 +177,33 @@ def folded_over(
     return (along**2 + (one - two) ** 2) / square, (along**2 + (one + two) ** 2) / square
 
 
-class Stretch:
-    """The part of a piece that the motion passes: it enters between two parameters."""
-
-    def __init__(self, path: Path, low: Fraction, high: Fraction, end: Fraction) -> None:
-        self.path, self.low, self.high, self.end = path, low, high, end
-
-    def length(self) -> tuple[Fraction, Fraction]:
-        """Bounds of its length."""
-        path, end = self.path, self.end
-        return (
-            path.shortest(path.above(self.high), path.below(end)),
-            path.longest(path.below(self.low), path.above(end)),
-        )
-
-
-def check_contacts(start: Start, tau: Fraction, links: list[Link], claims: Any, given: Any) -> None:
+def check_contacts(
+    start: Start,
+    tau: Fraction,
+    links: list[Link],
+    claims: Any,
+    given: Any,
+    arc: Arc | None = None,
+) -> None:
     """Refuse unless the claims `clear` and, if there is one, `contact` hold.
 
     `given`: the tube, by its number from 1 on, in which what is clear ends at the parameter
-    `clear`, and in which a contact is proved at `to`, or a fold closes between `from` and `to`.
+    `clear`, and in which a contact is proved at `to`, or a fold closes between `from` and `to`. The
+    arc to a node comes after the last tube.
     """
     keys(given, "tube clear from to" if "contact" in claims else "tube clear", "contacts")
     number = natural(given["tube"], "tube")
-    require(1 <= number <= len(links), "there is no such tube")
-    radii, rates = start.enclosure(tau**2).radii, start.velocity(tau**2).radii
-    path = Path.of_start(start.curve, start.bits, start.halvings, tau, radii, rates)
-    stretches = [Stretch(path, Fraction(0), Fraction(0), tau)]
-    for tube, ball, end in links[:number]:
-        radii, rates = tube.enclosure(tube.reach).radii, tube.velocity(tube.reach).radii
-        path = Path.of_tube(tube.curve, tube.bits, tube.reach, radii, rates)
-        stretches.append(Stretch(path, *entry(tube, ball), end))
-    last, reach = stretches[-1], links[number - 1][0].reach
+    require(1 <= number <= len(links) + (arc is not None), "there is no such tube")
+    stretches = stretches_of(start, tau, links[:number], arc)[: number + 1]
+    last = stretches[-1]
 
     def parameter(key: str, least: Fraction) -> Fraction:
         found = Fraction(integer(given[key]), 1 << _PARAMETER_BITS)
-        require(least <= found <= reach, f'the parameter "{key}" is out of range')
+        require(least <= found <= last.most, f'the parameter "{key}" is out of range')
         return found
 
     lengths = [stretch.length() for stretch in stretches[:-1]]
-    last.end = parameter("clear", -reach)
+    last.end_at(parameter("clear", last.least))
     clear, unit = parse_rational(claims["clear"]), start.equations.unit
     shortest = sum((low for low, _ in lengths), last.length()[0])
     require(clear <= shortest * unit, "what is clear is shorter than claimed")
@@ -229,13 +214,13 @@ def check_contacts(start: Start, tau: Fraction, links: list[Link], claims: Any, 
         require(first == clear, "a contact is not claimed from where the motion is clear")
         begin = parameter("from", last.high)
         end = parameter("to", begin)
-        longest = Stretch(last.path, last.low, last.high, end).length()[1]
+        longest = last.path.longest(last.path.below(last.low), last.path.above(end))
         longest += sum((high for _, high in lengths), Fraction(0))
         require(longest * unit <= latest, "the contact may be later than claimed")
         _check_contact(faces, last.path, begin, end, claims["contact"])
     for k, stretch in enumerate(stretches):
         path = stretch.path
-        faces.clear(path, path.below(stretch.low), path.above(stretch.end), planar=k == 0)
+        faces.clear(path, path.below(stretch.low), path.above(stretch.last), planar=k == 0)
 
 
 def _check_contact(faces: Faces, path: Path, begin: Fraction, end: Fraction, claim: Any) -> None:
@@ -268,6 +253,9 @@ def said(claims: dict[str, Any]) -> str:
     if "clear" not in claims:
         return ""
     text = f"; no two faces touch before {shown(claims['clear'])}"
+    if "node" in claims and claims["node"]["clear"]:
+        clear = shown(claims["clear"])
+        text = f"; no two faces touch before the node, nor at it, at {clear} or later"
     if "contact" not in claims:
         return text
     contact = claims["contact"]

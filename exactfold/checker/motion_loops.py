@@ -20,17 +20,14 @@ from .formats import LOOPS, LOOPS_VERSION, NODE_WORK
 from .motion import (
     PARAMETER_BITS,
     ROOT_BITS,
+    arc_of,
     check_work,
     first_piece,
     framework,
     names,
-    reach_of,
     start_of,
     tube_of,
-    vector,
 )
-from .motion_nodes import NodeTube
-from .motion_patches import Patch
 from .motion_paths import Path
 from .motion_tubes import Ball, Start
 from .reading import (
@@ -42,7 +39,6 @@ from .reading import (
     integer,
     items,
     keys,
-    natural,
     parse_rational,
     read_json,
     require,
@@ -120,16 +116,7 @@ class LoopSheet:
 
     def _pass_node(self, path: Path, entry: Any) -> None:
         keys(entry, "flat node centre row reach entry exit", "node")
-        size, bits = self.equations.size, self.equations.bits
-        flat = [natural(v, "flat vertex") for v in items(entry["flat"], "flat")]
-        patch = Patch(self.equations, flat)
-        arc = NodeTube(
-            patch,
-            patch.node(vector(entry["node"], "node", size, bits)),
-            vector(entry["centre"], "centre", size, bits),
-            vector(entry["row"], "row", size, 0),
-            reach_of(entry["reach"]),
-        )
+        arc = arc_of(self.equations, entry["flat"], entry)
         begin, end = _parameter(entry["entry"]), _parameter(entry["exit"])
         require(begin < 0 < end, "an arc does not go through its node")
         path.meet(*arc.configuration(begin))

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import isqrt
 
-from .motion import chord
 from .motion_tubes import Ball, Tube
 from .reading import CertificateError, require
 
 
 class Path:
-    """How far a loop has come: `here` is a box with a configuration on it, `velocity` with its own.
+    """How far a motion has come.
 
-    `length` is a lower bound of the length up to it. `tube` is the tube that the loop has entered
-    there, at a parameter of `entered` at most, and not left.
+    `here` is a box with a configuration on it, `velocity` one with its velocity. `length` is a
+    lower bound of the length up to it. `tube` is the tube that the motion has entered there, at a
+    parameter of `entered` at most, and not left.
     """
 
     tube: Tube | None = None
@@ -25,19 +26,19 @@ class Path:
         self.length = self._from_flat()
 
     def enter(self, tube: Tube) -> None:
-        """A tube that holds the configuration and follows the loop."""
+        """A tube that holds the configuration and follows the motion."""
         self.entered, self.tube = tube.entered(self.here, self.velocity), tube
 
     def leave(self, end: Fraction) -> None:
         """The tube at a parameter."""
         tube = self._tube()
-        require(self.entered <= end, "a loop leaves a tube before it enters")
+        require(self.entered <= end, "a motion leaves a tube before it enters")
         self.go(tube.enclosure(end), tube.velocity(end))
 
     def meet(self, ball: Ball, velocity: Ball) -> None:
-        """Another piece, which holds a configuration on the tube and follows the loop."""
+        """Another piece, which holds a configuration on the tube and follows the motion."""
         low, _ = self._tube().met(ball, velocity)
-        require(self.entered <= low, "a loop meets another piece before it enters a tube")
+        require(self.entered <= low, "a motion meets another piece before it enters a tube")
         self.go(ball, velocity)
 
     def go(self, ball: Ball, velocity: Ball) -> None:
@@ -55,5 +56,12 @@ class Path:
 
     def _tube(self) -> Tube:
         if self.tube is None:
-            raise CertificateError("a loop meets a node, or ends, on no tube")
+            raise CertificateError("a motion meets a node, or lands, on no tube")
         return self.tube
+
+
+def chord(a: Ball, b: Ball, bits: int) -> Fraction:
+    """A lower bound of the distance of two points in boxes."""
+    squared = sum((x - y) ** 2 for x, y in zip(a.centre, b.centre, strict=True))
+    off = sum((x + y) ** 2 for x, y in zip(a.radii, b.radii, strict=True))
+    return Fraction(max(0, isqrt(squared) - isqrt(off) - 1), 1 << bits)

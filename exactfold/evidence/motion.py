@@ -20,13 +20,16 @@ def motion_certificate(
     bits: int,
     start: Document,
     tubes: Sequence[Document],
+    arc: Document | None = None,
 ) -> Document:
     """The proof of a motion as a JSON object (docs/motion.md, The certificate).
 
     `signs`: those of the foldable vertices on the half-branch, by vertex of the pattern; `pinned`
     and the vertex `held` of `start` are vertices of the pattern, too. `Track.certificate` calls it.
+    With `arc` the motion ends at a node, where the vertices `flat` of it are flat. The certificate
+    does not claim that nothing touches up to there.
     """
-    return {
+    document: Document = {
         "format": MOTION,
         "version": MOTION_VERSION,
         "pattern": pattern_document(pattern),
@@ -43,3 +46,7 @@ def motion_certificate(
             "tubes": list(tubes),
         },
     }
+    if arc is not None:
+        document["claims"]["node"] = {"flat": arc["flat"], "clear": False}
+        document["evidence"]["node"] = {key: x for key, x in arc.items() if key != "flat"}
+    return document

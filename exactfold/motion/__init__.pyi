@@ -15,6 +15,7 @@ from exactfold.motion.followable import panel_modes as panel_modes
 from exactfold.motion.following import follow as follow
 from exactfold.motion.framework import Framework as Framework
 from exactfold.motion.half_branches import HalfBranch as HalfBranch
+from exactfold.motion.links import Link as Link
 from exactfold.motion.loop_proofs import Loop as Loop
 from exactfold.motion.loop_proofs import LoopProof as LoopProof
 from exactfold.motion.matching import Loops as Loops
@@ -29,7 +30,6 @@ from exactfold.motion.proving import MotionProof as MotionProof
 from exactfold.motion.proving import prove as prove
 from exactfold.motion.start import Start as Start
 from exactfold.motion.tracks import Frame as Frame
-from exactfold.motion.tracks import Link as Link
 from exactfold.motion.tracks import Track as Track
 from exactfold.motion.tracks import continued as continued
 from exactfold.motion.tracks import follow_proved as follow_proved

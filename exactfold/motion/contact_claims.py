@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 
 from exactfold.checker.motion_lengths import Path
 from exactfold.evidence.entries import Document
 from exactfold.exact.numbers import format_rational
 from exactfold.motion.contacts import FirstContact
+from exactfold.motion.links import Link
+from exactfold.motion.passages import Passage
 from exactfold.motion.piece import PARAMETER_BITS, REACH_BITS
-from exactfold.motion.tracks import Link, Track
+from exactfold.motion.tracks import Track
 from exactfold.motion.tube_start import ROOT_BITS
 from exactfold.verdict import PROVED
 
@@ -23,7 +26,8 @@ def certificate_with_contact(track: Track, contact: FirstContact) -> Document:
 
     It claims a time before which no two faces touch and, if the contact is enclosed, which faces
     touch, and by when. The times are those of `contact` with a little room, as the checker has
-    coarser bounds of lengths. Where nothing is known near the flat state, or the track has no tube,
+    coarser bounds of lengths. Of a track that ends at a node it claims whether no two faces touch
+    up to the node, and at it. Where nothing is known near the flat state, or the track has no tube,
     nothing is claimed of contacts.
 
     >>> from exactfold import checker
@@ -38,23 +42,22 @@ def certificate_with_contact(track: Track, contact: FirstContact) -> Document:
     if contact.parameters is None:
         return document
     until, begin, end = contact.parameters
-    paths = [_start_path(track), *(_tube_path(link) for link in track.links)]
-    exits = [Fraction(track.start.last, 1 << ROOT_BITS)]
-    exits += [Fraction(link.exit, 1 << PARAMETER_BITS) for link in track.links]
-    entries = [(Fraction(0), Fraction(0))]
-    for link in track.links:
-        low, high = (Fraction(x, 1 << PARAMETER_BITS) for x in link.entry)
-        entries.append((low, high))
+    parts = _parts(track)
+    if contact.before_the_arc:
+        del parts[-1]
     shortest = longest = Fraction(0)
-    for path, (low, high), last in zip(paths[:-1], entries[:-1], exits[:-1], strict=True):
-        shortest += path.shortest(path.above(high), path.below(last))
-        longest += path.longest(path.below(low), path.above(last))
-    path, (low, high) = paths[-1], entries[-1]
+    for part in parts[:-1]:
+        low, high = part.entry
+        shortest += part.path.shortest(part.path.above(high), part.path.below(part.exit[0]))
+        longest += part.path.longest(part.path.below(low), part.path.above(part.exit[1]))
+    path, (low, high) = parts[-1].path, parts[-1].entry
     at = Fraction(until, 1 << PARAMETER_BITS)
     shortest += path.shortest(path.above(high), path.below(at))
     clear = _rounded(shortest * (1 - _SLACK) * track.framework.unit)
     document["claims"]["clear"] = format_rational(clear)
-    contacts = {"tube": len(track.links), "clear": until}
+    if track.node is not None:
+        document["claims"]["node"]["clear"] = contact.clear_to_the_end
+    contacts = {"tube": len(parts) - 1, "clear": until}
     event = contact.event
     if contact.status is PROVED and event is not None:
         at = Fraction(end, 1 << PARAMETER_BITS)
@@ -69,6 +72,34 @@ def certificate_with_contact(track: Track, contact: FirstContact) -> Document:
         }
     document["evidence"]["contacts"] = contacts
     return document
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A piece of a track: between which parameters it is entered, and left."""
+
+    path: Path
+    entry: tuple[Fraction, Fraction]
+    exit: tuple[Fraction, Fraction]
+
+
+def _parts(track: Track) -> list[_Part]:
+    """The start tube, the tubes, and the arc to a node."""
+    zero, last = Fraction(0), Fraction(track.start.last, 1 << ROOT_BITS)
+    parts = [_Part(_start_path(track), (zero, zero), (last, last))]
+    for link in track.links:
+        ends = link.exit, link.exit
+        if track.node is not None and link is track.links[-1]:
+            ends = track.node.met
+        parts.append(_Part(_tube_path(link), _parameters(link.entry), _parameters(ends)))
+    if track.node is not None:
+        begin = _parameters((track.node.entry, track.node.entry))
+        parts.append(_Part(_arc_path(track.node), begin, (zero, zero)))
+    return parts
+
+
+def _parameters(ends: tuple[int, int]) -> tuple[Fraction, Fraction]:
+    return Fraction(ends[0], 1 << PARAMETER_BITS), Fraction(ends[1], 1 << PARAMETER_BITS)
 
 
 def _start_path(track: Track) -> Path:
@@ -92,6 +123,17 @@ def _tube_path(link: Link) -> Path:
         Fraction(tube.reach, 1 << REACH_BITS),
         list(tube.enclosure(tube.longest).radii),
         list(tube.velocity(tube.longest).radii),
+    )
+
+
+def _arc_path(node: Passage) -> Path:
+    arc = node.tube
+    return Path.of_tube(
+        [list(row) for row in (arc.node.finer(arc.bits).centre, *arc.coefficients)],
+        arc.bits,
+        Fraction(-node.entry, 1 << PARAMETER_BITS),
+        list(arc.ball(node.entry).radii),
+        list(arc.ball_velocity(node.entry).radii),
     )
 
 

@@ -16,9 +16,12 @@ from exactfold.motion.contraction import SCALE, WEIGHT_BITS
 from exactfold.motion.crossings import Crossing, Crossings
 from exactfold.motion.events import CONTACT, FLAT_FOLD, Event
 from exactfold.motion.face_pairs import FacePairs, Open
+from exactfold.motion.links import Link
+from exactfold.motion.passages import Passage
 from exactfold.motion.piece import PARAMETER_BITS, Piece
 from exactfold.motion.separation import Swept, bends, clear_until, through
-from exactfold.motion.tracks import Link, Track, follow_proved
+from exactfold.motion.stretches import on_node_tube
+from exactfold.motion.tracks import Track, follow_proved
 from exactfold.motion.tube_start import ROOT_BITS, StartTube
 from exactfold.pattern.crease_pattern import Triangle
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
@@ -41,9 +44,10 @@ class FirstContact:
     ended before, or nothing was proved to touch; `open_faces` are the pairs then that are not
     proved to stay apart after `clear`. `status` is PROVED if the first contact is enclosed.
 
-    `parameters`: on the last tube of the track, over 2^PARAMETER_BITS, where what is clear ends,
+    `parameters`: on the last piece of the track, over 2^PARAMETER_BITS, where what is clear ends,
     and between which two the contact is proved, the last two equal for an edge that runs through a
-    face; None if nothing is proved to be clear.
+    face; None if nothing is proved to be clear. That of a track that ends at a node is the arc
+    through it, or the last tube if `before_the_arc`.
     """
 
     status: Verdict
@@ -52,6 +56,12 @@ class FirstContact:
     open_faces: tuple[tuple[Triangle, Triangle], ...]
     reason: str
     parameters: tuple[int, int, int] | None = None
+    before_the_arc: bool = False
+
+    @property
+    def clear_to_the_end(self) -> bool:
+        """Whether no two faces touch on the whole track, nor in its last configuration."""
+        return self.event is None and not self.open_faces
 
     def __repr__(self) -> str:
         what = "" if self.event is None else f", {self.event.kind} by {self.event.time[1]:.6g}"
@@ -118,11 +128,12 @@ class ContactWatch:
         pairs = self._pairs = self._pairs or FacePairs(track.framework)
         coefficients, radius = planar_positions_of(track.start)
         reach = (track.start.last / (1 << ROOT_BITS)) ** 2
-        radius = _ROOM * radius + _MORE
-        _, left = clear_until(pairs, coefficients, radius, 0.0, reach, planar=True, finest=_FINEST)
+        _, left = _clear(pairs, coefficients, radius, 0.0, reach, planar=True)
         if left:
             reason = "some faces are not proved to stay apart near the flat state"
             return FirstContact(UNDECIDED, Fraction(0), None, _named(track, pairs, left), reason)
+        if track.node is not None and self.touching is None and not self.open_pairs:
+            return self._to_the_node(track, track.node, pairs)
         clear = self.clear * track.framework.unit
         if self.touching is None:
             left = self.open_pairs or left
@@ -131,6 +142,31 @@ class ContactWatch:
             )
         event = _event(track, self.touching, clear)
         return FirstContact(PROVED, clear, event, (), "", self.parameters)
+
+    def _to_the_node(self, track: Track, node: Passage, pairs: FacePairs) -> FirstContact:
+        """How far no two faces touch on a track all of whose tubes are clear to their exits."""
+        link = track.links[-1]
+        coefficients, radius = positions_of(link.tube)
+        # The arc may begin a little after the exit.
+        low, high = (x / (1 << PARAMETER_BITS) for x in (link.exit, max(link.exit, node.met[1])))
+        left = _clear(pairs, coefficients, radius, low, high)[1]
+        parameter, time, on_the_arc = link.exit, link.left[0], not left
+        if on_the_arc:
+            arc = on_node_tube(node.tube, node.entry, 0)
+            at, left = _clear(pairs, arc.coefficients, arc.radius, arc.begin, arc.end)
+            # Of a float that is no whole number of units the whole ones below it.
+            parameter = max(node.entry, math.floor(at * (1 << PARAMETER_BITS))) if left else 0
+            time = node.time(parameter)[0]
+        reason = "some faces are not proved to stay apart before the node" if left else track.reason
+        return FirstContact(
+            UNDECIDED,
+            time * track.framework.unit,
+            None,
+            _named(track, pairs, left),
+            reason,
+            (parameter, parameter, parameter),
+            not on_the_arc,
+        )
 
 
 @dataclass(frozen=True)
@@ -145,6 +181,19 @@ class _Touching:
     crossing: Crossing | None = None
     fold: int | None = None
     latest: Fraction = Fraction(0)
+
+
+def _clear(
+    pairs: FacePairs,
+    coefficients: FloatArray,
+    radius: FloatArray,
+    low: float,
+    high: float,
+    planar: bool = False,
+) -> tuple[float, Open]:
+    """`clear_until`, in tubes that are wider."""
+    radius = _ROOM * radius + _MORE
+    return clear_until(pairs, coefficients, radius, low, high, planar=planar, finest=_FINEST)
 
 
 def positions_of(tube: Piece) -> tuple[FloatArray, FloatArray]:

@@ -5,20 +5,14 @@ from __future__ import annotations
 from bisect import bisect_right
 from fractions import Fraction
 
-import numpy as np
-
 from exactfold.errors import UsageError
 from exactfold.motion.arclength import Interval
-from exactfold.motion.length_equations import LengthEquations
-from exactfold.motion.loop_proofs import Landing, LoopProof, Passage
-from exactfold.motion.node_tube import NodeTube
+from exactfold.motion.links import Link
+from exactfold.motion.loop_proofs import Landing, LoopProof
+from exactfold.motion.passages import Passage
 from exactfold.motion.piece import Ball
-from exactfold.motion.tracks import Frame, Link
-from exactfold.motion.tube import prove_tube, sharpened
-
-_PART = 1 / 8
-"""Of the way to the node: about how far a tube reaches beside it."""
-_LEAST = 1e-7
+from exactfold.motion.tracks import Frame
+from exactfold.motion.tube import sharpened
 
 
 def frame_of(proof: LoopProof, time: float) -> Frame:
@@ -52,37 +46,13 @@ def _at(proof: LoopProof, wanted: Fraction) -> tuple[Interval, Ball]:
         return start.length(0, tau), start.sharpened(tau)
     step = steps[begun - 1]
     if isinstance(step, Passage):
-        at = step.tube.near(float(wanted - step.entered[0]), step.entry, step.exit)
-        shortest, longest = step.tube.length(step.entry, at)
-        bounds = step.entered[0] + shortest, step.entered[1] + longest
-        return _refined(step.tube, at, bounds)
+        return step.near(wanted)
     if begun == len(steps) and proof.landing is not None:
         landed = _landed(step, proof.landing)
         if wanted >= landed[0]:
             return _before_the_end(proof.landing, landed, wanted)
     at = step.tube.near(float(wanted - step.entered[0]), max(step.entry), step.exit)
     return step.time(at), sharpened(step.tube, at)
-
-
-def _refined(arc: NodeTube, at: int, bounds: Interval) -> tuple[Interval, Ball]:
-    """A point of a tube of its own, next to one of an arc, in a smaller box.
-
-    The configuration in the box of the arc lies on the tube between two parameters; that in their
-    middle is on the same curve, at a time that is no more than the length between them off. Near
-    the node no tube is found, and the answer is the box of the arc.
-    """
-    ball, velocity = arc.ball(at), arc.ball_velocity(at)
-    equations = LengthEquations.of(arc.framework, arc.bits)
-    step = _PART * float(np.linalg.norm(ball.floats[0] - arc.node.floats[0]))
-    if not step > _LEAST:
-        return bounds, ball
-    tube = prove_tube(equations, ball.finer(equations.bits).centre, velocity.floats[0], step)
-    found = None if tube is None else tube.located(ball)
-    if tube is None or found is None:
-        return bounds, ball
-    slack = tube.length((found[0], found[0]), found[1])[1]
-    finer = sharpened(tube, (found[0] + found[1]) // 2)
-    return (bounds[0] - slack, bounds[1] + slack), finer
 
 
 def _landed(link: Link, landing: Landing) -> Interval:

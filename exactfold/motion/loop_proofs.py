@@ -16,10 +16,11 @@ from exactfold.exact.numbers import format_rational
 from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.fold_ranges import SLACK, FoldRange, fold_ranges
 from exactfold.motion.half_branches import HalfBranch
+from exactfold.motion.links import Link
 from exactfold.motion.node_tube import NodeTube
+from exactfold.motion.passages import Passage
 from exactfold.motion.piece import PARAMETER_BITS, Ball
 from exactfold.motion.stretches import on_node_tube, on_start_tube, on_tube
-from exactfold.motion.tracks import Link
 from exactfold.motion.tube_start import StartTube
 from exactfold.motion.visits import Visit
 from exactfold.problem.problem import Problem
@@ -46,33 +47,6 @@ class Landing:
 
     def __repr__(self) -> str:
         return f"<Landing: {self.to}>"
-
-
-@dataclass(frozen=True, repr=False)
-class Passage:
-    """How a motion passes a node: on an arc `tube` through it, from one parameter to another.
-
-    The configuration at `entry` lies on the link before, which goes the same way there; the next
-    link begins at `exit`. `entered` and `left` bound the time as in `Link`. `vertices` are flat at
-    the node, by the numbers of the pattern.
-    """
-
-    tube: NodeTube
-    vertices: tuple[int, ...]
-    entry: int
-    exit: int
-    entered: Interval
-    left: Interval
-
-    def visit(self, unit: Fraction) -> Visit:
-        """Where and when the node is passed, with times in the unit of the sheet."""
-        low, high = self.tube.length(self.entry, 0)
-        return Visit.of(
-            self.tube, ((self.entered[0] + low) * unit, (self.entered[1] + high) * unit)
-        )
-
-    def __repr__(self) -> str:
-        return f"<Passage: flat at {self.vertices}, time {float(self.entered[0]):.4g}>"
 
 
 @dataclass(frozen=True, repr=False)

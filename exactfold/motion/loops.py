@@ -11,15 +11,13 @@ from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.errors import NotProvedAtTheFlatStateError
 from exactfold.motion.angles import fold_angles_of
-from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
-from exactfold.motion.flat_patches import FlatPatch
 from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.length_equations import LengthEquations
-from exactfold.motion.loop_proofs import ArcProof, Landing, LoopProof, Passage, named
-from exactfold.motion.node_tube import ROW_BITS as NODE_ROW_BITS
-from exactfold.motion.node_tube import NodeTube, prove_node_tube
-from exactfold.motion.piece import PARAMETER_BITS
-from exactfold.motion.tracks import Link, half_branch, onwards
+from exactfold.motion.links import Link, onwards
+from exactfold.motion.loop_proofs import ArcProof, Landing, LoopProof, named
+from exactfold.motion.node_tube import NodeTube
+from exactfold.motion.passages import Passage, passage_ahead
+from exactfold.motion.tracks import half_branch
 from exactfold.motion.tube import Tube
 from exactfold.motion.tube_start import (
     ROOT_BITS,
@@ -33,8 +31,6 @@ from exactfold.progress import Progress
 MOST_TUBES = 4000
 _FOLDED_FLAT = 1e-2
 """Radians that fold angles may be off 0 or pi where the sheet is said to come to be folded flat."""
-_LOOK_BACK = (1, 3, 5, 8, 12)
-"""From which of the last links a node ahead is looked for; the last ones are too close to it."""
 _NEAR_FLAT = 0.8
 """Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
 
@@ -116,7 +112,7 @@ class LoopFinder:
                 if landing is not None:
                     return steps, landing, ""
                 continue
-            found = self._passage(steps)
+            found = passage_ahead(self.problem.labels, steps)
             if found is None:
                 return steps, None, self._why(steps, link)
             kept, passage = found
@@ -127,56 +123,6 @@ class LoopFinder:
             step = float(tube.length(0, at)[0])
             ahead = onwards(equations, tube.ball(at), tube.ball_velocity(at), passage.left, step)
         return steps, None, f"{MOST_TUBES} tubes were not enough"
-
-    def _passage(self, steps: Sequence[Link | Passage]) -> tuple[int, Passage] | None:
-        """The passage of a node shortly ahead, and how many of the steps lead up to it."""
-        # The links right before a node are too close to it for floats.
-        back = [steps[-k] for k in _LOOK_BACK if k <= len(steps)]
-        for link in (step for step in back if isinstance(step, Link)):
-            point, velocity = link.tube.enclosure(link.exit), link.tube.velocity(link.exit)
-            crossing = crossing_ahead(link.tube.framework, point.floats[0], velocity.floats[0])
-            if crossing is not None:
-                return self._passage_at(steps, *crossing)
-        return None
-
-    def _passage_at(
-        self, steps: Sequence[Link | Passage], point: FloatArray, tangent: FloatArray
-    ) -> tuple[int, Passage] | None:
-        """The passage of the node near the unknowns `point`, from one of the last links."""
-        framework = steps[-1].tube.framework
-        flat = flat_vertices(framework, point)
-        patch = FlatPatch.of(framework, flat)
-        bits = steps[-1].tube.bits
-        tube = (
-            None if patch is None else prove_node_tube(framework, patch, point, tangent, bits=bits)
-        )
-        if tube is None:
-            return None
-        # The first link that reaches into the tube, so that the short ones before the node go.
-        first = len(steps)
-        while first and isinstance(steps[first - 1], Link):
-            first -= 1
-        node, row = tube.node.floats[0], np.array(tube.row) * 2.0**-NODE_ROW_BITS
-        for k in range(first, len(steps)):
-            link = steps[k]
-            if not isinstance(link, Link):
-                continue
-            s = float(row @ (link.tube.enclosure(link.exit).floats[0] - node))
-            entry = round(s * (1 << PARAMETER_BITS))
-            if not -tube.longest * 7 // 8 <= entry < 0:
-                continue
-            found = link.tube.located(tube.ball(entry))
-            if found is None or found[0] < link.entry[1]:
-                continue
-            if link.tube.goes_along(tube.ball_velocity(entry)) != 1:
-                continue
-            at = tube.longest * 3 // 4
-            entered = link.time(found[0])[0], link.time(found[1])[1]
-            shortest, longest = tube.length(entry, at)
-            left = entered[0] + shortest, entered[1] + longest
-            vertices = tuple(self.problem.labels[v] for v in flat)
-            return k + 1, Passage(tube, vertices, entry, at, entered, left)
-        return None
 
     def _why(self, steps: Sequence[Link | Passage], reason: str) -> str:
         """Why a loop is not followed further, as floats show the last configuration."""

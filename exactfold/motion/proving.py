@@ -17,12 +17,14 @@ from exactfold.motion.contacts import ContactWatch, FirstContact
 from exactfold.motion.enclosed import with_enclosed_frames
 from exactfold.motion.events import CONTACT, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
 from exactfold.motion.framework import Framework
+from exactfold.motion.links import Link
 from exactfold.motion.loop_file import LoopFile
 from exactfold.motion.loop_frames import frame_of
 from exactfold.motion.loop_proofs import Loop, LoopProof
 from exactfold.motion.loops import LoopFinder
 from exactfold.motion.motion import Motion
-from exactfold.motion.tracks import Frame, Link, Track, follow_proved, half_branch
+from exactfold.motion.passages import Passage
+from exactfold.motion.tracks import Frame, Track, follow_proved, half_branch
 from exactfold.pattern.crease_pattern import Triangle
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
@@ -32,6 +34,10 @@ BITS = 64, 128
 """After the point, of the numbers in tubes: what is tried, one after the other."""
 
 _AT_ONCE = 1e-9
+_FARTHER = Fraction(1, 1000)
+"""Of its time: what goes on so much longer than to the node that floats see meets none."""
+_NAMED = 3
+_NO_NODE = "no node was met where floats see one"
 _STRAYED = "the frames in floats are not near the proved curve: floats have left the branch"
 
 
@@ -43,11 +49,13 @@ class MotionProof:
     (`Motion.bounds`); as it was given where it is not proved to its end. `track`: the chain of
     tubes, None for a motion until its return. `contact`: how far no two faces touch, and the first
     contact if the motion meets one; None until the return. `passed`: the motion goes on after that
-    contact, through the paper. `looped`: the proof of a motion until its return. `length` bounds
-    how far it is proved, in the unit of the sheet.
+    contact, through the paper, or after it is not known to be clear. `node`: where the proof ends
+    at a node (`Track.node`). `looped`: the proof of a motion until its return. `length` bounds how
+    far it is proved, in the unit of the sheet.
 
-    `status` is PROVED if all of the motion is, and its contact where it ends at one; else `reason`
-    says what is missing.
+    `status` is PROVED if all of the motion is, and its contact where it ends at one; of a motion
+    that ends at a node also that no two faces touch up to the node, unless the motion goes through
+    the paper before. Else `reason` says what is missing.
     """
 
     status: Verdict
@@ -66,11 +74,29 @@ class MotionProof:
         return None if self.looped is None else self.looped.outline
 
     @property
+    def node(self) -> Passage | None:
+        """The way to the node at which the proof ends, None if it ends elsewhere."""
+        return None if self.track is None else self.track.node
+
+    @property
+    def clear_to_the_end(self) -> bool:
+        """Whether no two faces touch on all that is proved, nor in its last configuration."""
+        return self.contact is not None and not self.passed and self.contact.clear_to_the_end
+
+    @property
+    def end_text(self) -> str:
+        """Where the node is at which the proof ends, in words; empty if it ends elsewhere."""
+        if self.node is None:
+            return ""
+        time = in_floats(self.length)[1]
+        return f"until a node at the time {time:.6g}, where {self.node.what}"
+
+    @property
     def may_succeed_otherwise(self) -> bool:
         """Whether tubes failed at a place where floats see nothing singular."""
         if self.status is PROVED or self.motion.end == SINGULAR:
             return False
-        if self.looped is None and _node_of(self.motion) is not None:
+        if self.looped is None and self.motion.end != NODE and _node_of(self.motion) is not None:
             return False
         return self.reason != _STRAYED and (self.track is None or self.track.status is not PROVED)
 
@@ -129,7 +155,15 @@ class MotionProof:
             "length": list(in_floats(self.length)),
             "clear": None if contact is None else in_floats((contact.clear, contact.clear))[0],
             "contact": None if event is None else event.to_dict(),
+            "node": None if self.node is None else self._node_dict(self.node),
             "to": None if loop is None or loop.target is None else loop.target.to_dict(),
+        }
+
+    def _node_dict(self, node: Passage) -> dict[str, Any]:
+        return {
+            "flat": list(node.vertices),
+            "time": list(in_floats(self.length)),
+            "clear": self.clear_to_the_end,
         }
 
     def __repr__(self) -> str:
@@ -142,9 +176,10 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
     Tubes hold one configuration for each parameter, from the flat state to the end of the motion
     (docs/motion.md), and separating planes show what does not touch (docs/contacts.md). A motion
     until its first contact is proved with that contact; any other one with how far it is clear.
-    Nodes are passed where the motion returns to the flat state (docs/motions.md), and are its end
-    otherwise. The frames of the motion that is returned are those of the proved curve, each in a
-    box (`Motion.bounds`). `bits`: after the point, of all numbers in the tubes.
+    Nodes are passed where the motion returns to the flat state (docs/motions.md), and are the end
+    of the proof otherwise: a motion that ends at a node is proved up to it. The frames of the
+    motion that is returned are those of the proved curve, each in a box (`Motion.bounds`). `bits`:
+    after the point, of all numbers in the tubes.
 
     Raises `UsageError` where the branch is not proved. UNDECIDED says nothing against the motion.
 
@@ -211,6 +246,8 @@ def _another(framework: Framework) -> Triangle | None:
 def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProof:
     watch = ContactWatch()
     to_contact = _ends_at_the_first_contact(motion)
+    to_node = motion.end == NODE
+    missed = Fraction(motion.duration) * (1 + _FARTHER)
     found: FirstContact | None = None
     links: list[Link] = []
 
@@ -219,6 +256,8 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
         links.append(link)
         if progress is not None:
             progress("proving, tubes", len(links), 0)
+        if to_node and link.entered[0] * so_far.framework.unit > missed:
+            return _NO_NODE
         if found is not None:
             return None
         said = watch(link)
@@ -229,27 +268,46 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
         found = watch.result(replace(so_far, links=tuple(links)))
         return None
 
-    until = None if to_contact else motion.duration
+    until = None if to_contact or to_node else motion.duration
     pinned = motion.curve.framework.pinned
     so_far = half_branch(motion.branch, motion.side, pinned, bits=bits)
     track = follow_proved(
         motion.branch, motion.side, until=until, stop=stop, pinned=pinned, bits=bits
     )
     contact = watch.result(track) if found is None else found
-    status, reason = track.status, "" if track.status is PROVED else track.reason
-    if to_contact and status is PROVED and contact.status is not PROVED:
-        status, reason = UNDECIDED, contact.reason
-    node = _node_of(motion)
-    if track.status is not PROVED and node is not None:
-        reason += (
-            f"; floats see a node at the time {node.time[1]:.6g}, through which only motions back "
-            "to the flat sheet are proved"
-        )
+    status, reason = _judged(motion, track, contact)
     passed = found is not None
-    proof = MotionProof(
-        status, reason, motion, track.length, len(track.links) + 1, track, contact, passed
-    )
+    proof = MotionProof(status, reason, motion, track.length, track.tubes, track, contact, passed)
+    if track.node is not None and status is not PROVED:
+        proof = replace(proof, reason=f"proved {proof.end_text}, but {reason}")
     return _with_frames(proof, track.framework, track.frame)
+
+
+def _judged(motion: Motion, track: Track, contact: FirstContact) -> tuple[Verdict, str]:
+    """Whether a motion is proved to its end, or what is missing."""
+    to_contact, node = _ends_at_the_first_contact(motion), _node_of(motion)
+    if motion.end == NODE and track.node is not None:
+        if contact.event is None and not contact.clear_to_the_end:
+            return UNDECIDED, _not_apart(contact)
+        return PROVED, ""
+    if motion.end == NODE and track.status is PROVED:
+        return UNDECIDED, track.reason
+    if track.node is not None and (to_contact or track.status is not PROVED):
+        return UNDECIDED, "only motions back to the flat sheet are proved through nodes"
+    if track.status is PROVED:
+        proved = contact.status is PROVED or not to_contact
+        return (PROVED, "") if proved else (UNDECIDED, contact.reason)
+    if node is None:
+        return UNDECIDED, track.reason
+    unproved = f"floats see a node at the time {node.time[1]:.6g}, which is not proved"
+    return UNDECIDED, f"{track.reason}; {unproved}"
+
+
+def _not_apart(contact: FirstContact) -> str:
+    """Which faces are not proved to stay apart."""
+    names = [" and ".join("-".join(map(str, face)) for face in pair) for pair in contact.open_faces]
+    more = f", and {len(names) - _NAMED} more pairs" if len(names) > _NAMED else ""
+    return f"faces {', '.join(names[:_NAMED])}{more} are not proved to stay apart"
 
 
 def _node_of(motion: Motion) -> Event | None:
@@ -284,8 +342,8 @@ def _with_frames(
     """The proof with enclosed frames; UNDECIDED if it is that of another motion."""
     if proof.status is not PROVED:
         return proof
-    longest = Fraction(proof.length[1])
-    times = [float(min(Fraction(time), longest)) for time in proof.motion.times.tolist()]
+    longest = in_floats((proof.length[1], proof.length[1]))[0]
+    times = [min(time, longest) for time in proof.motion.times.tolist()]
     motion = with_enclosed_frames(proof.motion, framework, [frame(time) for time in times])
     if motion is None:
         return replace(proof, status=UNDECIDED, reason=_STRAYED)

@@ -18,8 +18,10 @@ from exactfold.evidence.motion import motion_certificate
 from exactfold.motion.arclength import Interval
 from exactfold.motion.framework import Framework
 from exactfold.motion.length_equations import LengthEquations
+from exactfold.motion.links import Link, onwards
+from exactfold.motion.passages import Passage, passage_ahead
 from exactfold.motion.piece import Ball
-from exactfold.motion.tube import Tube, prove_tube, sharpened
+from exactfold.motion.tube import sharpened
 from exactfold.motion.tube_start import StartTube, prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 from exactfold.problem.problem import Problem
@@ -27,35 +29,6 @@ from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 1000
 _FAR_ENOUGH = "the length that was asked for"
-_LEAST = 1e-7  # of a step, in the unit of the framework
-_EXIT = 11, 16  # the part of the reach at which the next tube begins
-
-
-@dataclass(frozen=True, repr=False)
-class Link:
-    """A tube of a track, with the part of it that belongs to the track.
-
-    The motion enters at some parameter in `entry` = (low, high) and leaves at `exit`, exactly, at
-    a time between `left` of the track before and itself: `entered` and `left` bound the time, the
-    length of the motion from the flat state, in the unit of the framework. Parameters are over
-    2^PARAMETER_BITS.
-    """
-
-    tube: Tube
-    entry: tuple[int, int]
-    exit: int
-    entered: Interval
-    left: Interval
-
-    def time(self, parameter: int) -> Interval:
-        """Bounds of the time at a parameter between the entry and the end of the tube."""
-        low, high = self.tube.length(self.entry, parameter)
-        return self.entered[0] + low, self.entered[1] + high
-
-    def __repr__(self) -> str:
-        return (
-            f"<Link: time {float(self.entered[0]):.4g} to {float(self.left[0]):.4g}, {self.tube!r}>"
-        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -83,6 +56,10 @@ class Track:
     reflex corner in the sheet with its notch closed. `labels[v]` is the vertex of `pattern` that
     vertex v of the framework is: what lies in triangulated triangles moves with them.
 
+    With `node` it ends at a node, a configuration in which other curves cross: the last piece is
+    the part of this passage up to there, which begins on the last link before its exit or next to
+    it (docs/motions.md, Nodes).
+
     `status` is PROVED if the track goes as far as asked, else UNDECIDED; what there is is proved in
     any case. `reason` says where it ended and why.
     """
@@ -94,6 +71,7 @@ class Track:
     links: tuple[Link, ...]
     status: Verdict
     reason: str
+    node: Passage | None = None
 
     @property
     def framework(self) -> Framework:
@@ -114,8 +92,20 @@ class Track:
     @property
     def length(self) -> Interval:
         """Bounds of the length of the whole track, in the unit of the sheet."""
-        low, high = self.links[-1].left if self.links else self.started
+        low, high = self._left
         return low * self.framework.unit, high * self.framework.unit
+
+    @property
+    def _left(self) -> Interval:
+        """Bounds of the time at the end, in the unit of the framework."""
+        if self.node is not None:
+            return self.node.left
+        return self.links[-1].left if self.links else self.started
+
+    @property
+    def tubes(self) -> int:
+        """How many pieces prove it."""
+        return 1 + len(self.links) + (self.node is not None)
 
     @cached_property
     def started(self) -> Interval:
@@ -151,22 +141,40 @@ class Track:
                 "reach": start.reach,
                 "exit": start.last,
             },
-            [
-                {
-                    "centre": list(link.tube.coefficients[0]),
-                    "row": list(link.tube.row),
-                    "reach": link.tube.reach,
-                    "exit": link.exit,
-                }
-                for link in self.links
-            ],
+            [self._tube(link) for link in self.links],
+            None if self.node is None else self._arc(self.node),
         )
+
+    def _tube(self, link: Link) -> Document:
+        tube = link.tube
+        found: Document = {
+            "centre": list(tube.coefficients[0]),
+            "row": list(tube.row),
+            "reach": tube.reach,
+        }
+        if self.node is None or link is not self.links[-1]:
+            found["exit"] = link.exit
+        return found
+
+    def _arc(self, node: Passage) -> Document:
+        arc = node.tube
+        return {
+            "flat": sorted(node.vertices),
+            "node": list(arc.node.centre),
+            "centre": list(arc.coefficients[0]),
+            "row": list(arc.row),
+            "reach": arc.reach,
+            "entry": node.entry,
+        }
 
     @property
     def _chords(self) -> Fraction:
         """A little less than the lengths of the chords from exit to exit."""
         balls = [self.start.ball(self.start.last)]
-        balls += [link.tube.enclosure(link.exit) for link in self.links]
+        links = self.links if self.node is None else self.links[:-1]
+        balls += [link.tube.enclosure(link.exit) for link in links]
+        if self.node is not None:
+            balls += [self.node.tube.ball(at) for at in (self.node.entry, 0)]
         points = np.array([[x / (1 << self.start.bits) for x in ball.centre] for ball in balls])
         steps = np.diff(points, axis=0, prepend=np.zeros((1, points.shape[1])))
         total = float(np.linalg.norm(steps, axis=1).sum())
@@ -184,13 +192,15 @@ class Track:
         """One enclosed configuration near a time; as `frames`."""
         unit = self.framework.unit
         wanted = Fraction(time) / unit
-        if not 0 <= wanted <= (self.links[-1].left if self.links else self.started)[1]:
+        if not 0 <= wanted <= self._left[1]:
             raise UsageError(f"the track does not reach the time {time:g}")
-        k = bisect_left([link.left[1] for link in self.links], wanted)
+        k = min(bisect_left([link.left[1] for link in self.links], wanted), len(self.links) - 1)
         if wanted <= self.started[1]:
             tau = self.start.near(float(wanted), 0, self.start.last)
             low, high = self.start.length(0, tau)
             ball = self.start.sharpened(tau)
+        elif self.node is not None and wanted > self.node.entered[1]:
+            (low, high), ball = self.node.near(wanted)
         else:
             link = self.links[k]
             parameter = link.tube.near(float(wanted - link.entered[0]), max(link.entry), link.exit)
@@ -259,9 +269,10 @@ def follow_proved(
     """The proved motion along a branch, until a time, or until `stop` says so.
 
     The time is the length of the curve in the unknowns of the framework, in the unit of the sheet.
-    `side` and `pinned` as in `half_branch`, whose errors are raised. The track is UNDECIDED if it
-    ends before: where tubes become shorter than 1e-7 of the sheet, as near a configuration where
-    several curves meet, or after `most` tubes.
+    `side` and `pinned` as in `half_branch`, whose errors are raised. Where tubes become shorter
+    than 1e-7 of the sheet, and a node ahead is proved, the track ends at it (`Track.node`): PROVED
+    if no time was asked for. It is UNDECIDED if it ends before what was asked for: at a node, near
+    another configuration where several curves meet, or after `most` tubes.
 
     >>> from exactfold.count.find import find_branch
     >>> from exactfold.pattern.random_squares import random_square
@@ -272,12 +283,19 @@ def follow_proved(
     track = half_branch(branch, side, pinned, bits=bits)
     goal = None if until is None else Fraction(until) / track.framework.unit
     links: list[Link] = []
+    node: Passage | None = None
     if goal is not None and track.started[0] >= goal:
         return replace(track, reason=_FAR_ENOUGH)
     status, reason = UNDECIDED, ""
     for link in continued(track, bits=bits):
         if isinstance(link, str):
             reason = link
+            found = passage_ahead(track.labels, links) if links else None
+            if found is not None:
+                kept, passage = found
+                node, links = passage.to_the_node, links[:kept]
+                reason = f"a node, where {node.what}"
+                status = PROVED if goal is None or node.left[0] >= goal else UNDECIDED
             break
         links.append(link)
         said = None if stop is None else stop(link)
@@ -290,7 +308,7 @@ def follow_proved(
         if len(links) >= most:
             reason = f"{most} tubes were not enough"
             break
-    return replace(track, links=tuple(links), status=status, reason=reason)
+    return replace(track, links=tuple(links), status=status, reason=reason, node=node)
 
 
 def continued(track: Track, *, bits: int = 64) -> Iterator[Link | str]:
@@ -309,41 +327,3 @@ def continued(track: Track, *, bits: int = 64) -> Iterator[Link | str]:
     last, time = track.start.last, track.started
     ball, velocity = track.start.ball(last), track.start.ball_velocity(last)
     return onwards(equations, ball, velocity, time, float(time[0]) / 2)
-
-
-def onwards(
-    equations: LengthEquations, ball: Ball, velocity: Ball, time: Interval, step: float
-) -> Iterator[Link | str]:
-    """The links from a configuration in a box on, which is passed with a velocity in a box.
-
-    The first tube is about `step` long. Ends with the reason if there is no next link.
-    """
-    while True:
-        tube, entry = _next(equations, ball, velocity, step)
-        if tube is None or entry is None:
-            yield (
-                "no tube longer than 1e-7 of the sheet was proved here: the configuration is "
-                "singular or nearly so, or several curves meet"
-            )
-            return
-        at = tube.longest * _EXIT[0] // _EXIT[1]
-        shortest, longest = tube.length(entry, at)
-        left = time[0] + shortest, time[1] + longest
-        yield Link(tube, entry, at, time, left)
-        ball, velocity, time = tube.enclosure(at), tube.velocity(at), left
-        step = float(shortest + longest) / 2 * _EXIT[1] / _EXIT[0]
-
-
-def _next(
-    equations: LengthEquations, ball: Ball, velocity: Ball, step: float
-) -> tuple[Tube | None, tuple[int, int] | None]:
-    """A tube on which the configuration in a box lies, which the motion passes forwards."""
-    while step > _LEAST:
-        tube = prove_tube(equations, ball.finer(equations.bits).centre, velocity.floats[0], step)
-        if tube is not None:
-            entry = tube.located(ball)
-            forwards = entry is not None and tube.goes_along(velocity) == 1
-            if entry is not None and forwards and entry[1] < tube.longest * _EXIT[0] // _EXIT[1]:
-                return tube, entry
-        step /= 4
-    return None, None

@@ -89,9 +89,13 @@ def _proof(proof: MotionProof) -> RenderableType:
     if proof.status is not PROVED:
         return Text.assemble(status_text(proof.status), f": {proof.reason}")
     parts = [f": one curve without a gap, {counted(proof.tubes, 'tube')}"]
+    if proof.end_text:
+        parts[0] += f", {proof.end_text}"
     contact = proof.contact
-    if contact is not None and contact.event is None:
-        parts.append("no two faces touch on it")
+    if contact is not None and contact.event is None and proof.passed:
+        parts.append(f"no two faces touch before {float(contact.clear):.8g}, then some may")
+    elif proof.clear_to_the_end:
+        parts.append(f"no two faces touch {'before it, nor at it' if proof.end_text else 'on it'}")
     elif contact is not None and contact.event is not None:
         low, high = contact.event.time
         after = ", where the motion goes on" if proof.passed else ""

@@ -319,19 +319,19 @@ def test_a_loop_lands_after_it_has_entered_the_last_tube() -> None:
         (tube.enclosure(s), tube.velocity(s)) for s in (Fraction(-1, 1000), Fraction(1, 1000))
     )
     path = Path(later, sheet.equations.bits)
-    with pytest.raises(CertificateError, match=r"^a loop meets a node, or ends, on no tube$"):
+    with pytest.raises(CertificateError, match=r"^a motion meets a node, or lands, on no tube$"):
         path.meet(*later)
     path.enter(tube)
-    with pytest.raises(CertificateError, match=r"^a loop meets another piece before it enters"):
+    with pytest.raises(CertificateError, match=r"^a motion meets another piece before it enters"):
         path.meet(*here)
-    with pytest.raises(CertificateError, match=r"^a loop leaves a tube before it enters$"):
+    with pytest.raises(CertificateError, match=r"^a motion leaves a tube before it enters$"):
         path.leave(Fraction(-1, 1000))
     forged = given_lines(ONE)
     forged[1]["evidence"]["steps"] = []
-    refused(forged, "loop 0: a loop meets a node, or ends, on no tube")
+    refused(forged, "loop 0: a motion meets a node, or lands, on no tube")
     forged = given_lines(ONE)
     steps_of(forged)[1]["exit"] = -steps_of(forged)[1]["exit"]
-    refused(forged, "loop 0: a loop leaves a tube before it enters")
+    refused(forged, "loop 0: a motion leaves a tube before it enters")
 
 
 def test_links_that_are_left_out_leave_a_gap() -> None:
@@ -517,7 +517,7 @@ def test_nodes_follow_tubes() -> None:
     steps = loop["evidence"]["steps"]
     k = next(k for k, step in enumerate(steps) if "flat" in step)
     loop["evidence"]["steps"] = steps[k : k + 1]
-    refused([header, loop, claims], "loop 0: a loop meets a node, or ends, on no tube")
+    refused([header, loop, claims], "loop 0: a motion meets a node, or lands, on no tube")
 
 
 def test_an_arc_holds_configurations() -> None:

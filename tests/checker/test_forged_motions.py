@@ -16,6 +16,7 @@ from exactfold import checker
 from exactfold.checker import motion, motion_bounds
 from exactfold.checker.motion_bounds import Bounds
 from exactfold.checker.motion_equations import LengthEquations
+from exactfold.checker.motion_paths import chord
 from exactfold.checker.motion_tubes import Ball, Start, Tube
 from exactfold.checker.reading import CertificateError, FormatError
 from exactfold.checker.sheet import read_sheet
@@ -372,10 +373,10 @@ def test_a_length_that_is_too_long_is_refused() -> None:
 
 def test_chords_are_lower_bounds() -> None:
     a, b = Ball([0, 0], [0, 0]), Ball([3 << 20, 4 << 20], [0, 0])
-    assert 0 <= 5 - motion.chord(a, b, 20) < Fraction(1, 10**5)
+    assert 0 <= 5 - chord(a, b, 20) < Fraction(1, 10**5)
     wide = Ball([3 << 20, 4 << 20], [1 << 20, 0])
-    assert 0 <= 4 - motion.chord(a, wide, 20) < Fraction(1, 10**5)
-    assert motion.chord(a, Ball([1, 0], [5, 5]), 20) == 0
+    assert 0 <= 4 - chord(a, wide, 20) < Fraction(1, 10**5)
+    assert chord(a, Ball([1, 0], [5, 5]), 20) == 0
 
 
 def test_the_start_is_that_of_its_branch() -> None:

@@ -445,10 +445,10 @@ def test_a_tube_may_be_left_and_met_where_it_is_entered() -> None:
     path.enter(tube)
     assert path.entered == Fraction(3, 4)
     for s in (Fraction(3, 4) - Fraction(1, 1 << 40), Fraction(-1)):
-        with pytest.raises(CertificateError, match=r"^a loop leaves a tube before it enters$"):
+        with pytest.raises(CertificateError, match=r"^a motion leaves a tube before it enters$"):
             path.leave(s)
     # (21, 2): s = (21 - 4.5) / 16, with 4.5 / 16 to spare on both sides: 3/4 at least.
-    with pytest.raises(CertificateError, match=r"^a loop meets another piece before it enters"):
+    with pytest.raises(CertificateError, match=r"^a motion meets another piece before it enters"):
         path.meet(Ball([21, 2], [2, 6]), ONWARDS)
     path.meet(Ball([21, 2], [2, 5]), ONWARDS)
     path = Passed((Ball([12, 1], [2, 4]), ONWARDS), 4)

@@ -17,7 +17,8 @@ from exactfold.data import example_path
 from exactfold.errors import UsageError
 from exactfold.motion import prove, write_motion
 from exactfold.motion.loop_frames import frame_of
-from exactfold.motion.loops import Landing, Passage
+from exactfold.motion.loops import Landing
+from exactfold.motion.passages import Passage
 from exactfold.motion.piece import PARAMETER_BITS
 from exactfold.motion.tube import ROW_BITS
 from exactfold.problem.problem import Problem

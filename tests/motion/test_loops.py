@@ -2,10 +2,10 @@
 
 from fractions import Fraction
 
-import mpmath
 import numpy as np
 import pytest
 from height_signs import HeightSigns
+from sixty_digits import assert_holds_the_node
 
 from exactfold import CreasePattern, find_branch, random_square
 from exactfold.motion import find_loops
@@ -13,8 +13,9 @@ from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
 from exactfold.motion.flat_patches import FlatPatch
 from exactfold.motion.following import follow
 from exactfold.motion.framework import Framework
-from exactfold.motion.loops import LoopFinder, Passage
+from exactfold.motion.loops import LoopFinder
 from exactfold.motion.node_tube import prove_node_tube
+from exactfold.motion.passages import Passage
 from exactfold.motion.piece import PARAMETER_BITS
 from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED
@@ -120,52 +121,7 @@ def passage():
 
 
 def test_a_node_holds_the_configuration_with_60_digits(passage):
-    """The framework with a rigid patch, written down anew and solved by mpmath."""
-    patch, box = passage.tube.patch, passage.tube.node
-    framework = patch.framework
-    with mpmath.workdps(60):
-        one = mpmath.mpf(1 << framework.bits)
-        flat = [
-            (mpmath.mpf(x) / one, mpmath.mpf(y) / one, mpmath.mpf(0)) for x, y in framework.points
-        ]
-        moving = list(patch.moving)
-        weights = {
-            v: [mpmath.mpf(w.numerator) / w.denominator for w in row]
-            for v, row in patch.weights.items()
-        }
-
-        def places(unknowns):
-            x = {v: flat[v] for v in framework.pinned}
-            for k, v in enumerate(moving):
-                x[v] = tuple(flat[v][a] + unknowns[3 * k + a] for a in range(3))
-            for v, row in weights.items():
-                x[v] = tuple(
-                    sum(w * x[b][a] for w, b in zip(row, patch.base, strict=True)) for a in range(3)
-                )
-            return x
-
-        def equations(*unknowns):
-            x = places(unknowns)
-            return [
-                sum((x[i][a] - x[j][a]) ** 2 - (flat[i][a] - flat[j][a]) ** 2 for a in range(3))
-                for i, j in patch.bars.tolist()
-            ]
-
-        free = {int(v): k for k, v in enumerate(framework.free)}
-        centre = [mpmath.mpf(c) / (1 << box.bits) for c in box.centre]
-        start = [centre[3 * free[v] + a] for v in moving for a in range(3)]
-        root = list(mpmath.findroot(equations, start, tol=1e-100))
-        x = places(root)
-        for v, k in free.items():
-            for a in range(3):
-                off = abs(x[v][a] - flat[v][a] - centre[3 * k + a])
-                assert off <= mpmath.mpf(box.radii[3 * k + a]) / (1 << box.bits)
-        # All edges, those of the patch included, have their lengths.
-        for i, j in framework.sheet.edges:
-            change = sum(
-                (x[i][a] - x[j][a]) ** 2 - (flat[i][a] - flat[j][a]) ** 2 for a in range(3)
-            )
-            assert abs(change) < mpmath.mpf(10) ** -50
+    assert_holds_the_node(passage.tube.patch, passage.tube.node)
 
 
 def test_an_arc_through_a_node_keeps_all_lengths(passage):

@@ -1,0 +1,217 @@
+"""Motions that end at a node, where other curves cross: proved up to it."""
+
+from __future__ import annotations
+
+from io import StringIO
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+from rich.console import Console
+from sixty_digits import assert_holds_the_node
+
+from exactfold import checker, find_branch, follow, random_square
+from exactfold.exact.surds import float_bounds
+from exactfold.motion import (
+    certificate_with_contact,
+    contacts,
+    follow_proved,
+    prove,
+    proving,
+    tracks,
+)
+from exactfold.motion.contacts import first_contact
+from exactfold.motion.separation import Open
+from exactfold.report import motion_report
+from exactfold.verdict import PROVED, UNDECIDED
+
+SHEET = random_square(5, seed=4)
+SIGNS, FLAT = "-+--+", 6
+
+
+@pytest.fixture(scope="module")
+def motion() -> Any:
+    found = follow(find_branch(SHEET, SIGNS), frames=4)
+    assert found.end == "node"
+    return found
+
+
+@pytest.fixture(scope="module")
+def proof(motion: Any) -> Any:
+    return prove(motion)
+
+
+def test_a_motion_to_a_node_is_proved_and_clear_up_to_it(motion, proof):
+    assert (proof.status, proof.reason) == (PROVED, "")
+    low, high = proof.length
+    assert low < high < low * (1 + 1e-6)
+    assert float(low) == pytest.approx(motion.duration, rel=1e-6)
+    assert proof.contact.clear == low
+    assert proof.clear_to_the_end
+    assert proof.to_dict()["node"] == {
+        "flat": [FLAT],
+        "time": [pytest.approx(motion.duration)] * 2,
+        "clear": True,
+    }
+    assert proof.end_text == (
+        "until a node at the time 0.500686, where vertex 6 is flat and another curve crosses"
+    )
+    assert proof.track.reason == "a node, where vertex 6 is flat and another curve crosses"
+    claims = checker.check(proof.certificate())
+    assert claims["node"] == {"flat": [FLAT], "clear": True}
+    assert claims["tubes"] + 2 == proof.tubes == proof.track.tubes
+
+
+def test_the_last_frame_is_the_node(motion, proof):
+    bounds, node = proof.motion.bounds, proof.track.node
+    assert max(bounds.radii) < 1e-15
+    assert bounds.times[-1][0] <= motion.duration <= bounds.times[-1][1]
+    last = proof.track.frame(float_bounds(proof.length[1])[0])
+    # The box of the last frame, recomputed with 60 digits; the star of the vertex is flat in it.
+    assert_holds_the_node(node.tube.patch, last.ball)
+    ends = np.array(SHEET.folds)
+    at = (ends == FLAT).any(axis=1)
+    assert np.abs(proof.motion.angles[-1, at]).max() < 1e-12
+    assert np.abs(proof.motion.angles[-1, ~at]).max() > 0.1
+    assert np.abs(proof.motion.angles[-2, at]).max() > 1e-4
+
+
+def test_frames_on_the_arc(proof):
+    track = proof.track
+    node, unit = track.node, track.framework.unit
+    times = np.linspace(float(node.entered[1] * unit), float(node.left[0] * unit), 7)
+    frames = track.frames(list(times))
+    for frame, time in zip(frames, times, strict=True):
+        assert float(frame.time[0]) - 1e-6 < time < float(frame.time[1]) + 1e-6
+        assert track.framework.length_error(frame.ball.floats[0]) < 1e-12
+        assert max(frame.ball.floats[1]) < 1e-13
+    points = np.array([frame.ball.floats[0] for frame in frames]) * float(unit)
+    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    assert chords.sum() == pytest.approx(times[-1] - times[0], rel=1e-3)
+
+
+def test_the_mirror_image_ends_at_the_mirrored_node(proof):
+    other = follow_proved(find_branch(SHEET, SIGNS), -1)
+    node, image = proof.track.node, other.node
+    assert image.vertices == node.vertices == (FLAT,)
+    assert other.status is PROVED
+    mirrored = node.tube.node.mirrored
+    assert not image.tube.node.misses(mirrored)
+    assert image.tube.node.misses(node.tube.node)
+    point = node.tube.patch.point(mirrored.floats[0], mirrored.bits)
+    assert point.is_in(mirrored)
+    assert point.is_in(image.tube.node)
+
+
+def test_a_track_to_a_time_ends_there_or_at_the_node(proof):
+    branch = find_branch(SHEET, SIGNS)
+    before = follow_proved(branch, until=0.4)
+    assert (before.status, before.node) == (PROVED, None)
+    track = follow_proved(branch, until=0.51)
+    assert (track.status, track.node.vertices) == (UNDECIDED, (FLAT,))
+    assert track.reason == "a node, where vertex 6 is flat and another curve crosses"
+    assert track.length == proof.length
+
+
+@pytest.mark.slow
+def test_a_motion_that_passes_a_node_is_proved_up_to_it(proof):
+    for until in ("contact", 0.6):
+        motion = follow(find_branch(SHEET, SIGNS), until=until, through_nodes=True, frames=2)
+        assert motion.duration > 0.55
+        passing = prove(motion)
+        assert passing.status is UNDECIDED
+        assert passing.reason == (
+            f"proved {proof.end_text}, but only motions back to the flat sheet are proved through "
+            "nodes"
+        )
+        assert not passing.may_succeed_otherwise
+        assert checker.check(passing.certificate())["node"] == {"flat": [FLAT], "clear": True}
+
+
+@pytest.mark.slow
+def test_faces_that_are_not_parted_on_the_arc_are_named(motion, proof, monkeypatch):
+    """The first pair of faces is taken to be near on the last half of the arc."""
+    clear = contacts._clear
+
+    def vague(pairs, coefficients, radius, low, high, planar=False):
+        if high == 0.0:
+            none = np.zeros(0, dtype=np.intp)
+            return low / 2, Open(np.zeros(1, dtype=np.intp), none, none)
+        return clear(pairs, coefficients, radius, low, high, planar)
+
+    monkeypatch.setattr(contacts, "_clear", vague)
+    undecided = prove(motion)
+    assert undecided.status is UNDECIDED
+    [(one, two)] = undecided.contact.open_faces
+    names = " and ".join("-".join(map(str, face)) for face in (one, two))
+    assert undecided.reason == (
+        f"proved {proof.end_text}, but faces {names} are not proved to stay apart"
+    )
+    assert not undecided.clear_to_the_end
+    assert proof.track.node.entered[0] < undecided.contact.clear / 2 < proof.contact.clear / 2
+    claims = checker.check(undecided.certificate())
+    assert claims["node"] == {"flat": [FLAT], "clear": False}
+    # Nor where the last tube is not clear up to the arc.
+    monkeypatch.setattr(contacts, "on_node_tube", lambda *given: pytest.fail("not looked at"))
+
+    def sooner(pairs, coefficients, radius, low, high, planar=False):
+        return vague(pairs, coefficients, radius, low, 0.0 if not planar else high, planar)
+
+    monkeypatch.setattr(contacts, "_clear", sooner)
+    track, contact = first_contact(find_branch(SHEET, SIGNS))
+    assert contact.before_the_arc
+    assert contact.clear == track.links[-1].left[0] * track.framework.unit
+    claims = checker.check(certificate_with_contact(track, contact))
+    assert claims["node"] == {"flat": [FLAT], "clear": False}
+
+
+def test_a_node_that_is_not_found_is_not_claimed(motion, monkeypatch):
+    monkeypatch.setattr(tracks, "passage_ahead", lambda labels, links: None)
+    proof = prove(motion)
+    assert proof.status is UNDECIDED
+    assert proof.reason.startswith("no tube longer than 1e-7 of the sheet was proved here")
+    assert proof.reason.endswith("; floats see a node at the time 0.500686, which is not proved")
+    assert proof.node is None
+    assert proof.may_succeed_otherwise
+    monkeypatch.setattr(proving, "_FARTHER", -1 / 2)
+    assert prove(motion).reason == "no node was met where floats see one"
+
+
+def test_what_is_said_of_a_node(proof):
+    text = StringIO()
+    Console(file=text, width=400).print(motion_report(proof.motion, (), proof))
+    assert (
+        f"one curve without a gap, 4 tubes, {proof.end_text}; no two faces touch before it, nor "
+        "at it"
+    ) in text.getvalue()
+
+
+@pytest.mark.slow
+def test_a_node_with_two_flat_vertices_after_a_contact():
+    motion = follow(find_branch(random_square(5, seed=0), "++++-"), until="return", frames=3)
+    assert motion.end == "node"
+    proof = prove(motion)
+    assert proof.status is PROVED
+    assert proof.node.vertices == (5, 7)
+    assert proof.passed
+    assert proof.end_text.endswith("where the vertices 5 and 7 are flat and other curves may cross")
+    assert proof.contact.event.time[1] < float(proof.length[0])
+    assert proof.to_dict()["node"]["clear"] is False
+    assert_holds_the_node(
+        proof.node.tube.patch, proof.track.frame(float_bounds(proof.length[1])[0]).ball
+    )
+
+
+@pytest.mark.survey
+def test_all_branches_of_a_square_that_end_at_a_node():
+    sheet, found = random_square(8, seed=1), []
+    for signs in product("+-", repeat=8):
+        motion = follow(find_branch(sheet, "".join(signs)), frames=2)
+        if motion.end == "node":
+            proof = prove(motion)
+            assert proof.status is PROVED, proof.reason
+            assert checker.check(proof.certificate())["node"]["clear"] is True
+            found.append(proof.node.vertices)
+    assert len(found) == 26
+    assert set(found) == {(9,), (11,)}
