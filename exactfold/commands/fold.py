@@ -103,9 +103,8 @@ class Wanted:
         for drawn in (self.plot, self.picture):
             if drawn is not None:
                 checked_picture(drawn)
-        for path in (self.output, self.plot, self.picture, self.certificate):
-            if path is not None:
-                require_folder(path)
+        if self.certificate is not None:
+            require_folder(self.certificate)
 
     @property
     def _title(self) -> str | None:

@@ -177,8 +177,7 @@ def checked_target(path: Path, endings: Sequence[str], what: str) -> str:
     ending = path.suffix.lower()
     if ending not in endings:
         raise UsageError(f"{path}: {what} is written as {', '.join(endings)}; name one of these")
-    if not path.parent.is_dir():
-        raise UnwritableFileError(f"cannot write {path}: the folder {path.parent} does not exist")
+    require_folder(path)
     return ending
 
 
