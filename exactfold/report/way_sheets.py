@@ -54,4 +54,5 @@ def _title(result: BranchCount | Decomposition, ways: Sequence[DrawnWay], number
     if number > len(ways):
         return counted(number, "mode")
     folding = sum(not way.note for way in ways)
-    return f"{counted(number, 'mode')}, {folding} of them known to truly fold"
+    which = f"{folding} of them " if folding < number else "all " if number > 1 else ""
+    return f"{counted(number, 'mode')}, {which}known to truly fold"

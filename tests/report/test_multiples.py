@@ -9,6 +9,7 @@ from exactfold import count_ways
 from exactfold.errors import UsageError
 from exactfold.report.drawn_ways import ways_of
 from exactfold.report.multiples import sheet_of_multiples
+from exactfold.report.way_sheets import number_listed, sheet_of_ways
 
 
 def numbers(text):
@@ -106,3 +107,28 @@ def test_pictures_stand_apart(counted):
     width = float(tree(text).get("width"))
     assert all(0 <= float(x) < width - 100 for x, _ in corners)
     assert letters(text)["B"] == len(corners)
+
+
+@pytest.mark.parametrize(
+    ("name", "most", "number", "title"),
+    [
+        ("two-vertex", None, 4, "two-vertex: 4 ways to start folding, proved"),
+        ("hypar-2", 3, 256, "hypar-2: 256 ways to start folding, proved"),
+        ("zigzags", None, 5, "zigzags: 5 modes, 4 of them known to truly fold"),
+        ("zigzags", 2, 5, "zigzags: 5 modes"),
+        ("windmill", None, 6, "windmill: 6 modes, all known to truly fold"),
+    ],
+)
+def test_the_title_says_what_is_known_of_the_ways(name, most, number, title):
+    result = count_ways(name)
+    text = sheet_of_ways(result, name, most)
+    assert number_listed(result) == number
+    assert words(text)[0] == title
+    assert len(numbers(text)) == min(most or number, number)
+
+
+def test_a_count_without_a_list_has_no_sheet_error():
+    result = count_ways("waterbomb")
+    assert number_listed(result) == 0
+    with pytest.raises(UsageError, match="no way to draw"):
+        sheet_of_ways(result, "waterbomb")
