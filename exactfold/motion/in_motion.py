@@ -16,6 +16,14 @@ if TYPE_CHECKING:
     from exactfold.pattern.panel_pattern import PanelPattern
 
 
+def fixed(motion: SheetInMotion, *names: str) -> None:
+    """Make arrays of a motion such that they cannot be written to, as its other fields."""
+    for name in names:
+        array = getattr(motion, name).view()
+        array.flags.writeable = False
+        object.__setattr__(motion, name, array)
+
+
 class SheetInMotion(Protocol):
     """A sheet as it folds: `Motion` along a branch, or `PanelMotion` along modes of rigid panels.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any, Final
 
@@ -77,6 +77,13 @@ class Motion(Picture):
     end: str
     seconds: float = field(default=0.0, compare=False)
     bounds: FrameBounds | None = None
+
+    def __post_init__(self) -> None:
+        in_motion.fixed(self, "times", "coords", "angles")
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # Arrays are made anew, so they are fixed anew; what is cached stays behind.
+        return Motion, tuple(getattr(self, field.name) for field in fields(self))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Motion):

@@ -67,6 +67,9 @@ class PanelMotion(Picture):
     gap: float
     seconds: float = field(default=0.0, compare=False)
 
+    def __post_init__(self) -> None:
+        in_motion.fixed(self, "times", "coords", "angles")
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, PanelMotion):
             return NotImplemented

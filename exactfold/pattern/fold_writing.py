@@ -129,10 +129,12 @@ def write_text(path: str | PathLike[str], text: str) -> None:
 
 
 def require_folder(path: str | PathLike[str]) -> None:
-    """Raise `UnwritableFileError` if a file cannot be written because its folder is not there.
+    """Raise `UnwritableFileError` for a folder, and for a file whose folder is not there.
 
     That is known before the work whose result it is to hold; `write_bytes` says the rest.
     """
+    if os.path.isdir(path):
+        raise UnwritableFileError(f"cannot write {path}: it is a folder")
     folder = os.path.dirname(os.path.realpath(path))
     if not os.path.isdir(folder):
         raise UnwritableFileError(f"cannot write {path}: there is no folder {folder}")

@@ -299,6 +299,10 @@ def test_a_folder_that_is_missing_is_said_before_the_work(option, tmp_path, monk
     assert result.exit_code == BAD_INPUT
     assert result.stderr.count("\n") == 1
     assert f"cannot write {tmp_path / 'none' / name}: there is no folder" in result.stderr
+    (tmp_path / name).mkdir()
+    result = run("fold", "two-vertex", "--up", "4", option, tmp_path / name)
+    assert (result.exit_code, result.stderr.count("\n")) == (BAD_INPUT, 1)
+    assert f"cannot write {tmp_path / name}: it is a folder" in result.stderr
 
 
 def test_plots_are_written_in_the_format_that_their_names_say(tmp_path):
@@ -310,8 +314,8 @@ def test_plots_are_written_in_the_format_that_their_names_say(tmp_path):
 
 
 def test_files_that_cannot_be_written(tmp_path, monkeypatch):
-    (tmp_path / "m.fold").mkdir()
-    result = run("fold", "two-vertex", "--up", "4", "-o", tmp_path / "m.fold")
+    (tmp_path / "m_0001.obj").mkdir()
+    result = run("fold", "two-vertex", "--up", "4", "-o", tmp_path / "m.obj")
     assert result.exit_code == BAD_INPUT
     assert "cannot write" in result.stderr
     monkeypatch.setattr(meshes, "find_spec", lambda name: None)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import io
 import json
+import pickle
 from fractions import Fraction
 
 import numpy as np
@@ -261,3 +263,12 @@ def test_refusals(tmp_path):
         with pytest.raises(UnwritableFileError):
             write_motion(MOTION, tmp_path / name)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("motion", [MOTION, PANELS], ids=["branch", "panels"])
+def test_arrays_of_a_motion_cannot_be_written_to(motion):
+    for same in (motion, pickle.loads(pickle.dumps(motion)), copy.deepcopy(motion)):
+        assert same == motion
+        for array in (same.times, same.coords, same.angles):
+            with pytest.raises(ValueError, match="read-only"):
+                array[0] = 1.0
