@@ -152,8 +152,8 @@ def test_a_motion_that_passes_a_node_is_proved_up_to_it():
     proof = prove(motion)
     assert proof.status is UNDECIDED
     assert proof.reason == (
-        "proved until a node at the time 1.72875, where vertex 9 is flat and another curve crosses, "
-        "but only motions back to the flat sheet are proved through nodes"
+        "proved until a node at the time 1.72875, where vertex 9 is flat and another curve "
+        "crosses, but only motions back to the flat sheet are proved through nodes"
     )
     assert proof.length[1] < 1.73 < motion.duration
     assert checker.check(proof.certificate())["vertex_signs"] == [-1] * 6 + [1, 1]
