@@ -28,7 +28,7 @@ TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
     "counting": (
         "Counting and branches",
         "Load a pattern, count its branches, or find one. Most programs need only this page.",
-        ("", "count", "branches"),
+        ("", "count", "branches", "assignment"),
     ),
     "patterns": (
         "Crease patterns and drawings",

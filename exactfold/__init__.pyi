@@ -1,5 +1,6 @@
 from exactfold import actuation as actuation
 from exactfold import algebra as algebra
+from exactfold import assignment as assignment
 from exactfold import branches as branches
 from exactfold import bridges as bridges
 from exactfold import certify as certify

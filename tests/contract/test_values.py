@@ -50,6 +50,7 @@ MOTIONS = exactfold.decompose(OPENED.sheet)
 SPACES = exactfold.decompose(panels(single_vertex(5)))
 MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
 DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
+MATCH = exactfold.assignment.match(PATTERN, exactfold.find_branch(PATTERN, "+-").assignment)
 ONE = exactfold.random_square(1, seed=0)
 LEAVING = exactfold.find_branch(ONE, "+")
 TRACK = exactfold.motion.follow_proved(LEAVING, until=0.3)
@@ -145,6 +146,9 @@ VALUES = {
         MOTION.curve.framework, np.array([0.0, 0.0, 0.0, 1.0, 0.3, -0.1])
     ),
     "actuation": DRIVEN,
+    "match": MATCH,
+    "half of a branch": MATCH.matches[0],
+    "refutation of letters": MATCH.refutations[0],
     "directions": DRIVEN.directions,
     "orthogonal torques": DRIVEN.orthogonal,
     "ranked": DRIVEN.ranking()[0],

@@ -1,0 +1,123 @@
+"""Why no branch with some vertex signs has given letters: one vector in each nappe, exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.rigidity.curvature import curvature_form, spokes
+from exactfold.rigidity.timelike import round_cone
+
+Letters = Mapping[Edge, str]
+"""By fold (i, j), i < j: "M", "V", "F" for a fold that stays flat, "U" where anything may be."""
+
+
+@dataclass(frozen=True, repr=False)
+class Refutation:
+    """No solution whose vertices have these signs has given letters.
+
+    `heights[v, w]` is the height of the neighbour w of v in a star z_v whose hub is at height 0;
+    what is left out is 0. At a vertex of `signs` z_v lies in the closed nappe of that sign,
+    elsewhere it is affine. For solutions h with these signs K_v(z_v, h) >= 0, and 0 where z_v is
+    affine. With omega_f, which is positive for a valley and negative for a mountain,
+
+        sum_v K_v(z_v, h) = 1/2 sum_f omega_f(h) (z_v(w) + z_w(v)),   f = vw,
+
+    which is negative for letters whose valleys have sums <= 0, mountains >= 0, and free folds 0, if
+    one sum of a mountain or valley is not 0 (docs/assignment.md, Theorem 1).
+    """
+
+    signs: Mapping[int, int]
+    heights: Mapping[tuple[int, int], Fraction]
+
+    def holds(self, sheet: CreasePattern, letters: Letters) -> bool:
+        """Whether it refutes these letters, decided in rational numbers.
+
+        `sheet`: triangulated, any border; `letters` of all its folds.
+        """
+        inside = sheet.interior_set
+        if not all(v in inside and sign in (1, -1) for v, sign in self.signs.items()):
+            return False
+        if not all(v in inside and w in sheet.star(v) for v, w in self.heights):
+            return False
+        hubs = {v for v, _ in self.heights}
+        return all(self._is_placed(sheet, v) for v in hubs) and self._is_against(sheet, letters)
+
+    def _is_placed(self, sheet: CreasePattern, v: int) -> bool:
+        """Whether z_v is in the closed nappe of the sign of v, or affine."""
+        star = {v: Fraction(0)} | {w: self.heights.get((v, w), Fraction(0)) for w in sheet.star(v)}
+        if v not in self.signs:
+            return _is_affine(sheet, v, star)
+        form = curvature_form(sheet, v)
+        side = form.polar(round_cone(sheet, v), star)
+        return form(star) >= 0 and self.signs[v] * side >= 0
+
+    def _is_against(self, sheet: CreasePattern, letters: Letters) -> bool:
+        """Whether no term of the sum over the folds is positive, and one is negative."""
+        strict = False
+        for i, j in sheet.folds:
+            total = self.heights.get((i, j), Fraction(0)) + self.heights.get((j, i), Fraction(0))
+            letter = letters[i, j]
+            sign = {"M": 1, "V": -1}.get(letter, 0)
+            if letter != "F" and (total * sign < 0 or (total and not sign)):
+                return False
+            strict = strict or (letter != "F" and total != 0)
+        return strict
+
+    def __repr__(self) -> str:
+        return f"<Refutation: {len(self.signs)} signs, {len({v for v, _ in self.heights})} stars>"
+
+
+def _is_affine(sheet: CreasePattern, v: int, star: Mapping[int, Fraction]) -> bool:
+    """Whether heights of a star, 0 at its hub, lie in one plane."""
+    ring, d = spokes(sheet, v)
+    (ax, ay), (bx, by) = d[0], d[1]
+    area = ax * by - ay * bx
+    p = (star[ring[0]] * by - star[ring[1]] * ay) / area
+    q = (star[ring[1]] * ax - star[ring[0]] * bx) / area
+    return all(star[w] == p * x + q * y for w, (x, y) in zip(ring, d, strict=True))
+
+
+def refuted_at(
+    sheet: CreasePattern, letters: Letters, vertex: int, sign: int
+) -> Refutation | str | None:
+    """Why a vertex cannot have a sign with these letters, seen from its star alone; None if it may.
+
+    It can pop up only if its mountains lie in no closed half-plane, unless all other folds stay
+    flat, and one of its folds is a valley: turned round for down. The first is refuted by the
+    wedge -(n . x)_+, which lies in the up nappe; the second, a text, because a star without a
+    valley is concave, and has K_v > 0 then unless it is flat or bent along one straight line.
+    """
+    ring, d = spokes(sheet, vertex)
+    letter = [letters[min(vertex, w), max(vertex, w)] for w in ring]
+    mountain, valley = ("M", "V") if sign > 0 else ("V", "M")
+    held = [u for u, x in zip(d, letter, strict=True) if x in (mountain, "U")]
+    others = [u for u, x in zip(d, letter, strict=True) if x == valley]
+    for nx, ny in _normals(held, others):
+        if all(nx * x + ny * y <= 0 for x, y in held) and any(
+            nx * x + ny * y > 0 for x, y in others
+        ):
+            heights = {
+                (vertex, w): -sign * max(nx * x + ny * y, Fraction(0))
+                for w, (x, y) in zip(ring, d, strict=True)
+            }
+            return Refutation({vertex: sign}, {key: z for key, z in heights.items() if z})
+    if "U" not in letter and not others and held:
+        (x, y) = held[0]
+        if len(held) > 2 or any(a * y - b * x for a, b in held):
+            names = {"M": "mountain", "V": "valley"}
+            where = {1: "up", -1: "down"}[sign]
+            return (
+                f"vertex {vertex} cannot pop {where}: it has no {names[valley]}, and a star of "
+                f"{names[mountain]}s alone is curved"
+            )
+    return None
+
+
+def _normals(
+    held: list[tuple[Fraction, Fraction]], others: list[tuple[Fraction, Fraction]]
+) -> list[tuple[Fraction, Fraction]]:
+    """Normals of lines of which one bounds a half-plane with all held spokes, if there is any."""
+    return [(s * -y, s * x) for x, y in held for s in (1, -1)] or others
