@@ -154,7 +154,7 @@ def test_a_file_of_signs_that_is_not_there() -> None:
     assert "exactfold: cannot read none.txt" in result.stderr
 
 
-def test_signs_of_a_file_that_are_wrong_name_the_file(tmp_path: Path) -> None:
+def test_signs_of_a_file_that_are_wrong_name_the_file(tmp_path) -> None:
     path = tmp_path / "signs.txt"
     path.write_text("+x\n")
     result = run(TWO, "--signs", f"@{path}")
