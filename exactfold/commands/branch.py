@@ -126,9 +126,13 @@ def given_signs(finder: BranchFinder, signs: str | None, up: str | None) -> dict
 
     Raises `UsageError` and `UnreadableFileError`.
     """
-    if signs is not None and signs.startswith("@"):
-        signs = "".join(text for _, text in _lines(Path(signs[1:])))
-    return finder.signs(signs, None if up is None else _indices("--up", up))
+    if signs is None or not signs.startswith("@"):
+        return finder.signs(signs, None if up is None else _indices("--up", up))
+    path = Path(signs[1:])
+    try:
+        return finder.signs("".join(text for _, text in _lines(path)), None)
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
 
 
 def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str, Branch]]:

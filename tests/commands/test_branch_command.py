@@ -152,3 +152,12 @@ def test_a_file_of_signs_that_is_not_there() -> None:
     result = run(TWO, "--signs", "@none.txt")
     assert result.exit_code == 3
     assert "exactfold: cannot read none.txt" in result.stderr
+
+
+def test_signs_of_a_file_that_are_wrong_name_the_file(tmp_path) -> None:
+    path = tmp_path / "signs.txt"
+    path.write_text("+x\n")
+    result = run(TWO, "--signs", f"@{path}")
+    assert result.exit_code == 2
+    assert result.stderr.startswith(f"exactfold: {path}: 'x' is not a vertex sign")
+    assert result.stderr.count("\n") == 1
