@@ -255,7 +255,7 @@ def said(claims: dict[str, Any]) -> str:
     text = f"; no two faces touch before {shown(claims['clear'])}"
     if "node" in claims and claims["node"]["clear"]:
         clear = shown(claims["clear"])
-        text = f"; no two faces touch before the node, nor at it, at {clear} or later"
+        text = f"; no two faces touch before the node, which is at {clear} or later, nor at it"
     if "contact" not in claims:
         return text
     contact = claims["contact"]

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from io import StringIO
 from itertools import product
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 from rich.console import Console
 from sixty_digits import assert_holds_the_node
 
-from exactfold import checker, find_branch, follow, random_square
+from exactfold import checker, find_branch, follow, random_square, schema
 from exactfold.exact.surds import float_bounds
 from exactfold.motion import (
     certificate_with_contact,
@@ -25,6 +27,7 @@ from exactfold.motion.contacts import first_contact
 from exactfold.motion.separation import Open
 from exactfold.report import motion_report
 from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.viewer import ways
 
 SHEET = random_square(5, seed=4)
 SIGNS, FLAT = "-+--+", 6
@@ -104,6 +107,7 @@ def test_the_mirror_image_ends_at_the_mirrored_node(proof):
     assert point.is_in(image.tube.node)
 
 
+@pytest.mark.slow
 def test_a_track_to_a_time_ends_there_or_at_the_node(proof):
     branch = find_branch(SHEET, SIGNS)
     before = follow_proved(branch, until=0.4)
@@ -163,6 +167,7 @@ def test_faces_that_are_not_parted_on_the_arc_are_named(motion, proof, monkeypat
     assert claims["node"] == {"flat": [FLAT], "clear": False}
 
 
+@pytest.mark.slow
 def test_a_node_that_is_not_found_is_not_claimed(motion, monkeypatch):
     monkeypatch.setattr(tracks, "passage_ahead", lambda labels, links: None)
     proof = prove(motion)
@@ -175,13 +180,24 @@ def test_a_node_that_is_not_found_is_not_claimed(motion, monkeypatch):
     assert prove(motion).reason == "no node was met where floats see one"
 
 
-def test_what_is_said_of_a_node(proof):
+def shown(proof):
     text = StringIO()
     Console(file=text, width=400).print(motion_report(proof.motion, (), proof))
-    assert (
-        f"one curve without a gap, 4 tubes, {proof.end_text}; no two faces touch before it, nor "
-        "at it"
-    ) in text.getvalue()
+    return text.getvalue()
+
+
+def test_what_is_said_of_a_node(proof, monkeypatch):
+    told = f"{proof.end_text}; no two faces touch before it, nor at it"
+    assert f"one curve without a gap, 4 tubes, {told}" in shown(proof)
+    monkeypatch.setattr(ways, "prove", lambda motion: proof)
+    assert told in ways._proof(proof.motion)["said"]
+    # Where faces may touch before it, it is not said that they do not.
+    passed = replace(proof, passed=True)
+    assert "no two faces touch before 0.50068592, then some may" in shown(passed)
+    monkeypatch.setattr(ways, "prove", lambda motion: passed)
+    assert "touch" not in ways._proof(proof.motion)["said"]
+    for one in (proof, passed):
+        jsonschema.validate(one.to_dict(), schema("motion")["properties"]["proof"])
 
 
 @pytest.mark.slow
