@@ -169,7 +169,7 @@ const radius = flat.reduce((most, _, i) => (i % 3 ? most : Math.max(most, Math.h
 try {
   scene = createScene(byId("canvas"), sheet, flat, radius);
 } catch (error) {
-  byId("stage").append(Object.assign(document.createElement("p"), { className: "empty", textContent: `The sheet cannot be drawn in space: ${error.message}` }));
+  byId("stage").append(Object.assign(document.createElement("p"), { className: "empty", textContent: `The sheet cannot be drawn in space, which takes WebGL 2: ${error.message}` }));
 }
 store.on(["way", "mirrored", "time", "ways"], paintSheet);
 store.on(["way", "mirrored", "ways"], describe);
