@@ -35,7 +35,10 @@ class ConeProgram:
 
     def refutation(self, signs: Mapping[int, int]) -> Refutation | None:
         """A refutation of the letters for these signs, verified exactly; None if none is found."""
-        margin, z = self._solved(signs)
+        try:
+            margin, z = self._solved(signs)
+        except OverflowError:  # lengths beyond the range of floats
+            return None
         if not margin > _LEAST:
             return None
         found = Refutation(dict(signs), self._rounded(signs, z))

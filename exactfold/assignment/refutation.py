@@ -16,7 +16,7 @@ Letters = Mapping[Edge, str]
 
 @dataclass(frozen=True, repr=False)
 class Refutation:
-    """No solution whose vertices have these signs has given letters.
+    """No solution in the closed nappes of these signs has given letters.
 
     `heights[v, w]` is the height of the neighbour w of v in a star z_v whose hub is at height 0;
     what is left out is 0. At a vertex of `signs` z_v lies in the closed nappe of that sign,
@@ -26,7 +26,8 @@ class Refutation:
         sum_v K_v(z_v, h) = 1/2 sum_f omega_f(h) (z_v(w) + z_w(v)),   f = vw,
 
     which is negative for letters whose valleys have sums <= 0, mountains >= 0, and free folds 0, if
-    one sum of a mountain or valley is not 0 (docs/assignment.md, Theorem 1).
+    one sum of a mountain or valley is not 0; folds that stay flat may have any, as omega is 0 there
+    (docs/assignment.md, Theorem 1).
     """
 
     signs: Mapping[int, int]
@@ -35,9 +36,12 @@ class Refutation:
     def holds(self, sheet: CreasePattern, letters: Letters) -> bool:
         """Whether it refutes these letters, decided in rational numbers.
 
-        `sheet`: triangulated, any border; `letters` of all its folds.
+        `sheet`: triangulated, any border; `letters` of all its folds. Heights that are not rational
+        numbers refute nothing.
         """
         inside = sheet.interior_set
+        if not all(isinstance(z, Fraction) for z in self.heights.values()):
+            return False
         if not all(v in inside and sign in (1, -1) for v, sign in self.signs.items()):
             return False
         if not all(v in inside and w in sheet.star(v) for v, w in self.heights):
@@ -83,7 +87,7 @@ def _is_affine(sheet: CreasePattern, v: int, star: Mapping[int, Fraction]) -> bo
 def refuted_at(
     sheet: CreasePattern, letters: Letters, vertex: int, sign: int
 ) -> Refutation | str | None:
-    """Why a vertex cannot have a sign with these letters, seen from its star alone; None if it may.
+    """Why a vertex cannot have a sign with these letters, by its star alone; None if it may.
 
     It can pop up only if its mountains lie in no closed half-plane, unless all other folds stay
     flat, and one of its folds is a valley: turned round for down. The first is refuted by the
@@ -110,7 +114,7 @@ def refuted_at(
             names = {"M": "mountain", "V": "valley"}
             where = {1: "up", -1: "down"}[sign]
             return (
-                f"vertex {vertex} cannot pop {where}: it has no {names[valley]}, and a star of "
+                f"cannot pop {where}: it has no {names[valley]}, and a star of "
                 f"{names[mountain]}s alone is curved"
             )
     return None

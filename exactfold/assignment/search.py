@@ -59,8 +59,8 @@ class Matched:
 class Match:
     """Which halves of branches have given letters.
 
-    `status` PROVED: `matches` are all. Else `open_signs` are the signs for which nothing was
-    decided, and there may be more. `refutations` show for which signs there is none, each by
+    `status` PROVED: `matches` are all. Else `open_signs` are the signs for which not both halves
+    were decided, and there may be more. `refutations` show for which signs there is none, each by
     vectors in the nappes of `sheet`, the pattern without what lies in triangulated triangles, where
     vertex v is `labels[v]` of the pattern; `reasons` are those that need no vector. `leaves`: how
     many sign vectors were left, whose two halves were found and compared.
@@ -88,7 +88,7 @@ def match(
     most: int = 256,
     progress: Progress | None = None,
 ) -> Match:
-    """All halves of branches of a sheet with four corners that have given letters.
+    """All halves of branches of a sheet with four corners and no chord that have given letters.
 
     `letters`: by fold (i, j), i < j, or a text in the order of the folds: "M", "V", "F" for a fold
     that is to stay flat, "U" where anything may be; folds left out are free. Vertices whose letters
@@ -97,7 +97,8 @@ def match(
     branches of the signs that are left are found and compared (docs/assignment.md). At most `most`
     sign vectors are left to that.
 
-    Raises `UsageError` for letters that do not fit, and the errors of `find_branch`.
+    Raises `UsageError` for letters that do not fit, and the errors of `find_branch`: of a sheet
+    whose only fold that moves is a chord no vertex can pop.
 
     >>> from exactfold.pattern.random_squares import random_square
     >>> from exactfold.count.find import find_branch
@@ -114,6 +115,8 @@ def match(
 
 def _letters(pattern: CreasePattern, letters: Mapping[Edge, str] | str) -> dict[Edge, str]:
     folds = pattern.folds
+    if not isinstance(letters, str | Mapping):
+        raise UsageError("letters are a text, or a mapping from folds to letters")
     if isinstance(letters, str):
         if len(letters) != len(folds):
             raise UsageError(f"{len(letters)} letters for {len(folds)} folds")
@@ -122,7 +125,7 @@ def _letters(pattern: CreasePattern, letters: Mapping[Edge, str] | str) -> dict[
     for fold, letter in letters.items():
         if fold not in known:
             raise UsageError(f"{fold} is not a fold of the sheet")
-        if len(letter) != 1 or letter not in _LETTERS:
+        if letter not in tuple(_LETTERS):
             raise UsageError(f"fold {fold} has the letter {letter!r}, not one of M, V, F, U")
     return {fold: letters.get(fold, "U") for fold in folds}
 
@@ -180,7 +183,7 @@ class _Search:
             for sign in (1, -1):
                 found = refuted_at(self.sheet, self.own, v, sign)
                 if isinstance(found, str):
-                    self.reasons.append(found)
+                    self.reasons.append(f"vertex {self.labels[v]} {found}")
                 elif found is None or not self._kept(found):
                     left.append(sign)
             if not left:
@@ -209,7 +212,7 @@ class _Search:
             unknown = [v for v in unknown if v not in forced]
             if not unknown:
                 self._compare(forced)
-            elif self.leaves + len(stack) >= self.most:
+            elif self.leaves + len(stack) + 2 > self.most:
                 self.open.append({self.labels[v]: sign for v, sign in forced.items()})
             else:
                 stack += [forced | {unknown[0]: sign} for sign in (-1, 1)]
@@ -228,6 +231,7 @@ class _Search:
     def _compare(self, signs: dict[int, int]) -> None:
         """Find both halves with all signs given, and compare their letters."""
         self.leaves += 1
+        decided = True
         if self.progress is not None:
             self.progress("sign vectors", self.leaves, 0)
         for side in (1, -1):
@@ -237,9 +241,11 @@ class _Search:
             seen = half.assignment
             compared = [_agrees(letter, seen[fold]) for fold, letter in self.letters.items()]
             if branch.status is not PROVED or (False not in compared and None in compared):
-                self.open.append({self.labels[v]: sign for v, sign in signs.items()})
+                decided = False
             elif False not in compared and half.names not in {m.names for m in self.matches}:
                 self.matches.append(half)
+        if not decided:
+            self.open.append({self.labels[v]: sign for v, sign in signs.items()})
 
 
 def _fold(i: int, j: int) -> Edge:

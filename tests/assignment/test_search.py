@@ -112,10 +112,11 @@ def test_a_branch_is_found_by_its_letters(n):
 
 def test_too_many_sign_vectors_are_undecided():
     pattern = random_square(3, seed=4)
-    found = match(pattern, {}, most=2)
-    assert found.status is UNDECIDED
-    assert found.open_signs
-    assert found.leaves <= 2
+    for most in (1, 2, 4):
+        found = match(pattern, {}, most=most)
+        assert found.status is UNDECIDED
+        assert found.open_signs
+        assert found.leaves <= most
 
 
 def test_a_vertex_whose_folds_are_all_mountains():
@@ -151,6 +152,27 @@ def test_a_letter_inside_a_triangulated_triangle():
     )
 
 
+def test_reasons_name_vertices_of_the_pattern():
+    """Also where a vertex before them lies in a triangulated triangle."""
+    pattern = CreasePattern(
+        [(0, 0), (10, 1), (11, 12), (-1, 9), (1, "14/3"), (4, 5)],
+        [(0, 1, 5), (1, 2, 5), (2, 3, 5), (3, 0, 4), (0, 5, 4), (5, 3, 4)],
+    )
+    found = match(pattern, {fold: "M" for fold in pattern.folds if 4 not in fold})
+    assert [reason.split(":")[0] for reason in found.reasons] == ["vertex 5 cannot pop up"]
+    assert not found.matches
+
+
+def test_lengths_beyond_floats_are_no_failure():
+    pattern = random_square(2, seed=1)
+    far = CreasePattern(
+        [(x * 10**400, y * 10**400) for x, y in pattern.vertices], pattern.triangles
+    )
+    assert {half.names for half in match(far, {}).matches} == {
+        half.names for half in match(pattern, {}).matches
+    }
+
+
 def test_a_sheet_with_a_reflex_corner():
     pattern = dart()
     for _, own in halves(pattern):
@@ -163,6 +185,8 @@ def test_a_sheet_with_a_reflex_corner():
         ("MV", "2 letters for 7 folds"),
         ("MVXMVMV", "fold (1, 5) has the letter 'X', not one of M, V, F, U"),
         ({(0, 1): "M"}, "(0, 1) is not a fold of the sheet"),
+        ({(1, 5): 1}, "fold (1, 5) has the letter 1, not one of M, V, F, U"),
+        (None, "letters are a text, or a mapping from folds to letters"),
     ],
 )
 def test_letters_that_do_not_fit(letters, message):
@@ -238,6 +262,15 @@ def test_sums_on_the_wrong_side_and_sums_that_are_all_zero_are_refused():
         if total:
             for wrong in (LETTERS[fold].translate(TURNED), "U"):
                 assert not TRUE.holds(SHEET, LETTERS | {fold: wrong})
+
+
+def test_heights_that_are_no_rational_numbers_refute_nothing():
+    """The form of floats this small is 0, in floats."""
+    pattern = load(example_path("single-vertex-4"))
+    for height in (Fraction(1, 10**200), 1e-200):
+        letters = dict.fromkeys(pattern.folds, "V")
+        assert not Refutation({4: -1}, {(4, 0): height}).holds(pattern, letters)
+        assert not Refutation({4: 1}, {(4, 0): height}).holds(pattern, letters | {(0, 4): "M"})
 
 
 def test_flat_folds_alone_refute_nothing():
