@@ -102,7 +102,7 @@ def commands(page: Path) -> list[str]:
     return [a or b for a, b in re.findall(r"(?m)^(?:\$ (.*)|\| `(exactfold [^`]*)` \|.*)$", text)]
 
 
-@pytest.mark.parametrize("name", IN_ORDER)
+@pytest.mark.parametrize("name", [pytest.param(IN_ORDER[0], marks=pytest.mark.slow), *IN_ORDER[1:]])
 def test_all_commands_run_as_printed_in_their_order(name: str, tmp_path: Path) -> None:
     """In an empty directory and a shell that finds `exactfold`, as after the first command."""
     program = tmp_path / "bin" / "exactfold"

@@ -208,6 +208,7 @@ def run(*arguments):
     return CliRunner().invoke(app, [str(a) for a in arguments])
 
 
+@pytest.mark.slow
 def test_the_command_line(tmp_path):
     file = tmp_path / "loops.txt"
     first = run("motions", TWO, "--certificate", file, "--workers", 1)

@@ -191,5 +191,5 @@ def test_every_shipped_file_is_listed():
 
 
 def test_unknown_example_error():
-    with pytest.raises(UsageError, match=r"no example 'three-vertex'; there are: zigzags, two-"):
+    with pytest.raises(UsageError, match=r"no example 'three-vertex'; there are: zigzags, miura, "):
         example_path("three-vertex")

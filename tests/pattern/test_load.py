@@ -142,6 +142,7 @@ TAKES_PATTERN = {
     "count.count_branches": (),
     "count.find_branch": ("+-",),
     "actuation.actuate": ("+-",),
+    "assignment.match": ("MVVUUUU",),
 }
 
 TAKES_PATTERN_ELSEWHERE = {
@@ -182,6 +183,7 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "count.PanelFacts",
         "pattern.Converted",
         "actuation.Actuation",
+        "assignment.Match",
         "evidence.motion_certificate",
         "motion.Loops",
         "motion.PanelMode",
