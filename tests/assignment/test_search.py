@@ -217,10 +217,6 @@ def test_the_refutation_that_is_forged_holds():
     assert TRUE.holds(SHEET, LETTERS)
 
 
-def with_heights(**more):
-    return Refutation(TRUE.signs, {**TRUE.heights, **more.pop("heights", {})})
-
-
 def test_other_signs_are_refused():
     for v, sign in TRUE.signs.items():
         if any(TRUE.heights.get((v, w)) for w in SHEET.star(v)):

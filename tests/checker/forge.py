@@ -51,6 +51,15 @@ def verified(document: Any) -> Document:
     return checker.check(checker.load(json.dumps(document)))
 
 
+def with_one_key_more(document: Document, place: tuple[str | int, ...]) -> Document:
+    """The document, once the object at a place has a key that it should not have."""
+    value: Any = document
+    for key in place:
+        value = value[key]
+    value["more"] = 1
+    return document
+
+
 def refused(document: Any, message: str) -> None:
     """The checker refuses the claims, with exactly this message."""
     with pytest.raises(CertificateError) as caught:

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from forge import Document, refused, verified
+from forge import Document, refused, verified, with_one_key_more
 from sheets import nested_triangles, reflex_corners, star_in
 
 from exactfold import checker
@@ -88,12 +88,7 @@ def test_keys() -> None:
         ),
         (("evidence", "tubes", 0), "tube: expected an object with the keys centre row reach exit"),
     ):
-        forged = given()
-        value: Any = forged
-        for key in place:
-            value = value[key]
-        value["more"] = 1
-        refused(forged, keys)
+        refused(with_one_key_more(given(), place), keys)
 
 
 # --- names ---------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from functools import cache
 from typing import Any
 
 import pytest
-from forge import Document, refused, verified, without
+from forge import Document, refused, verified, with_one_key_more, without
 
 from exactfold import checker
 from exactfold.checker import motion, motion_contacts
@@ -137,12 +137,7 @@ def test_keys() -> None:
         (("evidence", "tubes", -1), "tube: expected an object with the keys centre row reach"),
         (("evidence", "tubes", 0), "tube: expected an object with the keys centre row reach exit"),
     ):
-        forged = given()
-        value: Any = forged
-        for key in place:
-            value = value[key]
-        value["more"] = 1
-        refused(forged, message)
+        refused(with_one_key_more(given(), place), message)
 
 
 def test_a_node_is_claimed_with_its_evidence() -> None:
