@@ -24,7 +24,6 @@ from .reading import (
     integer,
     items,
     keys,
-    natural,
     require,
 )
 from .sheet import Edge, read_sheet
@@ -58,8 +57,7 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     keys(claims, "letters halves", "claims")
     keys(evidence, "emptied refuted tree leaves", "evidence")
     place = Place(given, evidence["emptied"])
-    place.fix_rim()
-    place.check_convex()
+    place.fix_rim()  # the boundary is convex then
     text = claims["letters"]
     fits = isinstance(text, str) and len(text) == len(given.folds) and set(text) <= set("MVFU")
     require(fits, "letters do not fit")
@@ -100,9 +98,8 @@ class _Search:
         found: set[Half] = set()
         entries = iter(leaves)
         for signs in self._left(sets, tree):
-            entry = next(entries, None)
-            require(entry is not None, "a leaf of the tree is missing")
-            for side, half in zip((1, -1), items(entry, "a leaf", 2), strict=True):
+            both = items(next(entries, None), "a leaf", 2)
+            for side, half in zip((1, -1), both, strict=True):
                 found |= self._matching(signs, side, half)
         require(next(entries, None) is None, "there are more leaves than the tree has")
         return found
@@ -111,7 +108,6 @@ class _Search:
         """The complete sign vectors that the tree leaves; raises if it does not cover all."""
         stack: list[Signs] = [{}]
         for step in tree:
-            require(stack, "the tree goes on after its end")
             signs = stack.pop()
             kind, *at = items(step, "a step")
             if kind == "leaf":
@@ -119,29 +115,23 @@ class _Search:
                 yield signs
             elif kind == "split":
                 (v,) = at
-                self._check_new(v, signs)
                 stack += [signs | {v: -1}, signs | {v: 1}]
             elif kind == "force":
                 k, v = at
-                others = dict(sets[natural(k, "number")])
-                self._check_new(v, signs)
+                others = dict(sets[k])
                 sign = others.pop(v)
                 require(others.items() <= signs.items(), f"set {k} does not force vertex {v}")
                 stack.append(signs | {v: -sign})
             elif kind == "refuted":
                 (k,) = at
-                contained = sets[natural(k, "number")].items() <= signs.items()
+                contained = sets[k].items() <= signs.items()
                 require(contained, f"set {k} is not contained in the signs")
             else:
                 require(kind == "flat", f"a step of the tree is {kind!a}")
-                fold = tuple(at)
-                held = fold in self.rigid and self.wanted[fold[0], fold[1]] in "MV"
+                i, j = at
+                held = (i, j) in self.rigid and self.wanted[i, j] in "MV"
                 require(held, "no mountain or valley is asked for where the sheet is rigid")
         require(not stack, "the tree does not cover all sign vectors")
-
-    def _check_new(self, v: Any, signs: Signs) -> None:
-        new = type(v) is int and v in self.inside and v not in signs
-        require(new, f"{v!a} is no vertex that has not its sign yet")
 
     def _matching(self, signs: Signs, side: int, entry: Any) -> set[Half]:
         """The half on one side of a leaf, if it has the letters."""
