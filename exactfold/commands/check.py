@@ -12,7 +12,7 @@ from exactfold.commands.shell import Bar, name_of, regular, said
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.schemas import headed
 
-LONG = ("branches", "vertex_signs", "assignment", "supports", "flat")
+LONG = ("branches", "vertex_signs", "assignment", "supports", "flat", "letters", "halves")
 """Claims that grow with the pattern, left out of `check --json`."""
 
 
