@@ -154,8 +154,9 @@ def refusal(error: CertificateError) -> str:
 def main(arguments: list[str]) -> int:
     """Check one file and print the verdict; the exit code.
 
-    0: every claim holds; 1: some claim is not supported, or the file is not finished; 2: wrong usage; 3: not a certificate; 70:
-    a worker process died, memory is short, or a defect of this program.
+    0: every claim holds; 1: some claim is not supported, or the file is not finished; 2: wrong
+    usage; 3: not a certificate; 70: a worker process died, memory is short, or a defect of this
+    program.
     """
     workers = arguments[1] if len(arguments) == 2 else "1"
     usable = workers.isascii() and workers.isdecimal() and len(workers) < 5

@@ -437,7 +437,8 @@ def test_vertices_that_are_not_flat_are_refused() -> None:
     inner = "a node has no vertices that are flat, or none that fold"
     for other in ([], [*flat, *flat], [sheet.given.boundary[0]], [99], [*reversed(interior)]):
         not_passed(node() | {"flat": other}, inner)
-    square = "a flat patch leaves not as many equations as unknowns"
+    square = "a flat patch leaves no unknowns, or not as many equations"
+    not_passed(node() | {"flat": interior}, square)  # the flat state
     for v in interior:
         degree = len(sheet.given.star(v))
         if degree != 4:
