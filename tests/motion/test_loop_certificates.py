@@ -139,7 +139,7 @@ def test_an_interrupted_run_is_continued(tmp_path, monkeypatch):
             find_loops(pattern, certificate=file)
     kept = file.read_bytes()
     assert kept.count(b"\n") == 3
-    with pytest.raises(checker.CertificateError, match="the claims are missing"):
+    with pytest.raises(checker.CertificateError, match=r"^2 loops hold, but the claims are miss"):
         checker.verify(file)
     file.write_bytes(kept + b'{"from":{"vertex_signs"')  # a line that was cut off
 
@@ -252,6 +252,39 @@ def test_a_forged_file_is_invalid_on_the_command_line(kept, tmp_path):
     result = run("check", file)
     assert result.exit_code == 1
     assert result.stdout.startswith("INVALID: loops = 1 is 0")
+
+
+def test_what_an_interrupted_run_leaves_is_unfinished(tmp_path, capsys):
+    """Never valid, and invalid only with a loop that does not hold."""
+    file = tmp_path / "loops.txt"
+    find_loops("two-vertex", certificate=file)
+    whole = file.read_text()
+    bodies = [line.partition("\t")[0] for line in whole.splitlines()]
+    for lines, said in (
+        (bodies[:1], "0 loops hold, but the claims are missing"),
+        (bodies[:2], "1 loop holds, but the claims are missing"),
+        (bodies[:3], "2 loops hold, but the claims are missing"),
+    ):
+        journal = Journal(file, lines[0])
+        for line in lines[1:]:
+            journal.append(line)
+        journal.close()
+        assert whole.startswith(file.read_text())
+        result = run("check", file)
+        assert (result.exit_code, result.stdout) == (1, f"UNFINISHED: {said}\n")
+        as_json = run("check", file, "--json")
+        document = json.loads(as_json.stdout)
+        assert (as_json.exit_code, document["valid"], document["claims"]) == (1, False, {})
+        assert document["reason"] == f"unfinished: {said}"
+        assert checker.main([str(file)]) == 1
+        assert capsys.readouterr().out == f"UNFINISHED: {said}\n"
+    false = json.loads(bodies[1])
+    false["length"] = "100"
+    journal = Journal(file, bodies[0])
+    journal.append(json.dumps(false, separators=(",", ":")))
+    journal.close()
+    result = run("check", file)
+    assert (result.exit_code, result.stdout) == (1, "INVALID: loop 0: it is shorter than claimed\n")
 
 
 SIGNALLED = """
