@@ -62,8 +62,6 @@ def test_the_contact_on_the_arc_is_that_on_tubes():
         ({"to": 1}, 'the parameter "to" is out of range'),
         ({"from": "before"}, 'the parameter "from" is out of range'),
         ({"to": "from"}, "the fold does not close"),
-        ({"clear": 0}, "what is clear is shorter|may touch where"),
-        ({"tube": 1}, 'the parameter "clear" is out of range'),
         ({"time": "99999/100000"}, "the contact may be later than claimed"),
     ],
 )
@@ -75,8 +73,8 @@ def test_forged_contacts_on_the_arc(change, message):
     elif change == {"to": "from"}:
         change = {"to": found["from"]}
     elif "time" in change:
-        clear, latest = map(Fraction, claim["time"])
-        claim["time"][1] = str(latest * Fraction(change.pop("time")))
+        claim["time"][1] = str(Fraction(claim["time"][1]) * Fraction(change["time"]))
+        change = {}
     found |= change
     with pytest.raises(checker.CertificateError, match=message):
         checker.check(forged)
