@@ -253,9 +253,7 @@ class _Program:
         """The planes of the vertices without a sign, which agree on the free folds among them."""
         unit = self.whole.unit
         unsigned = [v for v in self.at if v not in self.signs]
-        near = {
-            v: [_near(x[self.at[v] + k], places) / unit for k in (0, 1)] for v in unsigned
-        }
+        near = {v: [_near(x[self.at[v] + k], places) / unit for k in (0, 1)] for v in unsigned}
         equations = []
         folds = self.whole.sheet.folds
         for i, j in (folds[k] for k in self.free_folds):

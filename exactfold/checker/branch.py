@@ -53,42 +53,92 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, "gauge vertex_signs assignment squared_distance", "claims")
     keys(evidence, "emptied heights denominator", "evidence")
-    unit = lcm(*(x.denominator for point in given.points.values() for x in point))
-    points: dict[int, Any] = {
-        v: (int(x * unit), int(y * unit)) for v, (x, y) in given.points.items()
-    }
-    sheet, removed = emptied_sheet(given, points, evidence["emptied"])
-    corner = None
+    place = Place(given, evidence["emptied"])
     if claims["gauge"] != "rim":
         require(claims["gauge"] == "saddle", "the gauge is neither saddle nor rim")
-        require(len(sheet.boundary) == 4, "there are not four boundary vertices")
-        sheet, corner = closed(sheet)
-    _check_convex(sheet)
-    texts = items(evidence["heights"], "heights", len(points))
-    require(all((texts[v] is None) == (v in removed) for v in points), "heights do not fit")
-    heights = {v: parse_integer(texts[v]) for v in points if v not in removed}
-    q = parse_integer(evidence["denominator"])
-    require(q > 0, "the denominator is not positive")
-    if claims["gauge"] == "saddle":
-        _check_gauge(sheet, heights, corner)
-    proof = Proof(sheet, heights, q, corner)
+        place.fix_rim()
+    place.check_convex()
+    proof = place.proof(evidence["heights"], evidence["denominator"])
     require(
         proof.squared_distance <= parse_rational(claims["squared_distance"]),
         "the distance is larger than claimed",
     )
-    _check_signs(given, claims["vertex_signs"], proof, removed)
-    _check_letters(given, claims["assignment"], proof, removed)
+    _check_signs(place, claims["vertex_signs"], proof)
+    _check_letters(place, claims["assignment"], proof)
     return {"sha256": digest, "interior": len(given.interior), **claims}
 
 
 # --- the sheet -----------------------------------------------------------------------------------
 
 
-def _check_convex(sheet: Sheet) -> None:
-    cycle = sheet.boundary
-    for k, v in enumerate(cycle):
-        corner = (cycle[k - 1], v, cycle[(k + 1) % len(cycle)])
-        require(turn(*(sheet.points[u] for u in corner)) >= 0, "the boundary is not convex")
+class Place:
+    """The sheet that heights are given for, in integers and without the vertices `removed`.
+
+    Once its rim is fixed, its notch is closed if it has the reflex corner `corner`, and the heights
+    are those of one half of a branch. `open` is the sheet with the notch.
+    """
+
+    def __init__(self, given: Sheet, emptied: Any) -> None:
+        self.given = given
+        unit = lcm(*(x.denominator for point in given.points.values() for x in point))
+        points: dict[int, Any] = {
+            v: (int(x * unit), int(y * unit)) for v, (x, y) in given.points.items()
+        }
+        self.sheet, self.removed = emptied_sheet(given, points, emptied)
+        self.open = self.sheet
+        self.corner: int | None = None
+        self.fixed = False
+
+    def fix_rim(self) -> None:
+        """Ask for a quadrilateral, with its saddle positive or its reflex corner up."""
+        require(len(self.sheet.boundary) == 4, "there are not four boundary vertices")
+        self.sheet, self.corner = closed(self.sheet)
+        self.fixed = True
+
+    def check_convex(self) -> None:
+        """Raise unless the boundary is convex."""
+        cycle = self.sheet.boundary
+        for k, v in enumerate(cycle):
+            corner = (cycle[k - 1], v, cycle[(k + 1) % len(cycle)])
+            side = turn(*(self.sheet.points[u] for u in corner))
+            require(side >= 0, "the boundary is not convex")
+
+    def proof(self, numerators: Any, denominator: Any) -> Proof:
+        """What heights prove."""
+        texts = items(numerators, "heights", len(self.given.points))
+        fits = all((texts[v] is None) == (v in self.removed) for v in self.given.points)
+        require(fits, "heights do not fit")
+        heights = {v: parse_integer(texts[v]) for v in self.sheet.points}
+        q = parse_integer(denominator)
+        require(q > 0, "the denominator is not positive")
+        if self.fixed:
+            _check_gauge(self.sheet, heights, self.corner)
+        proof = Proof(self.sheet, heights, q, self.corner)
+        if self.corner is not None:
+            require(proof.signs[self.corner] == 1, "the reflex corner does not pop up")
+        return proof
+
+    def signs(self, proof: Proof) -> list[int]:
+        """The signs of the interior vertices of the given sheet, 0 where the star is flat."""
+        seen: dict[int, set[str]] = {v: set() for v in self.sheet.points}
+        for fold, letter in proof.letters.items():
+            for v in fold:
+                seen[v].add(letter)
+        signs = []
+        for v in self.given.interior:
+            sign = 0
+            if v not in self.removed and seen[v] != {"F"}:
+                require(seen[v] & {"M", "V"}, f"vertex {v} may be flat")
+                sign = proof.signs[v]
+            signs.append(sign)
+        return signs
+
+    def letters(self, proof: Proof) -> list[str]:
+        """The letters of the folds of the given sheet, "U" where they are not proved."""
+        return [
+            "F" if not self.removed.isdisjoint(fold) else proof.letters[fold]
+            for fold in self.given.folds
+        ]
 
 
 def _check_gauge(sheet: Sheet, heights: Heights, corner: int | None) -> None:
@@ -107,27 +157,16 @@ def _check_gauge(sheet: Sheet, heights: Heights, corner: int | None) -> None:
     require(saddle * next(w for w in weights if w) > 0, "the saddle is not positive")
 
 
-def _check_signs(given: Sheet, signs: Any, proof: Proof, removed: set[int]) -> None:
-    if proof.corner is not None:
-        require(proof.signs[proof.corner] == 1, "the reflex corner does not pop up")
-    seen: dict[int, set[str]] = {v: set() for v in proof.sheet.points}
-    for fold, letter in proof.letters.items():
-        for v in fold:
-            seen[v].add(letter)
-    values = items(signs, "vertex_signs", len(given.interior))
-    for v, sign in zip(given.interior, values, strict=True):
-        expected = 0
-        if v not in removed and seen[v] != {"F"}:
-            require(seen[v] & {"M", "V"}, f"vertex {v} may be flat")
-            expected = proof.signs[v]
+def _check_signs(place: Place, signs: Any, proof: Proof) -> None:
+    values = items(signs, "vertex_signs", len(place.given.interior))
+    for v, sign, expected in zip(place.given.interior, values, place.signs(proof), strict=True):
         require(type(sign) is int and sign == expected, f"vertex {v} has another sign")
 
 
-def _check_letters(given: Sheet, letters: Any, proof: Proof, removed: set[int]) -> None:
-    require(isinstance(letters, str) and len(letters) == len(given.folds), "letters do not fit")
-    for fold, letter in zip(given.folds, letters, strict=True):
-        rigid = not removed.isdisjoint(fold)
-        expected = "F" if rigid else proof.letters[fold]
+def _check_letters(place: Place, letters: Any, proof: Proof) -> None:
+    folds = place.given.folds
+    require(isinstance(letters, str) and len(letters) == len(folds), "letters do not fit")
+    for fold, letter, expected in zip(folds, letters, place.letters(proof), strict=True):
         require(letter == expected or letter == "U", f"fold {fold} is not known to be {letter!a}")
 
 

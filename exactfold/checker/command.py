@@ -14,9 +14,9 @@ from os import PathLike
 from types import ModuleType
 from typing import Any
 
-from . import branch, compact, listing, motion, motion_loops, panels
+from . import branch, compact, letters, listing, motion, motion_loops, panels
 from .compact_lines import lines
-from .formats import BRANCH, COMPACT, LISTING, LOOPS, MOST_LINE, MOTION
+from .formats import BRANCH, COMPACT, LETTERS, LISTING, LOOPS, MOST_LINE, MOTION
 from .reading import CertificateError, FormatError, UnfinishedError, plain, read_json
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
@@ -61,6 +61,8 @@ def _reader(data: dict[str, Any]) -> ModuleType:
     """The module that reads and checks a JSON object."""
     if data.get("format") == BRANCH:
         return branch
+    if data.get("format") == LETTERS:
+        return letters
     if data.get("format") == MOTION:
         return motion
     if data.get("format") == LISTING and "kind" in data:
@@ -140,6 +142,8 @@ def summary(claims: dict[str, Any]) -> str:
         return panels.summary(claims)
     if "loops" in claims:
         return motion_loops.summary(claims)
+    if "halves" in claims:
+        return letters.summary(claims)
     if "tubes" in claims:
         return motion.summary(claims)
     return branch.summary(claims) if "gauge" in claims else listing.summary(claims)

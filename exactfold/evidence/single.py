@@ -27,12 +27,8 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
     >>> checker.check(certificate)["vertex_signs"]
     [1, -1, 1]
     """
-    root = branch.root
-    if branch.status is not PROVED or not isinstance(root, EnclosedRoot):
-        raise UsageError("there is no certificate of a branch that `find_branch` has not proved")
-    pattern, rigid = branch.pattern, branch.pattern.rigid_vertices
-    heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
-    denominator = lcm(*(h.denominator for h in heights if h is not None))
+    heights, denominator = heights_evidence(branch)
+    pattern, root = branch.pattern, _enclosed(branch)
     return {
         "format": BRANCH,
         "version": BRANCH_VERSION,
@@ -45,10 +41,30 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
         },
         "evidence": {
             "emptied": emptied_evidence(pattern),
-            "heights": [
-                None if h is None else format_integer(h.numerator * (denominator // h.denominator))
-                for h in heights
-            ],
-            "denominator": format_integer(denominator),
+            "heights": heights,
+            "denominator": denominator,
         },
     }
+
+
+def heights_evidence(branch: Branch) -> tuple[list[str | None], str]:
+    """The numerators by vertex, None inside of triangulated triangles, and their denominator.
+
+    Raises `UsageError` unless the branch was proved by `find_branch`.
+    """
+    root = _enclosed(branch)
+    rigid = branch.pattern.rigid_vertices
+    heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
+    denominator = lcm(*(h.denominator for h in heights if h is not None))
+    numerators = [
+        None if h is None else format_integer(h.numerator * (denominator // h.denominator))
+        for h in heights
+    ]
+    return numerators, format_integer(denominator)
+
+
+def _enclosed(branch: Branch) -> EnclosedRoot:
+    root = branch.root
+    if branch.status is not PROVED or not isinstance(root, EnclosedRoot):
+        raise UsageError("there is no certificate of a branch that `find_branch` has not proved")
+    return root
