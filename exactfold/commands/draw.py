@@ -28,7 +28,7 @@ from exactfold.report.crease_drawing import pattern_picture
 from exactfold.report.drawn_ways import branch_way, mode_way
 from exactfold.report.folded import Amount, Folded, folded
 from exactfold.report.picture_files import checked_picture, write_picture
-from exactfold.report.way_sheets import number_listed, sheet_of_ways
+from exactfold.report.way_sheets import number_listed, sheet_of_ways, why_no_way
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import counted
 
@@ -168,7 +168,7 @@ class Wanted:
         ways = self._counted(opened, bar)
         if isinstance(ways, BranchCount):
             raise NotCountedError("this sheet has no single ways to draw: draw it without --branch")
-        mode = self._chosen(panel_modes(ways))
+        mode = self._chosen(ways, panel_modes(ways))
         verdict = mode.extends.verdict
         if self.amount is None:
             if verdict is not PROVED:
@@ -180,8 +180,10 @@ class Wanted:
         motion = follow_panels(ways, modes=(mode.number,))
         return self._folded(folded(motion, self.amount, self._title)), verdict
 
-    def _chosen(self, modes: Sequence[PanelMode]) -> PanelMode:
+    def _chosen(self, ways: Decomposition, modes: Sequence[PanelMode]) -> PanelMode:
         place = self._place or 0
+        if not modes:
+            raise UsageError(f"{why_no_way(ways)}: draw the pattern without --branch")
         if place > len(modes):
             raise UsageError(f"--branch {place}: this sheet has {counted(len(modes), 'mode')}")
         return modes[place - 1]
@@ -207,9 +209,7 @@ class Wanted:
         bar("drawing")
         number = number_listed(result)
         if not number:
-            raise NotCountedError(
-                "`exactfold count` lists no single way to fold this pattern: draw it without --all"
-            )
+            raise NotCountedError(f"{why_no_way(result)}: draw the pattern without --all")
         if number > self.most:
             say(f"the first {self.most} of {number} are drawn: --most N draws more")
         return sheet_of_ways(result, self._title, self.most), result.status

@@ -80,7 +80,18 @@ def test_package_is_out_of_reach_of_the_copy(copies: dict[str, Path], tmp_path: 
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_certificates_of_every_kind_are_verified(run: Run, name: str) -> None:
+def test_certificates_of_every_kind_are_verified(
+    name: str, copies: dict[str, Path], tmp_path: Path
+) -> None:
+    _verifies(Run("folder", copies, tmp_path), name)
+
+
+@pytest.mark.parametrize("name", ["listing-isolated.json", "compact-blocks-of-4.txt"])
+def test_certificates_are_verified_in_every_way(run: Run, name: str) -> None:
+    _verifies(run, name)
+
+
+def _verifies(run: Run, name: str) -> None:
     shutil.copy(FIXTURES / name, run.folder)
     code, out, err = run(name)
     assert (code, err) == (0, "")
