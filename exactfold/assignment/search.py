@@ -63,7 +63,8 @@ class Match:
     were decided, and there may be more. `refutations` show for which signs there is none, each by
     vectors in the nappes of `sheet`, the pattern without what lies in triangulated triangles, where
     vertex v is `labels[v]` of the pattern; `reasons` are those that need no vector. `leaves`: how
-    many sign vectors were left, whose two halves were found and compared.
+    many sign vectors were left, whose two halves were found and compared: `compared` has both for
+    each of these signs.
     """
 
     pattern: CreasePattern
@@ -76,6 +77,7 @@ class Match:
     reasons: tuple[str, ...]
     open_signs: tuple[Mapping[int, int], ...]
     leaves: int
+    compared: tuple[tuple[Mapping[int, int], tuple[Matched, ...]], ...] = ()
 
     def __repr__(self) -> str:
         return f"<Match: {self.status}, {len(self.matches)} halves, {self.leaves} sign vectors>"
@@ -149,6 +151,7 @@ class _Search:
         self.matches: list[Matched] = []
         self.open: list[dict[int, int]] = []
         self.leaves = 0
+        self.compared: list[tuple[dict[int, int], tuple[Matched, ...]]] = []
 
     def result(self) -> Match:
         if not self._stays_flat() and (signs := self._at_vertices()) is not None:
@@ -164,6 +167,7 @@ class _Search:
             tuple(self.reasons),
             tuple(self.open),
             self.leaves,
+            tuple(self.compared),
         )
 
     def _stays_flat(self) -> bool:
@@ -232,20 +236,24 @@ class _Search:
         """Find both halves with all signs given, and compare their letters."""
         self.leaves += 1
         decided = True
+        halves: list[Matched] = []
         if self.progress is not None:
             self.progress("sign vectors", self.leaves, 0)
         for side in (1, -1):
             named = {self.labels[v]: side * sign for v, sign in signs.items()}
             branch = self.finder.find(named)
             half = Matched(branch, side)
+            halves.append(half)
             seen = half.assignment
             compared = [_agrees(letter, seen[fold]) for fold, letter in self.letters.items()]
             if branch.status is not PROVED or (False not in compared and None in compared):
                 decided = False
             elif False not in compared and half.names not in {m.names for m in self.matches}:
                 self.matches.append(half)
+        named = {self.labels[v]: sign for v, sign in signs.items()}
+        self.compared.append((named, tuple(halves)))
         if not decided:
-            self.open.append({self.labels[v]: sign for v, sign in signs.items()})
+            self.open.append(named)
 
 
 def _fold(i: int, j: int) -> Edge:
