@@ -1,9 +1,11 @@
-"""A half of a branch with few other letters, found by popping one vertex after the other."""
+"""A half of a branch with few other letters, found by popping vertices, one or two at a time."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import combinations
 
 from exactfold.assignment.refutation import Letters
 from exactfold.assignment.search import Matched
@@ -47,8 +49,8 @@ class Descent:
         moved = True
         while moved and best and self.done < self.finds:
             moved = False
-            for v in self._near(here):
-                there = here | {v: -here[v]}
+            for moves in self._moves(here):
+                there = here | {v: -here[v] for v in moves}
                 distance, halves = self._looked_at(there)
                 found += halves
                 if distance < best:
@@ -78,12 +80,15 @@ class Descent:
     def _differing(self, half: Matched) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
         return differing(self.letters, half.assignment)
 
-    def _near(self, signs: Mapping[int, int]) -> list[int]:
-        """Vertices that can pop, those with most folds of other letters first."""
+    def _moves(self, signs: Mapping[int, int]) -> Iterator[tuple[int, ...]]:
+        """Vertices to pop: one at an end of a fold of another letter, then two of them.
+
+        Those with most such folds first.
+        """
         _, halves = self._looked_at(signs)
-        wrong: dict[int, int] = {}
+        wrong: Counter[int] = Counter()
         for half in halves:
-            for fold in self._differing(half)[0]:
-                for v in fold:
-                    wrong[v] = wrong.get(v, 0) + 1
-        return sorted((v for v in self.finder.poppable if v in wrong), key=lambda v: (-wrong[v], v))
+            wrong.update(v for fold in self._differing(half)[0] for v in fold)
+        near = sorted((v for v in self.finder.poppable if v in wrong), key=lambda v: (-wrong[v], v))
+        yield from ((v,) for v in near)
+        yield from combinations(near, 2)

@@ -26,6 +26,8 @@ LISTED = 12
 """Most foldable vertices of which all branches are listed."""
 _MOST, _LEAST = 1000, 8
 """Searches for all vertices together, and for a sheet at least."""
+_FINDS = 6
+"""Branches that are looked at one by one, for each of the searches."""
 _LOCAL = 10
 """So many sets of folds whose stars alone refute them take the time of one that needs more."""
 
@@ -141,7 +143,7 @@ class _Search:
         bound = self._bound(frozenset())
         for _, halves in self.found.compared:
             self._note(halves)
-        descent = Descent(self.found.pattern, self.letters, 4 * self.tries, self.progress)
+        descent = Descent(self.found.pattern, self.letters, _FINDS * self.tries, self.progress)
         alone: dict[int, set[int]] = {}
         for clause in self.stars.clauses(frozenset()):
             for v, sign in clause.signs:
@@ -185,11 +187,15 @@ class _Search:
             if blamed is None:
                 open_.append(bound)
                 continue
-            for fold in sorted(blamed - freed):
-                more = freed | {fold}
-                if more not in seen:
-                    seen.add(more)
-                    heapq.heappush(queue, (max(bound, self._bound(more)), next(order), more))
+            sets = [freed | {fold} for fold in sorted(blamed - freed)]
+            bounds = {more: max(bound, self._bound(more)) for more in sets if more not in seen}
+            seen |= bounds.keys()
+            for more, larger in bounds.items():
+                heapq.heappush(queue, (larger, next(order), more))
+            best = self._best()
+            near = sum(row[0] + len(self.stuck) == best for row in queue)
+            if best == distance and self.tried + near > self.tries // 2:
+                break  # there is no time for all that may be as near
         left = [*open_, *(row[0] for row in queue[:1])]
         return min(left) + len(self.stuck) if left else None
 

@@ -158,7 +158,8 @@ class BranchCount(Page):
         if not self.letters or not self.branches:
             return None
         turned = {fold: x.translate(UPSIDE_DOWN) for fold, x in self.letters.items()}
-        found, unclear = [], []
+        found: list[tuple[int, int]] = []
+        unclear: list[tuple[int, int]] = []
         for k, branch in enumerate(self.branches, 1):
             for side, wanted in ((1, self.letters), (-1, turned)):
                 other, unknown = differing(wanted, branch.assignment)
