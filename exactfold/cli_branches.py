@@ -79,6 +79,42 @@ def branch(
 
 
 @reported
+def match(
+    pattern: Pattern,
+    letters: Annotated[
+        str | None,
+        typer.Option(
+            metavar="MVU...|0-4=M,...",
+            help="Instead of those of the file: M, V, F (flat) or U (free) for each fold in the "
+            "order of `count`, or by fold, the others free; @FILE reads.",
+        ),
+    ] = None,
+    most: Annotated[int, number("Compare the branches of N sign vectors at most.", least=1)] = 256,
+    tries: Annotated[
+        int | None,
+        number(
+            "Of the search for the nearest: free N sets of folds at most. More proves more. "
+            "Default: by the size of the sheet.",
+            least=0,
+        ),
+    ] = None,
+    as_json: Json = False,
+    snap: Snap = None,
+    sheet: Sheet = None,
+    everything: Annotated[bool, flag("--all", text="List every branch and reason.")] = False,
+) -> None:
+    """Find the ways to start folding that have the mountains and valleys of a file, with proof.
+
+    All of them; or that there is none and why, and then those that differ at the
+    fewest creases. Exit code 1: proved that there is none.
+    """
+    from exactfold.commands.match import Asked
+
+    asked = Asked(pattern, snap, sheet, letters, most, tries, as_json, everything)
+    raise typer.Exit(asked.answer())
+
+
+@reported
 def export(
     pattern: Pattern,
     signs: Signs = None,
@@ -304,5 +340,5 @@ def actuate(
     raise typer.Exit(asked.answer())
 
 
-COMMANDS = (branch, export, fold, motions, actuate)
+COMMANDS = (branch, match, export, fold, motions, actuate)
 """In the order in which the help lists them."""

@@ -21,6 +21,14 @@ class UsageError(ExactfoldError):
     """The call asks for something that does not exist or does not apply (exit code 2)."""
 
 
+class LettersError(UsageError):
+    """Mountain-valley letters that do not fit the folds: too many or few, unknown, on no fold."""
+
+
+class NoLettersError(UsageError):
+    """Letters of a file are asked for, and none of its folds is a mountain or a valley."""
+
+
 class BadCandidatesError(UsageError):
     """A solver returned something other than a set of finite points of the right shape."""
 

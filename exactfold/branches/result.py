@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any, overload
 
 from exactfold.branches.branch import Branch
+from exactfold.branches.letters import UPSIDE_DOWN, differing
 from exactfold.certify.algebraic import AlgebraicProof
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -39,6 +40,25 @@ class Proof:
     algebraic: AlgebraicProof | None = None
 
 
+@dataclass(frozen=True)
+class Lettered:
+    """Which of the branches listed have the letters of a file.
+
+    `ways`: the place in the list, from 1, and the side: 1 with the letters of the branch, -1 with
+    all of them reversed. `status` is PROVED if these are all; `unclear` are those of which a letter
+    is not known, and the others agree.
+    """
+
+    status: Verdict
+    ways: tuple[tuple[int, int], ...]
+    unclear: tuple[tuple[int, int], ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The key `letters` of `exactfold count --json`."""
+        ways = [{"way": way, "side": side} for way, side in self.ways]
+        return {"status": str(self.status), "ways": ways}
+
+
 @dataclass(frozen=True, repr=False)
 class BranchCount(Page):
     """What is known of the branches of a pattern at the unfolded state.
@@ -52,7 +72,7 @@ class BranchCount(Page):
     that is proved (docs/mathematics.md, Single vertex), else None. `branches` holds every branch
     decided, all of them if PROVED and D = 1; for D > 1 a branch is not a line, and none is listed.
     `proof` is what a certificate is written from. `open_questions` is what is missing; if PROVED,
-    folds with the letter "U".
+    folds with the letter "U". `letters` are those of the file, by fold; empty if it has none.
 
     `len(result)`, iteration and `result["+-"]` or `result[3]` are about `branches`.
     """
@@ -75,6 +95,7 @@ class BranchCount(Page):
     settings: Mapping[str, int | str] = field(default_factory=dict)
     snapped: Fraction = Fraction(0)
     read: Mapping[str, Any] | None = None
+    letters: Mapping[Edge, str] = field(default_factory=dict)
     seconds: float = field(default=0.0, compare=False)
 
     def __len__(self) -> int:
@@ -131,6 +152,22 @@ class BranchCount(Page):
             return "theorem"
         return "enumeration" if self.status is PROVED else None
 
+    @cached_property
+    def lettered(self) -> Lettered | None:
+        """Which branches have `letters`; None without letters, or if no branch is listed."""
+        if not self.letters or not self.branches:
+            return None
+        turned = {fold: x.translate(UPSIDE_DOWN) for fold, x in self.letters.items()}
+        found: list[tuple[int, int]] = []
+        unclear: list[tuple[int, int]] = []
+        for k, branch in enumerate(self.branches, 1):
+            for side, wanted in ((1, self.letters), (-1, turned)):
+                other, unknown = differing(wanted, branch.assignment)
+                if not other:
+                    (unclear if unknown else found).append((k, side))
+        proved = self.status is PROVED and not unclear
+        return Lettered(PROVED if proved else UNDECIDED, tuple(found), tuple(unclear))
+
     def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
         """The object printed by `exactfold count --json`: `schema("count")`."""
         return {
@@ -155,6 +192,7 @@ class BranchCount(Page):
             "settings": dict(self.settings),
             "branches": [branch.to_dict() for branch in self.branches],
             "theory": "branches",
+            "letters": None if self.lettered is None else self.lettered.to_dict(),
             "rigid": self.distinct == 0 if self.status is PROVED else None,
             **dict.fromkeys(("components", "modes_count")),
             **{

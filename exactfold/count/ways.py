@@ -74,7 +74,7 @@ def count_opened(
     sheet = opened.sheet
     if isinstance(sheet, CreasePattern) and has_branches(sheet):
         result = count_branches(sheet, method=method, seed=seed, progress=progress)
-        return replace(result, snapped=opened.snapped, read=opened.read)
+        return replace(result, snapped=opened.snapped, read=opened.read, letters=opened.letters)
     from exactfold.modes.decomposition import decompose  # here, as branches do without
 
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet

@@ -109,6 +109,7 @@ class Decomposition(Page):
             "settings": {},
             "branches": [],
             "theory": self.theory,
+            "letters": None,
             "rigid": rigid,
             "components": {
                 key: None if value is None else {str(k): n for k, n in value.items()}

@@ -22,7 +22,7 @@ from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import agreeing, counted
 
 if TYPE_CHECKING:
-    from exactfold.branches.result import BranchCount
+    from exactfold.branches.result import BranchCount, Lettered
     from exactfold.count.stream import StreamedCount
 
 METHODS = {
@@ -148,11 +148,31 @@ def _notes(
         )
     if result.snapped:
         notes.append(f"coordinates were moved by up to {decimal_above(result.snapped, 3)} (--snap)")
+    if result.lettered is not None:
+        notes.append(_lettered(result.lettered))
     if streamed is not None:
         notes += [f"{name}: {value}" for name, value in _stream_rows(streamed)]
     if certificate:
         notes.append(f"certificate: {certificate}")
     return notes
+
+
+def _lettered(found: Lettered) -> str:
+    """Which ways have the letters of the file, in a sentence."""
+    sure = found.status is PROVED
+    if not found.ways:
+        if not sure:
+            return "no way is proved to have the mountains and valleys of the file"
+        return (
+            "no way has the mountains and valleys of the file: `exactfold match` says why, and "
+            "which are nearest"
+        )
+    ways = [f"{way}{' (other side)' if side < 0 else ''}" for way, side in found.ways[:NAMED]]
+    more = f" and {len(found.ways) - NAMED} more" if len(found.ways) > NAMED else ""
+    has = "has" if len(found.ways) == 1 else "have"
+    word = "way" if len(found.ways) == 1 else "ways"
+    rest = "" if sure else "; perhaps others have them, too"
+    return f"{word} {', '.join(ways)}{more} {has} the mountains and valleys of the file{rest}"
 
 
 def _details(result: BranchCount, streamed: StreamedCount | None) -> list[tuple[str, Any]]:

@@ -14,6 +14,7 @@ VERSIONS: Final = {
     "count": 1,
     "count-stream": 1,
     "branch": 1,
+    "match": 1,
     "export": 1,
     "motion": 1,
     "motions": 1,
