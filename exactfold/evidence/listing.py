@@ -20,7 +20,7 @@ from exactfold.evidence.entries import (
     triangle_evidence,
 )
 from exactfold.exact.numbers import shown
-from exactfold.verdict import PROVED
+from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 
 def certificate(result: BranchCount) -> Document:
@@ -43,7 +43,7 @@ def certificate(result: BranchCount) -> Document:
         "with_multiplicity": result.with_multiplicity,
         "real": result.real,
         "nonreal": result.nonreal,
-        "true_branches": str(result.true_branches),
+        "true_branches": str(_true_branches(result)),
         "branches": [
             {
                 "vertex_signs": branch.sign_text,
@@ -60,6 +60,16 @@ def certificate(result: BranchCount) -> Document:
         "python": platform.python_version(),
     }
     return document(result.pattern, claims, _evidence(result.proof, result.branches), provenance)
+
+
+def _true_branches(result: BranchCount) -> Verdict:
+    """What simple solutions prove; that multiple ones fold once is left to the theorem."""
+    simple = result.proof is None or result.proof.algebraic is None or _all_simple(result)
+    return result.true_branches if simple else UNDECIDED
+
+
+def _all_simple(result: BranchCount) -> bool:
+    return result.distinct == (result.with_multiplicity or 0) >> result.pattern.Vt
 
 
 def _evidence(proof: Proof, branches: tuple[Branch, ...]) -> Document:
