@@ -22,10 +22,6 @@ _MOST_WHOLE: Final = 16
 _MOST_LOCAL: Final = 300
 """Most foldable vertices of a sheet whose joints are looked for at all."""
 
-_TOO_LARGE: Final = (
-    f"all joints are looked for in sheets of up to {_MOST_WHOLE} foldable vertices only"
-)
-
 
 def find_pieces(pattern: PatternLike, *, progress: Progress | None = None) -> Pieces:
     """The pieces of the solutions of a sheet with a convex border and D >= 2, with their joints.
@@ -93,7 +89,8 @@ class _Search:
                 self.open |= dict.fromkeys(vertices, "not needed: all sign vectors are joined")
                 continue
             if not small:
-                self.open |= dict.fromkeys(vertices, _TOO_LARGE)
+                reason = f"joints are looked for at every vertex of up to {_MOST_WHOLE} only"
+                self.open |= dict.fromkeys(vertices, reason)
                 continue
             solutions = flat_solutions(moving)
             self._add(solutions.joints)

@@ -82,7 +82,7 @@ def test_every_other_command(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "pattern",
     [
-        scrambled(5, DENTED, 4, loose=True),
+        scrambled(2, DENTED, 4, loose=True),
         scrambled(5, HEXAGON, 4, loose=True),
         scrambled(1, TRIANGLE, 3),
         nested_triangles(),
@@ -172,7 +172,7 @@ def test_schemas_refuse_what_is_not_documented() -> None:
 
 
 def test_an_undecided_count_has_no_numbers(tmp_path: Path) -> None:
-    write_fold(scrambled(5, DENTED, 4, loose=True), tmp_path / "p.fold")
+    write_fold(scrambled(2, DENTED, 4, loose=True), tmp_path / "p.fold")
     result = run("count", tmp_path / "p.fold", "--json")
     assert result.exit_code == UNDECIDED
     with pytest.raises(ValidationError):
