@@ -38,8 +38,8 @@ def certificate(result: BranchCount) -> Document:
         raise UsageError(f"{shown(result)} is not a count: give what `count_branches` returns")
     if result.pieces is not None and result.proof is None:
         raise NotApplicableError(
-            "no certificate: that the solutions are graphs over the rim follows from a theorem, and "
-            "how they are joined has no certificate yet"
+            "no certificate: that the solutions are graphs over the rim follows from a theorem, "
+            "and how they are joined has no certificate yet"
         )
     if result.status is not PROVED or result.proof is None:
         raise NotApplicableError(f"no certificate: the count is {result.status} ({result.reason})")
