@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, Final, overload
 
 from exactfold.branches.branch import Branch
 from exactfold.branches.letters import UPSIDE_DOWN, differing
@@ -22,6 +22,13 @@ from exactfold.schemas import headed
 from exactfold.showing import Page
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import counted
+
+if TYPE_CHECKING:  # branches are counted without what panels need
+    from exactfold.modes.result import Decomposition
+    from exactfold.pieces.result import Pieces
+
+
+_LISTS: Final = ("modes", "flat_folds", "still_folds", "free_folds", "near_misses")
 
 
 @dataclass(frozen=True)
@@ -67,10 +74,14 @@ class BranchCount(Page):
     missing; `why` says why the method was chosen. `distinct` counts branches as lines (for D = 1),
     `with_multiplicity` the solutions of the branch system with multiplicity, `real` and `nonreal`
     its distinct solutions by reality. `true_branches` is PROVED when the count is also that of the
-    true configuration space (docs/mathematics.md, True branches). `dimension` and `degree` are
-    those of the cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi where
-    that is proved (docs/mathematics.md, Single vertex), else None. `branches` holds every branch
-    decided, all of them if PROVED and D = 1; for D > 1 a branch is not a line, and none is listed.
+    true configuration space (docs/mathematics.md, True branches), and `true_bounds` are bounds of
+    the number of true branches for D = 1 (docs/any_border.md, Theorem 8). `dimension` and `degree`
+    are those of the cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi
+    where that is proved (docs/mathematics.md, Single vertex), else None. `branches` holds every
+    branch decided, all of them if PROVED and D = 1; for D > 1 a branch is not a line, and none is
+    listed. There, for a convex border, the solutions are 2^n graphs over the rim heights, and
+    `pieces` says into how many pieces they fall; `families` are their irreducible components, where
+    `count_ways` looked for them. The counts are None, except for a single vertex.
     `proof` is what a certificate is written from. `open_questions` is what is missing; if PROVED,
     folds with the letter "U". `letters` are those of the file, by fold; empty if it has none.
 
@@ -87,6 +98,7 @@ class BranchCount(Page):
     real: int | None = None
     nonreal: int | None = None
     true_branches: Verdict = UNDECIDED
+    true_bounds: tuple[int, int] | None = None
     dimension: int | None = None
     degree: int | None = None
     branches: tuple[Branch, ...] = ()
@@ -96,6 +108,8 @@ class BranchCount(Page):
     snapped: Fraction = Fraction(0)
     read: Mapping[str, Any] | None = None
     letters: Mapping[Edge, str] = field(default_factory=dict)
+    pieces: Pieces | None = None
+    families: Decomposition | None = None
     seconds: float = field(default=0.0, compare=False)
 
     def __len__(self) -> int:
@@ -183,6 +197,7 @@ class BranchCount(Page):
             "real": self.real,
             "nonreal": self.nonreal,
             "true_branches": str(self.true_branches),
+            "true_bounds": None if self.true_bounds is None else list(self.true_bounds),
             "dimension": self.dimension,
             "degree": _number(self.degree),
             "certificate": certificate,
@@ -194,13 +209,17 @@ class BranchCount(Page):
             "theory": "branches",
             "letters": None if self.lettered is None else self.lettered.to_dict(),
             "rigid": self.distinct == 0 if self.status is PROVED else None,
-            **dict.fromkeys(("components", "modes_count")),
-            **{
-                key: []
-                for key in ("modes", "flat_folds", "still_folds", "free_folds", "near_misses")
-            },
+            **self._families(),
+            "pieces": None if self.pieces is None else self.pieces.to_dict(),
             "read": None if self.read is None else dict(self.read),
         }
+
+    def _families(self) -> dict[str, Any]:
+        """The keys of JSON that belong to irreducible components."""
+        if self.families is not None:
+            found = self.families.to_dict()
+            return {key: found[key] for key in ("components", "modes_count", *_LISTS)}
+        return {**dict.fromkeys(("components", "modes_count")), **{key: [] for key in _LISTS}}
 
     @property
     def sign_vectors(self) -> Counter[str]:
@@ -229,10 +248,14 @@ class BranchCount(Page):
         return sum(count for count in counts.values() if count > 1)
 
     def __repr__(self) -> str:
+        if self.pieces is not None and self.distinct is None:
+            return f"<BranchCount: {self.status}, {self.pieces!r}, {self.pattern!r}>"
         found = counted("?" if self.distinct is None else self.distinct, "branch")
         return f"<BranchCount: {self.status}, {found}, {self.pattern!r}>"
 
-    def _repr_latex_(self) -> str:
+    def _repr_latex_(self) -> str | None:
+        if self.pieces is not None and self.distinct is None:
+            return None
         if self.distinct is None:
             return r"$B = {?}\quad \text{(undecided)}$"
         return (

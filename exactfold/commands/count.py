@@ -103,14 +103,13 @@ class Asked:
         if self.certificate is None:
             return None
         if not isinstance(result, BranchCount):
-            from exactfold.evidence.panels import certificate_of_panels
-
-            try:
-                write_certificate(certificate_of_panels(result), self.certificate)
-            except NotApplicableError as error:
-                say(f"no certificate was written: {error}")
-                return None
-            return str(self.certificate)
+            return self._certified_panels(result, self.certificate)
+        if result.families is not None:
+            say(
+                "the graphs are proved by a theorem, and joints have no certificate: what is "
+                "certified is the list of irreducible components"
+            )
+            return self._certified_panels(result.families, self.certificate)
         if result.status is not PROVED:
             say("no certificate was written: nothing is proved")
         elif streamed is not None and result.proof is None:
@@ -119,3 +118,13 @@ class Asked:
             write_certificate(certificate_of(result), self.certificate)
             return str(self.certificate)
         return None
+
+    def _certified_panels(self, ways: Decomposition, file: Path) -> str | None:
+        from exactfold.evidence.panels import certificate_of_panels
+
+        try:
+            write_certificate(certificate_of_panels(ways), file)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
+            return None
+        return str(file)

@@ -12,7 +12,7 @@ from exactfold.branches.result import BranchCount
 from exactfold.commands.branch import chosen
 from exactfold.commands.patterns import located, read_any
 from exactfold.commands.shell import EXIT, STDIN, Bar, apart, name_of, say
-from exactfold.count.ways import count_opened
+from exactfold.count.ways import count_opened, decompose_opened
 from exactfold.drawing.drawing import Drawing, Snap
 from exactfold.errors import (
     FoldError,
@@ -198,10 +198,12 @@ class Wanted:
 
     def _counted(self, opened: Opened, bar: Bar) -> BranchCount | Decomposition:
         bar("solving")
-        result = count_opened(opened, progress=bar)
-        if result.warning is not None and not isinstance(result, BranchCount):
-            say(f"warning: {result.warning}")
-        return result
+        if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
+            return count_opened(opened, progress=bar)
+        ways = decompose_opened(opened, progress=bar)  # single modes can be drawn
+        if ways.warning is not None:
+            say(f"warning: {ways.warning}")
+        return ways
 
     def _all(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
         """All ways that are listed, as small multiples."""

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from exactfold.branches.branch import Branch
 from exactfold.commands.branch import chosen
@@ -145,7 +145,7 @@ class Wanted:
     # --- panels ----------------------------------------------------------------------------------
 
     def _panels(self, opened: Opened, bar: Bar) -> PanelMotion:
-        from exactfold.count.ways import count_opened
+        from exactfold.count.ways import decompose_opened
         from exactfold.motion.panel_following import follow_panels
 
         given = {
@@ -165,7 +165,7 @@ class Wanted:
                 "--certificate is for motions along branches of triangulated sheets with four "
                 "corners; `exactfold count --certificate` proves how panels fold"
             )
-        ways = cast("Decomposition", count_opened(opened, progress=bar))
+        ways = decompose_opened(opened, progress=bar)
         if ways.warning is not None:
             say(f"warning: {ways.warning}")
         bar("following")
