@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import lcm
 from typing import Any
 
 from exactfold.branches.branch import Branch
 from exactfold.branches.roots import EnclosedRoot
-from exactfold.checker.formats import BRANCH, BRANCH_VERSION
+from exactfold.checker.formats import BRANCH, BRANCH_VERSION, CURVED_VERSION
 from exactfold.errors import UsageError
 from exactfold.evidence.entries import emptied_evidence, pattern_document
 from exactfold.exact.numbers import format_integer, format_rational
@@ -30,21 +31,25 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
     root = branch.root
     if branch.status is not PROVED or not isinstance(root, EnclosedRoot):
         raise UsageError("there is no certificate of a branch that `find_branch` has not proved")
-    pattern, rigid = branch.pattern, branch.pattern.rigid_vertices
+    pattern, curvature = branch.pattern, branch.curvature
+    kept = set(pattern.without_rigid_parts(curvature)[1])
+    rigid = set(range(len(pattern.vertices))) - kept
     heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
+    deficits = [format_rational(curvature.get(v, Fraction(0))) for v in pattern.interior]
     denominator = lcm(*(h.denominator for h in heights if h is not None))
     return {
         "format": BRANCH,
-        "version": BRANCH_VERSION,
+        "version": CURVED_VERSION if curvature else BRANCH_VERSION,
         "pattern": pattern_document(pattern),
         "claims": {
             "gauge": RIM if branch.gauge == RIM else SADDLE,
             "vertex_signs": [branch.vertex_signs[v] for v in pattern.interior],
             "assignment": branch.assignment_text,
             "squared_distance": format_rational(root.squared_distance),
+            **({"curvature": deficits} if curvature else {}),
         },
         "evidence": {
-            "emptied": emptied_evidence(pattern),
+            "emptied": emptied_evidence(pattern, curvature),
             "heights": [
                 None if h is None else format_integer(h.numerator * (denominator // h.denominator))
                 for h in heights
