@@ -19,6 +19,7 @@ VERSIONS: Final = {
     "motions": 1,
     "view": 1,
     "actuate": 1,
+    "assignments": 1,
     "info": 1,
     "convert": 1,
     "check": 1,
