@@ -317,5 +317,24 @@ def actuate(
     raise typer.Exit(asked.answer())
 
 
-COMMANDS = (branch, export, fold, motions, actuate)
+@reported
+def assignments(
+    pattern: Pattern,
+    everything: Annotated[bool, flag("--all", text="List every assignment.")] = False,
+    as_json: Json = False,
+    snap: Snap = None,
+    sheet: Sheet = None,
+) -> None:
+    """List every mountain-valley assignment with which a sheet with five corners starts to fold.
+
+    For a convex border of five vertices and up to five vertices inside that can
+    pop. The list is proved to be complete. With four corners, `count` lists
+    them with the branches.
+    """
+    from exactfold.commands.assignments import Listed
+
+    raise typer.Exit(Listed(pattern, snap, sheet, everything, as_json).answer())
+
+
+COMMANDS = (branch, export, fold, motions, actuate, assignments)
 """In the order in which the help lists them."""

@@ -1,3 +1,8 @@
+from exactfold.assignment.circles import AllAssignments as AllAssignments
+from exactfold.assignment.circles import Arc as Arc
+from exactfold.assignment.circles import Circle as Circle
+from exactfold.assignment.circles import Crossing as Crossing
+from exactfold.assignment.circles import all_assignments as all_assignments
 from exactfold.assignment.refutation import Refutation as Refutation
 from exactfold.assignment.search import Match as Match
 from exactfold.assignment.search import Matched as Matched

@@ -17,6 +17,7 @@ from exactfold.wording import counted
 if TYPE_CHECKING:
     from exactfold.branches.branch import Branch
     from exactfold.branches.export import BranchExport
+    from exactfold.count.shapes import ShapeCount
 
 Row = tuple[str, str, str, str]
 
@@ -65,6 +66,23 @@ def _rim(heights: Mapping[int, Fraction]) -> str:
     if not raised:
         return "all 0"
     return ", ".join([*raised, "others 0"] if len(raised) < len(heights) else raised)
+
+
+def shapes_report(result: ShapeCount, *, everything: bool = False) -> Group:
+    """The number of shapes with given angle deficits."""
+    low, high = result.bounds
+    number = f"{low}" if low == high else f"at least {low}, at most {high}"
+    deficits = ", ".join(f"{v}: {k}" for v, k in sorted(result.curvature.items()))
+    rows: list[tuple[str, str | Text]] = [
+        ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
+        ("shapes", f"{number}; {result.with_multiplicity} with multiplicity"),
+        ("angle deficits", cut(deficits)),
+        ("heights of the border", cut(_rim(result.rim))),
+    ]
+    if result.signs:
+        texts = ", ".join(result.signs)
+        rows.append(("vertex signs", texts if everything else cut(texts)))
+    return Group(facts_table(list(rows)))
 
 
 def branch_row(name: str, result: Branch) -> Row:

@@ -13,6 +13,7 @@ __all__ = ["VERSIONS", "schema"]
 VERSIONS: Final = {
     "count": 1,
     "count-stream": 1,
+    "shapes": 1,
     "branch": 1,
     "export": 1,
     "motion": 1,
