@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from exactfold.branches.result import BranchCount
 from exactfold.commands.branch import chosen
+from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import located, read_any
 from exactfold.commands.shell import EXIT, STDIN, Bar, apart, name_of, say
 from exactfold.count.ways import count_opened, decompose_opened
@@ -56,6 +57,7 @@ class Wanted:
     amount: Amount | None
     side: int | None
     output: Path | None
+    given: Given = NOTHING
 
     def answer(self) -> int:
         """Draw, write and say where; the exit code: 4 where a way that is drawn is not proved.
@@ -125,9 +127,12 @@ class Wanted:
         branches = isinstance(sheet, CreasePattern) and has_branches(sheet)
         if self.everything:
             return self._all(opened, bar)
-        if branches and isinstance(sheet, CreasePattern):
+        named = self._place is None or self.given
+        families = isinstance(sheet, CreasePattern) and sheet.Ve > 4 and sheet.interior and named
+        if (branches or families) and isinstance(sheet, CreasePattern):
             signs = None if self._place is not None else self.way
-            return self._branch(chosen(sheet, signs, self.up, self._place, bar), bar)
+            given = self.given if families or self.given else None
+            return self._branch(chosen(sheet, signs, self.up, self._place, bar, given), bar)
         return self._mode(opened, bar)
 
     def _raw(self) -> Drawing | None:

@@ -14,7 +14,7 @@ from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
-from exactfold.motion.following import Goal, follow
+from exactfold.motion.following import Goal, check_corners, follow
 from exactfold.motion.motion import Motion
 from exactfold.motion.writing import checked_ending, write_motion
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
@@ -72,6 +72,8 @@ class Wanted:
             opened = read_any(self.file, self.snap, self.sheet)
             sheet = opened.sheet
             motion: Motion | PanelMotion
+            if isinstance(sheet, CreasePattern) and (self.signs or self.up) is not None:
+                check_corners(sheet)
             if isinstance(sheet, CreasePattern) and has_branches(sheet):
                 branch = self._branch(sheet, bar)
                 try:

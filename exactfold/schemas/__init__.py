@@ -13,6 +13,7 @@ __all__ = ["VERSIONS", "schema"]
 VERSIONS: Final = {
     "count": 1,
     "count-stream": 1,
+    "shapes": 1,
     "branch": 1,
     "match": 1,
     "export": 1,
@@ -20,6 +21,7 @@ VERSIONS: Final = {
     "motions": 1,
     "view": 1,
     "actuate": 1,
+    "assignments": 1,
     "info": 1,
     "convert": 1,
     "check": 1,
