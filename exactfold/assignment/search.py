@@ -94,8 +94,9 @@ class Match:
     were decided, and there may be more. `refutations` show for which signs there is none, each by
     vectors in the nappes of `sheet`, the pattern without what lies in triangulated triangles, where
     vertex v is `labels[v]` of the pattern; `reasons` are those that need no vector. `leaves`: how
-    many sign vectors were left, whose two halves were found and compared; `tree` has all of this
-    in the order of the search, and is what `match_certificate` writes.
+    many sign vectors were left, whose two halves were found and compared: `compared` has both for
+    each of these signs. `tree` has all in the order of the search, and is what `match_certificate`
+    writes.
     """
 
     pattern: CreasePattern
@@ -109,6 +110,7 @@ class Match:
     open_signs: tuple[Mapping[int, int], ...]
     leaves: int
     tree: Tree
+    compared: tuple[tuple[Mapping[int, int], tuple[Matched, Matched]], ...] = ()
 
     def __repr__(self) -> str:
         return f"<Match: {self.status}, {len(self.matches)} halves, {self.leaves} sign vectors>"
@@ -181,10 +183,10 @@ class _Search:
         self.clauses = Clauses()
         self.possible: deque[SignArray] = deque(maxlen=_REMEMBERED)
         self.steps: list[Step] = []
-        self.halves: list[tuple[Matched, Matched]] = []
         self.reasons: list[str] = []
         self.matches: list[Matched] = []
         self.open: list[dict[int, int]] = []
+        self.compared: list[tuple[dict[int, int], tuple[Matched, Matched]]] = []
 
     def result(self) -> Match:
         if not self._stays_flat():
@@ -201,8 +203,9 @@ class _Search:
             tuple(each.refutation for each in tree.refuted if each.refutation is not None),
             tuple(self.reasons),
             tuple(self.open),
-            len(self.halves),
+            len(self.compared),
             tree,
+            tuple(self.compared),
         )
 
     def _tree(self) -> Tree:
@@ -214,7 +217,7 @@ class _Search:
             (kind, place[at[0]], *at[1:]) if kind in ("force", "refuted") else (kind, *at)
             for kind, *at in self.steps
         )
-        return Tree(refuted, steps, tuple(self.halves))
+        return Tree(refuted, steps, tuple(halves for _, halves in self.compared))
 
     def _stays_flat(self) -> bool:
         """Whether a letter is on a fold inside a triangulated triangle."""
@@ -252,7 +255,7 @@ class _Search:
             unknown = [v for v in self.sheet.interior if v not in signs]
             if not unknown:
                 self._compare(signs)
-            elif len(self.halves) + len(stack) + 2 > self.most:
+            elif len(self.compared) + len(stack) + 2 > self.most:
                 self.open.append({self.labels[v]: sign for v, sign in signs.items()})
             else:
                 v = self._by_weight(unknown)[0]
@@ -308,13 +311,14 @@ class _Search:
     def _compare(self, signs: dict[int, int]) -> None:
         """Find both halves with all signs given, and compare their letters."""
         if self.progress is not None:
-            self.progress("sign vectors", len(self.halves) + 1, 0)
+            self.progress("sign vectors", len(self.compared) + 1, 0)
         up, down = (self._half(signs, side) for side in (1, -1))
         self.steps.append(("leaf",))
-        self.halves.append((up, down))
+        named = {self.labels[v]: sign for v, sign in signs.items()}
+        self.compared.append((named, (up, down)))
         agreed = [self._agrees(half) for half in (up, down)]
         if None in agreed:
-            self.open.append({self.labels[v]: sign for v, sign in signs.items()})
+            self.open.append(named)
         for half, agrees in zip((up, down), agreed, strict=True):
             if agrees and half.names not in {m.names for m in self.matches}:
                 self.matches.append(half)

@@ -4,17 +4,20 @@ Why it is a proof: heights with K_v > 0 at every interior vertex bound the dista
 solution with the same signs (Theorem 5 of docs/branch.md, which also describes the file); heights
 that solve the equations exactly are that solution. The boundary must be convex, or that of a
 quadrilateral whose notch is closed here. Vertices inside a 3-cycle of edges stay flat (Theorem 2
-(a), applied to the triangle) and are removed. Other folds are flat if the heights are exact and
+(a), applied to the triangle) and are removed. In version 2 the curvatures K_v are not 0 but the
+angle deficits that are claimed, for a given rim; Theorem 5 holds as it is, and a vertex with a
+positive deficit is not flat. Other folds are flat if the heights are exact and
 flat there, or if K_v = 0 at a vertex leaves them no other choice (`close_flat`).
 """
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import lcm
 from typing import Any
 
 from .branch_proof import Heights, Proof
-from .formats import BRANCH, BRANCH_VERSION
+from .formats import BRANCH, BRANCH_VERSION, CURVED_VERSION
 from .reading import (
     MALFORMED,
     CertificateError,
@@ -31,7 +34,9 @@ from .sheet import Sheet, read_sheet, turn
 
 def read(data: Any) -> dict[str, Any]:
     """`data` if it is a certificate of one branch; raises `FormatError`."""
-    return document(data, BRANCH, BRANCH_VERSION, "format version pattern claims evidence")
+    curved = isinstance(data, dict) and data.get("version") == CURVED_VERSION
+    version = CURVED_VERSION if curved else BRANCH_VERSION
+    return document(data, BRANCH, version, "format version pattern claims evidence")
 
 
 def check(data: dict[str, Any]) -> dict[str, Any]:
@@ -40,7 +45,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     Returns the claims and the SHA-256 of the pattern. The claims are: of all branches, or of all
     solutions with the rim of the heights if `gauge` is "rim", exactly one has these vertex signs,
     all of them exact, 0 where the star is flat; its folds have these letters, "U" making no claim;
-    and for its heights h the integral of |grad(h - heights)|^2 is at most `squared_distance`.
+    and for its heights h the integral of |grad(h - heights)|^2 is at most `squared_distance`. In
+    version 2 "solutions" are those with K_v = `curvature`, in the order of the interior vertices.
     """
     try:
         return _check(data)
@@ -51,14 +57,18 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 def _check(data: dict[str, Any]) -> dict[str, Any]:
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
-    keys(claims, "gauge vertex_signs assignment squared_distance", "claims")
+    names = "gauge vertex_signs assignment squared_distance"
+    curved = data["version"] == CURVED_VERSION
+    keys(claims, f"{names} curvature" if curved else names, "claims")
     keys(evidence, "emptied heights denominator", "evidence")
     place = Place(given, evidence["emptied"])
+    targets = place.targets(claims["curvature"]) if curved else {}
     if claims["gauge"] != "rim":
+        require(not curved, "angle deficits need a given rim")
         require(claims["gauge"] == "saddle", "the gauge is neither saddle nor rim")
         place.fix_rim()
     place.check_convex()
-    proof = place.proof(evidence["heights"], evidence["denominator"])
+    proof = place.proof(evidence["heights"], evidence["denominator"], targets)
     require(
         proof.squared_distance <= parse_rational(claims["squared_distance"]),
         "the distance is larger than claimed",
@@ -80,9 +90,9 @@ class Place:
 
     def __init__(self, given: Sheet, emptied: Any) -> None:
         self.given = given
-        unit = lcm(*(x.denominator for point in given.points.values() for x in point))
+        self.unit = lcm(*(x.denominator for point in given.points.values() for x in point))
         points: dict[int, Any] = {
-            v: (int(x * unit), int(y * unit)) for v, (x, y) in given.points.items()
+            v: (int(x * self.unit), int(y * self.unit)) for v, (x, y) in given.points.items()
         }
         self.sheet, self.removed = emptied_sheet(given, points, emptied)
         self.open = self.sheet
@@ -103,7 +113,22 @@ class Place:
             side = turn(*(self.sheet.points[u] for u in corner))
             require(side >= 0, "the boundary is not convex")
 
-    def proof(self, numerators: Any, denominator: Any) -> Proof:
+    def targets(self, texts: Any) -> dict[int, Fraction]:
+        """The angle deficits that are not 0, for integer lengths."""
+        interior = self.given.interior
+        deficits = [parse_rational(text) for text in items(texts, "curvature", len(interior))]
+        found = {}
+        for v, deficit in zip(interior, deficits, strict=True):
+            require(deficit >= 0, f"the angle deficit of vertex {v} is negative")
+            bent = not deficit or v not in self.removed
+            require(bent, f"vertex {v} is not flat, as it has a deficit")
+            if deficit:
+                found[v] = deficit / self.unit**2
+        return found
+
+    def proof(
+        self, numerators: Any, denominator: Any, targets: dict[int, Fraction] | None = None
+    ) -> Proof:
         """What heights prove."""
         texts = items(numerators, "heights", len(self.given.points))
         fits = all((texts[v] is None) == (v in self.removed) for v in self.given.points)
@@ -113,7 +138,7 @@ class Place:
         require(q > 0, "the denominator is not positive")
         if self.fixed:
             _check_gauge(self.sheet, heights, self.corner)
-        proof = Proof(self.sheet, heights, q, self.corner)
+        proof = Proof(self.sheet, heights, q, self.corner, targets or {})
         if self.corner is not None:
             require(proof.signs[self.corner] == 1, "the reflex corner does not pop up")
         return proof
@@ -128,7 +153,8 @@ class Place:
         for v in self.given.interior:
             sign = 0
             if v not in self.removed and seen[v] != {"F"}:
-                require(seen[v] & {"M", "V"}, f"vertex {v} may be flat")
+                bent = seen[v] & {"M", "V"} or v in proof.targets
+                require(bent, f"vertex {v} may be flat")
                 sign = proof.signs[v]
             signs.append(sign)
         return signs
@@ -175,7 +201,8 @@ def summary(claims: dict[str, Any]) -> str:
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
     shown = signs if len(signs) <= 60 else signs[:60] + "..."
     decided = len(claims["assignment"]) - claims["assignment"].count("U")
+    what = "shape with these angle deficits" if "curvature" in claims else "branch"
     return (
-        f"VALID: exactly one branch has the vertex signs {shown} ({len(signs)}); "
+        f"VALID: exactly one {what} has the vertex signs {shown} ({len(signs)}); "
         f"{decided} of {len(claims['assignment'])} letters decided; sha256 {claims['sha256']}"
     )

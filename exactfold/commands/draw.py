@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 from exactfold.branches.result import BranchCount
 from exactfold.commands.branch import chosen
+from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import located, read_any
 from exactfold.commands.shell import EXIT, STDIN, Bar, apart, name_of, say
-from exactfold.count.ways import count_opened
+from exactfold.count.ways import count_opened, decompose_opened
 from exactfold.drawing.drawing import Drawing, Snap
 from exactfold.errors import (
     FoldError,
@@ -56,6 +57,7 @@ class Wanted:
     amount: Amount | None
     side: int | None
     output: Path | None
+    given: Given = NOTHING
 
     def answer(self) -> int:
         """Draw, write and say where; the exit code: 4 where a way that is drawn is not proved.
@@ -125,9 +127,12 @@ class Wanted:
         branches = isinstance(sheet, CreasePattern) and has_branches(sheet)
         if self.everything:
             return self._all(opened, bar)
-        if branches and isinstance(sheet, CreasePattern):
+        named = self._place is None or self.given
+        families = isinstance(sheet, CreasePattern) and sheet.Ve > 4 and sheet.interior and named
+        if (branches or families) and isinstance(sheet, CreasePattern):
             signs = None if self._place is not None else self.way
-            return self._branch(chosen(sheet, signs, self.up, self._place, bar), bar)
+            given = self.given if families or self.given else None
+            return self._branch(chosen(sheet, signs, self.up, self._place, bar, given), bar)
         return self._mode(opened, bar)
 
     def _raw(self) -> Drawing | None:
@@ -198,10 +203,12 @@ class Wanted:
 
     def _counted(self, opened: Opened, bar: Bar) -> BranchCount | Decomposition:
         bar("solving")
-        result = count_opened(opened, progress=bar)
-        if result.warning is not None and not isinstance(result, BranchCount):
-            say(f"warning: {result.warning}")
-        return result
+        if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
+            return count_opened(opened, progress=bar)
+        ways = decompose_opened(opened, progress=bar)  # single modes can be drawn
+        if ways.warning is not None:
+            say(f"warning: {ways.warning}")
+        return ways
 
     def _all(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
         """All ways that are listed, as small multiples."""
