@@ -171,7 +171,7 @@ def check(
         typer.Argument(
             callback=standard_input,
             metavar="CERTIFICATE",
-            help="A certificate written by `count`, `branch` or `motions`, of any kind.",
+            help="A certificate written by `count`, `branch`, `match` or `motions`, of any kind.",
         ),
     ],
     as_json: Json = False,

@@ -106,6 +106,10 @@ def match(
             least=0,
         ),
     ] = None,
+    certificate: Annotated[
+        Path | None,
+        written("Write a certificate, if all is proved.", "OUT.json"),
+    ] = None,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
@@ -118,7 +122,8 @@ def match(
     """
     from exactfold.commands.match import Asked
 
-    asked = Asked(pattern, snap, sheet, letters, most, tries, as_json, everything)
+    apart(certificate, pattern)
+    asked = Asked(pattern, snap, sheet, letters, most, tries, as_json, everything, certificate)
     raise typer.Exit(asked.answer())
 
 

@@ -8,13 +8,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from exactfold.assignment.certificate import match_certificate
 from exactfold.assignment.document import match_document
 from exactfold.assignment.nearest import nearest_branches
-from exactfold.assignment.search import match
+from exactfold.assignment.search import Match, match
 from exactfold.commands.patterns import read
-from exactfold.commands.shell import EXIT, Bar, name_of
+from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import LettersError, NoLettersError, UnreadableFileError
+from exactfold.evidence.entries import write_certificate
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.opening import Opened
 from exactfold.verdict import PROVED, REFUTED
@@ -33,6 +35,7 @@ class Asked:
     tries: int | None
     as_json: bool
     everything: bool
+    certificate: Path | None
 
     def answer(self) -> int:
         """Find the branches, or why there are none and the nearest, and print; the exit code.
@@ -50,6 +53,7 @@ class Asked:
             if not found.matches:
                 bar("nearest branches")
                 nearest = nearest_branches(found, tries=self.tries, progress=bar)
+            self._write(found, bar)
         seconds = time.perf_counter() - begin
         if self.as_json:
             print(json.dumps(match_document(found, nearest, name_of(self.file), seconds)))
@@ -59,6 +63,15 @@ class Asked:
             report.show(report.match_report(found, nearest, seconds, everything=self.everything))
         refuted = found.status is PROVED and not found.matches
         return EXIT[REFUTED if refuted else found.status]
+
+    def _write(self, found: Match, bar: Bar) -> None:
+        if self.certificate is None:
+            return
+        if found.status is PROVED:
+            bar("certificate")
+            write_certificate(match_certificate(found), self.certificate)
+        else:
+            say("no certificate was written: not all is proved")
 
     def _letters(self, pattern: CreasePattern, opened: Opened) -> Mapping[Edge, str]:
         if self.letters is None:
