@@ -83,13 +83,15 @@ class Stars:
         require(strict, f"{name}: no fold contradicts its letter")
 
     def _check_nappe(self, v: int, sign: int, star: Heights, name: str) -> None:
-        """2 K_v(z) is the sum of the jumps of the slope times the heights, z being 0 at v."""
-        double = sum((bend * star[w] / area for w, bend, area in self._bent(v, star)), Fraction(0))
-        require(double >= 0, f"{name}: K is negative at vertex {v}")
+        require(self.form(v, star) >= 0, f"{name}: K is negative at vertex {v}")
         if v not in self._sides:
             self._sides[v] = self.sheet.sign_of_vertex(v)
         side = sum(c * star[w] for w, c in self._sides[v].items() if w != v)
         require(sign * side >= 0, f"{name}: the star of {v} is on the other side")
+
+    def form(self, v: int, star: Heights) -> Fraction:
+        """2 K_v: the sum of the jumps of the slope times the heights, v being at height 0."""
+        return sum((bend * star[w] / area for w, bend, area in self._bent(v, star)), Fraction(0))
 
     def _bent(self, v: int, star: Heights) -> list[tuple[int, Fraction, Fraction]]:
         """By neighbour w: the bend of the fold vw, and the product of the areas beside it."""

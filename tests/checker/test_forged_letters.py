@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from typing import Any
 
 import pytest
@@ -12,6 +13,7 @@ from exactfold.assignment import match, match_certificate
 from exactfold.certify import enclosed
 from exactfold.checker import letters
 from exactfold.checker.branch import Place
+from exactfold.checker.letters_refuted import Stars
 from exactfold.checker.sheet import read_sheet
 from exactfold.evidence.single import heights_evidence
 
@@ -145,6 +147,10 @@ def test_letters_fit_the_folds() -> None:
     for text in ("", document["claims"]["letters"] + "U", list(document["claims"]["letters"])):
         document["claims"]["letters"] = text
         refused(document, "letters do not fit")
+    document = given(RIGID)
+    assert document["claims"]["letters"] == "UUUUUMUUUU"
+    document["claims"]["letters"] = "UVFUUMUUUU"
+    verified(document)
     document = given(REFLEX)
     document["claims"]["letters"] = "X" * 10
     stopped(document, "letters do not fit")
@@ -207,7 +213,10 @@ def test_a_step_has_a_known_kind() -> None:
 
 def test_what_stays_flat_is_rigid_and_has_a_letter() -> None:
     message = "no mountain or valley is asked for where the sheet is rigid"
-    stopped(none_left(given(RANDOM), [], [["flat", 4, 7]]), message)
+    document = given(RANDOM)
+    other = lettered(document, 4, "M")
+    assert other is not None
+    stopped(none_left(document, [], [["flat", min(4, other), max(4, other)]]), message)
     for letter in "UF":
         document = none_left(given(RIGID), [], [["flat", 2, 5]])
         document["claims"]["letters"] = letter * 10
@@ -345,6 +354,15 @@ def test_a_star_without_a_sign_is_in_one_plane() -> None:
     else:
         raise AssertionError
     stopped(document, "refuted set 3: the star of 5 has no sign and is not flat")
+
+
+def test_forms_are_those_of_the_other_formula() -> None:
+    sheet, _ = read_sheet(given(RANDOM)["pattern"])
+    stars, rng = Stars(sheet, {}), random.Random(1)
+    for v in sheet.interior:
+        heights = {w: rng.randint(-9, 9) for w in sheet.star(v)} | {v: 0}
+        value = sum(c * heights[i] * heights[j] for (i, j), c in sheet.curvature(v).items())
+        assert stars.form(v, heights) == 2 * value
 
 
 def test_a_star_is_in_its_closed_nappe() -> None:
