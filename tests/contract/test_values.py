@@ -154,6 +154,8 @@ VALUES = {
     "actuation": DRIVEN,
     "match": MATCH,
     "half of a branch": MATCH.matches[0],
+    "nearest branches": exactfold.assignment.nearest_branches(MATCH),
+    "branches with letters": exactfold.branches.Lettered(exactfold.PROVED, ((1, -1),)),
     "refutation of letters": MATCH.refutations[0],
     "directions": DRIVEN.directions,
     "orthogonal torques": DRIVEN.orthogonal,
