@@ -157,6 +157,8 @@ class BranchCount(Page):
     def warning(self) -> str | None:
         """What to know of the pattern before the count is read: see `near_degenerate`."""
         found = near_degenerate(self.pattern)
+        if found is None and self.families is not None:
+            return self.families.warning
         return None if found is None else found.text
 
     @property
@@ -197,7 +199,7 @@ class BranchCount(Page):
             "real": self.real,
             "nonreal": self.nonreal,
             "true_branches": str(self.true_branches),
-            "true_bounds": None if self.true_bounds is None else list(self.true_bounds),
+            "true_bounds": self._true_bounds(),
             "dimension": self.dimension,
             "degree": _number(self.degree),
             "certificate": certificate,
@@ -213,6 +215,9 @@ class BranchCount(Page):
             "pieces": None if self.pieces is None else self.pieces.to_dict(),
             "read": None if self.read is None else dict(self.read),
         }
+
+    def _true_bounds(self) -> list[int | str | None] | None:
+        return None if self.true_bounds is None else [_number(x) for x in self.true_bounds]
 
     def _families(self) -> dict[str, Any]:
         """The keys of JSON that belong to irreducible components."""

@@ -254,12 +254,19 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
         if (warning := result.warning) is not None:
             message = f"{message}{'; ' if message else ''}warning: {warning}"
         warned = warning is not None
-        ways = result.distinct if isinstance(result, BranchCount) else result.ways
+        ways = _ways(result)
         return Line(job.name, status, code, json.dumps(data), ways, message, warned)
     code = exit_code(result)
     error = error_document(result)["error"]
     data |= {"status": FAILED, "exit_code": code, "error": error, "result": None}
     return Line(job.name, FAILED, code, json.dumps(data), None, str(result))
+
+
+def _ways(result: BranchCount | Decomposition) -> int | None:
+    """The number of branches, or of families that truly fold; None if it is not known."""
+    if not isinstance(result, BranchCount):
+        return result.ways
+    return result.distinct if result.families is None else result.families.ways
 
 
 def _digest(job: Job) -> str | None:

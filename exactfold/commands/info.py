@@ -41,7 +41,7 @@ def show_info(
             if not has_branches(sheet):
                 warn(sheet)
                 both = _motions(panels(sheet))
-                data |= {**both.keys(), "expected": both.expected}
+                data |= {**both.keys(), "expected": report.expectation(facts, both)}
             table = report.info_report(facts, both, exact=exact)
     if as_json:
         print(json.dumps(data))

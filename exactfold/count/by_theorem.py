@@ -48,6 +48,7 @@ def too_many(pattern: CreasePattern) -> BranchCount:
         why="every triangulated quadrilateral has 2^Vi solutions with multiplicity, all real",
         with_multiplicity=1 << pattern.Vi,
         nonreal=0,
+        true_bounds=(1, 1 << free),
         dimension=pattern.degrees_of_freedom,
         degree=1 << pattern.Vi,
         seconds=time.perf_counter() - start,

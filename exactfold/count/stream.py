@@ -201,6 +201,7 @@ def _open(pattern: CreasePattern, conveyor: Conveyor, tally: Tally) -> BranchCou
         UNDECIDED,
         "streaming",
         f"{total - tally.unproved} of {counted(total, 'solution')} isolated; {culprits}",
+        true_bounds=(max(1, total - tally.unproved), total),
         why="a block of sign vectors at a time",
         open_questions=tuple(tally.questions()),
     )

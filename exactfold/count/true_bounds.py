@@ -19,7 +19,7 @@ _MOST_CLASSES: Final = 24
 
 
 def with_true_bounds(result: BranchCount) -> BranchCount:
-    """A proved count with bounds of the number of true branches, and the verdict that follows.
+    """A count with bounds of the number of true branches, and the verdict that follows.
 
     Near the flat state there is exactly one true configuration for each sign vector and each small
     rim (docs/any_border.md, Theorem 8). So a branch with f flat vertices is the start of at least
@@ -27,7 +27,8 @@ def with_true_bounds(result: BranchCount) -> BranchCount:
     truly folds along it.
     """
     if result.status is not PROVED or result.distinct is None:
-        return result
+        most = 1 << len(result.pattern.foldable_vertices)
+        return replace(result, true_bounds=(1, most))
     multiple = [branch for branch in result.branches if _flat(result.pattern, branch)]
     more = 0
     for branch, single in zip(multiple, _single(result.pattern, multiple), strict=True):

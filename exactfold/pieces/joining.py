@@ -29,7 +29,7 @@ def find_pieces(pattern: PatternLike, *, progress: Progress | None = None) -> Pi
     There is one solution for each sign vector and all rim heights modulo planes, so that the
     solutions are 2^n graphs over R^D, and their pieces without the flat state are the components of
     the graph of sign vectors in which e and e flipped at v are joined if some non-zero solution
-    with these signs is flat at v (docs/any_border.md, Theorems 6 and 7). For each vertex the sheet
+    with these signs is flat at v (docs/any_border.md, Theorem 7). For each vertex the sheet
     with its star held flat is solved exactly; what is not decided there is named in `open`, and
     gives bounds instead of a number.
 

@@ -57,7 +57,8 @@ def info_report(
         ),
         ("folds that split the sheet", _listed([f"{i}-{j}" for i, j in pattern.chords], ", ")),
     ]
-    rows += [("expected", expectation(facts))] if motions is None else _motion_rows(motions)
+    rows += [] if motions is None else _motion_rows(motions)
+    rows += [("expected", expectation(facts, motions))]
     if exact:
         rank = f"{facts.rigidity_rank}, by {facts.rank_by}"
         if facts.rank_by == "theorem":
@@ -86,6 +87,7 @@ def panels_info(facts: PanelFacts, *, exact: bool = False) -> Table:
         ("coordinates", f"in {pattern.field_name}"),
         ("interior degrees", degrees or "none"),
         *_motion_rows(facts),
+        ("expected", facts.expected),
     ]
     return facts_table([*rows, ("sha256", pattern.sha256)] if exact else list(rows))
 
@@ -96,7 +98,6 @@ def _motion_rows(facts: PanelFacts) -> list[tuple[str, str]]:
         ("folds that stay flat", _listed([f"{i}-{j}" for i, j in facts.flat], ", ")),
         ("folds from border to border", _listed([f"{i}-{j}" for i, j in facts.free], ", ")),
         ("parts that move independently", _listed(parts)),
-        ("expected", facts.expected),
     ]
 
 
@@ -115,10 +116,17 @@ def _listed(entries: list[str], separator: str = "; ") -> str:
     return separator.join(entries[:LISTED] + more) or "none"
 
 
-def expectation(facts: PatternFacts) -> str:
-    """What `count` will find where it counts branches, from the numbers of vertices alone."""
+def expectation(facts: PatternFacts, motions: PanelFacts | None = None) -> str:
+    """What `count` will find, from the numbers of vertices and from `motions` if it has them."""
     pattern = facts.pattern
     free = pattern.Vi - pattern.Vt
+    if motions is not None:
+        if not (pattern.is_convex and pattern.interior):
+            return motions.expected
+        return (
+            f"2^{free} graphs over the rim heights, of dimension {pattern.degrees_of_freedom}, and "
+            f"how they are joined; as panels: {motions.expected}"
+        )
     if pattern.degrees_of_freedom == 0:
         return "rigid: 0 ways to start folding"
     if pattern.degrees_of_freedom == 1:

@@ -17,6 +17,7 @@ from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.report.crease_drawing import pattern_picture
 from exactfold.report.drawn_ways import DrawnWay, branch_way, ways_of
 from exactfold.report.panels import panels_answer
+from exactfold.report.pieces import graphs
 from exactfold.report.stills import motion_stills
 from exactfold.report.svg import escape
 from exactfold.showing import shows
@@ -66,6 +67,8 @@ def _count(result: BranchCount) -> str:
         for way, branch in zip(shown, result.branches, strict=False)
     ]
     count = "" if result.distinct is None else f"{counted(result.distinct, 'branch')}, "
+    if result.pieces is not None and result.distinct is None:
+        count = f"{escape(graphs(result.pieces))}, "
     head = f"{count}<b>{result.status}</b> ({escape(result.reason)})"
     return _page(head, heads, rows, len(result.branches), result.warning)
 

@@ -65,6 +65,8 @@ def piece_notes(result: BranchCount) -> list[str]:
     if families is not None and families.status is PROVED and families.second_order is not None:
         kinds = ", ".join(f"{n} of dimension {d}" for d, n in families.second_order.items())
         notes.append(f"irreducible components: {kinds}")
+    if result.warning is not None:
+        notes.append(f"warning: {result.warning}")
     return notes
 
 

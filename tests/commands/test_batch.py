@@ -22,7 +22,7 @@ from running import (
     process,
     run,
 )
-from sheets import HEXAGON, scrambled
+from sheets import DENTED, scrambled
 
 from exactfold import count_branches, random_square, write_fold
 from exactfold.commands import batch
@@ -51,7 +51,7 @@ def lines(path: Path) -> list[dict]:
 def test_a_line_for_each_file_and_the_worst_exit_code(tmp_path: Path) -> None:
     good, open_, bad, out = (tmp_path / n for n in ("a.fold", "b.fold", "c.fold", "o.jsonl"))
     write_fold(random_square(3, seed=1), good)
-    write_fold(scrambled(5, HEXAGON, 4, loose=True), open_)
+    write_fold(scrambled(2, DENTED, 4, loose=True), open_)
     bad.write_text("{")
     given = ("count", good, open_, bad, tmp_path / "none.fold", "--jobs", 1, "--jsonl", out)
     result = run(*given)
@@ -190,7 +190,7 @@ def test_the_line_of_progress_tells_of_what_is_not_proved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, bad = tmp_path / "a.fold", tmp_path / "b.fold"
-    write_fold(scrambled(5, HEXAGON, 4, loose=True), path)
+    write_fold(scrambled(2, DENTED, 4, loose=True), path)
     bad.write_text("")
     seen = []
     monkeypatch.setattr(Bar, "__call__", lambda self, *state: seen.append(state))

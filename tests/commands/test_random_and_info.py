@@ -72,6 +72,7 @@ def test_info_agrees_with_count(name):
         ),
         (
             scrambled(1, HEXAGON, 2, loose=True),
+            "2^2 graphs over the rim heights, of dimension 3, and how they are joined; as panels: "
             "1 part with vertices that may fold, 1 of them with vertices of more than four folds",
         ),
     ],

@@ -46,6 +46,12 @@ def _streamed(folder):
 DRAWING = exactfold.read_drawing(exactfold.data.example_path("zigzags"))
 SHEETS = exactfold.drawing.exact_sheets(DRAWING)
 OPENED = exactfold.open_pattern(exactfold.data.example_path("zigzags"))
+PIECES = exactfold.pieces.find_pieces(
+    exactfold.CreasePattern(
+        [(0, 0), (4, 0), (5, 3), (2, 5), (-1, 3), (1, 2), (3, 2)],
+        [(0, 1, 5), (1, 6, 5), (1, 2, 6), (2, 3, 6), (3, 5, 6), (3, 4, 5), (4, 0, 5)],
+    )
+)
 MOTIONS = exactfold.decompose(OPENED.sheet)
 SPACES = exactfold.decompose(panels(single_vertex(5)))
 MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
@@ -130,6 +136,8 @@ VALUES = {
     "converted drawing": converted(OPENED),
     "panels": OPENED.sheet,
     "facts of panels": exactfold.count.panel_facts(OPENED.sheet),
+    "pieces": PIECES,
+    "joint": PIECES.joints[0],
     "decomposition": MOTIONS,
     "mode": MOTIONS.modes[0],
     "extension": MOTIONS.modes[0].extends,

@@ -156,6 +156,7 @@ TAKES_PATTERN_ELSEWHERE = {
     "count.stream_branches",
     "pattern.write_fold",
     "motion.find_loops",
+    "pieces.find_pieces",
 }
 
 

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import json
 import random
 from fractions import Fraction
 
 import networkx as nx
 import pytest
 from flint import fmpq
+from running import run
 from shapes import FOUR_CIRCLES, NEVER_FLAT, joined_by_shapes
 from sheets import DENTED, HEXAGON, scrambled, wheel, with_point
 
-from exactfold import PROVED, REFUTED, UNDECIDED, CreasePattern, count_branches
+from exactfold import PROVED, REFUTED, UNDECIDED, CreasePattern, checker, count_branches, write_fold
+from exactfold.count import hand_over
 from exactfold.errors import NotApplicableError
 from exactfold.modes.stars import edge_of, stars
 from exactfold.pattern.degenerate import DEGENERATE
-from exactfold.pattern.families import flat_vertex_square, single_vertex
+from exactfold.pattern.families import flat_vertex_square, single_vertex, waterbomb
 from exactfold.pattern.opening import panels
+from exactfold.pattern.random_squares import sample_random_square
 from exactfold.pieces import Joint, Pieces, find_pieces, flat_stars, joining
 from exactfold.pieces.cubes import components
 from exactfold.pieces.no_zero import have_no_common_zero
@@ -241,6 +245,40 @@ def test_a_double_line_that_is_not_shown_to_be_one_curve():
     assert result.true_branches is not REFUTED
 
 
+def test_true_branches_are_bounded_also_where_the_count_is_undecided(monkeypatch):
+    monkeypatch.setattr(hand_over, "flat_vertices", lambda chart, points: iter(()))
+    result = count_branches(flat_vertex_square(), method="popping")
+    assert (result.status, result.true_bounds) == (UNDECIDED, (1, 4))
+    large = count_branches(sample_random_square(60, seed=1, redraw=True).pattern)
+    assert large.true_bounds == (1, 2**60)
+    assert large.to_dict()["true_bounds"] == [1, "2^60"]
+
+
+# --- what is printed -----------------------------------------------------------------------------
+
+
+def test_the_answer_in_plain_words(tmp_path):
+    write_fold(pentagon(0, 2), tmp_path / "p.fold")
+    result = run("count", tmp_path / "p.fold", "--certificate", tmp_path / "c.json")
+    assert result.exit_code == 0
+    text = " ".join(result.stdout.split())
+    for words in (
+        "for every rim exactly one shape for each of 4 choices of vertices that pop up or down",
+        "these 4 graphs of dimension 2 fall into 2 pieces",
+        "1 vertex is flat in no way to start folding: 6",
+        "the true motions near the flat state form as many graphs, in 2 pieces",
+        "irreducible components: 2 of dimension 2",
+    ):
+        assert words in text
+    assert "joints have no certificate" in result.stderr
+    assert checker.verify(tmp_path / "c.json")  # of the components
+    data = json.loads(run("count", tmp_path / "p.fold", "--json").stdout)
+    assert (data["by"], data["distinct"], data["theory"]) == ("theorem", None, "branches")
+    assert (data["pieces"]["at_least"], data["pieces"]["at_most"]) == (2, 2)
+    assert data["pieces"]["joints"][0]["flat"] == [5]
+    assert data["components"]["second_order"] == {"2": 2}
+
+
 # --- a border that is not convex -----------------------------------------------------------------
 
 NOTCHED = wheel([(4, -4), ("1/10", 0), (4, 4), (-4, 4), (-4, -4)], (0, 0))
@@ -267,6 +305,12 @@ def test_pieces_are_for_convex_borders_with_more_than_four_corners():
         find_pieces(scrambled(1, DENTED, 2, loose=True))
     with pytest.raises(NotApplicableError, match="its solutions are branches"):
         find_pieces(flat_vertex_square())
+
+
+def test_patterns_are_given_by_name_or_path(tmp_path):
+    expected = find_pieces(waterbomb())
+    write_fold(waterbomb(), tmp_path / "p.fold")
+    assert find_pieces("waterbomb") == find_pieces(tmp_path / "p.fold") == expected
 
 
 def test_values_show_themselves():
