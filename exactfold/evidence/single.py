@@ -32,8 +32,8 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
     if branch.status is not PROVED or not isinstance(root, EnclosedRoot):
         raise UsageError("there is no certificate of a branch that `find_branch` has not proved")
     pattern, curvature = branch.pattern, branch.curvature
-    kept = set(pattern.without_rigid_parts(curvature)[1])
-    rigid = set(range(len(pattern.vertices))) - kept
+    emptied = emptied_evidence(pattern, curvature)
+    rigid = {v for entry in emptied for v in entry["inside"]}
     heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
     deficits = [format_rational(curvature.get(v, Fraction(0))) for v in pattern.interior]
     denominator = lcm(*(h.denominator for h in heights if h is not None))
@@ -49,7 +49,7 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
             **({"curvature": deficits} if curvature else {}),
         },
         "evidence": {
-            "emptied": emptied_evidence(pattern, curvature),
+            "emptied": emptied,
             "heights": [
                 None if h is None else format_integer(h.numerator * (denominator // h.denominator))
                 for h in heights
