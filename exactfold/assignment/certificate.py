@@ -29,6 +29,7 @@ def match_certificate(found: Match) -> Document:
     if found.status is not PROVED:
         raise NotApplicableError(f"there is no certificate of a match that is {found.status}")
     pattern = found.pattern
+    emptied = emptied_evidence(pattern)
     return {
         "format": LETTERS,
         "version": LETTERS_VERSION,
@@ -44,10 +45,10 @@ def match_certificate(found: Match) -> Document:
             ],
         },
         "evidence": {
-            "emptied": emptied_evidence(pattern),
+            "emptied": emptied,
             "refuted": [_refuted(found, each) for each in found.tree.refuted],
             "tree": [_step(found, step) for step in found.tree.steps],
-            "leaves": [[_half(half) for half in both] for both in found.tree.halves],
+            "leaves": [[_half(half, emptied) for half in both] for both in found.tree.halves],
         },
     }
 
@@ -76,6 +77,6 @@ def _step(found: Match, step: Step) -> list[str | int]:
     return [kind, *at]
 
 
-def _half(half: Matched) -> Document:
-    heights, denominator = heights_evidence(half.branch)
+def _half(half: Matched, emptied: list[Document]) -> Document:
+    heights, denominator = heights_evidence(half.branch, emptied)
     return {"heights": heights, "denominator": denominator}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from math import lcm
 from typing import Any
@@ -10,7 +11,7 @@ from exactfold.branches.branch import Branch
 from exactfold.branches.roots import EnclosedRoot
 from exactfold.checker.formats import BRANCH, BRANCH_VERSION, CURVED_VERSION
 from exactfold.errors import UsageError
-from exactfold.evidence.entries import emptied_evidence, pattern_document
+from exactfold.evidence.entries import Document, emptied_evidence, pattern_document
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.problem.gauge import RIM, SADDLE
 from exactfold.verdict import PROVED
@@ -28,8 +29,9 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
     >>> checker.check(certificate)["vertex_signs"]
     [1, -1, 1]
     """
-    heights, denominator = heights_evidence(branch)
     pattern, root, curvature = branch.pattern, _enclosed(branch), branch.curvature
+    emptied = emptied_evidence(pattern, curvature)
+    heights, denominator = heights_evidence(branch, emptied)
     deficits = [format_rational(curvature.get(v, Fraction(0))) for v in pattern.interior]
     return {
         "format": BRANCH,
@@ -43,23 +45,20 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
             **({"curvature": deficits} if curvature else {}),
         },
         "evidence": {
-            "emptied": emptied_evidence(pattern, curvature),
+            "emptied": emptied,
             "heights": heights,
             "denominator": denominator,
         },
     }
 
 
-def heights_evidence(branch: Branch) -> tuple[list[str | None], str]:
-    """The numerators by vertex, None inside of triangulated triangles, and their denominator.
+def heights_evidence(branch: Branch, emptied: Sequence[Document]) -> tuple[list[str | None], str]:
+    """The numerators by vertex, None inside the triangulated triangles `emptied`; the denominator.
 
     Raises `UsageError` unless the branch was proved by `find_branch`.
     """
     root = _enclosed(branch)
-    pattern = branch.pattern
-    rigid = set(range(len(pattern.vertices))) - set(
-        pattern.without_rigid_parts(branch.curvature)[1]
-    )
+    rigid = {v for entry in emptied for v in entry["inside"]}
     heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
     denominator = lcm(*(h.denominator for h in heights if h is not None))
     numerators = [

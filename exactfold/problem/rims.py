@@ -47,7 +47,7 @@ def default_rim(pattern: CreasePattern) -> dict[int, Fraction]:
 
     >>> from exactfold.pattern.families import single_vertex
     >>> sorted(map(str, default_rim(single_vertex(5)).values()))
-    ['-7/59', '0', '0', '0', '1']
+    ['-1', '0', '0', '0', '11/20']
     """
     _require_convex(pattern)
     boundary = pattern.boundary

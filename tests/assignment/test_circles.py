@@ -101,7 +101,7 @@ def test_the_list_of_a_pentagon_is_that_of_random_rims() -> None:
     assert found.status is PROVED
     assert [len(circle.arcs) for circle in found.circles] == [10, 6, 6, 10]
     assert len(found.assignments) == 32
-    assert set(found.assignments) == letters_by_resultant(PENTAGON, 800, 1)
+    assert set(found.assignments) == letters_by_resultant(PENTAGON, 300, 1)
     check_mirrors(found)
     for circle in found.circles:
         check_crossings(PENTAGON, circle)
@@ -152,6 +152,7 @@ def test_a_fold_from_border_to_border_crosses_every_circle_with_all_else_flat() 
         assert sum(c.vertices == (5,) for c in circle.crossings) == 2
 
 
+@pytest.mark.slow
 def test_numbers_of_vertices_do_not_matter() -> None:
     order = [6, 2, 0, 5, 3, 1, 4]
     moved = relabelled(PENTAGON, order)
@@ -163,6 +164,7 @@ def test_numbers_of_vertices_do_not_matter() -> None:
     assert back == set(all_assignments(PENTAGON).assignments)
 
 
+@pytest.mark.slow
 def test_a_triangulated_triangle_stays_flat() -> None:
     a, b, c = (PENTAGON.vertices[v] for v in PENTAGON.triangles[0])
     middle = tuple(sum((p[k] for p in (a, b, c)), Fraction(0)) / 3 for k in (0, 1))

@@ -265,7 +265,7 @@ def test_a_letter_that_is_not_known_is_not_taken_for_the_one_asked_for(
     monkeypatch.undo()
     document = match_certificate(match(pattern, find_branch(pattern, "-").assignment))
     verified(document)
-    heights, denominator = heights_evidence(rough)
+    heights, denominator = heights_evidence(rough, [])
     (leaf,) = document["evidence"]["leaves"]
     leaf[0] = {"heights": heights, "denominator": denominator}
     stopped(document, "a letter of a leaf is not known")

@@ -1,0 +1,108 @@
+"""--rim, --curvature and `assignments` on the command line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+from running import error_class, run
+
+from exactfold import checker, delaunay, families, write_fold
+from exactfold.schemas import schema
+
+RIM = '{"0": 1, "1": "-1/2", "2": 0.25, "3": 0, "4": 1e-1}'
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    corners = [(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9)]
+    write_fold(delaunay([*corners, (5, 4), (8, 7)]), "pentagon.fold")
+    write_fold(families.single_vertex(6), "six.fold")
+    Path("rim.json").write_text(RIM)
+    Path("deficits.json").write_text('{"5": "1/10", "6": 0.25}')
+    return tmp_path
+
+
+def test_a_branch_with_a_rim(here: Path) -> None:
+    options = ["branch", "pentagon.fold", "--signs", "+-", "--rim", "rim.json"]
+    done = run(*options, "--certificate", "c.json")
+    assert done.exit_code == 0
+    assert "0: 1, 1: -1/2, 2: 1/4, 4: 1/10, others 0" in " ".join(done.stdout.split())
+    assert checker.check(checker.load(Path("c.json").read_text()))["gauge"] == "rim"
+    found = json.loads(run(*options, "--json").stdout)
+    jsonschema.validate(found, schema("branch"))
+    assert [found["centres"][str(v)] for v in range(5)] == ["1", "-1/2", "1/4", "0", "1/10"]
+    assert run("branch", "pentagon.fold", "--signs", "+-").exit_code == 0
+
+
+def test_a_shape_with_deficits(here: Path) -> None:
+    options = ["branch", "pentagon.fold", "--signs", "+-", "--curvature", "deficits.json"]
+    done = run(*options, "--certificate", "c.json")
+    assert "angle deficits 5: 1/10, 6: 1/4" in " ".join(done.stdout.split())
+    assert checker.check(checker.load(Path("c.json").read_text()))["curvature"] == ["1/10", "1/4"]
+    counted = json.loads(
+        run("count", "pentagon.fold", "--curvature", "deficits.json", "--json").stdout
+    )
+    jsonschema.validate(counted, schema("shapes"))
+    assert counted["distinct"] == 4
+    assert run("count", "pentagon.fold", "--rim", "rim.json").exit_code == 2
+    more = run("count", "pentagon.fold", "--curvature", "deficits.json", "--stream", "x.txt")
+    assert more.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("option", "text", "name", "said"),
+    [
+        ("--rim", '{"0": 1}', "RimVertexError", "vertex 1 of the border has no height"),
+        ("--rim", RIM.replace("0.25", '"x"'), "RimHeightError", "the height of vertex 2: 'x'"),
+        ("--rim", RIM.replace("0.25", "NaN"), "RimHeightError", "the height of vertex 2: 'NaN'"),
+        ("--rim", RIM.replace('"3"', '"0"'), "BadRimError", "vertex 0 is there twice"),
+        ("--rim", RIM.replace('"3"', '"0-5"'), "RimVertexError", "0-5 is no vertex of the border"),
+        ("--rim", "[1, 2]", "BadRimError", "holds no numbers by vertex"),
+        ("--rim", "{", "BadRimError", "is not JSON"),
+        (
+            "--rim",
+            '{"0": 0, "1": 10, "2": 16, "3": 9, "4": -2}',
+            "FlatRimError",
+            "lie in one plane",
+        ),
+        ("--curvature", '{"5": -1}', "NegativeDeficitError", "deficit of vertex 5 is negative"),
+        ("--curvature", '{"0": 1}', "BadCurvatureError", "0 is no interior vertex"),
+        ("--curvature", '{"6": true}', "BadCurvatureError", "deficit of vertex 6"),
+    ],
+)
+def test_errors_name_the_file_and_the_vertex(
+    here: Path, option: str, text: str, name: str, said: str
+) -> None:
+    Path("bad.json").write_text(text)
+    done = run("branch", "pentagon.fold", "--signs", "+-", option, "bad.json", "--json")
+    assert done.exit_code == 3
+    assert error_class(done) == name
+    assert "bad.json" in done.stderr
+    assert said in done.stderr
+
+
+def test_such_a_branch_is_drawn_and_exported_and_not_followed(here: Path) -> None:
+    for options in (["--signs", "+-", "--rim", "rim.json"], ["--branch", "+-"], ["--up", "5"]):
+        done = run("draw", "pentagon.fold", *options, "-o", "a.svg")
+        assert done.exit_code == 0
+        assert "branch +-" in Path("a.svg").read_text()
+    exported = run("export", "pentagon.fold", "--signs", "+-", "--rim", "rim.json", "-o", "e.fold")
+    assert exported.exit_code == 0
+    for name, signs in (("pentagon.fold", "+-"), ("six.fold", "+")):
+        refused = run("fold", name, "--signs", signs)
+        assert refused.exit_code == 4
+        assert "do not name a motion of a sheet with" in refused.stderr
+        assert "rim=" not in refused.stderr
+
+
+def test_all_assignments(here: Path) -> None:
+    found = json.loads(run("assignments", "pentagon.fold", "--json").stdout)
+    jsonschema.validate(found, schema("assignments"))
+    assert (found["status"], found["number"]) == ("proved", 32)
+    shown = run("assignments", "pentagon.fold").stdout
+    assert all(letters in shown for letters in found["assignments"])
+    assert run("assignments", "six.fold").exit_code == 4
