@@ -138,7 +138,12 @@ def _arc_path(node: Passage) -> Path:
 
 
 def _rounded(value: Fraction, direction: int = -1) -> Fraction:
-    """A dyadic number near a rational one, not above it (-1) or not below it (1)."""
-    scaled = value * (1 << _PLACES)
+    """A dyadic number near a rational one, not above it (-1) or not below it (1).
+
+    It has about `_PLACES` binary places, whatever the unit is.
+    """
+    size = value.numerator.bit_length() - value.denominator.bit_length() if value else 0
+    unit = Fraction(2) ** (min(size, 0) - _PLACES)
+    scaled = value / unit
     whole = -(-scaled // 1) if direction > 0 else scaled // 1
-    return Fraction(int(whole), 1 << _PLACES)
+    return int(whole) * unit

@@ -23,10 +23,15 @@ _NEAR = 1e-4
 
 @dataclass(frozen=True, repr=False)
 class EnclosedPositions:
-    """Coordinates of all vertices of a pattern, each with a bound of its error, shape (V, 3)."""
+    """Coordinates of all vertices of a pattern, each with a bound of its error, shape (V, 3).
+
+    `from_the_pin`: the same points from the first pinned corner in the unit of the framework, in
+    floats without a bound, from which angles are read.
+    """
 
     coords: FloatArray
     radii: tuple[Fraction, ...]
+    from_the_pin: FloatArray
 
     @property
     def radius(self) -> float:
@@ -69,7 +74,15 @@ def positions_in(problem: Problem, framework: Framework, frame: Frame) -> Enclos
         max(abs(Fraction(f) - x) for f, x in zip(row, exact[v][0], strict=True)) + exact[v][1]
         for v, row in enumerate(coords.tolist())
     )
-    return EnclosedPositions(coords, radii)
+    x, y = pattern.vertices[problem.labels[framework.pinned[0]]]
+    pin, unit = (Fraction(x), Fraction(y), Fraction(0)), framework.unit
+    near = np.array(
+        [
+            [float((a - b) / unit) for a, b in zip(exact[v][0], pin, strict=True)]
+            for v in range(len(pattern.vertices))
+        ]
+    )
+    return EnclosedPositions(coords, radii, near)
 
 
 def with_enclosed_frames(
@@ -84,7 +97,8 @@ def with_enclosed_frames(
     coords = np.array([positions.coords for positions in found])
     if np.abs(coords - motion.coords).max() > _NEAR * float(framework.unit):
         return None
-    angles = fold_angles_of(coords, hinges_of(motion.pattern))
+    near = np.array([positions.from_the_pin for positions in found])
+    angles = fold_angles_of(near, hinges_of(motion.pattern))
     angles = angles + 2 * np.pi * np.rint((motion.angles - angles) / (2 * np.pi))
     times = [
         in_floats((min(low, Fraction(time)), max(high, Fraction(time))))

@@ -94,7 +94,7 @@ def follow(
         curve,
         times,
         coords,
-        angles_at(problem, curve, times, coords, side),
+        angles_at(problem, curve, times, unknowns, side),
         tuple(_named(event, problem, unit) for event in _in_order(events, end)),
         end,
         clock.perf_counter() - began,
@@ -274,8 +274,7 @@ def _at_equal_angles(problem: Problem, curve: Curve, by: Edge, frames: int) -> F
 
     def angles(times: FloatArray) -> FloatArray:
         unknowns = np.array([curve.at(time / unit) for time in times])
-        coords = in_space(problem, curve, unknowns, 1)
-        return angles_at(problem, curve, times, coords, 1)[:, at]
+        return angles_at(problem, curve, times, unknowns, 1)[:, at]
 
     coarse = np.linspace(0.0, curve.duration * unit, max(4 * frames, 100))
     values = angles(coarse)

@@ -114,9 +114,16 @@ class SheetInMotion(Protocol):
 
 
 def length_error(motion: SheetInMotion) -> float:
-    """The largest relative change of the length of an edge in any frame."""
+    """The largest relative change of the length of an edge in any frame.
+
+    It is 1 where the ends of an edge of the flat sheet have the same coordinates in floats.
+    """
     i, j = np.array(motion.pattern.edges, dtype=np.intp).T
-    lengths = np.linalg.norm(motion.coords[:, i] - motion.coords[:, j], axis=2)
+    edges = motion.coords[:, i] - motion.coords[:, j]
+    size = float(np.abs(edges).max())
+    lengths = np.linalg.norm(edges / (size or 1.0), axis=2)
+    if not lengths[0].min() > 0:
+        return 1.0
     return float(np.max(np.abs(lengths / lengths[0] - 1)))
 
 

@@ -266,12 +266,17 @@ def _check(found: Iterable[Loop]) -> None:
     """Raise `ArithmeticError` unless the proved loops are a matching of half-branches.
 
     Loops that were followed from both ends agree, no half-branch is matched with itself, and none
-    with two others: as two curves of a simple half-branch would have to be.
+    with two others: as two curves of a simple half-branch would have to be. Each flips one sign
+    more than stars are flat at its nodes, modulo 2 (docs/matching.md, Theorem 1a).
     """
     partner: dict[HalfBranch, HalfBranch] = {}
     for loop in found:
         if loop.target is None:
             continue
+        signs = zip(loop.source.vertex_signs, loop.target.vertex_signs, strict=True)
+        flips = sum(a != b for a, b in signs) + (loop.source.saddle != loop.target.saddle)
+        if (flips - 1 - sum(map(len, loop.through))) % 2:
+            raise ArithmeticError(f"the loop from {loop.source} contradicts the law of parity")
         for a, b in ((loop.source, loop.target), (loop.source.mirrored, loop.target.mirrored)):
             if a == b or partner.setdefault(a, b) != b or partner.setdefault(b, a) != a:
                 raise ArithmeticError(f"two proofs contradict each other at the half-branch {a}")

@@ -191,7 +191,7 @@ class Motion(Picture):
         """
         each = max(_SAMPLES, -(-least // len(self.curve.pieces)))
         times, unknowns = self.curve.samples(each)
-        coords = in_space(self._problem, self.curve, unknowns, self.side)
+        coords = _from_the_pin(self._problem, self.curve, unknowns, self.side)
         angles = np.unwrap(fold_angles_of(coords, hinges_of(self.branch.pattern)), axis=0)
         return times * float(self.curve.framework.unit), angles
 
@@ -250,35 +250,42 @@ def in_space(problem: Problem, curve: Curve, unknowns: FloatArray, side: int) ->
     What lies in a triangulated triangle moves with it. In the unit and at the place of the pattern.
     """
     framework, pattern = curve.framework, problem.pattern
-    reduced = framework.positions(unknowns) * float(framework.unit)
+    x, y = pattern.vertices[problem.labels[framework.pinned[0]]]
+    place = np.array([float(x), float(y), 0.0])
+    near = _from_the_pin(problem, curve, unknowns, side)
+    return np.asarray(near * float(framework.unit) + place)
+
+
+def _from_the_pin(problem: Problem, curve: Curve, unknowns: FloatArray, side: int) -> FloatArray:
+    """The same from the first pinned corner, in the unit of the framework.
+
+    Angles are read from these: far from the origin, or in very large or small units, coordinates of
+    the pattern have no digits left, or squares of them none.
+    """
+    framework, pattern = curve.framework, problem.pattern
     coords = np.zeros((len(unknowns), len(pattern.vertices), 3))
-    coords[:, problem.labels] = reduced
+    coords[:, problem.labels] = framework.positions(unknowns)
     for vertex, cycle, weights in problem.flat_inside:
         for corner, weight in zip(cycle, weights, strict=True):
             coords[:, vertex] += float(weight) * coords[:, corner]
-    x, y = pattern.vertices[problem.labels[framework.pinned[0]]]
-    coords += np.array([float(x), float(y), 0.0])
     coords[:, :, 2] *= side
     return coords
 
 
 def angles_at(
-    problem: Problem, curve: Curve, times: FloatArray, coords: FloatArray, side: int
+    problem: Problem, curve: Curve, times: FloatArray, unknowns: FloatArray, side: int
 ) -> FloatArray:
     """Fold angles of frames, continued without jumps along the whole curve, shape (times, folds).
 
-    Between the frames the curve is sampled, so that few frames suffice.
+    `unknowns`: of the framework at the times. Between the frames the curve is sampled, so that few
+    frames suffice.
     """
     hinges = hinges_of(problem.pattern)
-    between, unknowns = curve.samples(_SAMPLES)
+    between, there = curve.samples(_SAMPLES)
     unit = float(curve.framework.unit)
     whole = np.concatenate([between * unit, times])
-    angles = np.vstack(
-        [
-            fold_angles_of(in_space(problem, curve, unknowns, side), hinges),
-            fold_angles_of(coords, hinges),
-        ]
-    )
+    both = np.concatenate([there, unknowns])
+    angles = fold_angles_of(_from_the_pin(problem, curve, both, side), hinges)
     order = np.argsort(whole, kind="stable")
     continued = np.empty_like(angles)
     continued[order] = np.unwrap(angles[order], axis=0)

@@ -1,5 +1,6 @@
 """Loops: the matching of half-branches, by symmetries, by known rules, and at nodes."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -13,11 +14,14 @@ from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
 from exactfold.motion.flat_patches import FlatPatch
 from exactfold.motion.following import follow
 from exactfold.motion.framework import Framework
+from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.loops import LoopFinder
+from exactfold.motion.matching import _matching
 from exactfold.motion.node_tube import prove_node_tube
 from exactfold.motion.passages import Passage
 from exactfold.motion.piece import PARAMETER_BITS
 from exactfold.problem.problem import Problem
+from exactfold.rigidity.curvature import wheel_stress
 from exactfold.verdict import PROVED, UNDECIDED
 
 NODE_SHEET, NODE_SIGNS = random_square(8, seed=1), "------++"
@@ -135,6 +139,37 @@ def test_an_arc_through_a_node_keeps_all_lengths(passage):
     # Both velocities at the node are along one line: the arc goes straight on.
     before, after = (tube.ball_velocity(s << (PARAMETER_BITS - 20)).floats[0] for s in (-1, 1))
     assert np.abs(before - after).max() < 1e-5
+
+
+def test_the_law_of_parity_needs_nothing_more_at_a_proved_node(passage):
+    """Theorem 1a of docs/matching.md in floats: corank f, and the star's form is not 0 there."""
+    tube = passage.tube
+    framework, x = tube.framework, tube.node.floats[0]
+    _, sizes, right = np.linalg.svd(framework.jacobian(x).toarray())
+    assert (sizes < 1e-9).tolist() == [False] * (len(sizes) - 1) + [True]
+    kernel = right[len(sizes) - 1 :]
+    velocity = tube.ball_velocity(0).floats[0]
+    assert np.abs(velocity - kernel.T @ (kernel @ velocity)).max() < 1e-9
+    [v] = tube.patch.flat
+    stress = wheel_stress(framework.sheet, v)
+    weights = np.array([float(stress.get(tuple(edge), 0)) for edge in framework.edges.tolist()])
+    xi, basis = framework.along(velocity), framework.along(kernel)
+    form = np.einsum("e,ea,kea->k", weights, xi, basis)
+    size = np.abs(weights).max() * np.linalg.norm(velocity)
+    assert abs(form @ (kernel @ velocity)) < 1e-9 * size
+    assert np.abs(form).max() > 1e-3 * size
+
+
+def test_a_loop_against_the_law_of_parity_is_a_defect():
+    """One sign flips; two, or one through a single node, contradict it."""
+    loop = find_loops(random_square(1, seed=0)).loops[0]
+    assert _matching([loop]) == [loop]
+    signs, saddle = loop.target.vertex_signs, loop.target.saddle
+    turned = HalfBranch(tuple(-s for s in signs), saddle)
+    for lie in (replace(loop, target=turned), replace(loop, through=((4,),))):
+        with pytest.raises(ArithmeticError, match="contradicts the law of parity"):
+            _matching([lie])
+    _matching([replace(loop, through=((4,), (4,)))])
 
 
 def test_the_other_arc_through_a_node_has_another_direction(passage):
