@@ -95,6 +95,8 @@ def test_motions_are_rows_of_stills(zigzags):
     panels = follow_panels(zigzags, component=1, frames=6)
     assert panels._repr_svg_() == motion_stills(panels)
     assert len(words(panels._repr_svg_())) == 5
+    few = words(follow_panels(zigzags, component=1, frames=3)._repr_svg_())
+    assert len(few) == len(set(few)) == 3
 
 
 def test_other_values_are_not_shown():
