@@ -32,9 +32,11 @@ def motion_stills(motion: SheetInMotion, number: int = 5, title: str = "") -> st
     """A row of stills of a motion, from the flat sheet to its end, as an SVG file.
 
     All have the same scale and point of view; below each stand the largest fold angle and the time.
-    Layers that lie on each other are drawn as they came there.
+    Layers that lie on each other are drawn as they came there. A motion of fewer frames than
+    `number` has each of them once.
     """
-    places = np.linspace(0, len(motion.times) - 1, max(2, number)).round().astype(int)
+    count = min(len(motion.times), max(2, number))
+    places = np.linspace(0, len(motion.times) - 1, count).round().astype(int)
     shapes = [levelled(motion.coords[k], motion.coords[0]) for k in places]
     captions = [
         f"{_largest(motion.angles[k]):.0f}°, t = {motion.times[k]:.3g}" if k else "flat"

@@ -3,9 +3,19 @@
 from __future__ import annotations
 
 from collections import Counter
+from functools import cache
 from xml.etree import ElementTree
 
+from exactfold import open_pattern
+from exactfold.data import example_path
+
 NAME = "{http://www.w3.org/2000/svg}"
+
+
+@cache
+def shipped(name):
+    """A shipped pattern, read once."""
+    return open_pattern(example_path(name))
 
 
 def tree(text):

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from svg_reading import NAME, ends, group_of, letters, numbered, of_class, tree, words
+from svg_reading import NAME, ends, group_of, letters, numbered, of_class, shipped, tree, words
 
 from exactfold import CreasePattern, find_branch, load, open_pattern, random_square
 from exactfold.data import EXAMPLES, example_path
@@ -27,7 +27,7 @@ def random_8():
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_every_shipped_pattern_is_drawn_with_the_letters_of_its_file(name):
-    opened = open_pattern(example_path(name))
+    opened = shipped(name)
     sheet = opened.sheet
     text = pattern_picture(sheet, opened.assignment, title=name)
     folds = [opened.assignment.get(fold, "U") for fold in sheet.folds]

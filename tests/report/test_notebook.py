@@ -6,9 +6,9 @@ from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
-from svg_reading import NAME, letters, tree, words
+from svg_reading import NAME, letters, shipped, tree, words
 
-from exactfold import count_ways, find_branch, follow, open_pattern, random_square, read_fold
+from exactfold import count_ways, find_branch, follow, random_square, read_fold
 from exactfold.data import EXAMPLES, example_path
 from exactfold.drawing import read_drawing
 from exactfold.motion import follow_panels
@@ -35,7 +35,7 @@ def pictures(html):
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_patterns_and_files_are_pictures(name):
-    opened = open_pattern(example_path(name))
+    opened = shipped(name)
     assert opened._repr_svg_() == pattern_picture(opened.sheet, opened.assignment)
     assert opened.sheet._repr_svg_() == pattern_picture(opened.sheet)
     drawing = read_drawing(example_path(name))
@@ -95,6 +95,8 @@ def test_motions_are_rows_of_stills(zigzags):
     panels = follow_panels(zigzags, component=1, frames=6)
     assert panels._repr_svg_() == motion_stills(panels)
     assert len(words(panels._repr_svg_())) == 5
+    few = words(follow_panels(zigzags, component=1, frames=3)._repr_svg_())
+    assert len(few) == len(set(few)) == 3
 
 
 def test_other_values_are_not_shown():

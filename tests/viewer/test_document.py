@@ -4,6 +4,7 @@ import base64
 import hashlib
 import json
 import re
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,12 @@ CORNER_AND_CENTRE = CreasePattern(
     [*HEXAGON, (0, 0), (5, 3)], [*((k, (k + 1) % 6, 6) for k in range(6)), (0, 7, 1)]
 )
 """A hexagon with a vertex in the middle, and a corner with a fold from border to border."""
+
+
+@cache
+def document_of(name):
+    """The document of a shipped pattern with few frames, made once: no test changes it."""
+    return view_document(name, frames=3)
 
 
 @pytest.fixture(scope="module")
@@ -100,7 +107,7 @@ def test_the_branches_that_are_named_are_shown():
 
 
 def test_a_branch_with_a_flat_vertex_has_the_reason_in_place_of_a_motion():
-    document = view_document("flat-vertex", frames=2)
+    document = document_of("flat-vertex")
     flat = next(way for way in document["ways"] if "0" in way["signs"])
     assert flat["motion"] is None
     assert "is flat on this branch" in flat["why"]
@@ -109,7 +116,7 @@ def test_a_branch_with_a_flat_vertex_has_the_reason_in_place_of_a_motion():
 
 def test_panels_list_what_is_followed_and_what_is_not():
     ways = count_ways("zigzags")
-    document = view_document("zigzags", frames=3)
+    document = document_of("zigzags")
     components = panel_components(ways)
     followed = [way for way in document["ways"] if way["motion"]]
     assert (document["kind"], len(followed)) == ("panels", len(components))
@@ -123,7 +130,7 @@ def test_panels_list_what_is_followed_and_what_is_not():
 
 @pytest.mark.parametrize("name", ["flat-vertex", "zigzags", "waterbomb"])
 def test_documents_are_what_their_schema_says(name):
-    document = json.loads(json.dumps(view_document(name, frames=2)))
+    document = json.loads(json.dumps(document_of(name)))
     Draft202012Validator(schema("view")).validate(document)
     wrong = document | {"complete": "yes"}
     with pytest.raises(ValidationError, match="'yes' is not of type 'boolean'"):
@@ -131,7 +138,7 @@ def test_documents_are_what_their_schema_says(name):
 
 
 def test_it_says_what_is_proved_of_a_motion_of_panels():
-    said = [way["motion"]["said"] for way in view_document("zigzags", frames=2)["ways"][:3]]
+    said = [way["motion"]["said"] for way in document_of("zigzags")["ways"][:3]]
     assert said[0].startswith("until a fold is at 180 degrees, all angles growing; what is drawn")
     exact = "every vertex closes exactly at all fold angles; "
     assert said[2] == exact + "contacts were found in floats"
@@ -189,7 +196,7 @@ def test_lines_look_as_in_pictures(two_vertex):
 
 
 def test_a_sheet_without_ways_keeps_the_letters_of_its_file():
-    sheet = view_document("waterbomb")["sheet"]
+    sheet = document_of("waterbomb")["sheet"]
     opened = open_sheet("waterbomb")
     assert sheet["letters"] == "".join(opened.assignment.get(e, "U") for e in opened.sheet.folds)
 
