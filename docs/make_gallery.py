@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 
 from exactfold import count_branches, count_ways, families, follow, open_pattern
 from exactfold.branches import BranchCount
-from exactfold.data import DRAWINGS, SHEETS, example_path, examples
+from exactfold.data import BY_OTHERS, DRAWINGS, SHEETS, example_path, examples
 from exactfold.errors import NotFollowedError
 from exactfold.modes import Decomposition
 from exactfold.motion import Motion, PanelMotion, follow_panels
@@ -44,7 +44,9 @@ COLUMNS: Final = 4
 HEAD: Final = """# Gallery
 
 The patterns that come with exactfold, and one sheet of each family that it can build. Each has all
-its ways to fold, up to twelve, drawn on the crease pattern, and one of them folded in space.
+its ways to fold, up to twelve, drawn on the crease pattern, and one of them folded in space. Sheets
+that fold in families have no such list. Of panels round vertices with more than four folds, only
+the ways are drawn on which the tangents of half the fold angles stay in proportion.
 
 Mountains are red, valleys are blue and dashed, folds that stay flat are grey. A triangle that
 points up marks a vertex that pops up, one that points down a vertex that pops down. The width of a
@@ -57,8 +59,10 @@ FOOT: Final = """## How this page is made
 below a pattern make the same pictures; of the Python lines a notebook shows what they return.
 
 The windmill, fish and bird bases are traditional forms. The Miura fold is Koryo Miura's, the
-Yoshimura pattern is named after Yoshimaru Yoshimura, who described how thin tubes buckle. All files
-were drawn for exactfold and come with its licence.
+Yoshimura pattern is named after Yoshimaru Yoshimura, who described how thin tubes buckle. The files
+below "Drawn by others" come from Origami Simulator, with the MIT licence of that project, copyright
+2018 Amanda Ghassaei; the text of the licence is installed beside them. All other files were drawn
+for exactfold and come with its licence.
 """
 DEGENERATES: Final = tuple(
     name for name in DEGENERATE if name not in ("flat-vertex", "hypar-straight")
@@ -89,8 +93,14 @@ SHOWN: Final = {
     "notched": "A sheet with four corners, one of them reflex.",
 }
 """What each of them is, in one line."""
+SOURCE: Final = (
+    "Drawn by Amanda Ghassaei for [Origami Simulator]"
+    "(https://github.com/amandaghassaei/OrigamiSimulator), MIT licence."
+)
+"""Who made the drawings that come from elsewhere."""
 GROUPS: Final[dict[str, tuple[str, ...]]] = {
-    "Drawings": tuple(DRAWINGS),
+    "Drawings": tuple(name for name in DRAWINGS if name not in BY_OTHERS),
+    "Drawn by others": tuple(BY_OTHERS),
     "Triangulated sheets": SHEETS,
     "Families": tuple(name for name in BUILT if name not in DEGENERATES),
     "Flat vertices and straight creases": DEGENERATES,
@@ -156,7 +166,7 @@ class Card:
     def section(self) -> str:
         """What the page says of the pattern."""
         number, more = self.answer
-        language = "python" if self.name in BUILT else "sh"
+        name, language = self.name, "python" if self.name in BUILT else "sh"
         wide = width(self.ways) if number_listed(self.found) else ALONE
         pictures = [image(self.name, f"The ways to fold {self.name}", wide)]
         if self.still is not None:
@@ -165,7 +175,7 @@ class Card:
         parts = [
             f"### {self.name}",
             fill(f"**{number[:1].upper()}{number[1:]}**: proved{more}.", 100),
-            self.what,
+            f"{self.what}\n{SOURCE}" if name in BY_OTHERS else self.what,
             "\n".join(pictures),
             "\n".join([f"```{language}", *self.lines, "```"]),
         ]

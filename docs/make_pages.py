@@ -35,7 +35,7 @@ TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
         "Sheets of triangles and of panels, families of them, and drawings in files.",
         ("pattern", "pattern.families", "drawing", "data"),
     ),
-    "panels": ("Rigid panels", "All ways in which a sheet of panels folds.", ("modes",)),
+    "panels": ("Rigid panels", "All ways in which a sheet of panels folds.", ("modes", "pieces")),
     "motions": (
         "Motions and torques",
         "Follow a branch in space, prove the motion, and drive it.",

@@ -14,6 +14,7 @@ from exactfold import exact as exact
 from exactfold import modes as modes
 from exactfold import motion as motion
 from exactfold import pattern as pattern
+from exactfold import pieces as pieces
 from exactfold import problem as problem
 from exactfold import rigidity as rigidity
 from exactfold import schemas as schemas

@@ -1,5 +1,6 @@
 """`python -m exactfold` and the command `exactfold`: as little as can be before it is guarded."""
 
+import gc
 import os
 
 try:
@@ -11,6 +12,10 @@ except KeyboardInterrupt:
     os._exit(130)
 
 
+_BETWEEN = 50_000
+"""New objects between two searches for garbage: with 700 they are a tenth of a short command."""
+
+
 def main() -> None:
     """Run the command line; an interruption or a shortage while it loads is no verdict either.
 
@@ -20,6 +25,8 @@ def main() -> None:
     loud = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if loud:
         signal.signal(signal.SIGINT, interrupted)
+
+    gc.set_threshold(_BETWEEN)
 
     def run() -> None:
         from exactfold.cli import main as command_line

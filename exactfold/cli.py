@@ -13,10 +13,12 @@ import typer
 from exactfold.cli_branches import COMMANDS as BRANCHES
 from exactfold.cli_pictures import COMMANDS as PICTURES
 from exactfold.commands.parameters import (
+    Curvature,
     Json,
     Pattern,
     Patterns,
     Resume,
+    Rim,
     Sheet,
     Snap,
     complete_method,
@@ -109,6 +111,8 @@ def count(
             "scheduler; `local` starts one here.",
         ),
     ] = None,
+    curvature: Curvature = None,
+    rim: Rim = None,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
@@ -126,11 +130,11 @@ def count(
     if len(patterns) > 1 or jsonl is not None:
         from exactfold.commands.batch import Batch
 
-        alone = (certificate, stream, workers) != (None, None, None) or resume
+        alone = {certificate, stream, workers, curvature, rim} != {None} or resume
         if alone:
             raise UsageError(
-                "--certificate, --stream, --resume and --workers go with one pattern and "
-                "without --jsonl"
+                "--certificate, --stream, --resume, --workers, --curvature and --rim go with one "
+                "pattern and without --jsonl"
             )
         batch = Batch(patterns, jsonl, jobs, dask, method, seed, snap, sheet, as_json, everything)
         raise typer.Exit(batch.run())
@@ -138,6 +142,7 @@ def count(
         raise UsageError("--jobs goes with several patterns or --jsonl")
     [pattern] = patterns
     from exactfold.commands.count import Asked
+    from exactfold.commands.given import Given
 
     asked = Asked(
         pattern,
@@ -153,6 +158,7 @@ def count(
         seed,
         everything,
         verbose,
+        Given(rim, curvature),
     )
     raise typer.Exit(asked.run())
 

@@ -8,10 +8,12 @@ from typing import Annotated, Any
 import typer
 
 from exactfold.commands.parameters import (
+    Curvature,
     Json,
     Pattern,
     Place,
     Resume,
+    Rim,
     Sheet,
     Side,
     Signs,
@@ -55,6 +57,8 @@ def branch(
         Path | None,
         written("Of one branch: write a certificate.", "OUT.json"),
     ] = None,
+    rim: Rim = None,
+    curvature: Curvature = None,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
@@ -63,9 +67,11 @@ def branch(
 
     Signs are those of the side with boundary saddle +1 (with a reflex corner:
     on which the corner pops up); the other side has all of them reversed. With
+    more corners they are those of the way with these heights of the border. With
     --json, one object a line.
     """
     from exactfold.commands.branch import Asked
+    from exactfold.commands.given import Given
 
     if (signs is not None) + (up is not None) + (batch is not None) != 1:
         raise UsageError("give one of --signs, --up and --batch")
@@ -73,9 +79,47 @@ def branch(
         raise UsageError("--neighbours goes with --signs or --up")
     if certificate is not None and (pops is not None or batch is not None):
         raise UsageError("--certificate goes with a single branch")
-    apart(certificate, pattern)
-    proved = Asked(pattern, snap, sheet, signs, up, batch, pops, certificate, as_json).answer()
+    apart(certificate, pattern, rim, curvature)
+    given = Given(rim, curvature)
+    asked = Asked(pattern, snap, sheet, signs, up, batch, pops, certificate, as_json, given)
+    proved = asked.answer()
     raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
+
+
+@reported
+def match(
+    pattern: Pattern,
+    letters: Annotated[
+        str | None,
+        typer.Option(
+            metavar="MVU...|0-4=M,...",
+            help="Instead of those of the file: M, V, F (flat) or U (free) for each fold in the "
+            "order of `count`, or by fold, the others free; @FILE reads.",
+        ),
+    ] = None,
+    most: Annotated[int, number("Compare the branches of N sign vectors at most.", least=1)] = 256,
+    tries: Annotated[
+        int | None,
+        number(
+            "Of the search for the nearest: free N sets of folds at most. More proves more. "
+            "Default: by the size of the sheet.",
+            least=0,
+        ),
+    ] = None,
+    as_json: Json = False,
+    snap: Snap = None,
+    sheet: Sheet = None,
+    everything: Annotated[bool, flag("--all", text="List every branch and reason.")] = False,
+) -> None:
+    """Find the ways to start folding that have the mountains and valleys of a file, with proof.
+
+    All of them; or that there is none and why, and then those that differ at the
+    fewest creases. Exit code 1: proved that there is none.
+    """
+    from exactfold.commands.match import Asked
+
+    asked = Asked(pattern, snap, sheet, letters, most, tries, as_json, everything)
+    raise typer.Exit(asked.answer())
 
 
 @reported
@@ -97,6 +141,7 @@ def export(
     force: Annotated[
         bool, flag("--force", text="Write a branch that is enclosed but not proved, too.")
     ] = False,
+    rim: Rim = None,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
@@ -108,11 +153,15 @@ def export(
     in space, to second order.
     """
     from exactfold.commands.export import Wanted
+    from exactfold.commands.given import Given
 
     if (signs is not None) + (up is not None) + (place is not None) != 1:
         raise UsageError("give one of --signs, --up and --branch")
-    apart(output, pattern)
-    asked = Wanted(pattern, snap, sheet, signs, up, place, output, amount, force, as_json)
+    if rim is not None and place is not None:
+        raise UsageError("--rim goes with --signs or --up")
+    apart(output, pattern, rim)
+    given = Given(rim)
+    asked = Wanted(pattern, snap, sheet, signs, up, place, output, amount, force, as_json, given)
     raise typer.Exit(asked.answer())
 
 
@@ -304,5 +353,24 @@ def actuate(
     raise typer.Exit(asked.answer())
 
 
-COMMANDS = (branch, export, fold, motions, actuate)
+@reported
+def assignments(
+    pattern: Pattern,
+    everything: Annotated[bool, flag("--all", text="List every assignment.")] = False,
+    as_json: Json = False,
+    snap: Snap = None,
+    sheet: Sheet = None,
+) -> None:
+    """List every mountain-valley assignment with which a sheet with five corners starts to fold.
+
+    For a convex border of five vertices and up to five vertices inside that can
+    pop. The list is proved to be complete. With four corners, `count` lists
+    them with the branches.
+    """
+    from exactfold.commands.assignments import Listed
+
+    raise typer.Exit(Listed(pattern, snap, sheet, everything, as_json).answer())
+
+
+COMMANDS = (branch, match, assignments, export, fold, motions, actuate)
 """In the order in which the help lists them."""

@@ -9,6 +9,7 @@ import typer
 
 from exactfold.commands.parameters import (
     Pattern,
+    Rim,
     Sheet,
     Side,
     Snap,
@@ -54,6 +55,7 @@ def draw(
         ),
     ] = None,
     side: Side = None,
+    rim: Rim = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -74,6 +76,7 @@ def draw(
     of the file are drawn. A file that is no sheet is drawn as it is.
     """
     from exactfold.commands.draw import Wanted
+    from exactfold.commands.given import Given
     from exactfold.report.folded import Amount
     from exactfold.report.multiples import MOST
 
@@ -85,9 +88,12 @@ def draw(
         raise UsageError("--folded goes with --branch or --up")
     if side is not None and folded is None:
         raise UsageError("--side goes with --folded")
+    if rim is not None and (folded is not None or (way is None and up is None)):
+        raise UsageError("--rim goes with the vertex signs of a way, and without --folded")
     amount = None if folded is None else Amount.of(folded)
     first = MOST if most is None else most
-    wanted = Wanted(pattern, snap, sheet, way, up, everything, first, amount, side, output)
+    given = Given(rim)
+    wanted = Wanted(pattern, snap, sheet, way, up, everything, first, amount, side, output, given)
     raise typer.Exit(wanted.answer())
 
 

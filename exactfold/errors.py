@@ -21,6 +21,14 @@ class UsageError(ExactfoldError):
     """The call asks for something that does not exist or does not apply (exit code 2)."""
 
 
+class LettersError(UsageError):
+    """Mountain-valley letters that do not fit the folds: too many or few, unknown, on no fold."""
+
+
+class NoLettersError(UsageError):
+    """Letters of a file are asked for, and none of its folds is a mountain or a valley."""
+
+
 class BadCandidatesError(UsageError):
     """A solver returned something other than a set of finite points of the right shape."""
 
@@ -127,6 +135,30 @@ class BadTorquesError(InputError):
     """A file of torques that is not an object of numbers by crease."""
 
 
+class BadRimError(InputError):
+    """Heights of the border that cannot be taken; `vertices` are those to blame."""
+
+    def __init__(self, message: str, vertices: Sequence[int] = ()) -> None:
+        super().__init__(message)
+        self.vertices = tuple(vertices)
+
+
+class RimVertexError(BadRimError, UsageError):
+    """A boundary vertex without a height, or a height of something that is no boundary vertex."""
+
+
+class RimHeightError(BadRimError, NumberError):
+    """A height of a boundary vertex that is not a number."""
+
+
+class BadCurvatureError(InputError):
+    """Angle deficits that cannot be taken; `vertices` are those to blame."""
+
+    def __init__(self, message: str, vertices: Sequence[int] = ()) -> None:
+        super().__init__(message)
+        self.vertices = tuple(vertices)
+
+
 class ClusterError(InputError):
     """A cluster that does not answer, has no workers, or workers that cannot do the work."""
 
@@ -216,6 +248,14 @@ class NotACreasePatternError(PatternError):
 
 class NotApplicableError(ExactfoldError):
     """A construction or method does not apply to this pattern; the message says why."""
+
+
+class FlatRimError(BadRimError, NotApplicableError):
+    """Heights of the border that lie in one plane: without angle deficits the sheet is flat."""
+
+
+class NegativeDeficitError(BadCurvatureError, NotApplicableError):
+    """A negative angle deficit: vertex signs do not name a shape then."""
 
 
 class FlatVertexError(NotApplicableError):

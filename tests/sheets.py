@@ -137,6 +137,8 @@ def mirrored(point: Point) -> Point:
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 TRIANGLE = [(0, 0), (12, 1), (3, 11)]
 HEXAGON = [(0, 0), (5, -2), (9, 1), (8, 6), (3, 8), (-1, 4)]
+DENTED = [(0, 0), (5, -2), (9, 1), (6, 3), (3, 8), (-1, 4)]
+"""A hexagon with a reflex corner, vertex 3."""
 
 
 def nested_triangles() -> CreasePattern:

@@ -92,8 +92,11 @@ def test_the_paper_is_reproduced_without_gaps() -> None:
     assert numbers - set(re.findall(r"\b[IVABCD]+\.\d+\b", text)) == set()
 
 
-READ = re.compile(r"exactfold: (read zigzags: |coordinates in |12 vertices inside of lines: )")
-"""What is told of the shipped drawing as it is read."""
+READ = re.compile(
+    r"exactfold: (read (pinwheel-base|zigzags): |coordinates in |1 point is merged |"
+    r"(4|12) vertices inside of lines: )"
+)
+"""What is told of the shipped drawings as they are read."""
 
 
 def commands(page: Path) -> list[str]:
@@ -138,7 +141,7 @@ def test_the_first_commands_of_the_readme_leave_exactfold_where_a_shell_finds_it
     )
     assert len(first) == 2
     assert all(". .venv/bin/activate && pip install" in line for line in first)
-    assert first[0].endswith("&& exactfold count zigzags")
+    assert first[0].endswith("&& exactfold count pinwheel-base")
 
 
 def contributing() -> str:

@@ -1,3 +1,12 @@
+from exactfold.assignment.certificate import match_certificate as match_certificate
+from exactfold.assignment.circles import AllAssignments as AllAssignments
+from exactfold.assignment.circles import Arc as Arc
+from exactfold.assignment.circles import Circle as Circle
+from exactfold.assignment.circles import Crossing as Crossing
+from exactfold.assignment.circles import all_assignments as all_assignments
+from exactfold.assignment.document import match_document as match_document
+from exactfold.assignment.nearest import Nearest as Nearest
+from exactfold.assignment.nearest import nearest_branches as nearest_branches
 from exactfold.assignment.panel_match import PanelMatch as PanelMatch
 from exactfold.assignment.panel_match import match_panels as match_panels
 from exactfold.assignment.panel_refutation import PanelRefutation as PanelRefutation
@@ -5,3 +14,4 @@ from exactfold.assignment.refutation import Refutation as Refutation
 from exactfold.assignment.search import Match as Match
 from exactfold.assignment.search import Matched as Matched
 from exactfold.assignment.search import match as match
+from exactfold.assignment.why import vertex_conflicts as vertex_conflicts

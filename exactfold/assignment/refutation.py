@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from exactfold.exact.numbers import integer_row
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.remembered import remembered
 from exactfold.rigidity.curvature import curvature_form, spokes
 from exactfold.rigidity.timelike import round_cone
 
 Letters = Mapping[Edge, str]
 """By fold (i, j), i < j: "M", "V", "F" for a fold that stays flat, "U" where anything may be."""
+
+_ZERO = Fraction(0)
 
 
 @dataclass(frozen=True, repr=False)
@@ -51,37 +55,75 @@ class Refutation:
 
     def _is_placed(self, sheet: CreasePattern, v: int) -> bool:
         """Whether z_v is in the closed nappe of the sign of v, or affine."""
-        star = {v: Fraction(0)} | {w: self.heights.get((v, w), Fraction(0)) for w in sheet.star(v)}
+        star = _star(sheet, v)
+        heights = integer_row([self.heights.get((v, w), _ZERO) for w in star.ring])
         if v not in self.signs:
-            return _is_affine(sheet, v, star)
-        form = curvature_form(sheet, v)
-        side = form.polar(round_cone(sheet, v), star)
-        return form(star) >= 0 and self.signs[v] * side >= 0
+            return star.is_affine(heights)
+        return star.form(heights) >= 0 and self.signs[v] * star.side(heights) >= 0
 
     def _is_against(self, sheet: CreasePattern, letters: Letters) -> bool:
         """Whether no term of the sum over the folds is positive, and one is negative."""
         strict = False
-        for i, j in sheet.folds:
-            total = self.heights.get((i, j), Fraction(0)) + self.heights.get((j, i), Fraction(0))
+        for i, j in {(v, w) if v < w else (w, v) for v, w in self.heights}:
             letter = letters[i, j]
+            if letter == "F":
+                continue
+            total = self.heights.get((i, j), _ZERO) + self.heights.get((j, i), _ZERO)
             sign = {"M": 1, "V": -1}.get(letter, 0)
-            if letter != "F" and (total * sign < 0 or (total and not sign)):
+            if total * sign < 0 or (total and not sign):
                 return False
-            strict = strict or (letter != "F" and total != 0)
+            strict = strict or total != 0
         return strict
 
     def __repr__(self) -> str:
         return f"<Refutation: {len(self.signs)} signs, {len({v for v, _ in self.heights})} stars>"
 
 
-def _is_affine(sheet: CreasePattern, v: int, star: Mapping[int, Fraction]) -> bool:
-    """Whether heights of a star, 0 at its hub, lie in one plane."""
-    ring, d = spokes(sheet, v)
-    (ax, ay), (bx, by) = d[0], d[1]
-    area = ax * by - ay * bx
-    p = (star[ring[0]] * by - star[ring[1]] * ay) / area
-    q = (star[ring[1]] * ax - star[ring[0]] * bx) / area
-    return all(star[w] == p * x + q * y for w, (x, y) in zip(ring, d, strict=True))
+@dataclass(frozen=True)
+class _Star:
+    """One star in integers: positive multiples of its form, of its side, and of its spokes."""
+
+    ring: tuple[int, ...]
+    matrix: tuple[tuple[int, ...], ...]
+    towards: tuple[int, ...]
+    spokes: tuple[tuple[int, int], ...]
+
+    def form(self, heights: Sequence[int]) -> int:
+        """A positive multiple of K_v."""
+        return sum(
+            x * sum(m * y for m, y in zip(row, heights, strict=True) if m)
+            for x, row in zip(heights, self.matrix, strict=True)
+            if x
+        )
+
+    def side(self, heights: Sequence[int]) -> int:
+        """A positive multiple of K_v(t, .) for a rational t near the round cone."""
+        return sum(c * x for c, x in zip(self.towards, heights, strict=True))
+
+    def is_affine(self, heights: Sequence[int]) -> bool:
+        """Whether the heights lie in one plane with the hub."""
+        (ax, ay), (bx, by) = self.spokes[:2]
+        area = ax * by - ay * bx
+        p = heights[0] * by - heights[1] * ay
+        q = heights[1] * ax - heights[0] * bx
+        lifted = zip(self.spokes, heights, strict=True)
+        return all(area * z == p * x + q * y for (x, y), z in lifted)
+
+
+@remembered
+def _star(sheet: CreasePattern, vertex: int) -> _Star:
+    form = curvature_form(sheet, vertex)
+    ring, d = spokes(sheet, vertex)
+    towards = form.functional(round_cone(sheet, vertex))
+    size = len(ring)
+    entries = integer_row([x for row in form.matrix[1:] for x in row[1:]])
+    flat = integer_row([x for spoke in d for x in spoke])
+    return _Star(
+        ring,
+        tuple(entries[k * size : (k + 1) * size] for k in range(size)),
+        integer_row([towards[w] for w in ring]),
+        tuple(zip(flat[::2], flat[1::2], strict=True)),
+    )
 
 
 def refuted_at(

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
+from exactfold.assignment.clauses import Clauses, Refuted
 from exactfold.assignment.cone_program import ConeProgram
 from exactfold.assignment.refutation import Letters, Refutation, refuted_at
 from exactfold.branches.branch import Branch
@@ -17,6 +23,10 @@ from exactfold.progress import Progress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 _LETTERS = "MVFU"
+_REMEMBERED = 512
+"""Sign vectors that seem possible, kept so that no cone program is solved for a part of them."""
+
+SignArray = npt.NDArray[np.int8]
 
 
 @dataclass(frozen=True, repr=False)
@@ -55,6 +65,27 @@ class Matched:
         return f"<Matched: {self.sign_text}, side {self.side}>"
 
 
+Step = tuple[Any, ...]
+"""The kind of a step of a `Tree`, then numbers."""
+
+
+@dataclass(frozen=True)
+class Tree:
+    """Why no half is missing: the refuted sets of signs, and how they cover all sign vectors.
+
+    `steps`, in the order in which the tree is walked: ("force", k, v), v has the opposite of its
+    sign in the k-th refuted set, of which all others are there; ("split", v), first all that
+    follows with v up, then with v down; ("refuted", k), the signs contain the k-th set; ("leaf",),
+    all signs are there, and the next two of `halves` have them; ("flat", i, j), a mountain or a
+    valley is asked for where the sheet stays flat. Vertices are those of `Match.sheet`, but for
+    "flat".
+    """
+
+    refuted: tuple[Refuted, ...]
+    steps: tuple[Step, ...]
+    halves: tuple[tuple[Matched, Matched], ...]
+
+
 @dataclass(frozen=True, repr=False)
 class Match:
     """Which halves of branches have given letters.
@@ -63,7 +94,9 @@ class Match:
     were decided, and there may be more. `refutations` show for which signs there is none, each by
     vectors in the nappes of `sheet`, the pattern without what lies in triangulated triangles, where
     vertex v is `labels[v]` of the pattern; `reasons` are those that need no vector. `leaves`: how
-    many sign vectors were left, whose two halves were found and compared.
+    many sign vectors were left, whose two halves were found and compared: `compared` has both for
+    each of these signs. `tree` has all in the order of the search, and is what `match_certificate`
+    writes.
     """
 
     pattern: CreasePattern
@@ -76,6 +109,8 @@ class Match:
     reasons: tuple[str, ...]
     open_signs: tuple[Mapping[int, int], ...]
     leaves: int
+    tree: Tree
+    compared: tuple[tuple[Mapping[int, int], tuple[Matched, Matched]], ...] = ()
 
     def __repr__(self) -> str:
         return f"<Match: {self.status}, {len(self.matches)} halves, {self.leaves} sign vectors>"
@@ -143,16 +178,21 @@ class _Search:
         self.own = {
             (i, j): letters[_fold(self.labels[i], self.labels[j])] for i, j in self.sheet.folds
         }
+        self.place = {v: k for k, v in enumerate(self.sheet.interior)}
         self.program = ConeProgram(self.sheet, self.own)
-        self.refutations: list[Refutation] = []
+        self.clauses = Clauses()
+        self.possible: deque[SignArray] = deque(maxlen=_REMEMBERED)
+        self.steps: list[Step] = []
         self.reasons: list[str] = []
         self.matches: list[Matched] = []
         self.open: list[dict[int, int]] = []
-        self.leaves = 0
+        self.compared: list[tuple[dict[int, int], tuple[Matched, Matched]]] = []
 
     def result(self) -> Match:
-        if not self._stays_flat() and (signs := self._at_vertices()) is not None:
-            self._search(signs)
+        if not self._stays_flat():
+            self._at_vertices()
+            self._search()
+        tree = self._tree()
         return Match(
             self.pattern,
             self.letters,
@@ -160,11 +200,24 @@ class _Search:
             tuple(self.matches),
             self.sheet,
             self.labels,
-            tuple(self.refutations),
+            tuple(each.refutation for each in tree.refuted if each.refutation is not None),
             tuple(self.reasons),
             tuple(self.open),
-            self.leaves,
+            len(self.compared),
+            tree,
+            tuple(self.compared),
         )
+
+    def _tree(self) -> Tree:
+        """What the search has done, with the refuted sets that it used."""
+        used = sorted({at[0] for kind, *at in self.steps if kind in ("force", "refuted")})
+        place = {number: k for k, number in enumerate(used)}
+        refuted = tuple(self.clauses.known[number] for number in used)
+        steps = tuple(
+            (kind, place[at[0]], *at[1:]) if kind in ("force", "refuted") else (kind, *at)
+            for kind, *at in self.steps
+        )
+        return Tree(refuted, steps, tuple(halves for _, halves in self.compared))
 
     def _stays_flat(self) -> bool:
         """Whether a letter is on a fold inside a triangulated triangle."""
@@ -172,80 +225,117 @@ class _Search:
         for fold, letter in self.letters.items():
             if letter in "MV" and fold not in moving:
                 self.reasons.append(f"fold {fold} lies in a triangulated triangle and stays flat")
+                self.steps.append(("flat", *fold))
                 return True
         return False
 
-    def _at_vertices(self) -> dict[int, int] | None:
-        """The signs that the letters of single stars force; None if one star has no sign left."""
-        signs: dict[int, int] = {}
+    def _at_vertices(self) -> None:
+        """Learn what the letters of single stars refute, up to one that has no sign left."""
         for v in self.sheet.interior:
-            left = []
+            left = 2
             for sign in (1, -1):
                 found = refuted_at(self.sheet, self.own, v, sign)
                 if isinstance(found, str):
                     self.reasons.append(f"vertex {self.labels[v]} {found}")
-                elif found is None or not self._kept(found):
-                    left.append(sign)
+                    self.clauses.learn(Refuted({v: sign}, None))
+                    left -= 1
+                elif found is not None and found.holds(self.sheet, self.own):
+                    self.clauses.learn(Refuted(found.signs, found))
+                    left -= 1
             if not left:
-                return None
-            if len(left) == 1:
-                signs[v] = left[0]
-        return signs
+                return
 
-    def _kept(self, found: Refutation | None) -> bool:
-        """Whether this refutes, exactly; it is kept then."""
-        if found is None or not found.holds(self.sheet, self.own):
-            return False
-        self.refutations.append(found)
-        return True
-
-    def _search(self, first: dict[int, int]) -> None:
-        stack = [first]
+    def _search(self) -> None:
+        """Try all signs that are not refuted."""
+        stack: list[dict[int, int]] = [{}]
         while stack:
-            signs = stack.pop()
-            if self._kept(self.program.refutation(signs)):
+            signs = self._closed(stack.pop())
+            if signs is None:
                 continue
             unknown = [v for v in self.sheet.interior if v not in signs]
-            forced = self._forced(signs, unknown)
-            if forced is None:
-                continue
-            unknown = [v for v in unknown if v not in forced]
             if not unknown:
-                self._compare(forced)
-            elif self.leaves + len(stack) + 2 > self.most:
-                self.open.append({self.labels[v]: sign for v, sign in forced.items()})
+                self._compare(signs)
+            elif len(self.compared) + len(stack) + 2 > self.most:
+                self.open.append({self.labels[v]: sign for v, sign in signs.items()})
             else:
-                stack += [forced | {unknown[0]: sign} for sign in (-1, 1)]
+                v = self._by_weight(unknown)[0]
+                self.steps.append(("split", v))
+                stack += [signs | {v: sign} for sign in (-1, 1)]
 
-    def _forced(self, signs: dict[int, int], unknown: list[int]) -> dict[int, int] | None:
-        """The signs with those that follow, one vertex at a time; None if they contradict."""
-        signs = dict(signs)
-        for v in unknown:
-            left = [s for s in (1, -1) if not self._kept(self.program.refutation(signs | {v: s}))]
-            if not left:
-                return None
-            if len(left) == 1:
-                signs[v] = left[0]
+    def _closed(self, before: dict[int, int]) -> dict[int, int] | None:
+        """The signs with all that is found to follow; None if they contradict."""
+        signs = self._forced(before)
+        if signs is None:
+            return None
+        if not self._seems_possible(signs):
+            return self._forced(signs)
+        for v in self._by_weight([v for v in self.sheet.interior if v not in signs]):
+            for sign in (1, -1):
+                if v in signs or self._seems_possible(signs | {v: sign}):
+                    continue
+                signs = self._forced(signs)
+                if signs is None:
+                    return None
         return signs
+
+    def _by_weight(self, vertices: list[int]) -> list[int]:
+        """Those that most refutations name first."""
+        return sorted(vertices, key=lambda v: -self.clauses.weight[v])
+
+    def _forced(self, signs: dict[int, int]) -> dict[int, int] | None:
+        """The signs with those that the refuted sets force; None if they contradict."""
+        forced = self.clauses.forced(signs)
+        self.steps += [("force", number, v) for number, v in forced.steps]
+        if forced.contradicted is None:
+            return forced.signs
+        self.steps.append(("refuted", forced.contradicted))
+        return None
+
+    def _seems_possible(self, signs: dict[int, int]) -> bool:
+        """False if the signs are refuted, which is learned then."""
+        at = [self.place[v] for v in signs]
+        values = np.array(list(signs.values()), dtype=np.int8)
+        if any(np.array_equal(known[at], values) for known in self.possible):
+            return True
+        found = self.program.solved(signs)
+        if isinstance(found, Refutation):
+            self.clauses.learn(Refuted(found.signs, found))
+            return False
+        if found is not None:
+            known = np.zeros(len(self.place), dtype=np.int8)
+            for v, sign in found.items():
+                known[self.place[v]] = sign
+            self.possible.appendleft(known)
+        return True
 
     def _compare(self, signs: dict[int, int]) -> None:
         """Find both halves with all signs given, and compare their letters."""
-        self.leaves += 1
-        decided = True
         if self.progress is not None:
-            self.progress("sign vectors", self.leaves, 0)
-        for side in (1, -1):
-            named = {self.labels[v]: side * sign for v, sign in signs.items()}
-            branch = self.finder.find(named)
-            half = Matched(branch, side)
-            seen = half.assignment
-            compared = [_agrees(letter, seen[fold]) for fold, letter in self.letters.items()]
-            if branch.status is not PROVED or (False not in compared and None in compared):
-                decided = False
-            elif False not in compared and half.names not in {m.names for m in self.matches}:
+            self.progress("sign vectors", len(self.compared) + 1, 0)
+        up, down = (self._half(signs, side) for side in (1, -1))
+        self.steps.append(("leaf",))
+        named = {self.labels[v]: sign for v, sign in signs.items()}
+        self.compared.append((named, (up, down)))
+        agreed = [self._agrees(half) for half in (up, down)]
+        if None in agreed:
+            self.open.append(named)
+        for half, agrees in zip((up, down), agreed, strict=True):
+            if agrees and half.names not in {m.names for m in self.matches}:
                 self.matches.append(half)
-        if not decided:
-            self.open.append({self.labels[v]: sign for v, sign in signs.items()})
+
+    def _half(self, signs: dict[int, int], side: int) -> Matched:
+        branch = self.finder.find({self.labels[v]: side * sign for v, sign in signs.items()})
+        return Matched(branch, side)
+
+    def _agrees(self, half: Matched) -> bool | None:
+        """Whether a half has the letters; None if it is not proved, or one of them is not."""
+        if half.branch.status is not PROVED:
+            return None
+        seen = half.assignment
+        compared = [_agrees(letter, seen[fold]) for fold, letter in self.letters.items()]
+        if False in compared:
+            return False
+        return None if None in compared else True
 
 
 def _fold(i: int, j: int) -> Edge:

@@ -41,7 +41,9 @@ class Branch(Picture):
     boundary vertex has height 1 and the three others 0 (`saddle_functional` is 1). "notch", where
     that is not known to be possible: the sign functional of the reflex corner is 1 in the closed
     sheet. "corner", of a single branch: the curvature of the reflex corner is
-    `Gauge.corner_curvature` there. "rim": the rim that was given.
+    `Gauge.corner_curvature` there. "rim": the heights of the rim are given (`rim`). `curvature`
+    holds the angle deficits of vertices, where they are not 0: then this is one shape, not a line,
+    and its opposite is another.
     Heights are the values of `height_rows` at the root, over that of `unit_row` if there is one.
     `saddle` is the proved sign of the boundary saddle, 0 if it is not proved or there are more than
     four boundary vertices. In a count every branch is shown from the side of positive saddle where
@@ -62,6 +64,7 @@ class Branch(Picture):
     undecided_vertices: tuple[int, ...] = ()
     steps: int = 0
     seconds: float = field(default=0.0, compare=False)
+    curvature: Mapping[int, Fraction] = field(default_factory=dict)
 
     @cached_property
     def sign_text(self) -> str:
@@ -155,6 +158,31 @@ class Branch(Picture):
         return None if None in found.values() else found
 
     @property
+    def straight_border(self) -> tuple[int, ...]:
+        """Boundary vertices on a straight side, of a branch whose rim was given: it may bend there.
+
+        `pattern.boundary_turns` is 0 there.
+        """
+        if self.gauge != "rim":
+            return ()
+        turns = zip(self.pattern.boundary, self.pattern.boundary_turns, strict=True)
+        return tuple(sorted(v for v, turn in turns if not turn))
+
+    @property
+    def rim(self) -> dict[int, Fraction] | None:
+        """The heights of the border that were given, None in another gauge or if nothing is proved.
+
+        >>> from exactfold.count.find import find_branch
+        >>> from exactfold.pattern.families import single_vertex
+        >>> branch = find_branch(single_vertex(5), "+")
+        >>> sorted(map(str, branch.rim.values()))
+        ['-1', '0', '0', '0', '11/20']
+        """
+        if self.gauge != "rim" or not isinstance(self.root, EnclosedRoot):
+            return None
+        return {v: self.root.centres[v] for v in sorted(self.pattern.boundary)}
+
+    @property
     def approx_heights(self) -> dict[int, float]:
         """Heights as floats, for pictures."""
         return {v: float((low + high) / 2) for v, (low, high) in self.heights.items()}
@@ -213,6 +241,8 @@ class Branch(Picture):
             "undecided_vertices": list(self.undecided_vertices),
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(self.assignment.items())},
             "gauge": self.gauge,
+            "curvature": {str(v): format_rational(k) for v, k in sorted(self.curvature.items())},
+            "straight_border": list(self.straight_border),
             "saddle": self.saddle,
             "centres": {str(v): format_rational(c) for v, c in sorted(self.centres.items())},
             "radius": None if radius is None else format_rational(radius),

@@ -11,7 +11,7 @@ from exactfold.branches.branch import Branch
 from exactfold.branches.letters import LETTERS
 from exactfold.branches.roots import EnclosedRoot
 from exactfold.certify.enclosure import Enclosure, height_radius, root_above, round_up
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.crease_pattern import Edge
 from exactfold.problem.problem import Problem
 from exactfold.problem.sheet import Sheet
 from exactfold.rigidity.functionals import saddle_functional
@@ -32,7 +32,6 @@ def of_enclosure(
     whatever was asked (docs/branch.md, Theorem 5).
     """
     problem, labels, unit = sheet.problem, sheet.labels, sheet.height_unit
-    pattern = problem.pattern
     squared = round_up(proof.squared_distance * unit**2)
     centres = problem.all_heights(
         {v: Fraction(int(h), proof.denominator) * unit for v, h in enumerate(proof.heights)}
@@ -48,14 +47,15 @@ def of_enclosure(
     if loose:
         reason = reasons.undecided(error, loose)
     else:
-        reason = reasons.proved(error, flat, pattern.Vt > 0)
+        noun = "shape" if problem.gauge.curvature else "branch"
+        reason = reasons.proved(error, flat, bool(problem.rigid), noun)
     return replace(
         not_enclosed(problem, {**signs, **dict.fromkeys(flat, 0)}, reason),
         status=UNDECIDED if loose else PROVED,
         undecided_vertices=loose,
-        assignment=_assignment(pattern, letters),
+        assignment=_assignment(problem, letters),
         root=root,
-        multiplicity=None if loose else 1 << (len(flat) + pattern.Vt),
+        multiplicity=None if loose else 1 << (len(flat) + len(problem.rigid)),
         saddle=_saddle(problem, root),
         steps=steps,
         seconds=seconds,
@@ -75,10 +75,11 @@ def not_enclosed(
     return Branch(
         pattern=pattern,
         vertex_signs={v: signs.get(v, 0) for v in pattern.interior},
-        assignment=_assignment(pattern, {}),
+        assignment=_assignment(problem, {}),
         root=None,
         multiplicity=None,
         gauge=problem.gauge.kind,
+        curvature={problem.labels[v]: k for v, k in problem.gauge.curvature.items()},
         saddle=0,
         status=UNDECIDED,
         reason=reason,
@@ -88,11 +89,11 @@ def not_enclosed(
     )
 
 
-def _assignment(pattern: CreasePattern, letters: Mapping[Edge, str]) -> dict[Edge, str]:
+def _assignment(problem: Problem, letters: Mapping[Edge, str]) -> dict[Edge, str]:
     """Letters of all folds: those with an end in a triangulated triangle are flat."""
-    rigid = pattern.rigid_vertices
     return {
-        fold: letters.get(fold, "U") if rigid.isdisjoint(fold) else "F" for fold in pattern.folds
+        fold: letters.get(fold, "U") if problem.rigid.isdisjoint(fold) else "F"
+        for fold in problem.pattern.folds
     }
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 LETTERS = {1: "V", -1: "M", 0: "F", None: "U"}
 """Letter of a fold by its sign: valley, mountain, flat, undecided."""
 
@@ -21,3 +23,17 @@ def sign_value(sign: object) -> int | None:
     (-1, 1, None)
     """
     return next((value for name, value in _VALUES if sign == name), None)
+
+
+def differing(
+    wanted: Mapping[tuple[int, int], str], letters: Mapping[tuple[int, int], str]
+) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
+    """The folds whose letter is not the one wanted, and those where that is not known.
+
+    Where "U" is wanted anything may be; where a letter is "U" it is not known.
+
+    >>> differing({(0, 4): "M", (1, 4): "V", (2, 4): "U"}, {(0, 4): "V", (1, 4): "U", (2, 4): "M"})
+    ([(0, 4)], [(1, 4)])
+    """
+    other = [f for f, letter in wanted.items() if letter != "U" and letters[f] != letter]
+    return [f for f in other if letters[f] != "U"], [f for f in other if letters[f] == "U"]

@@ -20,7 +20,7 @@ def named(vertices: Sequence[int]) -> str:
     return f"{agreeing(len(vertices), 'vertex')} {names}{more}"
 
 
-def proved(error: Fraction, flat: Sequence[int], reduced: bool) -> str:
+def proved(error: Fraction, flat: Sequence[int], reduced: bool, noun: str = "branch") -> str:
     """Of a branch whose signs are all proved; `flat` have another sign than the one asked for."""
     what, kind = "these signs", "simple solution"
     if flat:
@@ -30,7 +30,7 @@ def proved(error: Fraction, flat: Sequence[int], reduced: bool) -> str:
     where = f" within {decimal_above(error, 1)} of the heights given, in the norm of gradients"
     if not error:
         where = ", and the heights given are exact"
-    return f"exactly one branch has {what}; it is a {kind}{inside}{where}"
+    return f"exactly one {noun} has {what}; it is a {kind}{inside}{where}"
 
 
 def undecided(error: Fraction, loose: Sequence[int]) -> str:

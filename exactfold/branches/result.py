@@ -7,9 +7,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, Final, overload
 
 from exactfold.branches.branch import Branch
+from exactfold.branches.letters import UPSIDE_DOWN, differing
 from exactfold.certify.algebraic import AlgebraicProof
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -21,6 +22,13 @@ from exactfold.schemas import headed
 from exactfold.showing import Page
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import counted
+
+if TYPE_CHECKING:  # branches are counted without what panels need
+    from exactfold.modes.result import Decomposition
+    from exactfold.pieces.result import Pieces
+
+
+_LISTS: Final = ("modes", "flat_folds", "still_folds", "free_folds", "near_misses")
 
 
 @dataclass(frozen=True)
@@ -39,6 +47,25 @@ class Proof:
     algebraic: AlgebraicProof | None = None
 
 
+@dataclass(frozen=True)
+class Lettered:
+    """Which of the branches listed have the letters of a file.
+
+    `ways`: the place in the list, from 1, and the side: 1 with the letters of the branch, -1 with
+    all of them reversed. `status` is PROVED if these are all; `unclear` are those of which a letter
+    is not known, and the others agree.
+    """
+
+    status: Verdict
+    ways: tuple[tuple[int, int], ...]
+    unclear: tuple[tuple[int, int], ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The key `letters` of `exactfold count --json`."""
+        ways = [{"way": way, "side": side} for way, side in self.ways]
+        return {"status": str(self.status), "ways": ways}
+
+
 @dataclass(frozen=True, repr=False)
 class BranchCount(Page):
     """What is known of the branches of a pattern at the unfolded state.
@@ -47,12 +74,16 @@ class BranchCount(Page):
     missing; `why` says why the method was chosen. `distinct` counts branches as lines (for D = 1),
     `with_multiplicity` the solutions of the branch system with multiplicity, `real` and `nonreal`
     its distinct solutions by reality. `true_branches` is PROVED when the count is also that of the
-    true configuration space (docs/mathematics.md, True branches). `dimension` and `degree` are
-    those of the cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi where
-    that is proved (docs/mathematics.md, Single vertex), else None. `branches` holds every branch
-    decided, all of them if PROVED and D = 1; for D > 1 a branch is not a line, and none is listed.
+    true configuration space (docs/mathematics.md, True branches), and `true_bounds` are bounds of
+    the number of true branches for D = 1 (docs/any_border.md, Theorem 8). `dimension` and `degree`
+    are those of the cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi
+    where that is proved (docs/mathematics.md, Single vertex), else None. `branches` holds every
+    branch decided, all of them if PROVED and D = 1; for D > 1 a branch is not a line, and none is
+    listed. There, for a convex border, the solutions are 2^n graphs over the rim heights, and
+    `pieces` says into how many pieces they fall; `families` are their irreducible components, where
+    `count_ways` looked for them. The counts are None, except for a single vertex.
     `proof` is what a certificate is written from. `open_questions` is what is missing; if PROVED,
-    folds with the letter "U".
+    folds with the letter "U". `letters` are those of the file, by fold; empty if it has none.
 
     `len(result)`, iteration and `result["+-"]` or `result[3]` are about `branches`.
     """
@@ -67,6 +98,7 @@ class BranchCount(Page):
     real: int | None = None
     nonreal: int | None = None
     true_branches: Verdict = UNDECIDED
+    true_bounds: tuple[int, int] | None = None
     dimension: int | None = None
     degree: int | None = None
     branches: tuple[Branch, ...] = ()
@@ -75,6 +107,9 @@ class BranchCount(Page):
     settings: Mapping[str, int | str] = field(default_factory=dict)
     snapped: Fraction = Fraction(0)
     read: Mapping[str, Any] | None = None
+    letters: Mapping[Edge, str] = field(default_factory=dict)
+    pieces: Pieces | None = None
+    families: Decomposition | None = None
     seconds: float = field(default=0.0, compare=False)
 
     def __len__(self) -> int:
@@ -131,6 +166,22 @@ class BranchCount(Page):
             return "theorem"
         return "enumeration" if self.status is PROVED else None
 
+    @cached_property
+    def lettered(self) -> Lettered | None:
+        """Which branches have `letters`; None without letters, or if no branch is listed."""
+        if not self.letters or not self.branches:
+            return None
+        turned = {fold: x.translate(UPSIDE_DOWN) for fold, x in self.letters.items()}
+        found: list[tuple[int, int]] = []
+        unclear: list[tuple[int, int]] = []
+        for k, branch in enumerate(self.branches, 1):
+            for side, wanted in ((1, self.letters), (-1, turned)):
+                other, unknown = differing(wanted, branch.assignment)
+                if not other:
+                    (unclear if unknown else found).append((k, side))
+        proved = self.status is PROVED and not unclear
+        return Lettered(PROVED if proved else UNDECIDED, tuple(found), tuple(unclear))
+
     def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
         """The object printed by `exactfold count --json`: `schema("count")`."""
         return {
@@ -146,6 +197,7 @@ class BranchCount(Page):
             "real": self.real,
             "nonreal": self.nonreal,
             "true_branches": str(self.true_branches),
+            "true_bounds": None if self.true_bounds is None else list(self.true_bounds),
             "dimension": self.dimension,
             "degree": _number(self.degree),
             "certificate": certificate,
@@ -155,14 +207,19 @@ class BranchCount(Page):
             "settings": dict(self.settings),
             "branches": [branch.to_dict() for branch in self.branches],
             "theory": "branches",
+            "letters": None if self.lettered is None else self.lettered.to_dict(),
             "rigid": self.distinct == 0 if self.status is PROVED else None,
-            **dict.fromkeys(("components", "modes_count")),
-            **{
-                key: []
-                for key in ("modes", "flat_folds", "still_folds", "free_folds", "near_misses")
-            },
+            **self._families(),
+            "pieces": None if self.pieces is None else self.pieces.to_dict(),
             "read": None if self.read is None else dict(self.read),
         }
+
+    def _families(self) -> dict[str, Any]:
+        """The keys of JSON that belong to irreducible components."""
+        if self.families is not None:
+            found = self.families.to_dict()
+            return {key: found[key] for key in ("components", "modes_count", *_LISTS)}
+        return {**dict.fromkeys(("components", "modes_count")), **{key: [] for key in _LISTS}}
 
     @property
     def sign_vectors(self) -> Counter[str]:
@@ -191,10 +248,14 @@ class BranchCount(Page):
         return sum(count for count in counts.values() if count > 1)
 
     def __repr__(self) -> str:
+        if self.pieces is not None and self.distinct is None:
+            return f"<BranchCount: {self.status}, {self.pieces!r}, {self.pattern!r}>"
         found = counted("?" if self.distinct is None else self.distinct, "branch")
         return f"<BranchCount: {self.status}, {found}, {self.pattern!r}>"
 
-    def _repr_latex_(self) -> str:
+    def _repr_latex_(self) -> str | None:
+        if self.pieces is not None and self.distinct is None:
+            return None
         if self.distinct is None:
             return r"$B = {?}\quad \text{(undecided)}$"
         return (

@@ -31,7 +31,8 @@ def deduced(sheet: Sheet, proof: Enclosure) -> Enclosure:
 
     decided = dict(zip(sheet.pattern.folds, proof.letters, strict=True))
     folds = sheet.unclosed.folds
-    found = flat_folds(sheet.unclosed, {fold: decided[fold] or None for fold in folds})
+    open_ = {fold: decided[fold] or None for fold in folds}
+    found = flat_folds(sheet.unclosed, open_, sheet.targets)
     flat = frozenset(k for k, fold in enumerate(sheet.pattern.folds) if fold in found)
     return _with_flat(sheet, proof, flat)
 
@@ -61,7 +62,7 @@ def rational(sheet: Sheet, proof: Enclosure, wanted: Mapping[int, int]) -> Enclo
                 flat[v] = False
     signs = nappes(sheet, bends)
     for v in sheet.unknowns:
-        target = Fraction(2 * denominator**2, sheet.size**2) if v == sheet.corner else 0
+        target = 2 * denominator**2 * sheet.targets.get(v, Fraction(0))
         if twice[v] != target or signs[v] != (0 if flat[v] else wanted[v]):
             return None
     exact = Enclosure(
@@ -71,12 +72,13 @@ def rational(sheet: Sheet, proof: Enclosure, wanted: Mapping[int, int]) -> Enclo
 
 
 def _with_flat(sheet: Sheet, proof: Enclosure, flat: frozenset[int]) -> Enclosure:
-    """`loose` are the vertices at which no fold is bent and some fold may be."""
+    """`loose` are the vertices at which no fold is bent and some may be; k_v = 0 at all of them."""
     bent, open_ = set[int](), set[int]()
     for k, ends in enumerate(sheet.folds.corners[:, :2].tolist()):
         (bent if proof.letters[k] else set() if k in flat else open_).update(ends)
-    loose = tuple(v for v in sheet.poppable if v in open_ and v not in bent)
-    still = tuple(v for v in sheet.poppable if v not in open_ and v not in bent)
+    unbent = [v for v in sheet.poppable if v not in bent and v not in sheet.targets]
+    loose = tuple(v for v in unbent if v in open_)
+    still = tuple(v for v in unbent if v not in open_)
     return replace(proof, loose=loose, flat_folds=flat, flat_vertices=still)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
@@ -102,7 +103,7 @@ def enclose(
     letters = _letters(sheet, found.bends, distance * denominator**2)
     ends = sheet.folds.corners[np.array(letters, dtype=bool), :2]
     decided = set(ends.ravel().tolist())
-    loose = tuple(v for v in sheet.poppable if v not in decided)
+    loose = tuple(v for v in sheet.poppable if v not in decided and v not in sheet.targets)
     return Enclosure(heights, denominator, signs, distance, letters, loose)
 
 
@@ -142,7 +143,7 @@ def nappes(sheet: Sheet, bends: BigArray) -> dict[int, int]:
 
 
 def _squared_distance(sheet: Sheet, found: Curvatures, denominator: int) -> Fraction:
-    """sum_v m_v (sqrt K_v - sqrt k_v)^2 from above, with (sqrt K - sqrt k)^2 <= (K - k)^2 / k."""
+    """sum_v m_v (sqrt K_v - sqrt k_v)^2 from above, by `off_target` where k_v is not 0."""
     points = sheet.pattern.integer_vertices[0]
     x, y = (min(p[a] for p in points) + max(p[a] for p in points) for a in (0, 1))
 
@@ -151,15 +152,22 @@ def _squared_distance(sheet: Sheet, found: Curvatures, denominator: int) -> Frac
 
     radius = max(squared(b) for b in sheet.pattern.boundary)
     unit = 2 * denominator**2 << found.bits
-    total = sum((radius - squared(v)) * found.high[v] for v in sheet.poppable)
+    targets = sheet.targets
+    total = sum((radius - squared(v)) * found.high[v] for v in sheet.unknowns if v not in targets)
     distance = Fraction(total, 4 * unit)
-    if sheet.corner is not None:
-        target = Fraction(1, sheet.size**2)
-        off = max(
-            abs(Fraction(bound[sheet.corner], unit) - target) for bound in (found.low, found.high)
-        )
-        distance += Fraction(radius - squared(sheet.corner), 4) * off**2 / target
+    for v, target in targets.items():
+        bounds = (Fraction(bound[v], unit) for bound in (found.low, found.high))
+        distance += Fraction(radius - squared(v), 4) * off_target(bounds, target)
     return distance
+
+
+def off_target(bounds: Iterable[Fraction], target: Fraction) -> Fraction:
+    """(sqrt K - sqrt k)^2 from above, for bounds of K and a target k > 0.
+
+    It is at most |K - k|, and at most (K - k)^2 / k.
+    """
+    off = max(abs(bound - target) for bound in bounds)
+    return min(off, off**2 / target)
 
 
 def _letters(sheet: Sheet, bends: BigArray, squared: Fraction) -> tuple[int, ...]:

@@ -62,8 +62,9 @@ def refine(
     unit = 2 * q**2 << bits
     excess = unit // (square << level)
     wanted = np.array([excess] * len(inner), dtype=object)
-    if floats.corner is not None:
-        wanted[floats.corner] += unit // square
+    for k, v in enumerate(inner.tolist()):
+        if v in sheet.targets:
+            wanted[k] += int(unit * sheet.targets[v])
     for _ in range(_ITERATIONS):
         found = curvatures(sheet, at.values, bits)
         rest = found.low[inner] - wanted

@@ -6,8 +6,8 @@
 
 rebuild the sheet and its curvature forms from the vertices and triangles in the file by code of
 their own, and verify every claim. The folder alone is enough. Exit code 0: every claim holds. 1:
-some claim is not supported. 3: not a certificate. 70: a worker process died, memory is short, or a
-defect of this program; nothing is known of the file.
+some claim is not supported, or the file is not finished. 3: not a certificate. 70: a worker process
+died, memory is short, or a defect of this program; nothing is known of the file.
 
 Six kinds of certificates are told apart by what is in the file: listings of all branches
 (`listing`, docs/certificate.md), compact ones with one root for each sign vector (`compact`,

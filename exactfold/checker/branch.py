@@ -4,17 +4,20 @@ Why it is a proof: heights with K_v > 0 at every interior vertex bound the dista
 solution with the same signs (Theorem 5 of docs/branch.md, which also describes the file); heights
 that solve the equations exactly are that solution. The boundary must be convex, or that of a
 quadrilateral whose notch is closed here. Vertices inside a 3-cycle of edges stay flat (Theorem 2
-(a), applied to the triangle) and are removed. Other folds are flat if the heights are exact and
+(a), applied to the triangle) and are removed. In version 2 the curvatures K_v are not 0 but the
+angle deficits that are claimed, for a given rim; Theorem 5 holds as it is, and a vertex with a
+positive deficit is not flat. Other folds are flat if the heights are exact and
 flat there, or if K_v = 0 at a vertex leaves them no other choice (`close_flat`).
 """
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import lcm
 from typing import Any
 
 from .branch_proof import Heights, Proof
-from .formats import BRANCH, BRANCH_VERSION
+from .formats import BRANCH, BRANCH_VERSION, CURVED_VERSION
 from .reading import (
     MALFORMED,
     CertificateError,
@@ -31,7 +34,9 @@ from .sheet import Sheet, read_sheet, turn
 
 def read(data: Any) -> dict[str, Any]:
     """`data` if it is a certificate of one branch; raises `FormatError`."""
-    return document(data, BRANCH, BRANCH_VERSION, "format version pattern claims evidence")
+    curved = isinstance(data, dict) and data.get("version") == CURVED_VERSION
+    version = CURVED_VERSION if curved else BRANCH_VERSION
+    return document(data, BRANCH, version, "format version pattern claims evidence")
 
 
 def check(data: dict[str, Any]) -> dict[str, Any]:
@@ -40,7 +45,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     Returns the claims and the SHA-256 of the pattern. The claims are: of all branches, or of all
     solutions with the rim of the heights if `gauge` is "rim", exactly one has these vertex signs,
     all of them exact, 0 where the star is flat; its folds have these letters, "U" making no claim;
-    and for its heights h the integral of |grad(h - heights)|^2 is at most `squared_distance`.
+    and for its heights h the integral of |grad(h - heights)|^2 is at most `squared_distance`. In
+    version 2 "solutions" are those with K_v = `curvature`, in the order of the interior vertices.
     """
     try:
         return _check(data)
@@ -51,44 +57,114 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 def _check(data: dict[str, Any]) -> dict[str, Any]:
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
-    keys(claims, "gauge vertex_signs assignment squared_distance", "claims")
+    names = "gauge vertex_signs assignment squared_distance"
+    curved = data["version"] == CURVED_VERSION
+    keys(claims, f"{names} curvature" if curved else names, "claims")
     keys(evidence, "emptied heights denominator", "evidence")
-    unit = lcm(*(x.denominator for point in given.points.values() for x in point))
-    points: dict[int, Any] = {
-        v: (int(x * unit), int(y * unit)) for v, (x, y) in given.points.items()
-    }
-    sheet, removed = emptied_sheet(given, points, evidence["emptied"])
-    corner = None
+    place = Place(given, evidence["emptied"])
+    targets = place.targets(claims["curvature"]) if curved else {}
     if claims["gauge"] != "rim":
+        require(not curved, "angle deficits need a given rim")
         require(claims["gauge"] == "saddle", "the gauge is neither saddle nor rim")
-        require(len(sheet.boundary) == 4, "there are not four boundary vertices")
-        sheet, corner = closed(sheet)
-    _check_convex(sheet)
-    texts = items(evidence["heights"], "heights", len(points))
-    require(all((texts[v] is None) == (v in removed) for v in points), "heights do not fit")
-    heights = {v: parse_integer(texts[v]) for v in points if v not in removed}
-    q = parse_integer(evidence["denominator"])
-    require(q > 0, "the denominator is not positive")
-    if claims["gauge"] == "saddle":
-        _check_gauge(sheet, heights, corner)
-    proof = Proof(sheet, heights, q, corner)
+        place.fix_rim()
+    place.check_convex()
+    proof = place.proof(evidence["heights"], evidence["denominator"], targets)
     require(
         proof.squared_distance <= parse_rational(claims["squared_distance"]),
         "the distance is larger than claimed",
     )
-    _check_signs(given, claims["vertex_signs"], proof, removed)
-    _check_letters(given, claims["assignment"], proof, removed)
+    _check_signs(place, claims["vertex_signs"], proof)
+    _check_letters(place, claims["assignment"], proof)
     return {"sha256": digest, "interior": len(given.interior), **claims}
 
 
 # --- the sheet -----------------------------------------------------------------------------------
 
 
-def _check_convex(sheet: Sheet) -> None:
-    cycle = sheet.boundary
-    for k, v in enumerate(cycle):
-        corner = (cycle[k - 1], v, cycle[(k + 1) % len(cycle)])
-        require(turn(*(sheet.points[u] for u in corner)) >= 0, "the boundary is not convex")
+class Place:
+    """The sheet that heights are given for, in integers and without the vertices `removed`.
+
+    Once its rim is fixed, its notch is closed if it has the reflex corner `corner`, and the heights
+    are those of one half of a branch. `open` is the sheet with the notch.
+    """
+
+    def __init__(self, given: Sheet, emptied: Any) -> None:
+        self.given = given
+        self.unit = lcm(*(x.denominator for point in given.points.values() for x in point))
+        points: dict[int, Any] = {
+            v: (int(x * self.unit), int(y * self.unit)) for v, (x, y) in given.points.items()
+        }
+        self.sheet, self.removed = emptied_sheet(given, points, emptied)
+        self.open = self.sheet
+        self.corner: int | None = None
+        self.fixed = False
+
+    def fix_rim(self) -> None:
+        """Ask for a quadrilateral, with its saddle positive or its reflex corner up."""
+        require(len(self.sheet.boundary) == 4, "there are not four boundary vertices")
+        self.sheet, self.corner = closed(self.sheet)
+        self.fixed = True
+
+    def check_convex(self) -> None:
+        """Raise unless the boundary is convex."""
+        cycle = self.sheet.boundary
+        for k, v in enumerate(cycle):
+            corner = (cycle[k - 1], v, cycle[(k + 1) % len(cycle)])
+            side = turn(*(self.sheet.points[u] for u in corner))
+            require(side >= 0, "the boundary is not convex")
+
+    def targets(self, texts: Any) -> dict[int, Fraction]:
+        """The angle deficits that are not 0, for integer lengths."""
+        interior = self.given.interior
+        deficits = [parse_rational(text) for text in items(texts, "curvature", len(interior))]
+        found = {}
+        for v, deficit in zip(interior, deficits, strict=True):
+            require(deficit >= 0, f"the angle deficit of vertex {v} is negative")
+            bent = not deficit or v not in self.removed
+            require(bent, f"vertex {v} is not flat, as it has a deficit")
+            if deficit:
+                found[v] = deficit / self.unit**2
+        return found
+
+    def proof(
+        self, numerators: Any, denominator: Any, targets: dict[int, Fraction] | None = None
+    ) -> Proof:
+        """What heights prove."""
+        texts = items(numerators, "heights", len(self.given.points))
+        fits = all((texts[v] is None) == (v in self.removed) for v in self.given.points)
+        require(fits, "heights do not fit")
+        heights = {v: parse_integer(texts[v]) for v in self.sheet.points}
+        q = parse_integer(denominator)
+        require(q > 0, "the denominator is not positive")
+        if self.fixed:
+            _check_gauge(self.sheet, heights, self.corner)
+        proof = Proof(self.sheet, heights, q, self.corner, targets or {})
+        if self.corner is not None:
+            require(proof.signs[self.corner] == 1, "the reflex corner does not pop up")
+        return proof
+
+    def signs(self, proof: Proof) -> list[int]:
+        """The signs of the interior vertices of the given sheet, 0 where the star is flat."""
+        seen: dict[int, set[str]] = {v: set() for v in self.sheet.points}
+        for fold, letter in proof.letters.items():
+            for v in fold:
+                seen[v].add(letter)
+        signs = []
+        for v in self.given.interior:
+            sign = 0
+            if v not in self.removed and seen[v] != {"F"}:
+                bent = seen[v] & {"M", "V"} or v in proof.targets
+                require(bent, f"vertex {v} may be flat")
+                sign = proof.signs[v]
+            signs.append(sign)
+        return signs
+
+    def letters(self, proof: Proof) -> list[str]:
+        """The letters of the folds of the given sheet, "U" where they are not proved."""
+        return [
+            "F" if not self.removed.isdisjoint(fold) else proof.letters[fold]
+            for fold in self.given.folds
+        ]
 
 
 def _check_gauge(sheet: Sheet, heights: Heights, corner: int | None) -> None:
@@ -107,27 +183,16 @@ def _check_gauge(sheet: Sheet, heights: Heights, corner: int | None) -> None:
     require(saddle * next(w for w in weights if w) > 0, "the saddle is not positive")
 
 
-def _check_signs(given: Sheet, signs: Any, proof: Proof, removed: set[int]) -> None:
-    if proof.corner is not None:
-        require(proof.signs[proof.corner] == 1, "the reflex corner does not pop up")
-    seen: dict[int, set[str]] = {v: set() for v in proof.sheet.points}
-    for fold, letter in proof.letters.items():
-        for v in fold:
-            seen[v].add(letter)
-    values = items(signs, "vertex_signs", len(given.interior))
-    for v, sign in zip(given.interior, values, strict=True):
-        expected = 0
-        if v not in removed and seen[v] != {"F"}:
-            require(seen[v] & {"M", "V"}, f"vertex {v} may be flat")
-            expected = proof.signs[v]
+def _check_signs(place: Place, signs: Any, proof: Proof) -> None:
+    values = items(signs, "vertex_signs", len(place.given.interior))
+    for v, sign, expected in zip(place.given.interior, values, place.signs(proof), strict=True):
         require(type(sign) is int and sign == expected, f"vertex {v} has another sign")
 
 
-def _check_letters(given: Sheet, letters: Any, proof: Proof, removed: set[int]) -> None:
-    require(isinstance(letters, str) and len(letters) == len(given.folds), "letters do not fit")
-    for fold, letter in zip(given.folds, letters, strict=True):
-        rigid = not removed.isdisjoint(fold)
-        expected = "F" if rigid else proof.letters[fold]
+def _check_letters(place: Place, letters: Any, proof: Proof) -> None:
+    folds = place.given.folds
+    require(isinstance(letters, str) and len(letters) == len(folds), "letters do not fit")
+    for fold, letter, expected in zip(folds, letters, place.letters(proof), strict=True):
         require(letter == expected or letter == "U", f"fold {fold} is not known to be {letter!a}")
 
 
@@ -136,7 +201,8 @@ def summary(claims: dict[str, Any]) -> str:
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
     shown = signs if len(signs) <= 60 else signs[:60] + "..."
     decided = len(claims["assignment"]) - claims["assignment"].count("U")
+    what = "shape with these angle deficits" if "curvature" in claims else "branch"
     return (
-        f"VALID: exactly one branch has the vertex signs {shown} ({len(signs)}); "
+        f"VALID: exactly one {what} has the vertex signs {shown} ({len(signs)}); "
         f"{decided} of {len(claims['assignment'])} letters decided; sha256 {claims['sha256']}"
     )

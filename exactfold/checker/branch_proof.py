@@ -23,13 +23,22 @@ Heights = Mapping[int, int]
 class Proof:
     """Signs, bends and the distance for heights over q; lengths are integers.
 
-    `corner` has the target K = 1 / size^2, all other interior vertices 0.
+    `corner` has the target K = 1 / size^2, the vertices of `targets` have those, all other interior
+    vertices 0.
     """
 
-    def __init__(self, sheet: Sheet, heights: Heights, q: int, corner: int | None) -> None:
+    def __init__(
+        self,
+        sheet: Sheet,
+        heights: Heights,
+        q: int,
+        corner: int | None,
+        targets: Mapping[int, Fraction],
+    ) -> None:
         self.sheet, self.heights, self.q, self.corner = sheet, heights, q, corner
         xs, ys = zip(*sheet.points.values(), strict=True)
         self.size = int(max(max(xs) - min(xs), max(ys) - min(ys)))
+        self.targets = targets if corner is None else {corner: Fraction(1, self.size**2)}
         highest = max(map(abs, heights.values()))
         self.bits = max(0, SPARE + 2 * self.size.bit_length() - 2 * highest.bit_length())
         self.exact = all(self._on_target(v) for v in sheet.interior)
@@ -65,7 +74,7 @@ class Proof:
     def _on_target(self, v: int) -> bool:
         """Whether K_v is exactly what it is on a solution."""
         low, high = self.form(v, self.heights, self.heights)
-        target = Fraction(self.q**2, self.size**2) if v == self.corner else Fraction(0)
+        target = self.q**2 * self.targets.get(v, Fraction(0))
         near = low <= target * (1 << self.bits) <= high
         return near and self.exact_form(v, self.heights, self.heights) == target
 
@@ -108,10 +117,11 @@ class Proof:
         plain = 0
         for v in self.sheet.interior:
             low, high = self.form(v, self.heights, self.heights)
-            if v == self.corner:
-                target = Fraction(1, self.size**2)
+            if v in self.targets:
+                target = self.targets[v]
                 off = max(abs(Fraction(bound, unit) - target) for bound in (low, high))
-                total += Fraction(radius - squared(v), 4) * off**2 / target
+                # (sqrt K - sqrt k)^2 is at most |K - k|, and at most (K - k)^2 / k
+                total += Fraction(radius - squared(v), 4) * min(off, off**2 / target)
             else:
                 plain += (radius - squared(v)) * high
         return total + Fraction(plain, 4 * unit)
@@ -133,5 +143,5 @@ class Proof:
     def _letters(self) -> dict[Edge, str]:
         """The letters of all folds of the sheet, those left open closed where K_v = 0 can."""
         sides = {fold: self._side(fold) for fold in self.sheet.folds}
-        close_flat(self.sheet, sides, self.corner)
+        close_flat(self.sheet, sides, self.targets)
         return {fold: "U" if s is None else "MFV"[s + 1] for fold, s in sides.items()}

@@ -14,10 +14,10 @@ from os import PathLike
 from types import ModuleType
 from typing import Any
 
-from . import branch, compact, listing, motion, motion_loops, panels
+from . import branch, compact, letters, listing, motion, motion_loops, panels
 from .compact_lines import lines
-from .formats import BRANCH, COMPACT, LISTING, LOOPS, MOST_LINE, MOTION
-from .reading import CertificateError, FormatError, plain, read_json
+from .formats import BRANCH, COMPACT, LETTERS, LISTING, LOOPS, MOST_LINE, MOTION
+from .reading import CertificateError, FormatError, UnfinishedError, plain, read_json
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
 
@@ -61,6 +61,8 @@ def _reader(data: dict[str, Any]) -> ModuleType:
     """The module that reads and checks a JSON object."""
     if data.get("format") == BRANCH:
         return branch
+    if data.get("format") == LETTERS:
+        return letters
     if data.get("format") == MOTION:
         return motion
     if data.get("format") == LISTING and "kind" in data:
@@ -140,16 +142,25 @@ def summary(claims: dict[str, Any]) -> str:
         return panels.summary(claims)
     if "loops" in claims:
         return motion_loops.summary(claims)
+    if "halves" in claims:
+        return letters.summary(claims)
     if "tubes" in claims:
         return motion.summary(claims)
     return branch.summary(claims) if "gauge" in claims else listing.summary(claims)
 
 
+def refusal(error: CertificateError) -> str:
+    """One line for a file whose claims do not all hold, or that is not finished."""
+    unfinished = isinstance(error, UnfinishedError)
+    return f"{'UNFINISHED' if unfinished else 'INVALID'}: {plain(error)}"
+
+
 def main(arguments: list[str]) -> int:
     """Check one file and print the verdict; the exit code.
 
-    0: every claim holds; 1: some claim is not supported; 2: wrong usage; 3: not a certificate; 70:
-    a worker process died, memory is short, or a defect of this program.
+    0: every claim holds; 1: some claim is not supported, or the file is not finished; 2: wrong
+    usage; 3: not a certificate; 70: a worker process died, memory is short, or a defect of this
+    program.
     """
     workers = arguments[1] if len(arguments) == 2 else "1"
     usable = workers.isascii() and workers.isdecimal() and len(workers) < 5
@@ -159,7 +170,7 @@ def main(arguments: list[str]) -> int:
     try:
         claims = verify(arguments[0], int(workers))
     except CertificateError as error:
-        print(f"INVALID: {plain(error)}")
+        print(refusal(error))
         return 1
     except (FormatError, OSError) as error:
         print(f"not a certificate: {plain(error)}", file=sys.stderr)

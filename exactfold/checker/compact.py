@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from .compact_blocks import CompactSheet
 from .compact_lines import lines, read_header, read_object
-from .reading import MALFORMED, CertificateError, FormatError, keys, require
+from .reading import MALFORMED, CertificateError, FormatError, UnfinishedError, keys, require
 
 _sheet: CompactSheet | None = None  # of a worker process
 
@@ -111,8 +111,9 @@ def check_lines(
         raise CertificateError(f"malformed: {type(error).__name__}") from error
     _check_blocks(found, first, sheet.blocks, workers, engine)
     last = next(found, None)
-    require(last is not None, "the claims are missing")
-    claims = read_object(last or "", "the last line")
+    if last is None:
+        raise UnfinishedError(f"all {sheet.blocks} blocks hold, but the claims are missing")
+    claims = read_object(last, "the last line")
     keys(claims, "claims", "the last line")
     require(next(found, None) is None, "something follows the claims")
     facts = sheet.claims()
@@ -136,7 +137,7 @@ def _check_blocks(
                 missing.append(error)
                 return
             if text is None:
-                missing.append(CertificateError(f"only {number} of {blocks} blocks are there"))
+                missing.append(UnfinishedError(f"only {number} of {blocks} blocks are there"))
                 return
             yield text, number
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Iterable
 from fractions import Fraction
 
 from .linear import kernel, matrix_of, rational_sqrt
@@ -75,12 +76,12 @@ def forced_flat(
     ]
 
 
-def close_flat(sheet: Sheet, signs: dict[Edge, int | None], corner: int | None = None) -> None:
+def close_flat(sheet: Sheet, signs: dict[Edge, int | None], curved: Iterable[int] = ()) -> None:
     """Settle open folds by `flat_at` until nothing changes.
 
-    `corner`: an interior vertex at which the curvature form does not vanish.
+    `curved`: interior vertices at which the curvature form does not vanish.
     """
-    inner = set(sheet.interior) - {corner}
+    inner = set(sheet.interior) - set(curved)
     pending = {v for fold, sign in signs.items() if sign is None for v in fold} & inner
     while pending:
         vertex = pending.pop()

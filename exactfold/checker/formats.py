@@ -11,6 +11,12 @@ COMPACT, COMPACT_VERSION = "exactfold compact certificate", 1
 BRANCH, BRANCH_VERSION = "exactfold branch", 1
 """One branch with given vertex signs (docs/branch.md)."""
 
+CURVED_VERSION = 2
+"""The same with angle deficits: one shape of a sheet that is not flat by itself."""
+
+LETTERS, LETTERS_VERSION = "exactfold letters", 1
+"""All halves of branches with given mountains and valleys (docs/assignment.md)."""
+
 PANELS, PANELS_VERSION = "panels", 3
 """All motions of a sheet of rigid panels: a kind of the format `LISTING` (docs/certificate.md)."""
 

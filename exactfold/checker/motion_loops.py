@@ -34,6 +34,7 @@ from .reading import (
     MALFORMED,
     CertificateError,
     FormatError,
+    UnfinishedError,
     counted,
     document,
     integer,
@@ -222,7 +223,9 @@ def check_lines(
                 raise CertificateError(reason)
     if late:  # a loop before it that does not hold comes first
         raise late[0]
-    require(last, "the claims are missing")
+    if not last:
+        number = counted(matching.loops, "loop holds", "loops hold")
+        raise UnfinishedError(f"{number}, but the claims are missing")
     facts: dict[str, Any] = {
         "sha256": sheet.sha256,
         "loops": matching.loops,

@@ -47,8 +47,8 @@ class Patch:
                     self.rows[v][place[corner]] = int(w * self.denominator)
         self.bars = [e for e in equations.edges if not self.vertices.issuperset(e)]
         self.bars += [e for e in combinations(self.base, 2) if not set(pinned).issuperset(e)]
-        square = len(self.bars) == 3 * len(self.moving)
-        require(square, "a flat patch leaves not as many equations as unknowns")
+        square = bool(self.moving) and len(self.bars) == 3 * len(self.moving)
+        require(square, "a flat patch leaves no unknowns, or not as many equations")
 
     def node(self, near: Vector) -> Ball:
         """A box that holds a configuration with a flat patch, from unknowns near to it.

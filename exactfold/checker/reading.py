@@ -14,6 +14,10 @@ class CertificateError(Exception):
     """A claim of the certificate is not supported by its evidence."""
 
 
+class UnfinishedError(CertificateError):
+    """The file ends before its claims, as an interrupted run leaves it; what is there holds."""
+
+
 class FormatError(Exception):
     """The file is not a certificate of a known format and version."""
 

@@ -27,6 +27,7 @@ class Sheet:
     def __init__(self, points: dict[int, Point], triangles: Iterable[tuple[int, ...]]) -> None:
         self.points = points
         self.next: dict[int, dict[int, int]] = {v: {} for v in points}
+        self._forms: dict[int, Form] = {}
         for a, b, c in triangles:
             require(len({a, b, c}) == 3 and {a, b, c} <= points.keys(), f"bad face {(a, b, c)}")
             require(turn(points[a], points[b], points[c]) > 0, f"face {(a, b, c)} is not positive")
@@ -110,8 +111,14 @@ class Sheet:
         """The curvature form K_v as {(i, j): coefficient}, symmetric, over all pairs of the star.
 
         K_v(h) = sum_j x_j x_{j+1} / c_j - (s_j / 2 c_j) (x_j^2 / L_j^2 + x_{j+1}^2 / L_{j+1}^2)
-        with x_j = h_j - h_v, c_j and s_j the cross and dot product of neighbouring spokes.
+        with x_j = h_j - h_v, c_j and s_j the cross and dot product of neighbouring spokes. It is
+        computed once, and is not to be changed.
         """
+        if vertex not in self._forms:
+            self._forms[vertex] = self._curvature(vertex)
+        return self._forms[vertex]
+
+    def _curvature(self, vertex: int) -> Form:
         ring, (x, y) = self.star(vertex), self.points[vertex]
         spoke = {j: (self.points[j][0] - x, self.points[j][1] - y) for j in ring}
         form: Form = {}

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.branches.branch import Branch
+from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, name_of, say
 from exactfold.count.find import BranchFinder
@@ -31,6 +32,7 @@ class Asked:
     pops: str | None
     certificate: Path | None
     as_json: bool
+    given: Given = NOTHING
 
     @property
     def name(self) -> str:
@@ -48,8 +50,8 @@ class Asked:
         proved, rows = True, []
         with Bar("reading") as bar:
             sheet = read(self.pattern, self.snap, self.sheet, "branch")
-            finder = BranchFinder(sheet.pattern)
             bar("setting up")
+            finder = self.given.finder(sheet.pattern)
             for name, result in self._found(finder, bar):
                 proved &= result.status is PROVED
                 if self.as_json:
@@ -96,15 +98,22 @@ class Asked:
 
 
 def chosen(
-    pattern: CreasePattern, signs: str | None, up: str | None, place: int | None, bar: Bar
+    pattern: CreasePattern,
+    signs: str | None,
+    up: str | None,
+    place: int | None,
+    bar: Bar,
+    given: Given | None = None,
 ) -> Branch:
     """The branch that --signs or --up names, or the one at a place in the listing, from 1.
+
+    `given`, for commands that take a rim: what is given of it.
 
     Raises the errors of `BranchFinder` and `count_branches`, and `UsageError` or `NotCountedError`
     for a place that is not listed.
     """
     if place is None:
-        finder = BranchFinder(pattern)
+        finder = BranchFinder(pattern) if given is None else given.finder(pattern)
         bar("setting up")
         return finder.find(given_signs(finder, signs, up), progress=bar)
     from exactfold.count.collect import count_branches  # FLINT, for this alone

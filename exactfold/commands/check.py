@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from exactfold import checker
-from exactfold.checker.reading import plain
+from exactfold.checker.command import refusal
+from exactfold.checker.reading import UnfinishedError, plain
 from exactfold.commands.shell import Bar, name_of, regular, said
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.schemas import headed
@@ -19,19 +20,18 @@ LONG = ("branches", "vertex_signs", "assignment", "supports", "flat")
 def valid(path: Path, workers: int | None, as_json: bool) -> bool:
     """Whether every claim of a file holds, which is printed; raises the errors of `verified`."""
     with Bar("checking"):
-        claims, text = verified(path, workers)
+        claims, text, reason = verified(path, workers)
     if as_json:
         short = {k: v for k, v in (claims or {}).items() if k not in LONG}
         head = {**headed("check"), "name": name_of(path)}
-        reason = text if claims is None else "every claim holds"
         print(json.dumps({**head, "valid": claims is not None, "reason": reason, "claims": short}))
     else:
-        print(f"INVALID: {text}" if claims is None else text)
+        print(text)
     return claims is not None
 
 
-def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, str]:
-    """The claims of a file and what to print; None and the reason if one does not hold.
+def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, str, str]:
+    """The claims of a file, what to print, and the reason; None if one does not hold.
 
     Raises `CertificateFormatError`, `UnreadableFileError`, `WorkerDiedError`.
     """
@@ -39,12 +39,13 @@ def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, st
         try:
             claims = _claims(file, workers, path)
         except checker.CertificateError as error:
-            return None, plain(error)
+            unfinished = "unfinished: " if isinstance(error, UnfinishedError) else ""
+            return None, refusal(error), unfinished + plain(error)
         except checker.FormatError as error:
             raise CertificateFormatError(f"{said(path)}: {plain(error)}") from None
         except OSError as error:
             raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
-    return claims, checker.summary(claims)
+    return claims, checker.summary(claims), "every claim holds"
 
 
 def _claims(file: Path, workers: int | None, name: Path) -> dict[str, Any]:

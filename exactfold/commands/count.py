@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from exactfold import report
 from exactfold.branches.result import BranchCount
-from exactfold.commands.patterns import read_any
+from exactfold.commands.given import NOTHING, Given
+from exactfold.commands.patterns import read, read_any
 from exactfold.commands.shell import EXIT, Bar, apart, name_of, say
 from exactfold.commands.stream import Streaming, advice
 from exactfold.count.stream import StreamedCount
@@ -42,6 +43,7 @@ class Asked:
     seed: int
     everything: bool
     verbose: bool
+    given: Given = NOTHING
 
     def run(self) -> int:
         """Count, write what was asked for and print the answer; the exit code.
@@ -49,6 +51,8 @@ class Asked:
         Raises the errors of `read_any`, `count_branches` and `Streaming`, and `UsageError`.
         """
         apart(self.certificate, self.pattern, self.stream)
+        if self.given:
+            return self._shapes()
         streamed = None if self.stream is None else self._streamed(self.stream)
         result = self._counted() if streamed is None else streamed
         written = self._certified(result, streamed)
@@ -68,6 +72,32 @@ class Asked:
                 verbose=self.verbose,
             )
             report.show(shown)
+        return EXIT[result.status]
+
+    def _shapes(self) -> int:
+        """Count shapes with angle deficits."""
+        from exactfold.count.shapes import count_shapes
+
+        if self.given.curvature is None:
+            raise UsageError("--rim goes with --curvature: branches are counted for all rims")
+        for option, value in (
+            ("--certificate", self.certificate),
+            ("--stream", self.stream),
+            ("--method", None if self.method == "auto" else self.method),
+        ):
+            if value is not None:
+                raise UsageError(
+                    f"{option} does not go with --curvature; `exactfold branch --curvature` writes "
+                    "a certificate of one shape"
+                )
+        with Bar("reading") as bar:
+            pattern = read(self.pattern, self.snap, self.sheet, "count").pattern
+            finder = self.given.finder(pattern)
+            result = count_shapes(pattern, finder.curvature or {}, rim=finder.rim, progress=bar)
+        if self.as_json:
+            print(json.dumps(result.to_dict(name_of(self.pattern))))
+        else:
+            report.show(report.shapes_report(result, everything=self.everything))
         return EXIT[result.status]
 
     def _streamed(self, file: Path) -> StreamedCount:
@@ -103,14 +133,13 @@ class Asked:
         if self.certificate is None:
             return None
         if not isinstance(result, BranchCount):
-            from exactfold.evidence.panels import certificate_of_panels
-
-            try:
-                write_certificate(certificate_of_panels(result), self.certificate)
-            except NotApplicableError as error:
-                say(f"no certificate was written: {error}")
-                return None
-            return str(self.certificate)
+            return self._certified_panels(result, self.certificate)
+        if result.families is not None:
+            say(
+                "the graphs are proved by a theorem, and joints have no certificate: what is "
+                "certified is the list of irreducible components"
+            )
+            return self._certified_panels(result.families, self.certificate)
         if result.status is not PROVED:
             say("no certificate was written: nothing is proved")
         elif streamed is not None and result.proof is None:
@@ -119,3 +148,13 @@ class Asked:
             write_certificate(certificate_of(result), self.certificate)
             return str(self.certificate)
         return None
+
+    def _certified_panels(self, ways: Decomposition, file: Path) -> str | None:
+        from exactfold.evidence.panels import certificate_of_panels
+
+        try:
+            write_certificate(certificate_of_panels(ways), file)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
+            return None
+        return str(file)

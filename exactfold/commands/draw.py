@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 from exactfold.branches.result import BranchCount
 from exactfold.commands.branch import chosen
+from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import located, read_any
 from exactfold.commands.shell import EXIT, STDIN, Bar, apart, name_of, say
-from exactfold.count.ways import count_opened
+from exactfold.count.ways import count_opened, decompose_opened
 from exactfold.drawing.drawing import Drawing, Snap
 from exactfold.errors import (
     FoldError,
@@ -28,7 +29,7 @@ from exactfold.report.crease_drawing import pattern_picture
 from exactfold.report.drawn_ways import branch_way, mode_way
 from exactfold.report.folded import Amount, Folded, folded
 from exactfold.report.picture_files import checked_picture, write_picture
-from exactfold.report.way_sheets import number_listed, sheet_of_ways
+from exactfold.report.way_sheets import number_listed, sheet_of_ways, why_no_way
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import counted
 
@@ -56,6 +57,7 @@ class Wanted:
     amount: Amount | None
     side: int | None
     output: Path | None
+    given: Given = NOTHING
 
     def answer(self) -> int:
         """Draw, write and say where; the exit code: 4 where a way that is drawn is not proved.
@@ -125,9 +127,12 @@ class Wanted:
         branches = isinstance(sheet, CreasePattern) and has_branches(sheet)
         if self.everything:
             return self._all(opened, bar)
-        if branches and isinstance(sheet, CreasePattern):
+        named = self._place is None or self.given
+        families = isinstance(sheet, CreasePattern) and sheet.Ve > 4 and sheet.interior and named
+        if (branches or families) and isinstance(sheet, CreasePattern):
             signs = None if self._place is not None else self.way
-            return self._branch(chosen(sheet, signs, self.up, self._place, bar), bar)
+            given = self.given if families or self.given else None
+            return self._branch(chosen(sheet, signs, self.up, self._place, bar, given), bar)
         return self._mode(opened, bar)
 
     def _raw(self) -> Drawing | None:
@@ -168,7 +173,7 @@ class Wanted:
         ways = self._counted(opened, bar)
         if isinstance(ways, BranchCount):
             raise NotCountedError("this sheet has no single ways to draw: draw it without --branch")
-        mode = self._chosen(panel_modes(ways))
+        mode = self._chosen(ways, panel_modes(ways))
         verdict = mode.extends.verdict
         if self.amount is None:
             if verdict is not PROVED:
@@ -180,8 +185,10 @@ class Wanted:
         motion = follow_panels(ways, modes=(mode.number,))
         return self._folded(folded(motion, self.amount, self._title)), verdict
 
-    def _chosen(self, modes: Sequence[PanelMode]) -> PanelMode:
+    def _chosen(self, ways: Decomposition, modes: Sequence[PanelMode]) -> PanelMode:
         place = self._place or 0
+        if not modes:
+            raise UsageError(f"{why_no_way(ways)}: draw the pattern without --branch")
         if place > len(modes):
             raise UsageError(f"--branch {place}: this sheet has {counted(len(modes), 'mode')}")
         return modes[place - 1]
@@ -196,10 +203,12 @@ class Wanted:
 
     def _counted(self, opened: Opened, bar: Bar) -> BranchCount | Decomposition:
         bar("solving")
-        result = count_opened(opened, progress=bar)
-        if result.warning is not None and not isinstance(result, BranchCount):
-            say(f"warning: {result.warning}")
-        return result
+        if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
+            return count_opened(opened, progress=bar)
+        ways = decompose_opened(opened, progress=bar)  # single modes can be drawn
+        if ways.warning is not None:
+            say(f"warning: {ways.warning}")
+        return ways
 
     def _all(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
         """All ways that are listed, as small multiples."""
@@ -207,9 +216,7 @@ class Wanted:
         bar("drawing")
         number = number_listed(result)
         if not number:
-            raise NotCountedError(
-                "`exactfold count` lists no single way to fold this pattern: draw it without --all"
-            )
+            raise NotCountedError(f"{why_no_way(result)}: draw the pattern without --all")
         if number > self.most:
             say(f"the first {self.most} of {number} are drawn: --most N draws more")
         return sheet_of_ways(result, self._title, self.most), result.status

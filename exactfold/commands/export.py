@@ -11,6 +11,7 @@ from typing import Any
 from exactfold.branches.branch import Branch
 from exactfold.branches.export import AMOUNT, BranchExport, exported
 from exactfold.commands.branch import chosen
+from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
@@ -35,6 +36,7 @@ class Wanted:
     amount: float | None
     force: bool
     as_json: bool
+    given: Given = NOTHING
 
     def answer(self) -> int:
         """Find the branch, write it and say so; the exit code.
@@ -47,7 +49,7 @@ class Wanted:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
             pattern = read(self.file, self.snap, self.sheet, "export").pattern
-            branch = chosen(pattern, self.signs, self.up, self.place, bar)
+            branch = chosen(pattern, self.signs, self.up, self.place, bar, self.given)
             bar("writing")
             try:
                 export = exported(

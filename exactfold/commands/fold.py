@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from exactfold.branches.branch import Branch
 from exactfold.commands.branch import chosen
@@ -14,7 +14,7 @@ from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
-from exactfold.motion.following import Goal, follow
+from exactfold.motion.following import Goal, check_corners, follow
 from exactfold.motion.motion import Motion
 from exactfold.motion.writing import checked_ending, write_motion
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
@@ -72,6 +72,8 @@ class Wanted:
             opened = read_any(self.file, self.snap, self.sheet)
             sheet = opened.sheet
             motion: Motion | PanelMotion
+            if isinstance(sheet, CreasePattern) and (self.signs or self.up) is not None:
+                check_corners(sheet)
             if isinstance(sheet, CreasePattern) and has_branches(sheet):
                 branch = self._branch(sheet, bar)
                 try:
@@ -145,7 +147,7 @@ class Wanted:
     # --- panels ----------------------------------------------------------------------------------
 
     def _panels(self, opened: Opened, bar: Bar) -> PanelMotion:
-        from exactfold.count.ways import count_opened
+        from exactfold.count.ways import decompose_opened
         from exactfold.motion.panel_following import follow_panels
 
         given = {
@@ -165,7 +167,7 @@ class Wanted:
                 "--certificate is for motions along branches of triangulated sheets with four "
                 "corners; `exactfold count --certificate` proves how panels fold"
             )
-        ways = cast("Decomposition", count_opened(opened, progress=bar))
+        ways = decompose_opened(opened, progress=bar)
         if ways.warning is not None:
             say(f"warning: {ways.warning}")
         bar("following")

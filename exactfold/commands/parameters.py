@@ -177,6 +177,22 @@ Up = Annotated[
     str | None,
     typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
 ]
+Rim = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="RIM.json",
+        help='Heights of all border vertices, {"0": 1, "1": "-1/2", ...}, of a convex border. '
+        "Default, with more than four: those of a saddle, which are shown.",
+    ),
+]
+Curvature = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE.json",
+        help='Angle deficits of interior vertices, {"5": "1/10", ...}, 0 for the others: the '
+        "shapes of a sheet that is not flat by itself. Without --rim its border stays in a plane.",
+    ),
+]
 
 Place = Annotated[int | None, number("Instead: the N-th that `count` lists.", "N", "--branch")]
 Resume = Annotated[bool, flag("--resume", text="Continue the FILE that an interrupted run left.")]

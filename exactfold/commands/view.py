@@ -15,6 +15,7 @@ from exactfold.drawing.drawing import Snap
 from exactfold.errors import UsageError
 from exactfold.pattern.opening import Opened
 from exactfold.report.terminal import show
+from exactfold.verdict import PROVED
 from exactfold.viewer.page import checked_page, write_view
 from exactfold.viewer.server import view_server
 from exactfold.wording import counted
@@ -103,4 +104,6 @@ def _contents(document: Mapping[str, Any]) -> str:
     folding = sum(way["motion"] is not None for way in ways)
     left = len(ways) - folding
     text = counted(folding, "way") + " to fold"
+    if not left and document["status"] == str(PROVED) and not document["complete"]:
+        return f"{text}, those of which a motion is known"
     return f"{text}, and {counted(left, 'mode')} not followed" if left else text

@@ -14,6 +14,8 @@ from exactfold.count.registry import find_candidates as find_candidates
 from exactfold.count.registry import register_solver as register_solver
 from exactfold.count.registry import solvers as solvers
 from exactfold.count.registry import unregister_solver as unregister_solver
+from exactfold.count.shapes import ShapeCount as ShapeCount
+from exactfold.count.shapes import count_shapes as count_shapes
 from exactfold.count.stream import StreamedCount as StreamedCount
 from exactfold.count.stream import stream_branches as stream_branches
 from exactfold.count.ways import count_opened as count_opened

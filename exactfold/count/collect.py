@@ -13,6 +13,7 @@ from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
 from exactfold.count.conveyor import LISTED_BITS, Conveyor
 from exactfold.count.hand_over import isolated, solved_exactly, with_flat_vertices
 from exactfold.count.registry import METHODS, NEWTON, Choice, choose, find_candidates
+from exactfold.count.true_bounds import with_true_bounds
 from exactfold.errors import NoInteriorVertexError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
@@ -47,10 +48,11 @@ def count_branches(
     For D = 1: solve the branch system of the sheet without rigid parts, isolate every solution by
     an exact test, prove by refined Bezout that there are no others (docs/mathematics.md, Krawczyk's
     test to True branches), and decide all vertex signs and folds exactly. For Ve = 3 the sheet is
-    rigid: 0 branches. For D >= 2 only the single-vertex pattern is counted. `method` is one of
-    `METHODS`; "auto" takes Newton's method, one start for each sign vector, and turns to the exact
-    engine where that does not settle a small pattern. With more than 20 foldable vertices nothing
-    is kept in memory: `too_many` says what is known, at once; `stream_branches` goes on to 40.
+    rigid: 0 branches. For D >= 2 and a convex border the solutions are 2^n graphs over the rim
+    heights, and `pieces` says how they are joined (`find_pieces`). `method` is one of `METHODS`;
+    "auto" takes Newton's method, one start for each sign vector, and turns to the exact engine
+    where that does not settle a small pattern. With more than 20 foldable vertices nothing is kept
+    in memory: `too_many` says what is known, at once; `stream_branches` goes on to 40.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
     `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.
@@ -76,9 +78,9 @@ def count_branches(
     elif pattern.Ve == 3:
         result = _rigid(pattern, triangles)
     elif pattern.degrees_of_freedom == 1:
-        result = _lines(Problem.of(pattern), choice, method, seed, progress)
+        result = with_true_bounds(_lines(Problem.of(pattern), choice, method, seed, progress))
     else:
-        result = _higher(pattern, triangles)
+        result = _higher(pattern, triangles, progress)
     seconds = time.perf_counter() - start
     if result.status is not PROVED and definite_stress(pattern) is None:
         return replace(result, seconds=seconds)
@@ -106,16 +108,21 @@ def _rigid(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bran
         real=0,
         nonreal=0,
         true_branches=PROVED,
+        true_bounds=(0, 0),
         proof=Proof("rigid", triangles),
     )
 
 
-def _higher(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> BranchCount:
-    """D >= 2: the null cone of one Lorentzian form is one double cone for N >= 5."""
+def _higher(
+    pattern: CreasePattern, triangles: tuple[RigidTriangle, ...], progress: Progress | None
+) -> BranchCount:
+    """D >= 2: one double cone for a single vertex, 2^n graphs over the rim for a convex border."""
+    from exactfold.pieces.joining import find_pieces  # here, as most counts do without
+
     sheet, _ = pattern.without_rigid_parts()
     if sheet.Vi == 1 and not sheet.chords:
         weight = 1 << pattern.Vt
-        return BranchCount(
+        result = BranchCount(
             pattern,
             PROVED,
             "single vertex",
@@ -128,15 +135,40 @@ def _higher(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bra
             true_branches=PROVED,
             proof=Proof("single vertex", triangles),
         )
-    chords = "".join(f", and the fold {i}-{j} splits it" for i, j in sheet.chords[:1])
+        return result if not pattern.is_convex else replace(result, pieces=find_pieces(pattern))
+    if not pattern.is_convex:
+        return _not_convex(pattern)
+    pieces = find_pieces(pattern, progress=progress)
     return BranchCount(
         pattern,
-        UNDECIDED,
-        "none",
+        PROVED,
+        "theorem",
+        "for all rim heights there is exactly one solution with each sign vector: "
+        f"2^{len(pieces.vertices)} graphs over the rim heights, of dimension {pattern.D} modulo "
+        "planes",
+        why="the border is convex, with more than four vertices",
+        true_branches=PROVED,
+        open_questions=tuple(
+            f"whether the star of vertex {v} is flat in other solutions: {reason}"
+            for v, reason in (pieces.open or {}).items()
+        ),
+        pieces=pieces,
+    )
+
+
+def _not_convex(pattern: CreasePattern) -> BranchCount:
+    """D >= 2 and a reflex corner: solutions over a rim need not be real."""
+    return BranchCount(pattern, UNDECIDED, "none", not_convex(pattern))
+
+
+def not_convex(pattern: CreasePattern) -> str:
+    """Why a sheet with more than four corners, one of them reflex, stays undecided."""
+    chords = "".join(f", and the fold {i}-{j} splits it" for i, j in pattern.chords[:1])
+    return (
         f"the sheet has {pattern.Ve} boundary vertices, so it has {pattern.degrees_of_freedom} "
-        f"degrees of freedom{chords}; its ways to fold form continuous families, not a list. "
-        "exactfold counts sheets with four or three boundary vertices, or with a single vertex "
-        "inside; `exactfold info` says what is known of this one",
+        f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: with "
+        "more than four corners the shapes over a rim need not be real then, so that nothing "
+        "general is known of their number (docs/any_border.md, A border that is not convex)"
     )
 
 

@@ -22,6 +22,7 @@ from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.problem.problem import Problem
+from exactfold.problem.rims import default_rim
 from exactfold.problem.sheet import Sheet
 from exactfold.progress import Progress
 from exactfold.solve.sparse_newton import End, solve
@@ -31,6 +32,7 @@ from exactfold.wording import counted
 
 Signs = str | Mapping[int, int] | Sequence[int]
 Rim = Mapping[int, RationalLike]
+Deficits = Mapping[int, RationalLike]
 
 
 def find_branch(
@@ -39,6 +41,7 @@ def find_branch(
     *,
     up: Iterable[int] | None = None,
     rim: Rim | None = None,
+    curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Branch:
     """The one branch with given vertex signs, proved, without enumerating the others.
@@ -49,20 +52,24 @@ def find_branch(
     the nappes proposes heights (docs/mathematics.md, Nappes); they are refined in exact arithmetic
     and enclosed by a theorem that needs no factorisation (docs/branch.md, `enclose`), so that the
     cost of the proof grows like the number of folds. Gauge: see `Branch`. With `rim`, heights of
-    all boundary vertices of a convex boundary of any length, the branch of that rim. A vertex that
-    is proved flat on the branch gets the sign 0: either sign leads to that branch, and so does 0.
+    all boundary vertices of a convex boundary of any length, the branch of that rim; a convex sheet
+    with more than four boundary vertices has the rim `default_rim` if none is given. `curvature`:
+    angle deficits K_v > 0 of interior vertices, 0 where none is given; then the one shape with
+    these signs (docs/branch.md, Angle deficits), whose rim has height 0 if none is given. A vertex
+    that is proved flat on the branch gets the sign 0: either sign leads to it, and so does 0.
 
     Raises `UsageError` for signs that do not fit the pattern, among them a 0 where no branch with
-    the other signs is proved flat; `NotCountedError` if Ve is not 4 and no rim is given, or if no
-    vertex can pop. An `UNDECIDED` result does not say that the
-    branch does not exist.
+    the other signs is proved flat; `BadRimError` and `BadCurvatureError`, which name the vertex;
+    `NotApplicableError` for a rim of a border that is not convex; `NotCountedError` where signs
+    name no branch, or if no vertex can pop. An `UNDECIDED` result does not say that the branch does
+    not exist.
 
     >>> from exactfold.pattern.random_squares import random_square
     >>> branch = find_branch(random_square(8, seed=1), "+-++--+-")
     >>> branch.status, branch.assignment_text, float(branch.radius) < 1e-9
     (<Verdict.PROVED: 'proved'>, 'MMMVMVVMMVVMMVMVMMVVMVVVM', True)
     """
-    finder = BranchFinder(as_pattern(pattern), rim)
+    finder = branch_finder(as_pattern(pattern), rim, curvature)
     return finder.find(finder.signs(signs, up), progress=progress)
 
 
@@ -71,6 +78,7 @@ def find_branches(
     many: Iterable[Signs],
     *,
     rim: Rim | None = None,
+    curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Branch]:
     """`find_branch` for each of many sign vectors, one after the other, the setup shared.
@@ -79,7 +87,7 @@ def find_branches(
     >>> [b.sign_text for b in find_branches(random_square(3, seed=0), ["+-+", "---"])]
     ['+-+', '---']
     """
-    finder = BranchFinder(as_pattern(pattern), rim)
+    finder = branch_finder(as_pattern(pattern), rim, curvature)
     for signs in many:
         yield finder.find(finder.signs(signs, None), progress=progress)
 
@@ -90,6 +98,7 @@ def neighbours(
     vertices: Iterable[int] | None = None,
     *,
     rim: Rim | None = None,
+    curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> dict[int, Branch]:
     """The branches reached by popping one vertex through, by vertex.
@@ -101,24 +110,39 @@ def neighbours(
     >>> {v: b.sign_text for v, b in neighbours(random_square(3, seed=0), "+-+").items()}
     {4: '--+', 5: '+++', 6: '+--'}
     """
-    finder = BranchFinder(as_pattern(pattern), rim)
+    finder = branch_finder(as_pattern(pattern), rim, curvature)
     return finder.neighbours(finder.signs(signs, None), vertices, progress=progress)
+
+
+def branch_finder(
+    pattern: CreasePattern, rim: Rim | None = None, curvature: Deficits | None = None
+) -> BranchFinder:
+    """The finder for a convex border of any length, with the rim `default_rim` where it needs one.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> branch_finder(single_vertex(5)).problem.gauge
+    <Gauge: rim, 5 vertices on the rim>
+    """
+    if rim is None and curvature is None and pattern.Ve > 4 and pattern.is_convex:
+        rim = default_rim(pattern)
+    return BranchFinder(pattern, rim, curvature)
 
 
 @dataclass(frozen=True)
 class BranchFinder:
     """Finds branches of one pattern; what does not depend on the signs is computed once.
 
-    `rim` as in `find_branch`.
+    `rim` and `curvature` as in `find_branch`, but that no rim is chosen.
     """
 
     pattern: CreasePattern
     rim: Rim | None = None
+    curvature: Deficits | None = None
 
     @cached_property
     def problem(self) -> Problem:
         """The problem in the gauge asked for."""
-        problem = Problem.of(self.pattern, rim=self.rim)
+        problem = Problem.of(self.pattern, rim=self.rim, curvature=self.curvature)
         problem.require_foldable()
         return problem
 
@@ -138,7 +162,7 @@ class BranchFinder:
 
     def cannot_pop(self, vertex: object) -> str:
         """Why a vertex has no sign."""
-        if vertex in self.pattern.rigid_vertices:
+        if vertex in self.problem.rigid:
             return f"vertex {vertex} lies in a triangulated triangle and stays flat"
         return f"vertex {vertex} is not an interior vertex"
 
@@ -170,7 +194,7 @@ class BranchFinder:
             if v in self._names:
                 if sign not in (1, -1, 0):
                     raise UsageError(f"the sign of vertex {v} is {sign!r}, not +1, -1 or 0")
-            elif sign != 0 or v not in self.pattern.rigid_vertices:
+            elif sign != 0 or v not in self.problem.rigid:
                 raise UsageError(self.cannot_pop(v))
         missing = [v for v in names if v not in given]
         if missing:

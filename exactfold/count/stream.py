@@ -185,6 +185,7 @@ def _proved(pattern: CreasePattern, total: int) -> BranchCount:
         real=total,
         nonreal=0,
         true_branches=PROVED,
+        true_bounds=(total, total),
         dimension=pattern.degrees_of_freedom,
         degree=weight,
     )

@@ -9,7 +9,7 @@ from functools import partial
 from os import PathLike
 from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
-from exactfold.count.collect import count_branches
+from exactfold.count.collect import count_branches, not_convex
 from exactfold.count.registry import METHODS, choose
 from exactfold.data import EXAMPLES, example_path
 from exactfold.drawing.drawing import Drawing
@@ -19,6 +19,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.opening import Opened, from_drawing, has_branches, open_pattern, panels
 from exactfold.progress import Progress
+from exactfold.verdict import PROVED
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,7 +34,7 @@ Sheet: TypeAlias = (
 )
 """What `count_ways` takes: sheets of both kinds, drawings, and files of any format."""
 
-__all__ = ["METHODS", "count_opened", "count_ways", "open_sheet"]
+__all__ = ["METHODS", "count_opened", "count_ways", "decompose_opened", "open_sheet"]
 
 
 def count_ways(
@@ -48,10 +49,12 @@ def count_ways(
     """In how many ways a sheet folds, whatever its faces; the result says which theory applied.
 
     A triangulated sheet with four boundary vertices (D = 1), with three, or with one interior
-    vertex has branches: `count_branches`. Every other sheet has motions of rigid panels:
-    `decompose`. Files of all formats are read (`open_pattern`), drawings repaired and made exact;
-    `number`, from 1, chooses among the sheets of a drawing with several. Where loops nearly close,
-    the sheet is read again with other values of `snap`, and the first that closes each is named.
+    vertex has branches: `count_branches`. So has one with a convex border of more vertices, whose
+    `families` are its irreducible components besides. Every other sheet has motions of rigid
+    panels: `decompose`. Files of all formats are read (`open_pattern`), drawings repaired and made
+    exact; `number`, from 1, chooses among the sheets of a drawing with several. Where loops nearly
+    close, the sheet is read again with other values of `snap`, and the first that closes each is
+    named.
 
     Raises the errors of `open_pattern` and `count_branches`.
 
@@ -72,11 +75,25 @@ def count_opened(
 ) -> BranchCount | Decomposition:
     """As `count_ways`, of a sheet that has been opened."""
     sheet = opened.sheet
-    if isinstance(sheet, CreasePattern) and has_branches(sheet):
-        result = count_branches(sheet, method=method, seed=seed, progress=progress)
-        return replace(result, snapped=opened.snapped, read=opened.read)
+    if isinstance(sheet, CreasePattern) and sheet.interior:
+        known = has_branches(sheet)
+        if known or sheet.is_convex:
+            result = count_branches(sheet, method=method, seed=seed, progress=progress)
+            families = None if known else decompose_opened(opened, progress=progress)
+            result = replace(result, snapped=opened.snapped, read=opened.read)
+            return replace(result, letters=opened.letters, families=families)
+        ways = decompose_opened(opened, progress=progress)
+        if ways.status is PROVED:
+            return ways
+        return replace(ways, reason=f"{ways.reason}; {not_convex(sheet)}")
+    return decompose_opened(opened, progress=progress)
+
+
+def decompose_opened(opened: Opened, *, progress: Progress | None = None) -> Decomposition:
+    """The motions of a sheet that has been opened, as of rigid panels; see `decompose`."""
     from exactfold.modes.decomposition import decompose  # here, as branches do without
 
+    sheet = opened.sheet
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
     ways = replace(decompose(pattern, progress=progress), read=opened.read)
     if not ways.near_misses or opened.again is None:

@@ -10,7 +10,7 @@ from typing import Final
 
 from exactfold.errors import UsageError
 
-__all__ = ["DRAWINGS", "EXAMPLES", "SHEETS", "example_path", "examples"]
+__all__ = ["BY_OTHERS", "DRAWINGS", "EXAMPLES", "SHEETS", "example_path", "examples"]
 
 SHEETS: Final = (
     "two-vertex",
@@ -23,6 +23,14 @@ SHEETS: Final = (
     "random-8",
 )
 """Triangulated sheets, which `load` takes."""
+
+BY_OTHERS: Final = MappingProxyType(
+    {
+        name: f"origami-simulator/{name}.svg"
+        for name in ("pinwheel-base", "flapping-bird", "map-fold")
+    }
+)
+"""Drawings from other projects, by name; the licence stands beside each file."""
 
 DRAWINGS: Final = MappingProxyType(
     {
@@ -37,6 +45,7 @@ DRAWINGS: Final = MappingProxyType(
             "yoshimura",
         )
     }
+    | dict(BY_OTHERS)
 )
 """Files as people draw them, by name: sheets of panels, whose points are found by reading."""
 
@@ -52,7 +61,7 @@ def example_path(name: str) -> Path:
     """
     if name not in EXAMPLES:
         raise UsageError(f"no example {name!r}; there are: {', '.join(EXAMPLES)}")
-    return Path(__file__).with_name(DRAWINGS.get(name, f"{name}.fold"))
+    return Path(__file__).parent / DRAWINGS.get(name, f"{name}.fold")
 
 
 def examples() -> dict[str, str]:

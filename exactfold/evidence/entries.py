@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from exactfold.algebra.exact_solution import RootClass
@@ -53,11 +53,15 @@ def pattern_document(pattern: CreasePattern) -> Document:
     }
 
 
-def emptied_evidence(pattern: CreasePattern) -> list[Document]:
-    """The 3-cycles with vertices inside, and these vertices, without further evidence."""
+def emptied_evidence(pattern: CreasePattern, curved: Collection[int] = ()) -> list[Document]:
+    """The 3-cycles with vertices inside, and these vertices, without further evidence.
+
+    Those that hold one of the vertices `curved` are left away: they are not flat.
+    """
     return [
         {"corners": list(corners), "inside": list(inside)}
         for corners, inside in pattern.triangulated_triangles
+        if not set(curved) & set(inside)
     ]
 
 

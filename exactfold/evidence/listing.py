@@ -20,7 +20,7 @@ from exactfold.evidence.entries import (
     triangle_evidence,
 )
 from exactfold.exact.numbers import shown
-from exactfold.verdict import PROVED
+from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 
 def certificate(result: BranchCount) -> Document:
@@ -36,6 +36,11 @@ def certificate(result: BranchCount) -> Document:
     """
     if not isinstance(result, BranchCount):
         raise UsageError(f"{shown(result)} is not a count: give what `count_branches` returns")
+    if result.pieces is not None and result.proof is None:
+        raise NotApplicableError(
+            "no certificate: that the solutions are graphs over the rim follows from a theorem, "
+            "and how they are joined has no certificate yet"
+        )
     if result.status is not PROVED or result.proof is None:
         raise NotApplicableError(f"no certificate: the count is {result.status} ({result.reason})")
     claims: dict[str, Any] = {
@@ -43,7 +48,7 @@ def certificate(result: BranchCount) -> Document:
         "with_multiplicity": result.with_multiplicity,
         "real": result.real,
         "nonreal": result.nonreal,
-        "true_branches": str(result.true_branches),
+        "true_branches": str(_true_branches(result)),
         "branches": [
             {
                 "vertex_signs": branch.sign_text,
@@ -60,6 +65,16 @@ def certificate(result: BranchCount) -> Document:
         "python": platform.python_version(),
     }
     return document(result.pattern, claims, _evidence(result.proof, result.branches), provenance)
+
+
+def _true_branches(result: BranchCount) -> Verdict:
+    """What simple solutions prove; that multiple ones fold once is left to the theorem."""
+    simple = result.proof is None or result.proof.algebraic is None or _all_simple(result)
+    return result.true_branches if simple else UNDECIDED
+
+
+def _all_simple(result: BranchCount) -> bool:
+    return result.distinct == (result.with_multiplicity or 0) >> result.pattern.Vt
 
 
 def _evidence(proof: Proof, branches: tuple[Branch, ...]) -> Document:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import lcm
 from typing import Any
 
 from exactfold.branches.branch import Branch
 from exactfold.branches.roots import EnclosedRoot
-from exactfold.checker.formats import BRANCH, BRANCH_VERSION
+from exactfold.checker.formats import BRANCH, BRANCH_VERSION, CURVED_VERSION
 from exactfold.errors import UsageError
 from exactfold.evidence.entries import emptied_evidence, pattern_document
 from exactfold.exact.numbers import format_integer, format_rational
@@ -27,28 +28,49 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
     >>> checker.check(certificate)["vertex_signs"]
     [1, -1, 1]
     """
-    root = branch.root
-    if branch.status is not PROVED or not isinstance(root, EnclosedRoot):
-        raise UsageError("there is no certificate of a branch that `find_branch` has not proved")
-    pattern, rigid = branch.pattern, branch.pattern.rigid_vertices
-    heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
-    denominator = lcm(*(h.denominator for h in heights if h is not None))
+    heights, denominator = heights_evidence(branch)
+    pattern, root, curvature = branch.pattern, _enclosed(branch), branch.curvature
+    deficits = [format_rational(curvature.get(v, Fraction(0))) for v in pattern.interior]
     return {
         "format": BRANCH,
-        "version": BRANCH_VERSION,
+        "version": CURVED_VERSION if curvature else BRANCH_VERSION,
         "pattern": pattern_document(pattern),
         "claims": {
             "gauge": RIM if branch.gauge == RIM else SADDLE,
             "vertex_signs": [branch.vertex_signs[v] for v in pattern.interior],
             "assignment": branch.assignment_text,
             "squared_distance": format_rational(root.squared_distance),
+            **({"curvature": deficits} if curvature else {}),
         },
         "evidence": {
-            "emptied": emptied_evidence(pattern),
-            "heights": [
-                None if h is None else format_integer(h.numerator * (denominator // h.denominator))
-                for h in heights
-            ],
-            "denominator": format_integer(denominator),
+            "emptied": emptied_evidence(pattern, curvature),
+            "heights": heights,
+            "denominator": denominator,
         },
     }
+
+
+def heights_evidence(branch: Branch) -> tuple[list[str | None], str]:
+    """The numerators by vertex, None inside of triangulated triangles, and their denominator.
+
+    Raises `UsageError` unless the branch was proved by `find_branch`.
+    """
+    root = _enclosed(branch)
+    pattern = branch.pattern
+    rigid = set(range(len(pattern.vertices))) - set(
+        pattern.without_rigid_parts(branch.curvature)[1]
+    )
+    heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
+    denominator = lcm(*(h.denominator for h in heights if h is not None))
+    numerators = [
+        None if h is None else format_integer(h.numerator * (denominator // h.denominator))
+        for h in heights
+    ]
+    return numerators, format_integer(denominator)
+
+
+def _enclosed(branch: Branch) -> EnclosedRoot:
+    root = branch.root
+    if branch.status is not PROVED or not isinstance(root, EnclosedRoot):
+        raise UsageError("there is no certificate of a branch that `find_branch` has not proved")
+    return root

@@ -101,7 +101,7 @@ class Decomposition(Page):
             "why": "",
             **dict.fromkeys(("distinct", "with_multiplicity", "real", "nonreal")),
             "true_branches": str(UNDECIDED if self.true is None else PROVED),
-            **dict.fromkeys(("dimension", "degree")),
+            **dict.fromkeys(("true_bounds", "dimension", "degree", "pieces")),
             "certificate": certificate,
             "warnings": [],
             "seconds": round(self.seconds, 3),
@@ -109,6 +109,7 @@ class Decomposition(Page):
             "settings": {},
             "branches": [],
             "theory": self.theory,
+            "letters": None,
             "rigid": rigid,
             "components": {
                 key: None if value is None else {str(k): n for k, n in value.items()}

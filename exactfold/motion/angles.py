@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exactfold.arrays import FloatArray, IndexArray
+from exactfold.arrays import FloatArray, IndexArray, cross
 from exactfold.pattern.crease_pattern import CreasePattern
 
 
@@ -42,7 +42,7 @@ def fold_angles_of(positions: FloatArray, hinges: IndexArray) -> FloatArray:
     """
     axis, a, b = hinge_vectors(positions, hinges)
     # The left face turned by the fold angle about the axis continues the right one.
-    sine = (np.cross(b, -a) * axis).sum(-1)
+    sine = (cross(b, -a) * axis).sum(-1)
     return np.asarray(np.arctan2(sine, -(a * b).sum(-1)))
 
 
@@ -59,7 +59,7 @@ def angle_rates(positions: FloatArray, velocities: FloatArray, hinges: IndexArra
     total = np.zeros(squared.shape)
     for off, sign in ((left, 1.0), (right, -1.0)):
         arm = p[..., off, :] - p[..., i, :]
-        normal = sign * np.cross(axis, arm)
+        normal = sign * cross(axis, arm)
         # |normal| is the distance from the fold times its length; 1 / |normal|^2 makes both unit.
         weight = np.sqrt(squared) / (normal * normal).sum(-1)
         along = (arm * axis).sum(-1) / squared

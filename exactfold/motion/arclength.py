@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cache, lru_cache
 from math import isqrt, lcm
 
 import numpy as np
@@ -43,22 +44,8 @@ def length_between(
     """
     if high <= low:
         return Fraction(0), Fraction(0)
-    curve = np.array(velocity, dtype=object)[:, None, :]
-    speed = [int(x[0]) for x in squared(curve)]  # |p'|^2 over 2^(2 bits)
-    # Places after the point for S, so that slow curves keep their digits.
-    extra = max(0, 64 - speed[0].bit_length() // 2)
-    speed = [x << 2 * extra for x in speed]
+    root, misfit, extra = _speed(tuple(velocity))
     unit = bits + extra
-    root = [isqrt(speed[0]) or 1]
-    for k in range(1, _DEGREE + 1):
-        rest = speed[k] if k < len(speed) else 0
-        rest -= sum(root[i] * root[k - i] for i in range(1, k))
-        root.append(rest // (2 * root[0]))
-    top = max(len(speed), 2 * _DEGREE + 1) - 1
-    misfit = [-x for x in speed] + [0] * (top + 1 - len(speed))
-    for i, a in enumerate(root):
-        for j, b in enumerate(root):
-            misfit[i + j] += a * b
     most = max(abs(low), abs(high))
 
     def largest(coefficients: Sequence[int]) -> int:
@@ -101,6 +88,27 @@ def length_between(
     return max(Fraction(0), rounded(whole - slack, -1)), rounded(whole + slack, 1)
 
 
+@lru_cache(maxsize=64)
+def _speed(velocity: tuple[Row, ...]) -> tuple[list[int], list[int], int]:
+    """The polynomial S near |p'|, and S^2 - |p'|^2, and how many bits more S has than p'."""
+    curve = np.array(velocity, dtype=object)[:, None, :]
+    speed = [int(x[0]) for x in squared(curve)]
+    # Places after the point for S, so that slow curves keep their digits.
+    extra = max(0, 64 - speed[0].bit_length() // 2)
+    speed = [x << 2 * extra for x in speed]
+    root = [isqrt(speed[0]) or 1]
+    for k in range(1, _DEGREE + 1):
+        rest = speed[k] if k < len(speed) else 0
+        rest -= sum(root[i] * root[k - i] for i in range(1, k))
+        root.append(rest // (2 * root[0]))
+    top = max(len(speed), 2 * _DEGREE + 1) - 1
+    misfit = [-x for x in speed] + [0] * (top + 1 - len(speed))
+    for i, a in enumerate(root):
+        for j, b in enumerate(root):
+            misfit[i + j] += a * b
+    return root, misfit, extra
+
+
 def parameter_after(velocity: FloatArray, length: float, places: int, low: int, high: int) -> int:
     """A parameter nearly `length` after `low`, over 2^`places`, in floats: nothing is proved.
 
@@ -110,7 +118,7 @@ def parameter_after(velocity: FloatArray, length: float, places: int, low: int, 
     1
     """
     begin, end = low / 2.0**places, high / 2.0**places
-    nodes, weights = np.polynomial.legendre.leggauss(20)
+    nodes, weights = _gauss(20)
 
     def speed(s: FloatArray) -> FloatArray:
         powers = s[:, None] ** np.arange(len(velocity))
@@ -123,6 +131,13 @@ def parameter_after(velocity: FloatArray, length: float, places: int, low: int, 
         step = (length - there) / float(speed(np.array([at]))[0])
         at = min(max(at + step, begin), end)
     return min(max(round(at * 2.0**places), low), high)
+
+
+@cache
+def _gauss(count: int) -> tuple[FloatArray, FloatArray]:
+    """The nodes and weights of Gauss's quadrature on [-1, 1]."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return nodes, weights
 
 
 def shifted(curve: Sequence[Row], at: int, places: int) -> tuple[list[Row], int]:

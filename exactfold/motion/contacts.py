@@ -144,8 +144,12 @@ class ContactWatch:
         return FirstContact(PROVED, clear, event, (), "", self.parameters)
 
     def _to_the_node(self, track: Track, node: Passage, pairs: FacePairs) -> FirstContact:
-        """How far no two faces touch on a track all of whose tubes are clear to their exits."""
-        link = track.links[-1]
+        """The first contact on a track all of whose tubes are clear to their exits.
+
+        A contact is looked for on the arc to the node, not in the node itself, where those of the
+        other arcs begin, too.
+        """
+        link, unit = track.links[-1], track.framework.unit
         coefficients, radius = positions_of(link.tube)
         # The arc may begin a little after the exit.
         low, high = (x / (1 << PARAMETER_BITS) for x in (link.exit, max(link.exit, node.met[1])))
@@ -157,10 +161,19 @@ class ContactWatch:
             # Of a float that is no whole number of units the whole ones below it.
             parameter = max(node.entry, math.floor(at * (1 << PARAMETER_BITS))) if left else 0
             time = node.time(parameter)[0]
+            if left:
+                radius = _ROOM * arc.radius + _MORE
+                where = arc.begin, max(at, arc.begin), arc.end
+                found = _touching(pairs, arc.coefficients, radius, where)
+                if found is not None:
+                    begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (found.begin, found.end))
+                    found = replace(found, latest=node.time(end)[1])
+                    event = _event(track, found, time * unit)
+                    return FirstContact(PROVED, time * unit, event, (), "", (parameter, begin, end))
         reason = "some faces are not proved to stay apart before the node" if left else track.reason
         return FirstContact(
             UNDECIDED,
-            time * track.framework.unit,
+            time * unit,
             None,
             _named(track, pairs, left),
             reason,

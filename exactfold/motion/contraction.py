@@ -134,12 +134,13 @@ class Places:
         return found
 
     def product(self, left: Any, rows: Any) -> Any:
-        """left @ dense(rows), without the zeros."""
-        weighted = self.sign[:, None] * rows[self.edge]
+        """left @ dense(rows), without the zeros; of many rows at once, shape (..., edges, 3)."""
+        weighted = self.sign[:, None] * rows[..., self.edge, :]
         taken = left[:, self.edge]
-        found = np.empty((len(left), self.size), dtype=np.result_type(left, rows))
+        found = np.empty((*rows.shape[:-2], len(left), self.size), dtype=np.result_type(left, rows))
         for a in range(3):
-            found[:, a::3] = np.add.reduceat(taken * weighted[:, a], self._starts, axis=1)
+            products = taken * weighted[..., None, :, a]
+            found[..., a::3] = np.add.reduceat(products, self._starts, axis=-1)
         return found
 
     @cached_property
@@ -193,16 +194,20 @@ def contraction(
     product = _product(p, places, rows[0]) + _dot(p[:, -1:], np.array([last], dtype=object))
     product[np.diag_indices(n)] -= 1 << INVERSE_BITS + row_bits
     slope = [norm(_above(np.asarray(abs(product)), weights), INVERSE_BITS + row_bits + WEIGHT_BITS)]
-    for vectors in rows[1:]:
-        drop = max(0, _largest(vectors).bit_length() - room) if room > _SHORTEST else 0
-        nearest = np.asarray((vectors + (1 << drop >> 1)) >> drop)
-        above = _above(np.asarray(abs(_product(coarse, places, nearest))), weights)
-        spread = int((abs(nearest).astype(object) * sums).sum())
-        sizes = [
-            ((2 * x + spread) << drop + _COARSE) + (y << drop if drop else 0)
-            for x, y in zip(above, off, strict=True)
-        ]
-        slope.append(norm(sizes, INVERSE_BITS + row_bits + WEIGHT_BITS + 1))
+    if len(rows) > 1:
+        drops = [max(0, _largest(v).bit_length() - room) if room > _SHORTEST else 0 for v in rows]
+        nearest = np.array(
+            [(v + (1 << drop >> 1)) >> drop for v, drop in zip(rows, drops, strict=True)][1:]
+        )
+        images = np.asarray(abs(_product(coarse, places, nearest)))
+        above = np.reshape(_above(images.reshape(-1, n), weights), (-1, n)).tolist()
+        spreads = (abs(nearest) * sums).sum(axis=(1, 2)).tolist()
+        for image, spread, drop in zip(above, spreads, drops[1:], strict=True):
+            sizes = [
+                ((2 * x + int(spread)) << drop + _COARSE) + (y << drop if drop else 0)
+                for x, y in zip(image, off, strict=True)
+            ]
+            slope.append(norm(sizes, INVERSE_BITS + row_bits + WEIGHT_BITS + 1))
     quadratic = [
         norm(_above(size[:, :-1], square), INVERSE_BITS + 2 * WEIGHT_BITS) for square in squares
     ]

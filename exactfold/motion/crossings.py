@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from exactfold.arrays import BoolArray, FloatArray, IndexArray
+from exactfold.arrays import BoolArray, FloatArray, IndexArray, cross
 from exactfold.motion.boxes import BoxTree, meeting
 from exactfold.motion.framework import Framework
 
@@ -115,7 +115,7 @@ class Crossings:
         """Which edges run through which faces, shape (times, pairs)."""
         p, q = (positions[:, v] for v in self.edges[pairs[:, 0]].T)
         a, b, c = (positions[:, v] for v in self.framework.triangles[pairs[:, 1]].T)
-        normal = np.cross(b - a, c - a)
+        normal = cross(b - a, c - a)
         above, below = (normal * (p - a)).sum(-1), (normal * (q - a)).sum(-1)
         result = (np.minimum(above, below) < -_NOISE) & (np.maximum(above, below) > _NOISE)
         time, pair = np.nonzero(result)
@@ -130,13 +130,13 @@ class Crossings:
         """ "vertex on face" or "edge on edge": how a crossing that just began came to be."""
         p, q = (positions[v] for v in crossing.edge)
         a, b, c = (positions[v] for v in crossing.face)
-        normal = np.cross(b - a, c - a)
+        normal = cross(b - a, c - a)
         at, other = normal @ (p - a), normal @ (q - a)
         near_end = min(abs(at), abs(other)) / max(abs(at - other), 1e-300)
         x = p + at / (at - other) * (q - p)
         whole = float(normal @ normal)
         near_side = min(
-            float(np.cross(v - u, x - u) @ normal) / whole for u, v in ((a, b), (b, c), (c, a))
+            float(cross(v - u, x - u) @ normal) / whole for u, v in ((a, b), (b, c), (c, a))
         )
         return "vertex on face" if near_end < near_side else "edge on edge"
 
@@ -148,4 +148,4 @@ def _turn(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
 
 
 def _volume(p: FloatArray, q: FloatArray, u: FloatArray, v: FloatArray) -> FloatArray:
-    return np.asarray((np.cross(q - p, u - p) * (v - p)).sum(-1))
+    return np.asarray((cross(q - p, u - p) * (v - p)).sum(-1))

@@ -29,7 +29,7 @@ from math import ceil, floor
 
 import numpy as np
 
-from exactfold.arrays import BoolArray, FloatArray, IndexArray
+from exactfold.arrays import BoolArray, FloatArray, IndexArray, cross
 from exactfold.exact.surds import float_bounds
 from exactfold.motion.arclength import Interval
 from exactfold.motion.framework import Framework
@@ -143,9 +143,9 @@ class Folds:
         a1, b1, c1 = (dx[..., v, :] - dx[..., i, :] for v in ends)
         e = [off[..., v] + off[..., i] for v in ends]
         cos0, cos1 = k2 * (k1 - _dot(b0, c0)), -k2 * (_dot(b1, c0) + _dot(b0, c1))
-        cross = np.cross(b0, c0)
-        sin0 = k3 * _dot(a0, cross)
-        sin1 = k3 * (_dot(a1, cross) + _dot(a0, np.cross(b1, c0) + np.cross(b0, c1)))
+        normal = cross(b0, c0)
+        sin0 = k3 * _dot(a0, normal)
+        sin1 = k3 * (_dot(a1, normal) + _dot(a0, cross(b1, c0) + cross(b0, c1)))
         # What is left is at most the product of all sizes without the terms above.
         (la, ma), (lb, mb), (lc, mc) = (
             (np.linalg.norm(u, axis=-1), np.linalg.norm(v, axis=-1) + error)

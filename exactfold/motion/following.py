@@ -29,7 +29,7 @@ from exactfold.motion.framework import Framework
 from exactfold.motion.motion import Motion, angles_at, in_space
 from exactfold.motion.start import Start
 from exactfold.motion.zeros import zero_of
-from exactfold.pattern.crease_pattern import Edge, Triangle
+from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 
@@ -61,9 +61,10 @@ def follow(
     that is held, by vertices of the sheet without what stays flat (`Problem.sheet`), by default the
     largest; times depend on it.
 
-    Raises `UsageError` for options that make no sense, `NotFollowedError` for a branch that is
-    not simple, `UndecidedBranchError` for one of which nothing is proved. A motion that ends
-    "singular" could not be followed further, which does not mean that it ends there.
+    Raises `UsageError` for options that make no sense, `NotFollowedError` for a branch that is not
+    simple, that of a sheet with more than four corners or a shape with angle deficits,
+    `UndecidedBranchError` for a branch of which nothing is proved. A motion that ends "singular"
+    could not be followed further, which does not mean that it ends there.
 
     >>> from exactfold.count.find import find_branch
     >>> follow(find_branch("two-vertex", "+-"), until="90deg", frames=5)
@@ -75,6 +76,7 @@ def follow(
         raise UsageError(f"{frames} frames: a motion has at least 2")
     if side not in (1, -1):
         raise UsageError(f"side {side}: give 1 or -1")
+    _check_followable(branch)
     problem = Problem.of(branch.pattern)
     if by is not None and by not in branch.pattern.folds:
         raise UsageError(f"there is no fold {by[0]}-{by[1]} to make equal steps of")
@@ -133,6 +135,25 @@ class Goal:
             return cls(frozenset(always | {LENGTH}), time=number)
         kind = FLAT_FOLD if number == 180 else ANGLE
         return cls(frozenset(always | {kind}), angle=radians(number))
+
+
+def _check_followable(branch: Branch) -> None:
+    """Raise `NotFollowedError` where a branch is not tangent to one curve, but to many or none."""
+    if branch.curvature:
+        raise NotFollowedError(
+            "a shape with angle deficits is not followed: its sheet is not flat to begin with"
+        )
+    check_corners(branch.pattern)
+
+
+def check_corners(pattern: CreasePattern) -> None:
+    """Raise `NotFollowedError` for a sheet with more than four corners, whose branches are many."""
+    if pattern.Ve > 4:
+        raise NotFollowedError(
+            f"vertex signs do not name a motion of a sheet with {pattern.Ve} boundary vertices: "
+            "with heights of the border they name one way to start (`exactfold branch`, `exactfold "
+            "draw --signs`), and many motions start that way"
+        )
 
 
 def _start(framework: Framework, problem: Problem, branch: Branch) -> Start:

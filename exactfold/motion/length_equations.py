@@ -88,18 +88,26 @@ class LengthEquations:
 
 
 def squared(e: BigArray) -> list[BigArray]:
-    """The coefficients of |e|^2, e = sum_k e_k s^k of shape (coefficients, edges, axes)."""
-    top = len(e) - 1
+    """The coefficients of |e|^2, e = sum_k e_k s^k of shape (coefficients, edges, axes).
+
+    By Kronecker's substitution: for s a power of two so large that coefficients of the square do
+    not overlap, each square of a polynomial is one of an integer.
+
+    >>> [int(x[0]) for x in squared(np.array([[[1, 2]], [[-3, 0]], [[0, 1]]], dtype=object))]
+    [5, -6, 13, 0, 1]
+    """
+    longest = max(map(int.bit_length, e.ravel().tolist()), default=0)
+    bits = 2 * longest + (len(e) * e.shape[2]).bit_length() + 2
+    packed = e[-1]
+    for row in e[-2::-1]:
+        packed = (packed << bits) + row
+    whole = (packed * packed).sum(axis=1)
+    half, mask = 1 << (bits - 1), (1 << bits) - 1
     found = []
-    for k in range(2 * top + 1):
-        total = np.zeros(e.shape[1], dtype=object)
-        if k % 2 == 0:
-            total = total + (e[k // 2] ** 2).sum(axis=1)
-        first = max(0, k - top)
-        if half := (k + 1) // 2 - first:
-            a, b = e[first : first + half], e[k - first : k - first - half : -1]
-            total = total + 2 * (a * b).sum(axis=(0, 2))
-        found.append(total)
+    for _ in range(2 * len(e) - 1):
+        part = ((whole + half) & mask) - half
+        found.append(part)
+        whole = (whole - part) >> bits
     return found
 
 

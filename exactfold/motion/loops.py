@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ from exactfold.motion.links import Link, onwards
 from exactfold.motion.loop_proofs import ArcProof, Landing, LoopProof, named
 from exactfold.motion.node_tube import NodeTube
 from exactfold.motion.passages import Passage, passage_ahead
+from exactfold.motion.singular import singular_at
 from exactfold.motion.tracks import half_branch
 from exactfold.motion.tube import Tube
 from exactfold.motion.tube_start import (
@@ -29,8 +30,6 @@ from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 
 MOST_TUBES = 4000
-_FOLDED_FLAT = 1e-2
-"""Radians that fold angles may be off 0 or pi where the sheet is said to come to be folded flat."""
 _NEAR_FLAT = 0.8
 """Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
 
@@ -114,7 +113,7 @@ class LoopFinder:
                 continue
             found = passage_ahead(self.problem.labels, steps)
             if found is None:
-                return steps, None, self._why(steps, link)
+                return steps, None, singular_at(self.problem.labels, steps, link)
             kept, passage = found
             steps = [*steps[:kept], passage]
             if at_node:
@@ -123,17 +122,6 @@ class LoopFinder:
             step = float(tube.length(0, at)[0])
             ahead = onwards(equations, tube.ball(at), tube.ball_velocity(at), passage.left, step)
         return steps, None, f"{MOST_TUBES} tubes were not enough"
-
-    def _why(self, steps: Sequence[Link | Passage], reason: str) -> str:
-        """Why a loop is not followed further, as floats show the last configuration."""
-        if not steps or not isinstance(steps[-1], Link):
-            return reason
-        framework = steps[-1].tube.framework
-        x = steps[-1].tube.enclosure(steps[-1].exit).floats[0]
-        angles = np.abs(fold_angles_of(framework.positions(x), framework.hinges))
-        if np.minimum(angles, np.pi - angles).max(initial=0.0) < _FOLDED_FLAT:
-            return "all faces come to lie in one plane, folded flat: motions may branch there"
-        return reason
 
     def _landing(self, link: Link) -> Landing | None:
         """The start tube of another half-branch a point of which lies on this tube."""

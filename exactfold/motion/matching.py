@@ -12,6 +12,7 @@ from functools import cached_property, lru_cache
 from itertools import product
 from typing import Any
 
+from exactfold.branches.branch import Branch
 from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder
 from exactfold.count.pools import Pool, process_pool
@@ -28,6 +29,7 @@ from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.loop_file import LoopFile
 from exactfold.motion.loop_proofs import Loop
 from exactfold.motion.loops import LoopFinder
+from exactfold.motion.straight_folds import straight_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
 from exactfold.pattern.loading import PatternLike, as_pattern
@@ -133,7 +135,7 @@ def find_loops(
     if ways.status is not PROVED:
         raise NotCountedError(f"the branches are not all proved: {ways.reason}")
     skipped = {
-        branch.sign_text: "a vertex is flat on it"
+        branch.sign_text: _why_skipped(branch)
         for branch in ways.branches
         if any(not branch.vertex_signs[v] for v in problem.foldable)
     }
@@ -162,6 +164,17 @@ def find_loops(
     if not reasons and len(loops.matching) != 2 ** (len(problem.foldable) + 1):
         raise ArithmeticError("half-branches are missing from a matching that should be whole")
     return loops
+
+
+def _why_skipped(branch: Branch) -> str:
+    """Why the half-branches of a branch on which a vertex is flat are not followed."""
+    line = straight_fold(branch)
+    if not line:
+        return "a vertex is flat on it"
+    return (
+        "a vertex is flat on it: the sheet turns about the straight line "
+        f"{'-'.join(map(str, line))}, exactly, and at 180 degrees, folded flat, motions may branch"
+    )
 
 
 Job = tuple[HalfBranch, bool]

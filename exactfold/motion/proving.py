@@ -276,7 +276,7 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
     )
     contact = watch.result(track) if found is None else found
     status, reason = _judged(motion, track, contact)
-    passed = found is not None
+    passed = found is not None or (contact.event is not None and not to_contact)
     proof = MotionProof(status, reason, motion, track.length, track.tubes, track, contact, passed)
     if track.node is not None and status is not PROVED:
         proof = replace(proof, reason=f"proved {proof.end_text}, but {reason}")
@@ -292,6 +292,8 @@ def _judged(motion: Motion, track: Track, contact: FirstContact) -> tuple[Verdic
         return PROVED, ""
     if motion.end == NODE and track.status is PROVED:
         return UNDECIDED, track.reason
+    if to_contact and contact.status is PROVED:
+        return PROVED, ""
     if track.node is not None and (to_contact or track.status is not PROVED):
         return UNDECIDED, "only motions back to the flat sheet are proved through nodes"
     if track.status is PROVED:

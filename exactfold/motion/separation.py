@@ -10,12 +10,12 @@ The sums are computed in floats, u = 2^-53, and their roundings are bounded as f
 
 - Positions are a + b (s - m) + e with floats a, b, m, exactly these numbers, and |e| <= `error`.
   They come from c_0, ..., c_K, K <= 20, with sum |c_k| M^k < `_MOST` = 4 for every coordinate,
-  M = max |s|; else the error is infinite, and nothing is separated. Expanding at m by repeated
-  division rounds each term at most 3 K times, and the terms of all a, b, ... times the powers of
-  half add up to at most 4, as |m| + half = M: 240 u. The ulps of m and half move s by less than
-  2 u M, and the position by less than 2 u K 4 = 160 u. The sum of the rest is off by less than
-  45 u of 4 = 180 u, and the coefficients by 4 u of 4 when they were converted. All is less than
-  700 u < 1e-13 = `_ROUND`.
+  M = max |s|; else the error is infinite, and nothing is separated. The terms of the expansion at
+  m are products of at most K + 2 factors: each is rounded at most 3 K times, and those of all a, b,
+  ... times the powers of half add up to at most 4, as |m| + half = M: 240 u. The ulps of m and half
+  move s by less than 2 u M, and the position by less than 2 u K 4 = 160 u. The sum of the rest is
+  off by less than 45 u of 4 = 180 u, and the coefficients by 4 u of 4 when they were converted. All
+  is less than 700 u < 1e-13 = `_ROUND`.
 - So a, b half and e are at most 4 and those of differences at most 8. With |n| <= 1 the three parts
   of a sum n.x are at most 8 sqrt(3) < 14 and rounded less than 10 times: off by less than 30 u 14,
   with the subtractions less than 60 u 14 < 1e-13. The squares and products of folds are sums of
@@ -29,18 +29,21 @@ The sums are computed in floats, u = 2^-53, and their roundings are bounded as f
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from itertools import combinations
+from math import comb
 from typing import Any
 
 import numpy as np
 
-from exactfold.arrays import BoolArray, FloatArray, IndexArray
+from exactfold.arrays import BoolArray, FloatArray, IndexArray, cross
 from exactfold.motion.face_pairs import AnyPairs, Open
 from exactfold.pattern.crease_pattern import Edge, Triangle
 
 _MOST, _ROUND, _MARGIN, _OF_VOLUME = 4.0, 1e-13, 1e-11, 1e-13
 _MOST_ROWS = 21
 _PRODUCTS = 2_000_000
+_SUMS = "...k,k...vc->...vc"
 
 
 @dataclass(frozen=True)
@@ -75,21 +78,37 @@ class Swept:
         """
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         most = np.maximum(np.abs(low), np.abs(high))
-        sizes = np.abs(coefficients[-1])
-        for row in coefficients[-2::-1]:
-            sizes = most * sizes + np.abs(row)
+        count = len(coefficients)
         shape = np.broadcast_shapes(np.shape(middle), radius.shape)
-        rows = [np.broadcast_to(row, shape).copy() for row in coefficients]
-        for k in range(len(rows)):  # Horner's scheme, repeated: rows[k] is p^(k)(middle) / k!
-            for m in range(len(rows) - 2, k - 1, -1):
-                rows[m] += middle * rows[m + 1]
-        error = np.broadcast_to(radius, shape).copy()
-        for k in range(2, len(rows)):
-            error += np.abs(rows[k]) * half**k
-        slope = rows[1] if len(rows) > 1 else np.zeros_like(rows[0])
+        sizes = np.einsum(_SUMS, _powers(most, count), np.abs(coefficients))
+        binomials, excess = _binomials(count)
+        moved = binomials * _powers(middle, count)[..., excess]
+        rows = np.einsum("...kj,j...vc->k...vc", moved, coefficients)  # p^(k)(middle) / k!
+        rest = np.einsum(_SUMS, _powers(half, count)[..., 2:], np.abs(rows[2:]))
+        error = np.broadcast_to(radius + rest, shape).copy()
+        slope = rows[1] if count > 1 else np.zeros_like(rows[0])
         small = (np.broadcast_to(sizes, shape) + radius).max(axis=(-1, -2)) < _MOST
-        error[~(small & (len(rows) <= _MOST_ROWS))] = np.inf
-        return cls(rows[0], slope, error + _ROUND, half, planar)
+        error[~(small & (count <= _MOST_ROWS))] = np.inf
+        start, slope = np.broadcast_to(rows[0], shape), np.broadcast_to(slope, shape)
+        return cls(start, slope, error + _ROUND, half, planar)
+
+
+def _powers(x: Any, count: int) -> FloatArray:
+    """1, x, ..., x^(count - 1), along a new last axis instead of the last two; by products."""
+    x = np.asarray(x, dtype=float)
+    factors = np.ones((*x.shape[:-2], count))
+    factors[..., 1:] = x.reshape(x.shape[:-2])[..., None]
+    return np.asarray(np.cumprod(factors, axis=-1))
+
+
+@cache
+def _binomials(count: int) -> tuple[FloatArray, IndexArray]:
+    """j over k in row k and column j, and j - k where that is not negative, else 0."""
+    rows = range(count)
+    return (
+        np.array([[float(comb(j, k)) for j in rows] for k in rows]),
+        np.array([[max(j - k, 0) for j in rows] for k in rows], dtype=np.intp),
+    )
 
 
 def not_separated(pairs: AnyPairs, swept: Swept, among: Open) -> Open:
@@ -237,7 +256,7 @@ def _volume_signs(swept: Swept, rows: IndexArray) -> IndexArray:
     ]
     size = [np.linalg.norm(arm, axis=1) for arm in arms]
     most = [n + np.linalg.norm(spread, axis=1) for n, spread in zip(size, spreads, strict=True)]
-    volume = (arms[0] * np.cross(arms[1], arms[2])).sum(axis=1)
+    volume = (arms[0] * cross(arms[1], arms[2])).sum(axis=1)
     # |det(e + de, ...) - det(e, ...)| is at most the product of the larger lengths less the others.
     product = most[0] * most[1] * most[2]
     change = product - size[0] * size[1] * size[2]
@@ -266,11 +285,9 @@ def _axes(a: FloatArray, b: FloatArray, planar: bool) -> FloatArray:
     if planar:
         sides = np.concatenate([sides_a, sides_b], axis=1)
         return _unit(np.stack([-sides[..., 1], sides[..., 0], np.zeros(sides.shape[:2])], axis=-1))
-    normals = [np.cross(sides[:, :1], sides[:, 1:2]) for sides in (sides_a, sides_b)]
-    crossed = np.cross(sides_a[:, :, None], sides_b[:, None]).reshape(len(a), 9, 3)
-    across = [
-        np.cross(sides, _unit(n)) for sides, n in zip((sides_a, sides_b), normals, strict=True)
-    ]
+    normals = [cross(sides[:, :1], sides[:, 1:2]) for sides in (sides_a, sides_b)]
+    crossed = cross(sides_a[:, :, None], sides_b[:, None]).reshape(len(a), 9, 3)
+    across = [cross(sides, _unit(n)) for sides, n in zip((sides_a, sides_b), normals, strict=True)]
     return _unit(np.concatenate([*across, *normals, crossed], axis=1))
 
 
@@ -287,7 +304,7 @@ def _nearest_points(p: FloatArray) -> FloatArray:
         share = (p[:, i] * side).sum(axis=1) / square
         found.append((p[:, i] - share[:, None] * side)[:, None])
     for i, j, k in combinations(range(4), 3):
-        normal = np.cross(p[:, j] - p[:, i], p[:, k] - p[:, i])
+        normal = cross(p[:, j] - p[:, i], p[:, k] - p[:, i])
         found.append((normal * np.sign((normal * p[:, i]).sum(axis=1))[:, None])[:, None])
     return _unit(np.concatenate(found, axis=1))
 

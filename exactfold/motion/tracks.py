@@ -21,6 +21,8 @@ from exactfold.motion.length_equations import LengthEquations
 from exactfold.motion.links import Link, onwards
 from exactfold.motion.passages import Passage, passage_ahead
 from exactfold.motion.piece import Ball
+from exactfold.motion.singular import singular_at
+from exactfold.motion.straight_folds import straight_fold
 from exactfold.motion.tube import sharpened
 from exactfold.motion.tube_start import StartTube, prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
@@ -240,9 +242,15 @@ def half_branch(
     problem.require_foldable()
     flat = [v for v in problem.foldable if branch.vertex_signs[v] == 0]
     if flat:
+        line = straight_fold(branch)
         raise FlatVertexError(
-            f"vertex {flat[0]} stays flat on this branch, which is a multiple root: whether and "
-            "how it continues is not decided"
+            f"vertex {flat[0]} stays flat on this branch, which is a multiple root: "
+            + (
+                f"it goes on as the sheet turns about the straight line {'-'.join(map(str, line))}"
+                ", which is not followed"
+                if line
+                else "whether and how it continues is not decided"
+            )
         )
     heights = branch.approx_heights
     framework = Framework.of(problem.sheet, pinned)
@@ -289,7 +297,7 @@ def follow_proved(
     status, reason = UNDECIDED, ""
     for link in continued(track, bits=bits):
         if isinstance(link, str):
-            reason = link
+            reason = singular_at(track.labels, links, link)
             found = passage_ahead(track.labels, links) if links else None
             if found is not None:
                 kept, passage = found

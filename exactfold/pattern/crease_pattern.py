@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -211,10 +211,13 @@ class CreasePattern(Picture):
         """Interior vertices outside every triangulated triangle."""
         return tuple(v for v in self.interior if v not in self.rigid_vertices)
 
-    def without_rigid_parts(self) -> tuple[CreasePattern, tuple[int, ...]]:
+    def without_rigid_parts(
+        self, curved: Collection[int] = ()
+    ) -> tuple[CreasePattern, tuple[int, ...]]:
         """The pattern with every triangulated triangle made a single face, and its labels.
 
-        `labels[k]` is the index in this pattern of vertex k of the other; order is kept.
+        `labels[k]` is the index in this pattern of vertex k of the other; order is kept. Triangles
+        that hold one of the vertices `curved` are left as they are.
 
         >>> wheel = CreasePattern(
         ...     [(0, 0), (3, 0), (0, 3), (1, 1)], [(0, 1, 3), (1, 2, 3), (2, 0, 3)])
@@ -222,13 +225,14 @@ class CreasePattern(Picture):
         >>> reduced.triangles, labels
         (((0, 1, 2),), (0, 1, 2))
         """
-        gone = self.rigid_vertices
+        stiff = [item for item in self.triangulated_triangles if not set(curved) & set(item[1])]
+        gone = {v for _, inside in stiff for v in inside}
         labels = tuple(v for v in range(len(self.vertices)) if v not in gone)
         if not gone:
             return self, labels
         position = {v: k for k, v in enumerate(labels)}
         kept = [t for t in self.triangles if gone.isdisjoint(t)]
-        kept += [t for t, _ in self.triangulated_triangles]
+        kept += [t for t, _ in stiff]
         triangles = [(position[a], position[b], position[c]) for a, b, c in kept]
         return CreasePattern([self.vertices[v] for v in labels], triangles), labels
 

@@ -73,6 +73,17 @@ class Opened(Picture):
         return f"<Opened: {self.sheet!r}, in {self.field_name}>"
 
     @property
+    def letters(self) -> dict[Edge, str]:
+        """M, V, F or U for every fold, as the file has it; empty where none is M or V.
+
+        J, which joins the triangles of a panel that may bend, and a fold without a letter are U.
+        Where no fold has a direction, F says no more than U.
+        """
+        known = {fold: self.assignment.get(fold, "U") for fold in self.sheet.folds}
+        letters = {fold: x if x in tuple("MVF") else "U" for fold, x in known.items()}
+        return letters if {"M", "V"} & set(letters.values()) else {}
+
+    @property
     def read(self) -> dict[str, Any] | None:
         """What was read, repaired and snapped, as JSON; None if nothing was to be done."""
         lines = list(self.lines)

@@ -11,7 +11,7 @@ from exactfold.errors import CollinearPointsError, NotApplicableError, UsageErro
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.problem.quadratic import IntMatrix, QuadraticSystem, primitive_matrices
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functional
 
@@ -159,7 +159,12 @@ class Chart:
 
     @cached_property
     def system(self) -> QuadraticSystem:
-        """The quadrics K_v in the chart, in the order of the interior vertices."""
+        """The quadrics K_v in the chart, for D = 1 as many as there are unknowns."""
+        return QuadraticSystem.from_rational(self.matrices)
+
+    @cached_property
+    def matrices(self) -> tuple[IntMatrix, ...]:
+        """The quadrics K_v in the chart as matrices over (x, 1), by interior vertices in order."""
         matrices = []
         for form in self.branch_system.quadrics.values():
             lifts = [self.row(v) for v in form.labels]
@@ -174,7 +179,7 @@ class Chart:
                         for j, y in right.items():
                             matrix[i][j] += weight * x * y
             matrices.append(matrix)
-        return QuadraticSystem.from_rational(matrices)
+        return primitive_matrices(matrices)
 
     def row(self, vertex: int) -> dict[int, Fraction]:
         """Height of a vertex as an affine function of x: coefficient by position, n for 1."""

@@ -61,9 +61,7 @@ class FlatSheets:
         size = len(self.free) + 1
         last = [Fraction(int(k == size - 1)) for k in range(size)]
         lift = to_flint([*self.rows, last])
-        forms = [
-            lift.transpose() * to_flint(matrix) * lift for matrix in self.chart.system.matrices
-        ]
+        forms = [lift.transpose() * to_flint(matrix) * lift for matrix in self.chart.matrices]
         echelon, rank = fmpq_mat([form.entries() for form in forms]).transpose().rref()
         rows = echelon.tolist()[:rank]
         return tuple(forms[next(k for k, c in enumerate(row) if c != 0)] for row in rows)

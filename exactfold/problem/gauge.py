@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 
-from exactfold.errors import NotApplicableError, NotCountedError, UsageError
-from exactfold.exact.numbers import RationalLike, as_rational
+from exactfold.errors import NotCountedError
+from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.problem.rims import given_deficits, given_rim
 from exactfold.rigidity.functionals import saddle_functional
 
 SADDLE, CORNER, RIM = "saddle", "corner", "rim"
@@ -26,31 +27,43 @@ class Gauge:
     - "corner": a quadrilateral with a reflex corner. In `sheet` its notch is closed by a triangle,
       the other three corners have height 0, and the corner, now an interior vertex, pops up with
       K = `corner_curvature`.
-    - "rim": a convex boundary of any length, with heights that were given.
+    - "rim": a convex boundary of any length, with heights that were given. `curvature` holds the
+      angle deficits K_v of interior vertices that are not 0; then the heights of the rim are 0 if
+      none are given.
 
     In all three there is exactly one solution in the closed nappes of each sign vector
-    (docs/theorem.md, Four boundary vertices). `sheet` has the vertices of the sheet that was given,
-    and no others.
+    (docs/theorem.md, Four boundary vertices; docs/branch.md, Angle deficits). `sheet` has the
+    vertices of the sheet that was given, and no others.
     """
 
     kind: str
     sheet: CreasePattern
     rim: Mapping[int, Fraction]
     corner: int | None = None
+    curvature: Mapping[int, Fraction] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, sheet: CreasePattern, rim: Mapping[int, RationalLike] | None = None) -> Gauge:
-        """The gauge of a sheet with four boundary vertices, or with given rim heights.
+    def of(
+        cls,
+        sheet: CreasePattern,
+        rim: Mapping[int, RationalLike] | None = None,
+        curvature: Mapping[int, RationalLike] | None = None,
+    ) -> Gauge:
+        """The gauge of a sheet with four boundary vertices, or with given rim heights or deficits.
 
-        Raises `NotCountedError` for another number of boundary vertices without `rim`,
-        `NotApplicableError` for `rim` on a boundary with a reflex corner and for a flat `rim`,
-        `UsageError` unless `rim` names exactly the boundary vertices.
+        Raises `NotCountedError` for another number of boundary vertices without `rim`, and the
+        errors of `given_rim` and `given_deficits`.
 
         >>> from exactfold.pattern.families import single_vertex
         >>> gauge = Gauge.of(single_vertex(4))
         >>> gauge.kind, {v: str(height) for v, height in gauge.rim.items()}
         ('saddle', {0: '1', 1: '0', 2: '0', 3: '0'})
         """
+        if curvature is not None:
+            deficits = given_deficits(sheet, curvature)
+            level = dict.fromkeys(sheet.boundary, 0) if rim is None else rim
+            heights = given_rim(sheet, level, may_be_flat=bool(deficits))
+            return cls(RIM, sheet, heights, None, deficits)
         if rim is not None:
             return cls(RIM, sheet, given_rim(sheet, rim))
         if sheet.Ve != 4:
@@ -58,8 +71,9 @@ class Gauge:
                 "the sheet has three boundary vertices: it is rigid and has no branches"
                 if sheet.Ve == 3
                 else f"vertex signs name a branch of a sheet with four boundary vertices; this one "
-                f"has {sheet.Ve}, so its ways to fold form continuous families (from Python, "
-                "find_branch with rim=... finds the one way with given heights of the boundary)"
+                f"has {sheet.Ve}, so its ways to fold form continuous families, with one way for "
+                "each choice of the heights of the border (`exactfold branch` with --rim; in "
+                "Python find_branch with rim=)"
             )
         corner = sheet.reflex_corner
         if corner is not None:
@@ -87,35 +101,16 @@ class Gauge:
         """1 / size^2, with the larger side of the bounding box as the size of the sheet."""
         return 1 / pattern_size(self.sheet) ** 2
 
+    @cached_property
+    def targets(self) -> Mapping[int, Fraction]:
+        """K_v of the vertices of `sheet` at which it is not 0."""
+        if self.corner is not None:
+            return {self.corner: self.corner_curvature}
+        return self.curvature
+
 
 def pattern_size(pattern: CreasePattern) -> Fraction:
     """The larger side of the bounding box: the unit of length that keeps floats in range."""
     points, denominator = pattern.integer_vertices
     sides = (max(p[axis] for p in points) - min(p[axis] for p in points) for axis in (0, 1))
     return Fraction(max(sides), denominator)
-
-
-def given_rim(pattern: CreasePattern, rim: Mapping[int, RationalLike]) -> dict[int, Fraction]:
-    """Heights of the boundary vertices, checked; raises as `Gauge.of`."""
-    if set(rim) != set(pattern.boundary):
-        raise UsageError(f"give a height for each boundary vertex: {pattern.boundary}")
-    if not pattern.is_convex:
-        raise NotApplicableError(
-            f"rim heights need a convex boundary; vertex {pattern.reflex_corner} is reflex"
-        )
-    heights = {v: as_rational(rim[v]) for v in pattern.boundary}
-    a, b = pattern.boundary[:2]
-    (ax, ay), (bx, by) = pattern.vertices[a], pattern.vertices[b]
-
-    def row(v: int) -> tuple[Fraction, Fraction]:
-        # Distance from the line ab, and height above it.
-        x, y = pattern.vertices[v][0] - ax, pattern.vertices[v][1] - ay
-        dx, dy = bx - ax, by - ay
-        along = (x * dx + y * dy) / (dx * dx + dy * dy)
-        return x * dy - y * dx, heights[v] - heights[a] - along * (heights[b] - heights[a])
-
-    rows = [row(v) for v in pattern.boundary[2:]]
-    third = next(r for r in rows if r[0])
-    if all(r[1] * third[0] == third[1] * r[0] for r in rows):
-        raise NotApplicableError("the rim is flat: the only sheet without curvature is flat")
-    return heights

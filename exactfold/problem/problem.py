@@ -13,6 +13,7 @@ from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import BranchSystem, Chart, chamber_chart
 from exactfold.problem.gauge import Gauge
+from exactfold.problem.rims import given_deficits, given_rim
 
 if TYPE_CHECKING:
     from exactfold.rigidity.rigid_triangles import RigidTriangle
@@ -40,17 +41,30 @@ class Problem:
 
     @classmethod
     def of(
-        cls, pattern: CreasePattern, *, rim: Mapping[int, RationalLike] | None = None
+        cls,
+        pattern: CreasePattern,
+        *,
+        rim: Mapping[int, RationalLike] | None = None,
+        curvature: Mapping[int, RationalLike] | None = None,
     ) -> Problem:
         """The problem of a pattern with four boundary vertices, or with given rim heights.
 
-        Raises as `Gauge.of`.
+        `curvature`: angle deficits by interior vertex, 0 where none is given; a triangulated
+        triangle with a deficit inside does not stay flat. Raises as `Gauge.of`.
         """
-        sheet, labels = pattern.without_rigid_parts()
-        if rim is not None:
-            place = {v: k for k, v in enumerate(labels)}
-            rim = {place.get(v, v): height for v, height in rim.items()}
-        return cls(pattern, sheet, labels, Gauge.of(sheet, rim))
+        deficits = None if curvature is None else given_deficits(pattern, curvature)
+        if rim is not None:  # named here by the vertices of the pattern
+            rim = given_rim(pattern, rim, may_be_flat=bool(deficits))
+        sheet, labels = pattern.without_rigid_parts(deficits or ())
+        place = {v: k for k, v in enumerate(labels)}
+        heights = None if rim is None else {place[v]: height for v, height in rim.items()}
+        curved = None if deficits is None else {place[v]: k for v, k in deficits.items()}
+        return cls(pattern, sheet, labels, Gauge.of(sheet, heights, curved))
+
+    @cached_property
+    def rigid(self) -> frozenset[int]:
+        """The vertices of the pattern that are not in the sheet, as they stay flat."""
+        return frozenset(range(len(self.pattern.vertices))) - set(self.labels)
 
     @property
     def size(self) -> int:
@@ -135,6 +149,7 @@ class Problem:
             (v, cycle, barycentric(self.pattern, cycle, v))
             for cycle, inside in self.pattern.triangulated_triangles
             for v in inside
+            if v in self.rigid
         ]
 
 

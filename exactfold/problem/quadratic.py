@@ -16,6 +16,26 @@ from exactfold.exact.numbers import over_common_denominator
 IntMatrix = tuple[tuple[int, ...], ...]
 
 
+def primitive_matrices(
+    matrices: Sequence[Sequence[Sequence[Fraction | int]]],
+) -> tuple[IntMatrix, ...]:
+    """Symmetric rational matrices, each scaled to integers without a common factor.
+
+    >>> primitive_matrices([[[Fraction(1, 2), 0], [0, -3]]])
+    (((1, 0), (0, -6)),)
+    """
+    primitive = []
+    for matrix in matrices:
+        flat, _ = over_common_denominator(Fraction(x) for row in matrix for x in row)
+        common = gcd(*flat) or 1
+        size = len(matrix)
+        rows = [[x // common for x in flat[k * size : (k + 1) * size]] for k in range(size)]
+        if any(rows[i][j] != rows[j][i] for i in range(size) for j in range(i)):
+            raise ValueError("the matrices of a quadratic system must be symmetric")
+        primitive.append(tuple(tuple(row) for row in rows))
+    return tuple(primitive)
+
+
 @dataclass(frozen=True)
 class QuadraticSystem:
     """n quadrics F_p(x) = (1/2) z^T S_p z in n unknowns, z = (x_1, ..., x_n, 1).
@@ -37,18 +57,10 @@ class QuadraticSystem:
         cls, matrices: Sequence[Sequence[Sequence[Fraction | int]]]
     ) -> QuadraticSystem:
         """From symmetric rational matrices of the forms (any positive multiple)."""
-        primitive = []
-        for matrix in matrices:
-            flat, _ = over_common_denominator(Fraction(x) for row in matrix for x in row)
-            common = gcd(*flat) or 1
-            size = len(matrix)
-            rows = [[x // common for x in flat[k * size : (k + 1) * size]] for k in range(size)]
-            if any(rows[i][j] != rows[j][i] for i in range(size) for j in range(i)):
-                raise ValueError("the matrices of a quadratic system must be symmetric")
-            primitive.append(tuple(tuple(row) for row in rows))
+        primitive = primitive_matrices(matrices)
         if any(len(matrix) != len(primitive) + 1 for matrix in primitive):
             raise ValueError("a square system of n quadrics needs matrices of size n + 1")
-        return cls(tuple(primitive))
+        return cls(primitive)
 
     @property
     def size(self) -> int:

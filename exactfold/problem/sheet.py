@@ -13,6 +13,7 @@ import numpy as np
 from exactfold.arrays import BigArray, IndexArray
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.problem.gauge import pattern_size
 from exactfold.problem.problem import Problem
 
 """Python integers of any size, as an object array."""
@@ -41,8 +42,14 @@ class Sheet:
 
     @property
     def corner(self) -> int | None:
-        """The reflex corner, the only vertex with a target k_v = 1 / size^2 and not 0."""
+        """The reflex corner, whose target is k_v = 1 / size^2."""
         return self.problem.gauge.corner
+
+    @cached_property
+    def targets(self) -> Mapping[int, Fraction]:
+        """k_v > 0, where K_v is not to be 0, for integer lengths and heights in `height_unit`."""
+        scale = (self.height_unit * self.pattern.integer_vertices[1]) ** 2
+        return {v: k / scale for v, k in self.problem.gauge.targets.items()}
 
     @property
     def unclosed(self) -> CreasePattern:
@@ -61,8 +68,12 @@ class Sheet:
 
     @cached_property
     def height_unit(self) -> Fraction:
-        """A power of two near the largest height of the rim, 1 where all are 0."""
-        largest = max(map(abs, self.problem.gauge.rim.values()))
+        """A power of two near the largest height of the rim, or that deficits ask for, or 1."""
+        gauge = self.problem.gauge
+        largest = max(map(abs, gauge.rim.values()))
+        if gauge.curvature:  # a deficit k lifts its vertex by about the size times the root of k
+            square = max(gauge.curvature.values()) * pattern_size(gauge.sheet) ** 2
+            largest = max(largest, _root_of_power(power_of_two(square)))
         return power_of_two(largest) if largest else Fraction(1)
 
     @cached_property
@@ -91,6 +102,13 @@ class Sheet:
     def folds(self) -> Folds:
         """The folds of `pattern` in its order."""
         return Folds.of(self.pattern)
+
+
+def _root_of_power(power: Fraction) -> Fraction:
+    """The root of a power of two, rounded to one."""
+    exponent = power.numerator.bit_length() - power.denominator.bit_length()
+    half = exponent // 2
+    return Fraction(1 << half) if half >= 0 else Fraction(1, 1 << -half)
 
 
 def power_of_two(value: Fraction) -> Fraction:

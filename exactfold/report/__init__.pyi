@@ -1,10 +1,12 @@
 from exactfold.report.actuation import actuation_report as actuation_report
 from exactfold.report.animation import motion_animation as motion_animation
+from exactfold.report.assignments import assignments_report as assignments_report
 from exactfold.report.batch import batch_report as batch_report
 from exactfold.report.branch import branch_report as branch_report
 from exactfold.report.branch import branch_row as branch_row
 from exactfold.report.branch import branches_report as branches_report
 from exactfold.report.branch import export_report as export_report
+from exactfold.report.branch import shapes_report as shapes_report
 from exactfold.report.count import count_report as count_report
 from exactfold.report.crease_drawing import pattern_picture as pattern_picture
 from exactfold.report.drawn_ways import branch_way as branch_way
@@ -14,6 +16,7 @@ from exactfold.report.info import examples_report as examples_report
 from exactfold.report.info import expectation as expectation
 from exactfold.report.info import info_report as info_report
 from exactfold.report.info import panels_info as panels_info
+from exactfold.report.match import match_report as match_report
 from exactfold.report.motion import motion_report as motion_report
 from exactfold.report.motions import motions_report as motions_report
 from exactfold.report.multiples import sheet_of_multiples as sheet_of_multiples

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rich.console import Group
@@ -15,6 +17,7 @@ from exactfold.wording import counted
 if TYPE_CHECKING:
     from exactfold.branches.branch import Branch
     from exactfold.branches.export import BranchExport
+    from exactfold.count.shapes import ShapeCount
 
 Row = tuple[str, str, str, str]
 
@@ -28,6 +31,13 @@ def branch_report(result: Branch) -> Group:
     ]
     if flat := _with_sign(result, 0):
         rows.append(("flat", cut(flat)))
+    if result.curvature:
+        deficits = ", ".join(f"{v}: {k}" for v, k in sorted(result.curvature.items()))
+        rows.append(("angle deficits", cut(deficits)))
+    if result.rim is not None:
+        rows.append(("heights of the border", cut(_rim(result.rim))))
+        if straight := result.straight_border:
+            rows.append(("on a straight side", f"{_vertices(straight)}: the side may bend there"))
     if result.radius is not None:
         rows.append(("mountain-valley", letters_text(cut(result.assignment_text))))
         if undecided := len(result.undecided_folds):
@@ -40,10 +50,39 @@ def branch_report(result: Branch) -> Group:
 
 
 def _with_sign(result: Branch, sign: int) -> str:
-    chosen = [str(v) for v, s in sorted(result.vertex_signs.items()) if s == sign]
+    chosen = [v for v, s in sorted(result.vertex_signs.items()) if s == sign]
     if not chosen:
         return "none" if sign else ""
-    return f"{'vertex' if len(chosen) == 1 else 'vertices'} {', '.join(chosen)}"
+    return _vertices(chosen)
+
+
+def _vertices(chosen: Sequence[int]) -> str:
+    return f"{'vertex' if len(chosen) == 1 else 'vertices'} {', '.join(map(str, chosen))}"
+
+
+def _rim(heights: Mapping[int, Fraction]) -> str:
+    """Such as "0: 1, 3: -11/20, others 0"."""
+    raised = [f"{v}: {height}" for v, height in heights.items() if height]
+    if not raised:
+        return "all 0"
+    return ", ".join([*raised, "others 0"] if len(raised) < len(heights) else raised)
+
+
+def shapes_report(result: ShapeCount, *, everything: bool = False) -> Group:
+    """The number of shapes with given angle deficits."""
+    low, high = result.bounds
+    number = f"{low}" if low == high else f"at least {low}, at most {high}"
+    deficits = ", ".join(f"{v}: {k}" for v, k in sorted(result.curvature.items()))
+    rows: list[tuple[str, str | Text]] = [
+        ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
+        ("shapes", f"{number}; {result.with_multiplicity} with multiplicity"),
+        ("angle deficits", cut(deficits)),
+        ("heights of the border", cut(_rim(result.rim))),
+    ]
+    if result.signs:
+        texts = ", ".join(result.signs)
+        rows.append(("vertex signs", texts if everything else cut(texts)))
+    return Group(facts_table(list(rows)))
 
 
 def branch_row(name: str, result: Branch) -> Row:

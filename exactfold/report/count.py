@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from exactfold.exact.numbers import decimal_above
+from exactfold.report.pieces import graphs, piece_notes
 from exactfold.report.terminal import (
     BY_SIGN,
     SHOWN,
@@ -22,7 +23,7 @@ from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import agreeing, counted
 
 if TYPE_CHECKING:
-    from exactfold.branches.result import BranchCount
+    from exactfold.branches.result import BranchCount, Lettered
     from exactfold.count.stream import StreamedCount
 
 METHODS = {
@@ -85,6 +86,13 @@ def answer(result: BranchCount) -> Text:
         return Text.assemble(
             "0 ways to start folding - ", status_text(PROVED), took, "; the sheet is rigid"
         )
+    if result.pieces is not None and result.distinct is None:
+        return Text.assemble(
+            "infinitely many ways to start folding - ",
+            status_text(PROVED),
+            took,
+            f"; {graphs(result.pieces)}",
+        )
     if result.pattern.degrees_of_freedom > 1:
         return Text.assemble(
             "infinitely many ways to start folding - ",
@@ -117,6 +125,9 @@ def _multiplicity(result: BranchCount) -> str:
 def _motion(result: BranchCount) -> str:
     if result.true_branches is PROVED:
         return ("it" if result.real == 1 else "every one") + " continues to a true motion"
+    if result.true_bounds is not None:
+        low, high = result.true_bounds
+        return f"every one continues to a true motion, of which there are {low} to {high}"
     return "not decided whether each continues to a true motion"
 
 
@@ -146,13 +157,35 @@ def _notes(
         notes.append(
             f"{counted(rigid, 'vertex')} in triangulated triangles {agreeing(rigid, 'stays')} flat"
         )
+    if result.pieces is not None:
+        notes += piece_notes(result)
     if result.snapped:
         notes.append(f"coordinates were moved by up to {decimal_above(result.snapped, 3)} (--snap)")
+    if result.lettered is not None:
+        notes.append(_lettered(result.lettered))
     if streamed is not None:
         notes += [f"{name}: {value}" for name, value in _stream_rows(streamed)]
     if certificate:
         notes.append(f"certificate: {certificate}")
     return notes
+
+
+def _lettered(found: Lettered) -> str:
+    """Which ways have the letters of the file, in a sentence."""
+    sure = found.status is PROVED
+    if not found.ways:
+        if not sure:
+            return "no way is proved to have the mountains and valleys of the file"
+        return (
+            "no way has the mountains and valleys of the file: `exactfold match` says why, and "
+            "which are nearest"
+        )
+    ways = [f"{way}{' (other side)' if side < 0 else ''}" for way, side in found.ways[:NAMED]]
+    more = f" and {len(found.ways) - NAMED} more" if len(found.ways) > NAMED else ""
+    has = "has" if len(found.ways) == 1 else "have"
+    word = "way" if len(found.ways) == 1 else "ways"
+    rest = "" if sure else "; perhaps others have them, too"
+    return f"{word} {', '.join(ways)}{more} {has} the mountains and valleys of the file{rest}"
 
 
 def _details(result: BranchCount, streamed: StreamedCount | None) -> list[tuple[str, Any]]:
@@ -166,7 +199,7 @@ def _details(result: BranchCount, streamed: StreamedCount | None) -> list[tuple[
         ("sha256", pattern.sha256),
         ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
     ]
-    if result.status is PROVED:
+    if result.status is PROVED and result.distinct is not None:
         rows.append(
             (
                 "branches",
@@ -174,7 +207,7 @@ def _details(result: BranchCount, streamed: StreamedCount | None) -> list[tuple[
                 f"multiplicity; {result.real} real, {result.nonreal} not real",
             )
         )
-        rows.append(("true branches", status_text(result.true_branches)))
+        rows.append(("true branches", _true_text(result)))
     elif result.degree is not None:
         rows.append(
             (
@@ -194,6 +227,13 @@ def _details(result: BranchCount, streamed: StreamedCount | None) -> list[tuple[
     why = f" ({result.why})" if result.why else ""
     rows.append(("method", f"{METHODS.get(result.method, result.method)}{why}"))
     return rows
+
+
+def _true_text(result: BranchCount) -> Text:
+    if result.true_bounds is None or result.true_branches is PROVED:
+        return status_text(result.true_branches)
+    low, high = result.true_bounds
+    return Text.assemble(status_text(UNDECIDED), f" ({low} to {high})")
 
 
 def _power(value: int) -> str:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from exactfold.motion.matching import Loops
 
 _LISTED = 40
+_REASONS = 10
 
 
 def motions_report(found: Loops) -> Group:
@@ -95,6 +96,10 @@ def _notes(found: Loops) -> list[RenderableType]:
         )
     if len(found.loops) > _LISTED:
         notes.append(f"{counted(len(found.loops) - _LISTED, 'more loop')}: --json lists all.")
-    reasons = {loop.reason for loop in found.loops if loop.reason}
-    notes += [f"undecided: {reason}" for reason in sorted(reasons)]
+    reasons = sorted({loop.reason for loop in found.loops if loop.reason})
+    notes += [f"undecided: {reason}" for reason in reasons[:_REASONS]]
+    skipped = [f"{signs} is not followed: {why}" for signs, why in found.skipped.items()]
+    notes += skipped[:_REASONS]
+    if max(len(reasons), len(skipped)) > _REASONS:
+        notes.append("More reasons: --json lists all.")
     return [Text(note) for note in notes]

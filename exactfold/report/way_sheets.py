@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from exactfold.branches.result import BranchCount
 from exactfold.report.drawn_ways import DrawnWay, ways_of
@@ -13,6 +13,9 @@ from exactfold.wording import counted
 
 if TYPE_CHECKING:
     from exactfold.modes.result import Decomposition
+
+MOST_NAMED: Final = 6
+"""Free folds that are named."""
 
 
 def number_listed(result: BranchCount | Decomposition) -> int:
@@ -46,6 +49,36 @@ def sheet_of_ways(
     return sheet_of_multiples(ways, f"{name}: {title}" if name else title, number=number)
 
 
+def why_no_way(result: BranchCount | Decomposition) -> str:
+    """Why a count has no way to draw (`number_listed` is 0), in words.
+
+    >>> from exactfold.modes.decomposition import decompose
+    >>> from exactfold.pattern.panel_pattern import PanelPattern
+    >>> strip = PanelPattern([(0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (0, 1)],
+    ...     [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (5, 0), (1, 4)])
+    >>> why_no_way(decompose(strip))
+    'the only fold that can fold is 1-4, from border to border, and it is free'
+    """
+    if isinstance(result, BranchCount):
+        if result.status is PROVED and result.dimension:
+            return "the ways to fold are infinitely many, a family that has no list"
+        return "no single way to fold is known"
+    if result.rigid is PROVED:
+        return "the sheet is rigid: no fold can fold while the panels stay rigid"
+    if result.true == {len(result.free): 1}:
+        named = ", ".join(f"{i}-{j}" for i, j in result.free[:MOST_NAMED])
+        if len(result.free) == 1:
+            return f"the only fold that can fold is {named}, from border to border, and it is free"
+        more = len(result.free) - MOST_NAMED
+        return (
+            f"the only folds that can fold are {named}{f' and {more} more' if more > 0 else ''}, "
+            "from border to border, and each is free, whatever the others do"
+        )
+    if sum((result.true or result.second_order or result.found or {}).values()):
+        return "the sheet folds in families, or along curves, of which none is listed"
+    return "no single way to fold is known"
+
+
 def _title(result: BranchCount | Decomposition, ways: Sequence[DrawnWay], number: int) -> str:
     """How many ways a count lists, in words; `ways` are the first of them."""
     if isinstance(result, BranchCount):
@@ -53,6 +86,8 @@ def _title(result: BranchCount | Decomposition, ways: Sequence[DrawnWay], number
         return f"{counted(number, 'way')} to start folding, {known}"
     if number > len(ways):
         return counted(number, "mode")
-    folding = sum(not way.note for way in ways)
+    folding, counts = sum(not way.note for way in ways), result.true or result.second_order or {}
+    if not result.modes and {*counts} == {1} and folding == number < counts[1]:
+        return f"{number} of {counts[1]} ways to fold, all known to truly fold"
     which = f"{folding} of them " if folding < number else "all " if number > 1 else ""
     return f"{counted(number, 'mode')}, {which}known to truly fold"

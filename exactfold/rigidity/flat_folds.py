@@ -9,7 +9,7 @@ that do not bend on any line that agrees with the known signs are flat. This set
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from math import isqrt
@@ -20,10 +20,13 @@ from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import fold_functional
 
 
-def flat_folds(pattern: CreasePattern, signs: Mapping[Edge, int | None]) -> frozenset[Edge]:
+def flat_folds(
+    pattern: CreasePattern, signs: Mapping[Edge, int | None], curved: Collection[int] = ()
+) -> frozenset[Edge]:
     """The folds proved flat on a branch with the given fold signs (None where undecided).
 
-    `signs` must be right on the branch; a fold not returned may still be flat.
+    `signs` must be right on the branch; a fold not returned may still be flat. `curved` are
+    interior vertices at which the curvature form does not vanish, which prove nothing.
 
     >>> cross = CreasePattern(
     ...     [(2, 0), (0, 3), (-2, 0), (0, -1), (0, 0)],
@@ -32,7 +35,7 @@ def flat_folds(pattern: CreasePattern, signs: Mapping[Edge, int | None]) -> froz
     [(1, 4), (3, 4)]
     """
     known = dict(signs)
-    interior = set(pattern.interior)
+    interior = set(pattern.interior) - set(curved)
     pending = {v for fold, sign in known.items() if sign is None for v in fold} & interior
     while pending:
         vertex = pending.pop()

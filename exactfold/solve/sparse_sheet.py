@@ -34,7 +34,6 @@ class FloatSheet:
     line_factor: FloatArray
     rim: FloatArray
     target: FloatArray
-    corner: int | None
 
     @classmethod
     def of(cls, sheet: Sheet) -> FloatSheet:
@@ -61,13 +60,9 @@ class FloatSheet:
         for v, height in sheet.rim.items():
             rim[v] = height / sheet.rim_denominator
         scale = cone / hub**2
-        corner = None if sheet.corner is None else sheet.unknowns.index(sheet.corner)
-        target = np.zeros(len(unknowns))
-        if corner is not None:
-            target[corner] = scale[corner]
-        return cls(
-            unknowns, folds.corners, weights, lengths, scale, -0.5 / hub, rim, target, corner
-        )
+        aims = sheet.targets
+        target = np.array([float(aims.get(v, 0) * size**2) for v in sheet.unknowns]) * scale
+        return cls(unknowns, folds.corners, weights, lengths, scale, -0.5 / hub, rim, target)
 
     @property
     def n(self) -> int:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from exactfold.count.find import BranchFinder
 from exactfold.count.pools import Pool, process_pool
-from exactfold.count.ways import Sheet, count_opened, open_sheet
+from exactfold.count.ways import Sheet, count_opened, decompose_opened, open_sheet
 from exactfold.errors import ExactfoldError, InputError, UsageError, WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold_writing import fold_document
@@ -34,7 +34,6 @@ from exactfold.wording import counted
 if TYPE_CHECKING:
     from exactfold.branches.branch import Branch
     from exactfold.branches.result import BranchCount
-    from exactfold.modes.result import Decomposition
 
 MOST_LISTED: Final = 10
 """Foldable vertices up to which all branches are listed."""
@@ -262,7 +261,7 @@ def _panels(
     )
     from exactfold.report.panels import panels_answer
 
-    ways: Decomposition = count_opened(opened, progress=progress)  # type: ignore[assignment]
+    ways = decompose_opened(opened, progress=progress)
     modes = panel_modes(ways)
     by_number = {mode.number: mode for mode in modes}
     components = panel_components(ways, modes)

@@ -18,7 +18,6 @@ from exactfold.modes.stars import Star, stars
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import PROVED, REFUTED
 
-sys.path.append(str(Path(__file__).parents[1] / "modes"))
 
 TURNED = str.maketrans("MV", "VM")
 

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import pytest
 from sheets import (
+    DENTED,
     HEXAGON,
     TRIANGLE,
     dart,
@@ -36,6 +37,7 @@ patterns = pytest.mark.parametrize("pattern", PATTERNS.values(), ids=PATTERNS.ke
 KEYS = {
     *("pattern", "status", "reason", "method", "distinct", "with_multiplicity", "real"),
     *("nonreal", "true_branches", "dimension", "degree", "certificate", "seconds", "branches"),
+    *("true_bounds", "pieces"),
 }
 
 
@@ -156,8 +158,10 @@ def test_repr_names_the_status_and_the_count():
     assert repr(count_branches(two_vertex())) == (
         "<BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary vertices>>"
     )
+    dented = scrambled(1, DENTED, 2, loose=True)
+    assert "undecided, ? branches" in repr(count_branches(dented))
     hexagon = scrambled(1, HEXAGON, 2, loose=True)
-    assert "undecided, ? branches" in repr(count_branches(hexagon))
+    assert "<BranchCount: proved, <Pieces: proved, 1 of 4 graphs>" in repr(count_branches(hexagon))
 
 
 def test_html_lists_branches():
@@ -178,7 +182,8 @@ def test_latex():
     assert count_branches(two_vertex())._repr_latex_() == (
         r"$B = 4\ \text{(proved)},\quad V_i = 2,\ V_e = 4,\ V_t = 0$"
     )
-    undecided = count_branches(scrambled(1, HEXAGON, 2, loose=True))
+    assert count_branches(scrambled(1, HEXAGON, 2, loose=True))._repr_latex_() is None
+    undecided = count_branches(scrambled(1, DENTED, 2, loose=True))
     assert undecided._repr_latex_() == r"$B = {?}\quad \text{(undecided)}$"
 
 
@@ -194,4 +199,4 @@ def test_status_is_never_a_truth_value():
     assert result.status is PROVED
     with pytest.raises(TypeError, match="no truth value"):
         bool(result.true_branches)
-    assert count_branches(flat_vertex_square()).true_branches is UNDECIDED
+    assert count_branches(scrambled(1, DENTED, 2)).true_branches is UNDECIDED

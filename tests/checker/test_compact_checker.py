@@ -219,7 +219,7 @@ LIES: dict[Callable[[Lines], None], str] = {
     another_claim: "real = 63 is 64",
     true_for_one: "nonreal = False is 0",
     missing_claim: "claims: expected an object",
-    no_claims: "the claims are missing",
+    no_claims: "blocks hold, but the claims are missing",
     more_lines: "something follows the claims",
     moved_vertex: "Krawczyk|face|sign",
     other_blocks: "does not divide",

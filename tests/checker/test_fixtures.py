@@ -24,8 +24,9 @@ def test_there_are_certificates_of_every_kind() -> None:
         "branch",
         "panels",
         "loops",
+        "letters",
     }
-    assert len(FILES) == 72
+    assert len(FILES) == 76
 
 
 @pytest.mark.parametrize("name", FILES)

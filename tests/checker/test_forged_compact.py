@@ -220,7 +220,7 @@ def test_unknowns_are_at_most_forty() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda parts: parts.pop(), "the claims are missing"),
+        (lambda parts: parts.pop(), "all 4 blocks hold, but the claims are missing"),
         (lambda parts: parts.append(parts[-1]), "something follows the claims"),
         (lambda parts: parts.__delitem__(slice(3, None)), "only 2 of 4 blocks are there"),
         (

@@ -25,7 +25,7 @@ from exactfold.checker.motion_nodes import NodeTube, Stresses, independent
 from exactfold.checker.motion_patches import Patch, wheel_stress
 from exactfold.checker.motion_paths import Path
 from exactfold.checker.motion_tubes import Ball
-from exactfold.checker.reading import CertificateError, FormatError
+from exactfold.checker.reading import CertificateError, FormatError, UnfinishedError
 from exactfold.checker.sheet import read_sheet
 
 ONE, NODE = "loops-one-vertex", "loops-node"
@@ -99,7 +99,8 @@ def believed(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("believed")
 def test_the_claims_come_last_and_once() -> None:
     header, loop, claims = given_lines(ONE)
-    refused([header, loop], "the claims are missing")
+    refused([header, loop], "1 loop holds, but the claims are missing", UnfinishedError)
+    refused([header], "0 loops hold, but the claims are missing", UnfinishedError)
     refused([header, claims, loop], "something follows the claims")
     refused([header, loop, claims, claims], "something follows the claims")
     refused(
@@ -436,7 +437,8 @@ def test_vertices_that_are_not_flat_are_refused() -> None:
     inner = "a node has no vertices that are flat, or none that fold"
     for other in ([], [*flat, *flat], [sheet.given.boundary[0]], [99], [*reversed(interior)]):
         not_passed(node() | {"flat": other}, inner)
-    square = "a flat patch leaves not as many equations as unknowns"
+    square = "a flat patch leaves no unknowns, or not as many equations"
+    not_passed(node() | {"flat": interior}, square)  # the flat state
     for v in interior:
         degree = len(sheet.given.star(v))
         if degree != 4:

@@ -28,6 +28,7 @@ KINDS = {
     "panels-bent.json": "VALID: the motions of the sheet of 12 folds and 4 interior vertices have",
     "loops-one-vertex.txt": "VALID: 1 loop of true motions, which match all 4 half-branches",
     "branch-reflex.json": "VALID: exactly one branch has the vertex signs +0- (3); 10 of 10",
+    "letters-random.json": "VALID: exactly 2 halves of branches have the 7 letters asked for on 16",
 }
 WAYS = ("folder", "zipapp", "module")
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]\n"
@@ -79,7 +80,18 @@ def test_package_is_out_of_reach_of_the_copy(copies: dict[str, Path], tmp_path: 
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_certificates_of_every_kind_are_verified(run: Run, name: str) -> None:
+def test_certificates_of_every_kind_are_verified(
+    name: str, copies: dict[str, Path], tmp_path: Path
+) -> None:
+    _verifies(Run("folder", copies, tmp_path), name)
+
+
+@pytest.mark.parametrize("name", ["listing-isolated.json", "compact-blocks-of-4.txt"])
+def test_certificates_are_verified_in_every_way(run: Run, name: str) -> None:
+    _verifies(run, name)
+
+
+def _verifies(run: Run, name: str) -> None:
     shutil.copy(FIXTURES / name, run.folder)
     code, out, err = run(name)
     assert (code, err) == (0, "")

@@ -92,9 +92,9 @@ def test_files_that_were_counted_are_skipped_and_failed_ones_tried_again(
     paths, out = squares(tmp_path, 4), tmp_path / "o.jsonl"
     bad = tmp_path / "bad.fold"
     bad.write_text("[]")
-    assert run("count", *paths[:2], bad, "--jsonl", out).exit_code == BAD_INPUT
+    assert run("count", *paths[:2], bad, "--jsonl", out, "--jobs", 1).exit_code == BAD_INPUT
     before = out.read_bytes()
-    result = run("count", *paths, bad, "--jsonl", out, "--json")
+    result = run("count", *paths, bad, "--jsonl", out, "--jobs", 1, "--json")
     assert result.exit_code == BAD_INPUT
     summary = json.loads(result.stdout)
     assert (summary["files"], summary["skipped"]) == (5, 2)
@@ -102,15 +102,21 @@ def test_files_that_were_counted_are_skipped_and_failed_ones_tried_again(
     assert out.read_bytes().startswith(before)
     assert sorted(d["name"] for d in lines(out)) == sorted(map(str, [*paths, bad, bad]))
     monkeypatch.setenv("COLUMNS", "300")
-    again = run("count", *paths, bad, "--jsonl", out).stdout
+    again = run("count", *paths, bad, "--jsonl", out, "--jobs", 1).stdout
     assert f"{bad} ? FAILED a FOLD file holds one JSON object" in " ".join(again.split())
     assert "1 failed; 4 counted before" in " ".join(again.split())
     write_fold(random_square(3, seed=9), paths[0])  # another pattern under the same name
-    assert json.loads(run("count", *paths, "--jsonl", out, "--json").stdout)["skipped"] == 3
+    assert (
+        json.loads(run("count", *paths, "--jsonl", out, "--jobs", 1, "--json").stdout)["skipped"]
+        == 3
+    )
     moved = paths[1].rename(tmp_path / "moved.fold")  # the same under another name
-    assert json.loads(run("count", moved, "--jsonl", out, "--json").stdout)["skipped"] == 1
+    assert (
+        json.loads(run("count", moved, "--jsonl", out, "--jobs", 1, "--json").stdout)["skipped"]
+        == 1
+    )
     # What was asked differs: the line there is no answer.
-    snapped = run("count", moved, "--jsonl", out, "--json", "--snap", 1024)
+    snapped = run("count", moved, "--jsonl", out, "--jobs", 1, "--json", "--snap", 1024)
     assert json.loads(snapped.stdout)["skipped"] == 0
 
 
@@ -118,8 +124,8 @@ def test_two_files_with_one_content_have_a_line_each(tmp_path: Path) -> None:
     (one,) = squares(tmp_path, 1)
     two, out = tmp_path / "two.fold", tmp_path / "o.jsonl"
     two.write_bytes(one.read_bytes())
-    run("count", two, "--jsonl", out)
-    run("count", one, two, "--jsonl", out)
+    run("count", two, "--jsonl", out, "--jobs", 1)
+    run("count", one, two, "--jsonl", out, "--jobs", 1)
     assert [d["name"] for d in lines(out)] == [str(two), str(one)]
 
 
@@ -135,14 +141,17 @@ def test_a_torn_last_line_is_dropped(tmp_path: Path) -> None:
         assert out.read_bytes()[:first] == whole[:first]
         assert [d["name"] for d in lines(out)] == list(map(str, paths))
     out.write_bytes(whole[:10])  # not even a line
-    assert json.loads(run("count", *paths, "--jsonl", out, "--json").stdout)["skipped"] == 0
+    assert (
+        json.loads(run("count", *paths, "--jsonl", out, "--jobs", 1, "--json").stdout)["skipped"]
+        == 0
+    )
 
 
 @pytest.mark.parametrize("text", ["notes", '{"format": "exactfold count result"}\n', "[]\n", "\n"])
 def test_a_file_of_another_kind_is_left_alone(tmp_path: Path, text: str) -> None:
     (path,), out = squares(tmp_path, 1), tmp_path / "o.jsonl"
     out.write_text(text)
-    result = run("count", path, "--jsonl", out)
+    result = run("count", path, "--jsonl", out, "--jobs", 1)
     assert result.exit_code == BAD_INPUT
     assert "not a line of results" in result.stderr
     assert out.read_text() == text
@@ -285,10 +294,10 @@ def test_a_dead_process_is_a_line_that_is_tried_again(
     (path,), out = squares(tmp_path, 1), tmp_path / "o.jsonl"
     with monkeypatch.context() as patch:
         patch.setattr(batch, "line_of", lambda job: WorkerDiedError("it died"))
-        result = run("count", path, "--jsonl", out, "--json")
+        result = run("count", path, "--jsonl", out, "--jobs", 1, "--json")
     assert result.exit_code == DEFECT
     assert lines(out)[0]["error"] == {"class": "WorkerDiedError", "message": "it died"}
-    again = run("count", path, "--jsonl", out, "--json")
+    again = run("count", path, "--jsonl", out, "--jobs", 1, "--json")
     assert (again.exit_code, json.loads(again.stdout)["skipped"]) == (PROVED, 0)
     assert [d["status"] for d in lines(out)] == ["failed", "proved"]
 

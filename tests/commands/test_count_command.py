@@ -11,7 +11,7 @@ from running import (
     UNDECIDED,
     run,
 )
-from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
+from sheets import DENTED, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
 
 from exactfold import count_branches, random_square, read_fold, write_fold
 from exactfold.data import SHEETS, example_path
@@ -28,9 +28,9 @@ COUNT_KEYS = {
 }
 PANEL_KEYS = {
     *("theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"),
-    *("near_misses", "read", "still_folds"),
+    *("near_misses", "read", "still_folds", "pieces"),
 }
-EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree"}
+EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree", "true_bounds"}
 BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
 
 
@@ -78,10 +78,10 @@ def test_verbose_also_says_how(two_vertex):
         (
             FAMILIES["flat-vertex"](),
             r"3 ways to start folding - PROVED \(.*\); all real, 4 with multiplicity, as flat "
-            "vertices count double, not decided whether each continues to a true motion",
+            "vertices count double, every one continues to a true motion",
         ),
         (
-            scrambled(5, HEXAGON, 4, loose=True),
+            scrambled(2, DENTED, 4, loose=True),
             r"the number of ways to fold is UNDECIDED \(.*\): the part of 4 vertices with "
             "vertex 6: ",
         ),
@@ -129,7 +129,9 @@ def test_count_json_has_the_documented_keys(name):
     assert data["pattern"]["sha256"] == pattern.sha256
     assert data["pattern"]["snapped"] == "0"
     assert data["status"] == "proved"
-    assert data["true_branches"] == ("undecided" if name == "flat-vertex" else "proved")
+    assert data["true_branches"] == "proved"
+    if data["pieces"] is None:
+        assert data["true_bounds"] == [data["distinct"]] * 2
     assert data["certificate"] is None
     vectors = []
     for branch in data["branches"]:
@@ -169,8 +171,8 @@ def test_rigid_sheet_has_no_branches(tmp_path):
 
 
 def test_undecided_exits_4(tmp_path):
-    path, out = tmp_path / "hexagon.fold", tmp_path / "out.json"
-    write_fold(scrambled(5, HEXAGON, 4, loose=True), path)
+    path, out = tmp_path / "dented.fold", tmp_path / "out.json"
+    write_fold(scrambled(2, DENTED, 4, loose=True), path)
     result = run("count", path, "--json", "--certificate", out)
     assert result.exit_code == UNDECIDED
     data = json.loads(result.stdout)
@@ -178,9 +180,10 @@ def test_undecided_exits_4(tmp_path):
     assert data["distinct"] is None
     assert data["certificate"] is None
     assert data["theory"] == "subspaces"
-    found = {"found": {"3": 1}, "found_true": {"3": 1}}
+    found = {"found": {"3": 2}, "found_true": {"3": 2}}
     assert data["components"] == {"second_order": None, "true": None, **found}
     assert data["reason"].startswith("the part of 4 vertices with vertex 6: ")
+    assert "and a reflex corner, vertex 3: with more than four corners" in data["reason"]
     assert "no certificate was written" in result.stderr
     assert not out.exists()
 

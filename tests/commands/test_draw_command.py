@@ -206,4 +206,16 @@ def test_a_sheet_without_ways_is_told(tmp_path):
     (tmp_path / "s.svg").write_text(square)
     result = run("draw", tmp_path / "s.svg", "--all")
     assert result.exit_code == UNDECIDED
-    assert "lists no single way" in result.stderr
+    assert "the sheet is rigid: no fold can fold" in result.stderr
+
+
+def test_free_folds_are_not_said_to_be_no_way_to_fold(tmp_path):
+    lines = "".join(f'<path stroke="red" d="M{x} 0V9"/>' for x in (2, 5))
+    (tmp_path / "s.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg"><path fill="none" stroke="black" d="M0 0H9V9H0Z"/>'
+        f"{lines}</svg>"
+    )
+    for asked in (["--all"], ["--branch", "1"]):
+        said = run("draw", tmp_path / "s.svg", *asked).stderr
+        assert "the only folds that can fold are 4-5, 6-7, from border to border" in said
+        assert f"draw the pattern without {asked[0]}" in said

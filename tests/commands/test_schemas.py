@@ -12,7 +12,7 @@ from drawings import SQUARE, as_cp
 from files import written
 from jsonschema import Draft202012Validator, ValidationError
 from running import PROVED, UNDECIDED, run
-from sheets import HEXAGON, TRIANGLE, nested_triangles, scrambled
+from sheets import DENTED, HEXAGON, TRIANGLE, nested_triangles, scrambled
 
 from exactfold import CreasePattern, read_fold, schema, write_fold
 from exactfold.count import METHODS
@@ -81,13 +81,19 @@ def test_every_other_command(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "pattern",
-    [scrambled(5, HEXAGON, 4, loose=True), scrambled(1, TRIANGLE, 3), nested_triangles()],
-    ids=["undecided", "rigid", "nested"],
+    [
+        scrambled(2, DENTED, 4, loose=True),
+        scrambled(5, HEXAGON, 4, loose=True),
+        scrambled(1, TRIANGLE, 3),
+        nested_triangles(),
+    ],
+    ids=["undecided", "hexagon", "rigid", "nested"],
 )
 def test_other_counts(tmp_path: Path, pattern: CreasePattern) -> None:
     write_fold(pattern, tmp_path / "p.fold")
     data = printed("count", "count", tmp_path / "p.fold")
-    assert data["by"] == ("enumeration" if data["status"] == "proved" else None)
+    by = "enumeration" if data["pieces"] is None else "theorem"
+    assert data["by"] == (by if data["status"] == "proved" else None)
     assert printed("info", "info", tmp_path / "p.fold")["triangles"] == len(pattern.triangles)
 
 
@@ -166,7 +172,7 @@ def test_schemas_refuse_what_is_not_documented() -> None:
 
 
 def test_an_undecided_count_has_no_numbers(tmp_path: Path) -> None:
-    write_fold(scrambled(5, HEXAGON, 4, loose=True), tmp_path / "p.fold")
+    write_fold(scrambled(2, DENTED, 4, loose=True), tmp_path / "p.fold")
     result = run("count", tmp_path / "p.fold", "--json")
     assert result.exit_code == UNDECIDED
     with pytest.raises(ValidationError):

@@ -10,7 +10,7 @@ from exactfold.problem import Chart
 from exactfold.solve import Candidates
 
 _AT_ONCE = 256
-_ROUNDS = 40
+_ROUNDS = 10
 _STEPS = 60
 
 

@@ -50,6 +50,7 @@ MOTIONS = exactfold.decompose(OPENED.sheet)
 SPACES = exactfold.decompose(panels(single_vertex(5)))
 MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
 DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
+ALL = exactfold.assignment.all_assignments(single_vertex(5))
 MATCH = exactfold.assignment.match(PATTERN, exactfold.find_branch(PATTERN, "+-").assignment)
 ONE = exactfold.random_square(1, seed=0)
 LEAVING = exactfold.find_branch(ONE, "+")
@@ -102,6 +103,11 @@ VALUES = {
         )
     ),
     "problem": Problem.of(PATTERN),
+    "all assignments": ALL,
+    "circle": ALL.circles[0],
+    "arc of a circle": ALL.circles[0].arcs[0],
+    "crossing": ALL.circles[0].crossings[0],
+    "number of shapes": exactfold.count.count_shapes(PATTERN, {4: 1}),
     "gauge": Problem.of(PATTERN).gauge,
     "sheet": Sheet(Problem.of(PATTERN)),
     "candidates": ENDS,

@@ -294,7 +294,7 @@ def test_six_boundary_vertices_with_a_given_rim(scale: Fraction) -> None:
 def test_a_rim_that_does_not_fit_is_refused() -> None:
     pattern = scrambled(5, HEXAGON, 3)
     with pytest.raises(NotApplicableError, match="four boundary vertices"):
-        find_branch(pattern, "+++")
+        BranchFinder(pattern).problem.require_foldable()
     with pytest.raises(UsageError, match="each boundary vertex"):
         find_branch(pattern, "+++", rim={0: 1})
     flat = {v: 2 * pattern.vertices[v][0] + 7 for v in pattern.boundary}

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 from counting import counts
-from sheets import HEXAGON, SQUARE, random_wheel, scrambled, wheel
+from sheets import DENTED, HEXAGON, SQUARE, random_wheel, scrambled, wheel
 
 from exactfold import PROVED, UNDECIDED, CreasePattern, count_branches
 from exactfold.algebra.groebner_bases import groebner
@@ -23,24 +23,32 @@ def test_single_vertex_with_more_folds(degree):
 
 
 @pytest.mark.parametrize("corners", [5, 6])
-def test_two_vertices_with_more_degrees_of_freedom_are_undecided(corners):
+def test_two_vertices_with_more_degrees_of_freedom_are_graphs(corners):
     pattern = scrambled(1, HEXAGON[:corners], 2, loose=True)
     assert pattern.degrees_of_freedom == corners - 3
     result = count_branches(pattern)
-    assert result.status is UNDECIDED
-    assert f"{corners} boundary vertices, so it has {corners - 3} degrees" in result.reason
+    assert (result.status, result.by) == (PROVED, "theorem")
+    assert f"2^2 graphs over the rim heights, of dimension {corners - 3}" in result.reason
+    assert result.pieces.number == {5: 2, 6: 1}[corners]
     assert counts(result) == (None,) * 4
     assert result.proof is None
 
 
-def test_chord_of_a_sheet_with_more_degrees_of_freedom_is_named():
+def test_a_reflex_corner_of_a_sheet_with_more_degrees_of_freedom_is_undecided():
+    result = count_branches(scrambled(1, DENTED, 2, loose=True))
+    assert (result.status, result.pieces) == (UNDECIDED, None)
+    assert "6 boundary vertices, so it has 3 degrees of freedom, and a reflex" in result.reason
+    assert "the shapes over a rim need not be real" in result.reason
+
+
+def test_chord_of_a_sheet_with_more_degrees_of_freedom_joins_everything():
     # One interior vertex of degree 4, and a chord that cuts off a flap: not one double cone.
     inner = wheel([(0, 0), (4, 0), (4, 4), (0, 4)], (1, 2))
     flap = CreasePattern([*inner.vertices, (7, 2)], [*inner.triangles, (1, 5, 2)])
     assert (flap.Ve, flap.chords) == (5, ((1, 2),))
     result = count_branches(flap)
-    assert result.status is UNDECIDED
-    assert "the fold 1-2 splits it" in result.reason
+    assert (result.status, result.pieces.graphs, result.pieces.number) == (PROVED, 2, 1)
+    assert result.pieces.chord == (1, 2)
 
 
 def test_dimension_and_degree_of_sheets_with_more_freedom():
@@ -48,7 +56,7 @@ def test_dimension_and_degree_of_sheets_with_more_freedom():
     for seed in range(3):
         pattern = scrambled(seed, HEXAGON, 3)
         result = count_branches(pattern)
-        assert result.status is UNDECIDED
+        assert result.status is PROVED
         assert (result.dimension, result.degree) == (3, 1 << pattern.Vi)
         system = BranchSystem(pattern)
         inner = [v for v in system.variables if v in pattern.interior]

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 from drawings import SQUARE, as_cp, as_fold
+from sheets import DENTED, scrambled
 
-from exactfold import count_branches, count_many, write_fold
+from exactfold import PROVED, count_branches, count_many, write_fold
 from exactfold.count.motion_facts import panel_facts
 from exactfold.count.ways import count_ways
 from exactfold.drawing.read import parse_drawing
@@ -38,11 +39,23 @@ def test_sheets_with_branches_have_branches() -> None:
         assert found.distinct == count_branches(pattern).distinct
 
 
-def test_triangulated_sheets_with_more_freedom_are_decomposed() -> None:
+def test_convex_sheets_with_more_freedom_are_also_decomposed() -> None:
     assert not has_branches(PENTAGON)
     found = count_ways(PENTAGON)
-    assert found == decompose(panels(PENTAGON))
-    assert dict(found.second_order) == {2: 2}
+    assert found.status is PROVED
+    assert found.families == decompose(panels(PENTAGON))
+    assert dict(found.families.second_order) == {2: 2}
+    assert found.to_dict()["components"]["second_order"] == {"2": 2}
+    assert (found.pieces.graphs, found.pieces.number) == (4, 2)
+
+
+def test_sheets_with_more_freedom_and_a_reflex_corner_are_decomposed() -> None:
+    sheet = scrambled(2, DENTED, 4, loose=True)
+    found = count_ways(sheet)
+    ways = decompose(panels(sheet))
+    assert found.reason.startswith(f"{ways.reason}; the sheet has 6 boundary vertices")
+    assert "a reflex corner, vertex 3" in found.reason
+    assert found.found == ways.found
 
 
 def test_a_sheet_without_interior_vertex_folds_at_each_fold() -> None:
@@ -73,7 +86,7 @@ def test_rounding_is_never_silent(tmp_path: Path) -> None:
     write_fold(CreasePattern(near, PENTAGON.triangles), path)
     assert count_ways(path).read is None
     rounded = count_ways(path, snap=1)
-    assert rounded.pattern == panels(PENTAGON)
+    assert rounded.pattern == PENTAGON
     assert rounded.read["lines"] == ["coordinates moved by up to 6e-06 by rounding"]
 
 

@@ -139,7 +139,7 @@ def test_an_interrupted_run_is_continued(tmp_path, monkeypatch):
             find_loops(pattern, certificate=file)
     kept = file.read_bytes()
     assert kept.count(b"\n") == 3
-    with pytest.raises(checker.CertificateError, match="the claims are missing"):
+    with pytest.raises(checker.CertificateError, match=r"^2 loops hold, but the claims are miss"):
         checker.verify(file)
     file.write_bytes(kept + b'{"from":{"vertex_signs"')  # a line that was cut off
 
@@ -177,6 +177,14 @@ def test_files_of_others_are_refused(tmp_path):
     assert file.read_text() == "something else\n"
 
 
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory):
+    """The file of the loops of a sheet with one vertex."""
+    file = tmp_path_factory.mktemp("loops") / "loops.txt"
+    find_loops(random_square(1, seed=0), certificate=file, processes=1)
+    return file.read_bytes()
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -189,15 +197,13 @@ def test_files_of_others_are_refused(tmp_path):
         {"evidence": {"steps": 1}},
     ],
 )
-def test_lines_that_are_no_loops_are_written_anew(change, tmp_path):
-    pattern, file = random_square(1, seed=0), tmp_path / "loops.txt"
-    find_loops(pattern, certificate=file)
-    kept = file.read_bytes()
+def test_lines_that_are_no_loops_are_written_anew(change, kept, tmp_path):
+    file = tmp_path / "loops.txt"
     header, entry, _ = (json.loads(line.partition(b"\t")[0]) for line in kept.splitlines())
     journal = Journal(file, json.dumps(header, separators=(",", ":")))
     journal.append(json.dumps(entry | change, separators=(",", ":")))
     journal.close()
-    find_loops(pattern, certificate=file, resume=True)
+    find_loops(random_square(1, seed=0), certificate=file, resume=True, processes=1)
     assert file.read_bytes() == kept
 
 
@@ -237,17 +243,48 @@ def test_the_command_line(tmp_path):
     assert "is not a file" in folder.stderr
 
 
-def test_a_forged_file_is_invalid_on_the_command_line(tmp_path):
+def test_a_forged_file_is_invalid_on_the_command_line(kept, tmp_path):
     file = tmp_path / "loops.txt"
-    find_loops("two-vertex", certificate=file)
-    bodies = [line.partition("\t")[0] for line in file.read_text().splitlines()]
+    bodies = [line.partition(b"\t")[0].decode() for line in kept.splitlines()]
     journal = Journal(file, bodies[0])
-    journal.append(bodies[1])
-    journal.finish(bodies[3])
+    journal.finish(bodies[2])
     journal.close()
     result = run("check", file)
     assert result.exit_code == 1
-    assert result.stdout.startswith("INVALID: loops = 2 is 1")
+    assert result.stdout.startswith("INVALID: loops = 1 is 0")
+
+
+def test_what_an_interrupted_run_leaves_is_unfinished(tmp_path, capsys):
+    """Never valid, and invalid only with a loop that does not hold."""
+    file = tmp_path / "loops.txt"
+    find_loops("two-vertex", certificate=file)
+    whole = file.read_text()
+    bodies = [line.partition("\t")[0] for line in whole.splitlines()]
+    for lines, said in (
+        (bodies[:1], "0 loops hold, but the claims are missing"),
+        (bodies[:2], "1 loop holds, but the claims are missing"),
+        (bodies[:3], "2 loops hold, but the claims are missing"),
+    ):
+        journal = Journal(file, lines[0])
+        for line in lines[1:]:
+            journal.append(line)
+        journal.close()
+        assert whole.startswith(file.read_text())
+        result = run("check", file)
+        assert (result.exit_code, result.stdout) == (1, f"UNFINISHED: {said}\n")
+        as_json = run("check", file, "--json")
+        document = json.loads(as_json.stdout)
+        assert (as_json.exit_code, document["valid"], document["claims"]) == (1, False, {})
+        assert document["reason"] == f"unfinished: {said}"
+        assert checker.main([str(file)]) == 1
+        assert capsys.readouterr().out == f"UNFINISHED: {said}\n"
+    false = json.loads(bodies[1])
+    false["length"] = "100"
+    journal = Journal(file, bodies[0])
+    journal.append(json.dumps(false, separators=(",", ":")))
+    journal.close()
+    result = run("check", file)
+    assert (result.exit_code, result.stdout) == (1, "INVALID: loop 0: it is shorter than claimed\n")
 
 
 SIGNALLED = """

@@ -221,7 +221,7 @@ def test_all_folds_of_a_strip_grow_until_the_first_closes(seed):
     result = decompose(mesh(1, 3, seed=seed))
     assert len(result.modes) == 8
     for number in range(1, 9):
-        motion = checked(follow_panels(result, modes=[number], until="180deg", frames=120))
+        motion = checked(follow_panels(result, modes=[number], until="180deg", frames=40))
         steps = np.diff(np.abs(motion.angles), axis=0)
         active = np.abs(motion.angles[-1]) > 0
         assert active.sum() == 10

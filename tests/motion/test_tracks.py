@@ -106,7 +106,7 @@ def test_frames_come_at_their_times(track: Track) -> None:
     """The length of the polygon through many frames is that of the motion, nearly."""
     unit = float(track.framework.unit)
     last = float(track.length[0])
-    times = np.linspace(0, last, 60)
+    times = np.linspace(0, last, 30)
     frames = track.frames(list(times))
     points = np.array([frame.ball.floats[0] for frame in frames]) * unit
     found = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])

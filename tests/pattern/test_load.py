@@ -3,6 +3,7 @@
 import inspect
 import json
 import os
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ import rooms
 import exactfold
 from exactfold.count.find import find_branch
 from exactfold.count.ways import count_ways
-from exactfold.data import DRAWINGS, EXAMPLES, SHEETS, example_path, examples
+from exactfold.data import BY_OTHERS, DRAWINGS, EXAMPLES, SHEETS, example_path, examples
 from exactfold.errors import (
     NotJSONError,
     NotTriangulatedError,
@@ -61,10 +62,7 @@ def test_unknown_pattern_error_lists_the_names(what, here):
 
 @pytest.mark.parametrize(
     "name",
-    [
-        pytest.param(name, marks=[pytest.mark.slow] if name == "bird-base" else [])
-        for name in DRAWINGS
-    ],
+    [pytest.param(name, marks=[pytest.mark.slow] if "bird" in name else []) for name in DRAWINGS],
 )
 def test_a_drawing_is_no_sheet_of_triangles_error(name):
     with pytest.raises(UsageError, match=rf"^{name} is a drawing .* `count_ways` takes it$"):
@@ -141,6 +139,7 @@ TAKES_PATTERN = {
     "problem.BranchSystem": (),
     "count.count_branches": (),
     "count.find_branch": ("+-",),
+    "count.count_shapes": ({4: 1},),
     "actuation.actuate": ("+-",),
     "assignment.match": ("MVVUUUU",),
 }
@@ -149,6 +148,7 @@ TAKES_PATTERN_ELSEWHERE = {
     "bridges.to_networkx",
     "bridges.to_pyrigi",
     "bridges.to_trimesh",
+    "assignment.all_assignments",
     "count.BranchFinder",
     "count.find_branches",
     "branches.fold_angles",
@@ -183,7 +183,9 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "count.PanelFacts",
         "pattern.Converted",
         "actuation.Actuation",
+        "assignment.AllAssignments",
         "assignment.Match",
+        "count.ShapeCount",
         "evidence.motion_certificate",
         "motion.Loops",
         "motion.PanelMode",
@@ -221,6 +223,22 @@ def test_every_example_is_described_in_one_line():
         assert text.endswith(".")
         assert "\n" not in text
         assert 20 < len(text) < 120
+
+
+@pytest.mark.parametrize("name", BY_OTHERS)
+def test_drawings_by_others_name_their_author_and_licence(name):
+    file = example_path(name)
+    assert "copyright (c) 2018 Amanda Ghassaei, MIT licence" in file.read_text("utf-8")
+    assert f"`{file.name}`" in file.with_name("README.md").read_text("utf-8")
+    licence = file.with_name("LICENSE").read_text("utf-8")
+    assert licence.startswith("MIT License\n\nCopyright (c) 2018 Amanda Ghassaei\n")
+    root = Path(exactfold.__file__).parent.parent
+    named = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"]["license-files"]
+    assert all((root / path).is_file() for path in named)
+    assert set(named) == {
+        path.relative_to(root).as_posix()
+        for path in (root / "LICENSE", *Path(exactfold.__file__).parent.rglob("LICENSE"))
+    }
 
 
 DESCRIBED = {

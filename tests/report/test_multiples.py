@@ -7,9 +7,12 @@ from svg_reading import NAME, letters, of_class, tree, words
 
 from exactfold import count_ways
 from exactfold.errors import UsageError
+from exactfold.modes.decomposition import decompose
+from exactfold.pattern.families import single_vertex
+from exactfold.pattern.opening import panels
 from exactfold.report.drawn_ways import ways_of
 from exactfold.report.multiples import sheet_of_multiples
-from exactfold.report.way_sheets import number_listed, sheet_of_ways
+from exactfold.report.way_sheets import number_listed, sheet_of_ways, why_no_way
 
 
 def numbers(text):
@@ -116,6 +119,13 @@ def test_pictures_stand_apart(counted):
         ("hypar-2", 3, 256, "hypar-2: 256 ways to start folding, proved"),
         ("zigzags", None, 5, "zigzags: 5 modes, 4 of them known to truly fold"),
         ("zigzags", 2, 5, "zigzags: 5 modes"),
+        pytest.param(
+            "flapping-bird",
+            None,
+            4,
+            "flapping-bird: 4 of 20 ways to fold, all known to truly fold",
+            marks=pytest.mark.slow,
+        ),
         ("windmill", None, 6, "windmill: 6 modes, all known to truly fold"),
     ],
 )
@@ -130,5 +140,11 @@ def test_the_title_says_what_is_known_of_the_ways(name, most, number, title):
 def test_a_count_without_a_list_has_no_sheet_error():
     result = count_ways("waterbomb")
     assert number_listed(result) == 0
+    assert why_no_way(result).startswith("the ways to fold are infinitely many")
     with pytest.raises(UsageError, match="no way to draw"):
         sheet_of_ways(result, "waterbomb")
+
+
+def test_why_families_of_panels_have_no_sheet():
+    result = decompose(panels(single_vertex(5)))
+    assert why_no_way(result).startswith("the sheet folds in families")

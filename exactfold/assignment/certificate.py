@@ -1,0 +1,81 @@
+"""Certificates of matches, for `exactfold.checker`."""
+
+from __future__ import annotations
+
+from math import lcm
+
+from exactfold.assignment.clauses import Refuted
+from exactfold.assignment.search import Match, Matched, Step
+from exactfold.checker.formats import LETTERS, LETTERS_VERSION
+from exactfold.errors import NotApplicableError
+from exactfold.evidence.entries import Document, emptied_evidence, pattern_document
+from exactfold.evidence.single import heights_evidence
+from exactfold.exact.numbers import format_integer
+from exactfold.verdict import PROVED
+
+
+def match_certificate(found: Match) -> Document:
+    """The proof that a match has all halves, as a JSON object (docs/assignment.md, Certificates).
+
+    `write_certificate` writes it to a file. Raises `NotApplicableError` unless the match is proved.
+
+    >>> from exactfold import checker
+    >>> from exactfold.assignment.search import match
+    >>> from exactfold.pattern.families import two_vertex
+    >>> certificate = match_certificate(match(two_vertex(), {(4, 5): "V"}))
+    >>> len(checker.check(certificate)["halves"])
+    4
+    """
+    if found.status is not PROVED:
+        raise NotApplicableError(f"there is no certificate of a match that is {found.status}")
+    pattern = found.pattern
+    return {
+        "format": LETTERS,
+        "version": LETTERS_VERSION,
+        "pattern": pattern_document(pattern),
+        "claims": {
+            "letters": "".join(found.letters[fold] for fold in pattern.folds),
+            "halves": [
+                {
+                    "vertex_signs": [half.vertex_signs[v] for v in pattern.interior],
+                    "side": half.side,
+                }
+                for half in found.matches
+            ],
+        },
+        "evidence": {
+            "emptied": emptied_evidence(pattern),
+            "refuted": [_refuted(found, each) for each in found.tree.refuted],
+            "tree": [_step(found, step) for step in found.tree.steps],
+            "leaves": [[_half(half) for half in both] for both in found.tree.halves],
+        },
+    }
+
+
+def _refuted(found: Match, refuted: Refuted) -> Document:
+    """The signs and the integer heights of the stars that are not flat."""
+    signs = [[found.labels[v], sign] for v, sign in sorted(refuted.signs.items())]
+    if refuted.refutation is None:
+        return {"signs": signs, "heights": None}
+    heights = refuted.refutation.heights
+    unit = lcm(*(z.denominator for z in heights.values()))
+    stars = []
+    for v in sorted({v for v, _ in heights}):
+        ring = found.sheet.star(v)
+        first = ring.index(min(ring))
+        star = [heights.get((v, w), 0) * unit for w in ring[first:] + ring[:first]]
+        stars.append([found.labels[v], [format_integer(int(z)) for z in star]])
+    return {"signs": signs, "heights": stars}
+
+
+def _step(found: Match, step: Step) -> list[str | int]:
+    """A step of the tree, its vertices named as in the pattern."""
+    kind, *at = step
+    if kind in ("split", "force"):
+        at[-1] = found.labels[at[-1]]
+    return [kind, *at]
+
+
+def _half(half: Matched) -> Document:
+    heights, denominator = heights_evidence(half.branch)
+    return {"heights": heights, "denominator": denominator}

@@ -1,0 +1,39 @@
+"""`exactfold assignments`: every mountain-valley assignment of a sheet with five corners."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from exactfold.assignment.circles import all_assignments
+from exactfold.commands.patterns import read
+from exactfold.commands.shell import EXIT, Bar, name_of
+from exactfold.drawing.drawing import Snap
+
+
+@dataclass(frozen=True)
+class Listed:
+    """What was asked for on the command line."""
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    everything: bool
+    as_json: bool
+
+    def answer(self) -> int:
+        """List the assignments and print; the exit code.
+
+        Raises the errors of `read` and `all_assignments`.
+        """
+        with Bar("reading") as bar:
+            pattern = read(self.file, self.snap, self.sheet, "assignments").pattern
+            found = all_assignments(pattern, progress=bar)
+        if self.as_json:
+            print(json.dumps(found.to_dict(name_of(self.file))))
+        else:
+            from exactfold import report
+
+            report.show(report.assignments_report(found, everything=self.everything))
+        return EXIT[found.status]

@@ -1,0 +1,131 @@
+"""`exactfold match`: which branches have the mountains and valleys of a designer."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from exactfold.assignment.document import match_document
+from exactfold.assignment.nearest import nearest_branches
+from exactfold.assignment.search import match
+from exactfold.commands.patterns import read
+from exactfold.commands.shell import EXIT, Bar, name_of
+from exactfold.drawing.drawing import Snap
+from exactfold.errors import LettersError, NoLettersError, UnreadableFileError
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.opening import Opened
+from exactfold.verdict import PROVED, REFUTED
+from exactfold.wording import counted
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What was asked for on the command line."""
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    letters: str | None
+    most: int
+    tries: int | None
+    as_json: bool
+    everything: bool
+
+    def answer(self) -> int:
+        """Find the branches, or why there are none and the nearest, and print; the exit code.
+
+        1 where it is proved that no branch has the letters. Raises the errors of `read` and
+        `match`, `LettersError` and `NoLettersError`.
+        """
+        begin = time.perf_counter()
+        nearest = None
+        with Bar("reading") as bar:
+            opened = read(self.file, self.snap, self.sheet, "match")
+            letters = self._letters(opened.pattern, opened.opened)
+            bar("signs")
+            found = match(opened.pattern, letters, most=self.most, progress=bar)
+            if not found.matches:
+                bar("nearest branches")
+                nearest = nearest_branches(found, tries=self.tries, progress=bar)
+        seconds = time.perf_counter() - begin
+        if self.as_json:
+            print(json.dumps(match_document(found, nearest, name_of(self.file), seconds)))
+        else:
+            from exactfold import report
+
+            report.show(report.match_report(found, nearest, seconds, everything=self.everything))
+        refuted = found.status is PROVED and not found.matches
+        return EXIT[REFUTED if refuted else found.status]
+
+    def _letters(self, pattern: CreasePattern, opened: Opened) -> Mapping[Edge, str]:
+        if self.letters is None:
+            if opened.letters:
+                return opened.letters
+            raise NoLettersError(
+                f"{name_of(self.file)}: no fold is a mountain or a valley in the file: give "
+                "letters with --letters"
+            )
+        return given_letters(pattern, self.letters)
+
+
+def given_letters(pattern: CreasePattern, text: str) -> dict[Edge, str]:
+    """The letters of --letters: in the order of the folds, or by fold as in "0-4=M,1-5=V".
+
+    @FILE reads them from a file; folds that are not named are free. Raises `LettersError` and
+    `UnreadableFileError`.
+    """
+    where = ""
+    if text.startswith("@"):
+        where, text = f"{text[1:]}: ", _read(Path(text[1:]))
+    letters = "".join(text.split())
+    try:
+        return _by_name(pattern, letters) if "=" in letters else _in_order(pattern, letters)
+    except LettersError as error:
+        raise LettersError(f"{where}{error}") from None
+
+
+def _in_order(pattern: CreasePattern, letters: str) -> dict[Edge, str]:
+    folds = pattern.folds
+    for fold, letter in zip(folds, letters, strict=False):
+        _check(fold, letter)
+    if len(letters) != len(folds):
+        raise LettersError(
+            f"{counted(len(letters), 'letter')} for {counted(len(folds), 'fold')}: one of M, V, F, "
+            "U for each, in the order of `exactfold count`, or by fold as in 0-4=M,1-5=V"
+        )
+    return dict(zip(folds, letters, strict=True))
+
+
+def _by_name(pattern: CreasePattern, text: str) -> dict[Edge, str]:
+    names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
+    names |= {f"{j}-{i}": (i, j) for i, j in pattern.folds}
+    found: dict[Edge, str] = {}
+    for part in filter(None, text.split(",")):
+        name, _, letter = part.partition("=")
+        if name not in names:
+            raise LettersError(f"{part!r} names no fold of the sheet: write 0-4=M for fold 0-4")
+        fold = names[name]
+        _check(fold, letter)
+        if found.setdefault(fold, letter) != letter:
+            raise LettersError(f"fold {fold[0]}-{fold[1]} has two letters")
+    return found
+
+
+def _check(fold: Edge, letter: str) -> None:
+    if letter not in tuple("MVFU"):
+        raise LettersError(
+            f"fold {fold[0]}-{fold[1]} has the letter {letter!r}: M mountain, V valley, F flat and "
+            "U free are known"
+        )
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise UnreadableFileError(f"cannot read {path}: it is not UTF-8 text") from None
+    except OSError as error:
+        raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None

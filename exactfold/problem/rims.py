@@ -1,0 +1,159 @@
+"""Heights of the border: checked, and chosen where none are given; and angle deficits, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from exactfold.errors import (
+    BadCurvatureError,
+    FlatRimError,
+    NegativeDeficitError,
+    NotApplicableError,
+    NumberError,
+    RimHeightError,
+    RimVertexError,
+)
+from exactfold.exact.numbers import RationalLike, as_rational
+from exactfold.pattern.crease_pattern import CreasePattern
+
+_FORMS = ((1, 1, -1), (1, 0, -1), (0, 1, 0))
+"""Coefficients of x^2, x y and y^2 that `default_rim` tries, one after the other."""
+
+
+def straight_vertices(pattern: CreasePattern) -> tuple[int, ...]:
+    """The boundary vertices with the angle pi: where the border is straight and may still bend.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> straight_vertices(single_vertex(5))
+    ()
+    """
+    turns = zip(pattern.boundary, pattern.boundary_turns, strict=True)
+    return tuple(sorted(v for v, turn in turns if not turn))
+
+
+def default_rim(pattern: CreasePattern) -> dict[int, Fraction]:
+    """Heights of the boundary vertices that depend on the pattern alone: those of a saddle.
+
+    h = x^2 + x y - y^2 at every boundary vertex, less the plane through three of them, where x and
+    y run from -1 to 1 over the bounding box; scaled so that the largest is 1 or -1, and rounded to
+    hundredths. Such a saddle rises along one diameter and falls along another, so that vertices
+    popped up and popped down both have room, and it is oblique, so that no fold of a sheet in a
+    regular polygon is flat by symmetry. Where these heights lie in one plane, x^2 - y^2 and x y are
+    tried.
+
+    Raises `NotApplicableError` for fewer than four boundary vertices and for a border that is not
+    convex.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> sorted(map(str, default_rim(single_vertex(5)).values()))
+    ['-7/59', '0', '0', '0', '1']
+    """
+    _require_convex(pattern)
+    boundary = pattern.boundary
+    if len(boundary) < 4:
+        raise NotApplicableError("three boundary vertices lie in one plane: there is no other rim")
+    middle, half = [], []
+    for axis in (0, 1):
+        values = [pattern.vertices[v][axis] for v in boundary]
+        middle.append((max(values) + min(values)) / 2)
+        half.append((max(values) - min(values)) / 2)
+    for a, b, c in _FORMS:
+        heights = {}
+        for v in boundary:
+            x, y = ((pattern.vertices[v][k] - middle[k]) / half[k] for k in (0, 1))
+            heights[v] = a * x * x + b * x * y + c * y * y
+        level = above_plane(pattern, heights)
+        largest = max(map(abs, level.values()))
+        if largest:
+            return {v: Fraction(round(100 * h / largest), 100) for v, h in level.items()}
+    raise NotApplicableError("no saddle was found that is not flat on the border")
+
+
+def above_plane(pattern: CreasePattern, heights: Mapping[int, Fraction]) -> dict[int, Fraction]:
+    """Heights of the boundary vertices above the plane through three of them: 0 if all are in one.
+
+    The three are two neighbours and the vertex farthest from the side between them.
+    """
+    a, b = pattern.boundary[:2]
+    (ax, ay), (bx, by) = pattern.vertices[a], pattern.vertices[b]
+
+    def row(v: int) -> tuple[Fraction, Fraction]:
+        # Distance from the line ab, and height above it.
+        x, y = pattern.vertices[v][0] - ax, pattern.vertices[v][1] - ay
+        dx, dy = bx - ax, by - ay
+        along = (x * dx + y * dy) / (dx * dx + dy * dy)
+        return x * dy - y * dx, heights[v] - heights[a] - along * (heights[b] - heights[a])
+
+    rows = {v: row(v) for v in pattern.boundary}
+    farthest = max(rows.values(), key=lambda pair: abs(pair[0]))
+    slope = farthest[1] / farthest[0]
+    return {v: height - slope * distance for v, (distance, height) in rows.items()}
+
+
+def given_rim(
+    pattern: CreasePattern, rim: Mapping[int, RationalLike], *, may_be_flat: bool = False
+) -> dict[int, Fraction]:
+    """Heights of the boundary vertices, checked, in the order of the boundary.
+
+    Raises `RimVertexError`, `RimHeightError` and `FlatRimError`, whose `vertices` are to blame, and
+    `NotApplicableError` for a border that is not convex.
+    """
+    boundary = pattern.boundary
+    wanted = f"give a height for each boundary vertex: {', '.join(map(str, boundary))}"
+    for v in rim:
+        if v not in boundary:
+            raise RimVertexError(f"{v} is no vertex of the border; {wanted}", (v,))
+    missing = [v for v in boundary if v not in rim]
+    if missing:
+        raise RimVertexError(f"vertex {missing[0]} of the border has no height; {wanted}", missing)
+    _require_convex(pattern)
+    heights = {}
+    for v in boundary:
+        try:
+            heights[v] = as_rational(rim[v])
+        except NumberError as error:
+            raise RimHeightError(f"the height of vertex {v}: {error}", (v,)) from None
+    if not may_be_flat and not any(above_plane(pattern, heights).values()):
+        raise FlatRimError(
+            f"the rim is flat: the heights of vertices {', '.join(map(str, boundary))} lie in one "
+            "plane, and the only solution with such a border is the flat sheet",
+            boundary,
+        )
+    return heights
+
+
+def given_deficits(
+    pattern: CreasePattern, curvature: Mapping[int, RationalLike]
+) -> dict[int, Fraction]:
+    """The angle deficits of interior vertices that are not 0, checked.
+
+    Vertices that are not named have the deficit 0. Raises `BadCurvatureError` for what is no
+    interior vertex or no number, `NegativeDeficitError` for a negative one.
+    """
+    interior = set(pattern.interior)
+    found = {}
+    for v, value in curvature.items():
+        if v not in interior:
+            raise BadCurvatureError(f"{v} is no interior vertex, so it has no angle deficit", (v,))
+        try:
+            deficit = as_rational(value)
+        except NumberError as error:
+            raise BadCurvatureError(f"the angle deficit of vertex {v}: {error}", (v,)) from None
+        if deficit < 0:
+            raise NegativeDeficitError(
+                f"the angle deficit of vertex {v} is negative: a vertex with an angle excess is a "
+                "saddle, which is neither up nor down, and a shape need not exist",
+                (v,),
+            )
+        if deficit:
+            found[v] = deficit
+    return dict(sorted(found.items()))
+
+
+def _require_convex(pattern: CreasePattern) -> None:
+    if not pattern.is_convex:
+        corner = pattern.reflex_corner
+        raise NotApplicableError(
+            f"heights of the border need a convex border; vertex {corner} is reflex"
+        )

@@ -1,0 +1,158 @@
+"""What `exactfold match` prints: which branches have the letters, or why none has, and the next."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from exactfold.assignment.document import fold_text
+from exactfold.assignment.why import vertex_conflicts
+from exactfold.report.terminal import SHOWN, more_text, status_text
+from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import agreeing, counted
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from exactfold.assignment.nearest import Nearest
+    from exactfold.assignment.search import Match, Matched
+
+_NEAR = 8
+"""Of the nearest branches so many are shown unless all are asked for."""
+_LETTERS = {"M": "mountain", "V": "valley", "F": "flat fold", "U": "free fold"}
+
+
+def match_report(
+    found: Match, nearest: Nearest | None, seconds: float, *, everything: bool = False
+) -> Group:
+    """The answer, the letters, the branches that have them; or the reasons and the nearest."""
+    parts: list[Any] = [_answer(found, seconds), "", Text(_asked(found))]
+    if found.matches:
+        shown = found.matches if everything else found.matches[:SHOWN]
+        parts += ["", _table(shown, "vertices up", _up), *more_text(len(found.matches) - SHOWN)]
+    else:
+        parts += ["", Text("Why" if found.status is PROVED else "What is known", style="bold")]
+        lines = _why(found)
+        limit = len(lines) if everything else SHOWN
+        parts += [Text(f"- {line}") for line in lines[:limit]]
+        parts += more_text(len(lines) - limit)
+    if nearest is not None:
+        parts += ["", *_nearest(nearest, everything)]
+    if found.matches or (nearest is not None and nearest.halves):
+        parts += [
+            "",
+            Text(
+                "Signs and side are those of `exactfold fold PATTERN --signs SIGNS --side SIDE`; "
+                "letters and vertices are seen from above."
+            ),
+        ]
+    return Group(*parts)
+
+
+def _answer(found: Match, seconds: float) -> Text:
+    took = f" ({seconds:.2f} s)"
+    ways = len({half.branch.sign_text for half in found.matches})
+    proved = status_text(found.status)
+    if not ways:
+        if found.status is PROVED:
+            text = "no way to start folding has these mountains and valleys - "
+            return Text.assemble(text, proved, took)
+        return Text.assemble(
+            "whether a way to start folding has these mountains and valleys is ", proved, took
+        )
+    has = agreeing(ways, "has")
+    text = f"{counted(ways, 'way')} to start folding {has} these mountains and valleys"
+    both = f", {len(found.matches)} with both sides" if ways < len(found.matches) else ""
+    if found.status is PROVED:
+        return Text.assemble(f"{text}{both} - ", proved, took, "; there is no other")
+    return Text.assemble(f"at least {text}{both}; whether others have is ", proved, took)
+
+
+def _asked(found: Match) -> str:
+    counts = Counter(found.letters.values())
+    kinds = [counted(counts[x], name) for x, name in _LETTERS.items() if counts[x]]
+    return f"asked for: {', '.join(kinds)}"
+
+
+def _why(found: Match) -> list[str]:
+    """Reasons in plain words: single vertices where they are enough, else what was refuted."""
+    alone = vertex_conflicts(found)
+    lines = [f"vertex {v} can pop {text}" for v, text in sorted(alone.items())]
+    stuck = [reason for reason in found.reasons if reason.startswith("fold")]
+    if lines or stuck:
+        return stuck + lines
+    single = sum(len(refutation.signs) == 1 for refutation in found.refutations)
+    single += len(found.reasons)
+    several = len(found.refutations) + len(found.reasons) - single
+    if single:
+        lines.append(
+            f"{counted(single, 'sign')} of single vertices {agreeing(single, 'is')} impossible "
+            "with the letters around them"
+        )
+    if several:
+        lines.append(
+            f"{counted(several, 'choice')} of signs of several vertices "
+            f"{agreeing(several, 'is')} refuted, each by an exact sum over the creases"
+        )
+    if found.leaves:
+        lines.append(
+            f"{counted(found.leaves, 'choice')} of the signs of all vertices "
+            f"{agreeing(found.leaves, 'is')} left: the branches were found, and their letters "
+            "are others"
+        )
+    if found.open_signs:
+        lines.append(
+            f"{counted(len(found.open_signs), 'choice')} of signs {agreeing(1, 'is')} open: "
+            "--most N compares more"
+        )
+    return lines
+
+
+def _nearest(nearest: Nearest, everything: bool) -> list[Any]:
+    least = counted(nearest.at_least, "crease")
+    if nearest.distance is None:
+        return [Text(f"No branch was found near; all differ at {least} or more: proved.")]
+    far = counted(nearest.distance, "crease")
+    if nearest.status is PROVED:
+        text = f"Nearest: {far} to change - "
+        rest = ", and no other is as near" if nearest.complete else ", others may be as near"
+        if nearest.complete and len(nearest.halves) > 1:
+            rest = f", and only these {len(nearest.halves)} are as near"
+        head = Text.assemble(text, status_text(PROVED), f"; none is nearer{rest}")
+    else:
+        head = Text.assemble(
+            f"Nearest found: {far} to change; ",
+            f"every way needs {least} or more, and whether some way needs so few is ",
+            status_text(UNDECIDED),
+        )
+    limit = len(nearest.halves) if everything else _NEAR
+    table = _table(nearest.halves[:limit], "creases to change", lambda h: _changes(nearest, h))
+    return [head, "", table, *more_text(len(nearest.halves) - limit)]
+
+
+def _changes(nearest: Nearest, half: Matched) -> str:
+    found = nearest.differences(half)
+    return ", ".join(
+        f"{fold_text(fold)} {wanted}->{actual}" for fold, (wanted, actual) in sorted(found.items())
+    )
+
+
+def _table(halves: Sequence[Matched], title: str, told: Callable[[Matched], str]) -> Table:
+    table = Table(box=None, pad_edge=False)
+    table.add_column("signs", overflow="fold")
+    table.add_column("side")
+    table.add_column(title, overflow="fold")
+    for half in halves:
+        table.add_row(half.branch.sign_text, "+" if half.side > 0 else "-", told(half))
+    return table
+
+
+def _up(half: Matched) -> str:
+    signs = half.vertex_signs
+    up = ", ".join(str(v) for v, s in sorted(signs.items()) if s > 0) or "none"
+    flat = ", ".join(str(v) for v, s in sorted(signs.items()) if s == 0)
+    return up + (f" (flat: {flat})" if flat else "")

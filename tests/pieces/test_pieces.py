@@ -1,0 +1,278 @@
+"""Pieces of the solutions of sheets with more than four corners, in independent ways."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+
+import networkx as nx
+import pytest
+from flint import fmpq
+from shapes import FOUR_CIRCLES, NEVER_FLAT, joined_by_shapes
+from sheets import DENTED, HEXAGON, scrambled, wheel, with_point
+
+from exactfold import PROVED, REFUTED, UNDECIDED, CreasePattern, count_branches
+from exactfold.errors import NotApplicableError
+from exactfold.modes.stars import edge_of, stars
+from exactfold.pattern.degenerate import DEGENERATE
+from exactfold.pattern.families import flat_vertex_square, single_vertex
+from exactfold.pattern.opening import panels
+from exactfold.pieces import Joint, Pieces, find_pieces, flat_stars, joining
+from exactfold.pieces.cubes import components
+from exactfold.pieces.no_zero import have_no_common_zero
+from exactfold.rigidity.curvature import curvature_form
+
+
+def pentagon(seed: int, inside: int) -> CreasePattern:
+    return scrambled(seed, HEXAGON[:5], inside, loose=True)
+
+
+# --- the number of pieces ------------------------------------------------------------------------
+
+
+def test_four_circles():
+    """Degree 4 and D = 2 do not make a flat star: the other vertex has no fold left to bend."""
+    pieces = find_pieces(FOUR_CIRCLES)
+    assert FOUR_CIRCLES.degree(3) == 4
+    assert (pieces.number, pieces.graphs, pieces.joints) == (4, 4, ())
+    assert set(pieces.never_flat) == {3, 4}
+    assert joined_by_shapes(FOUR_CIRCLES) == 4
+
+
+def test_a_convex_star_that_is_never_flat():
+    """Four other vertices could bend with it held flat, and have no common zero but 0."""
+    around = [edge_of(9, u) for u in NEVER_FLAT.star(9)]
+    assert set(NEVER_FLAT.star(9)) == {5, 6, 7, 8}
+    assert set(stars(panels(NEVER_FLAT), around)) == {5, 6, 7, 8}
+    pieces = find_pieces(NEVER_FLAT)
+    assert (pieces.number, pieces.joints) == (32, ())
+    assert pieces.never_flat[9] == (
+        "with its star held flat the sheet has no solution but the flat state"
+    )
+
+
+@pytest.mark.parametrize(
+    ("pattern", "number"), [(pentagon(0, 2), 2), (pentagon(1, 3), 4)], ids=["two", "three"]
+)
+def test_shapes_over_many_rims_are_joined_alike(pattern, number):
+    assert find_pieces(pattern).number == joined_by_shapes(pattern) == number
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "inside"), [(1, 2), (0, 3), (3, 3), (0, 4), (2, 4)])
+def test_shapes_over_many_rims_are_joined_alike_in_more_sheets(seed, inside):
+    pattern = pentagon(seed, inside)
+    assert find_pieces(pattern).number == joined_by_shapes(pattern)
+
+
+@pytest.mark.parametrize("degree", [5, 8])
+def test_a_single_vertex_pops_up_or_down(degree):
+    pattern = single_vertex(degree)
+    result = count_branches(pattern)
+    assert result.pieces == find_pieces(pattern)
+    assert (result.pieces.number, result.pieces.graphs, result.distinct) == (2, 2, 1)
+
+
+def test_a_fold_from_border_to_border_joins_everything():
+    inner = wheel([(0, 0), (4, 0), (4, 4), (0, 4)], (1, 2))
+    flap = CreasePattern([*inner.vertices, (7, 2)], [*inner.triangles, (1, 5, 2)])
+    pieces = find_pieces(flap)
+    assert (pieces.chord, pieces.number, pieces.graphs) == ((1, 2), 1, 2)
+    fan = CreasePattern(HEXAGON[:5], [(0, 1, 2), (0, 2, 3), (0, 3, 4)])
+    rigid = with_point(fan, 1, (1, 1, 1))  # a triangulated triangle, so that nothing pops
+    assert (find_pieces(rigid).graphs, find_pieces(rigid).number) == (1, 1)
+
+
+def test_labels_are_those_of_the_pattern():
+    """With a vertex inside a face nothing changes but its place in the list."""
+    pattern = pentagon(1, 3)
+    pieces = find_pieces(pattern)
+    more = with_point(pattern, 2, (1, 2, 3))
+    moved = CreasePattern(
+        [*more.vertices[:5], more.vertices[-1], *more.vertices[5:-1]],
+        [
+            tuple(5 if v == 8 else v + (v >= 5) for v in triangle)  # the new vertex comes first
+            for triangle in more.triangles
+        ],
+    )
+    found = find_pieces(moved)
+    assert moved.Vt == 1
+    assert found.number == pieces.number
+    assert found.vertices == tuple(v + 1 for v in pieces.vertices)
+    assert {joint.sign_text for joint in found.joints} == {
+        joint.sign_text for joint in pieces.joints
+    }
+    assert set(found.never_flat) == {v + 1 for v in pieces.never_flat}
+    assert all(max(edge) <= 8 for joint in found.joints for edge in joint.densities)
+
+
+def test_two_ways_to_solve_a_sheet_with_a_flat_star(monkeypatch):
+    """All complex solutions in boxes, and linear spaces over fields with roots."""
+    pattern = pentagon(2, 3)
+    boxed = find_pieces(pattern)
+    assert {joint.by for joint in boxed.joints} == {"isolated"}
+    monkeypatch.setattr(flat_stars, "_MOST_FINITE", 0)
+    split = find_pieces(pattern)
+    assert {joint.by for joint in split.joints} == {"space"}
+    assert split.number == boxed.number == 4
+    assert _cubes(split) == _cubes(boxed)
+
+
+def _cubes(pieces: Pieces) -> set[frozenset[str]]:
+    mirror = str.maketrans("+-", "-+")
+    return {frozenset({j.sign_text, j.sign_text.translate(mirror)}) for j in pieces.joints}
+
+
+# --- what a joint shows --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("pattern", [pentagon(0, 3), scrambled(2, HEXAGON, 2, loose=True)])
+def test_a_joint_is_a_solution_with_these_signs(pattern):
+    pieces = find_pieces(pattern)
+    assert pieces.joints
+    for joint in pieces.joints:
+        bounds = joint.densities
+        for v in pattern.interior:
+            w = [bounds.get(edge_of(v, u), (Fraction(0),) * 2) for u in pattern.star(v)]
+            x, y = pattern.vertices[v]
+            d = [(pattern.vertices[u][0] - x, pattern.vertices[u][1] - y) for u in pattern.star(v)]
+            assert any(any(pair) for pair in w) == bool(joint.signs[v])
+            middle = [float(low + high) / 2 for low, high in w]
+            for axis in (0, 1):
+                assert sum(a * float(b[axis]) for a, b in zip(middle, d, strict=True)) == (
+                    pytest.approx(0, abs=1e-9)
+                )
+            area = sum(
+                middle[k] * middle[j] * float(d[k][0] * d[j][1] - d[k][1] * d[j][0])
+                for j in range(len(d))
+                for k in range(j)
+            )
+            assert area == pytest.approx(0, abs=1e-9)
+            bend = -sum(
+                a * float(b[0] ** 2 + b[1] ** 2) ** 0.5 for a, b in zip(middle, d, strict=True)
+            )
+            assert (bend > 1e-9) - (bend < -1e-9) == joint.signs[v]
+
+
+def test_joints_of_a_family_and_true_pieces():
+    """D = 3: solutions with a flat star form families, of which single points are proved."""
+    pieces = find_pieces(scrambled(2, HEXAGON, 2, loose=True))
+    (joint,) = pieces.joints
+    assert (joint.by, joint.folds, pieces.number, pieces.true_high) == ("regular", True, 2, 2)
+    assert pieces.complete == (7,)
+    assert joint.to_dict()["flat"] == [7]
+
+
+def test_what_is_not_decided_gives_bounds_and_is_named(monkeypatch):
+    pattern = pentagon(0, 3)
+    whole = find_pieces(pattern)
+    assert (whole.number, whole.open) == (2, {})
+    monkeypatch.setattr(flat_stars, "_MOST_DIMENSION", 1)
+    pieces = find_pieces(pattern)
+    assert (pieces.status, pieces.number) == (UNDECIDED, None)
+    assert (pieces.low, pieces.high) == (2, 8)
+    assert set(pieces.open) == set(whole.complete) == {6, 7}
+    assert "have dimension" in pieces.open[6]
+    result = count_branches(pattern)
+    assert (result.status, len(result.open_questions)) == (PROVED, 2)
+    monkeypatch.setattr(joining, "_MOST_WHOLE", 2)
+    assert "at every vertex of up to 2 only" in find_pieces(pattern).open[6]
+
+
+# --- the count of components ---------------------------------------------------------------------
+
+
+def test_components_against_a_graph():
+    source = random.Random(3)
+    for _ in range(60):
+        size = source.randrange(1, 7)
+        cubes = []
+        for _ in range(source.randrange(6)):
+            mask = source.randrange(1 << size)
+            cubes.append((mask, mask & source.randrange(1 << size)))
+        graph = nx.Graph()
+        graph.add_nodes_from(range(1 << size))
+        for mask, value in cubes:
+            inside = [e for e in range(1 << size) if e & mask == value]
+            nx.add_path(graph, inside)
+        number = nx.number_connected_components(graph)
+        assert components(size, cubes) == (number, number)
+        far = [(mask << 30, value << 30) for mask, value in cubes]  # counted, not listed
+        if all(mask for mask, _ in cubes) and cubes:
+            low, high = components(size + 30, far)
+            alone = sum(all(e & m != x for m, x in cubes) for e in range(1 << size))
+            assert low == high == (number - alone) + (alone << 30)
+
+
+def test_forms_without_a_common_zero():
+    def form(*rows):
+        return [[fmpq(x) for x in row] for row in rows]
+
+    circle, cross = form((1, 0), (0, 1)), form((0, 1), (1, 0))
+    assert have_no_common_zero([circle, cross])
+    # Two complex zeros in common, and a third form that has not both.
+    lines = form((1, 0), (0, 1))
+    assert not have_no_common_zero([circle, lines])
+    assert not have_no_common_zero([cross, form((0, 3), (3, 0))])
+    assert not have_no_common_zero([circle])
+    assert have_no_common_zero(
+        [
+            form((1, 0, 0), (0, 0, 0), (0, 0, 0)),
+            form((0, 0, 0), (0, 1, 0), (0, 0, 0)),
+            form((0, 0, 0), (0, 0, 0), (0, 0, fmpq(1, 3))),
+        ]
+    )
+
+
+# --- true branches for four corners --------------------------------------------------------------
+
+
+def test_a_double_line_that_is_one_true_curve():
+    """With the star held flat the sheet truly folds along its diagonal."""
+    result = count_branches(flat_vertex_square())
+    assert (result.distinct, result.with_multiplicity) == (3, 4)
+    assert (result.true_bounds, result.true_branches) == ((3, 3), PROVED)
+
+
+def test_a_double_line_that_is_not_shown_to_be_one_curve():
+    result = count_branches(DEGENERATE["ring"]())
+    assert (result.distinct, result.with_multiplicity) == (26, 32)
+    assert (result.true_bounds, result.true_branches) == ((26, 32), UNDECIDED)
+    assert result.true_branches is not REFUTED
+
+
+# --- a border that is not convex -----------------------------------------------------------------
+
+NOTCHED = wheel([(4, -4), ("1/10", 0), (4, 4), (-4, 4), (-4, -4)], (0, 0))
+
+
+def test_shapes_over_a_rim_need_not_be_real():
+    """Five corners, one of them reflex: the height of the hub over some rims is not real."""
+    form = curvature_form(NOTCHED, 5)
+    up = {v: Fraction(int(v == 5)) for v in form.labels}
+    assert not NOTCHED.is_convex
+    assert NOTCHED.D == 2
+
+    def discriminant(rim):
+        heights = {v: Fraction(rim.get(v, 0)) for v in form.labels}
+        return form.polar(up, heights) ** 2 - form(up) * form(heights)
+
+    real = [discriminant({3: x, 4: y}) > 0 for x in range(-3, 4) for y in range(-3, 4) if x or y]
+    assert True in real
+    assert False in real
+
+
+def test_pieces_are_for_convex_borders_with_more_than_four_corners():
+    with pytest.raises(NotApplicableError, match="reflex corner, vertex 3"):
+        find_pieces(scrambled(1, DENTED, 2, loose=True))
+    with pytest.raises(NotApplicableError, match="its solutions are branches"):
+        find_pieces(flat_vertex_square())
+
+
+def test_values_show_themselves():
+    pieces = find_pieces(pentagon(0, 2))
+    assert repr(pieces) == "<Pieces: proved, 2 of 4 graphs>"
+    (joint,) = pieces.joints
+    assert isinstance(joint, Joint)
+    assert repr(joint) in ("<Joint: 0-, isolated>", "<Joint: 0+, isolated>")
+    assert joint.flat == (5,)
