@@ -7,6 +7,9 @@ from exactfold.assignment.circles import all_assignments as all_assignments
 from exactfold.assignment.document import match_document as match_document
 from exactfold.assignment.nearest import Nearest as Nearest
 from exactfold.assignment.nearest import nearest_branches as nearest_branches
+from exactfold.assignment.panel_match import PanelMatch as PanelMatch
+from exactfold.assignment.panel_match import match_panels as match_panels
+from exactfold.assignment.panel_refutation import PanelRefutation as PanelRefutation
 from exactfold.assignment.refutation import Refutation as Refutation
 from exactfold.assignment.search import Match as Match
 from exactfold.assignment.search import Matched as Matched

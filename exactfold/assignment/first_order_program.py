@@ -1,0 +1,200 @@
+"""Linear programs on the first-order motions of a sheet of panels; floats propose, and no more."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from flint import fmpq
+from scipy import sparse
+from scipy.optimize import linprog
+
+from exactfold.arrays import FloatArray
+from exactfold.assignment.panel_refutation import PanelRefutation
+from exactfold.assignment.refutation import Letters
+from exactfold.modes.kernel import Entry, entry, number
+from exactfold.modes.stars import Star
+from exactfold.pattern.panel_pattern import Edge, Point
+
+_TIGHT = 1e-7
+_PLACES = 40
+SIDES = {"V": 1, "M": -1}
+
+
+class FirstOrderProgram:
+    """The linear programs of one sheet and its letters: motions with them, and why there are none.
+
+    A motion w has `sum_k w_k d_k = 0` at each vertex (`Star`), and goes its way at a fold if w_f >
+    0 for a valley and < 0 for a mountain. `stars` are those that the flat closure leaves; all other
+    folds have no condition here. Lengths are taken in units of the longest fold.
+    """
+
+    def __init__(self, stars: Mapping[int, Star], letters: Letters) -> None:
+        self.stars, self.letters = stars, letters
+        self.vertices = list(stars)
+        self.folds = sorted({edge for star in stars.values() for edge in star.folds})
+        self.lettered = [edge for edge in self.folds if letters[edge] in SIDES]
+        self._place = {edge: k for k, edge in enumerate(self.folds)}
+        self._row = {v: k for k, v in enumerate(self.vertices)}
+
+    @cached_property
+    def unit(self) -> float:
+        """The longest coordinate of a fold."""
+        return max(abs(float(x)) for s in self.stars.values() for d in s.directions for x in d)
+
+    @cached_property
+    def matrix(self) -> sparse.csr_matrix:
+        """Two rows for each vertex, a column for each fold: matrix @ w = 0 for motions."""
+        values, rows, columns = [], [], []
+        for k, star in enumerate(self.stars.values()):
+            for edge, direction in zip(star.folds, star.directions, strict=True):
+                for axis in (0, 1):
+                    values.append(float(direction[axis]) / self.unit)
+                    rows.append(2 * k + axis)
+                    columns.append(self._place[edge])
+        shape = (2 * len(self.stars), len(self.folds))
+        return sparse.csr_matrix((values, (rows, columns)), shape=shape)
+
+    def motion(self, wanted: Iterable[Edge] | None = None) -> dict[Edge, float] | None:
+        """A motion in which the wanted folds, or all with letters, go their way by as much as may
+        be; None if there is none.
+        """
+        chosen = self.lettered if wanted is None else list(wanted)
+        count = len(self.folds)
+        if not chosen:
+            return dict.fromkeys(self.folds, 0.0)
+        signs = [-SIDES[self.letters[edge]] for edge in chosen]
+        at = [self._place[edge] for edge in chosen]
+        rows = sparse.csr_matrix((signs, (range(len(at)), at)), shape=(len(at), count))
+        limits = sparse.hstack([rows, np.ones((len(at), 1))], format="csr")
+        goal = np.append(np.zeros(count), -1.0)
+        equal = sparse.hstack([self.matrix, np.zeros((2 * len(self.stars), 1))], format="csr")
+        found = linprog(
+            goal,
+            A_ub=limits,
+            b_ub=np.zeros(len(at)),
+            A_eq=equal,
+            b_eq=np.zeros(equal.shape[0]),
+            bounds=[(-1, 1)] * count + [(None, 1)],
+            method="highs",
+        )
+        if found.status != 0 or not found.x[-1] > _TIGHT:
+            return None
+        return dict(zip(self.folds, map(float, found.x[:-1]), strict=True))
+
+    def refutation(self, wanted: Iterable[Edge] | None = None) -> PanelRefutation | None:
+        """Vectors that show that not all wanted folds, or all with letters, can go their way.
+
+        Small ones at few vertices, by a linear program; then exact where their sums vanish. The
+        other letters are free. None if none is found, which decides nothing.
+        """
+        chosen = set(self.lettered if wanted is None else wanted)
+        letters = {f: self.letters[f] if f in chosen else "U" for f in self.folds}
+        size = 2 * len(self.stars)
+        sums = self.matrix.T.tocsr()
+        free = [self._place[f] for f in self.folds if letters[f] == "U"]
+        held = [f for f in self.folds if letters[f] != "U"]
+        at = [self._place[f] for f in held]
+        signs = np.array([SIDES[letters[f]] for f in held], dtype=float)
+        if not held:
+            return None
+        turned = sparse.diags(signs) @ sums[at]  # at most 0, and in all -1
+        upper = sparse.hstack([turned, -turned], format="csr")
+        equal = [sparse.csr_matrix(signs @ sums[at])]
+        if free:
+            equal.append(sums[free])
+        both = sparse.vstack(equal)
+        found = linprog(
+            np.ones(2 * size),
+            A_ub=upper,
+            b_ub=np.zeros(len(held)),
+            A_eq=sparse.hstack([both, -both], format="csr"),
+            b_eq=np.append(-1.0, np.zeros(len(free))),
+            method="highs",
+        )
+        if found.status != 0:
+            return None
+        y = found.x[:size] - found.x[size:]
+        exact = self._exact(y, sums @ y)
+        if exact is None:
+            return None
+        refutation = PanelRefutation(exact)
+        return refutation if refutation.holds_on(self.stars, letters) else None
+
+    def _exact(self, y: FloatArray, sums: FloatArray) -> dict[int, Point] | None:
+        """Exact vectors near those given, 0 where these are, with sums 0 where theirs are."""
+        largest = float(np.abs(y).max())
+        used = [k for k in range(len(y)) if abs(y[k]) > _TIGHT * largest]
+        if not used:
+            return None
+        active = {self.vertices[k // 2] for k in used}
+        small = _TIGHT * max(float(np.abs(sums).max()), _TIGHT * largest)
+        rows: dict[Edge, dict[int, Entry]] = {}
+        for v in active:
+            star = self.stars[v]
+            for edge, direction in zip(star.folds, star.directions, strict=True):
+                if abs(sums[self._place[edge]]) > small:
+                    continue
+                row = rows.setdefault(edge, {})
+                for axis in (0, 1):
+                    if direction[axis]:
+                        row[2 * self._row[v] + axis] = entry(direction[axis])
+        columns = sorted({2 * self._row[v] + axis for v in active for axis in (0, 1)})
+        solved = eliminated(rows.values())
+        values: dict[int, Entry] = {k: _near(y[k] / largest) for k in columns if k not in solved}
+        for k, row in solved.items():
+            total: Entry = fmpq(0)
+            for j, x in row.items():
+                if values[j]:
+                    total = total + x * values[j]
+            values[k] = total
+        points: dict[int, Point] = {}
+        for v in sorted(active):
+            a, b = (number(values[2 * self._row[v] + axis]) for axis in (0, 1))
+            if a != 0 or b != 0:
+                points[v] = (a, b)
+        return points or None
+
+
+def eliminated(rows: Iterable[Mapping[int, Entry]]) -> dict[int, dict[int, Entry]]:
+    """Homogeneous linear equations solved: some unknowns as combinations of all others.
+
+    >>> eliminated([{0: fmpq(1), 1: fmpq(2)}, {0: fmpq(1), 1: fmpq(2)}])
+    {0: {1: -2}}
+    """
+    solved: dict[int, dict[int, Entry]] = {}
+    for given in rows:
+        row: dict[int, Entry] = {}
+        for k, x in given.items():
+            if k in solved:
+                for j, c in solved[k].items():
+                    _increase(row, j, x * c)
+            else:
+                _increase(row, k, x)
+        if not row:
+            continue
+        pivot = min(row)
+        scale = row.pop(pivot)
+        found: dict[int, Entry] = {k: -x / scale for k, x in row.items()}
+        for other in solved.values():
+            if pivot in other:
+                x = other.pop(pivot)
+                for j, c in found.items():
+                    _increase(other, j, x * c)
+        solved[pivot] = found
+    return solved
+
+
+def _increase(row: dict[int, Entry], key: int, value: Entry) -> None:
+    total = row[key] + value if key in row else value
+    if total:
+        row[key] = total
+    else:
+        row.pop(key, None)
+
+
+def _near(value: float) -> fmpq:
+    near = Fraction(round(value * (1 << _PLACES)), 1 << _PLACES)
+    return fmpq(near.numerator, near.denominator)

@@ -1,0 +1,228 @@
+"""`match_panels`: whether rigid panels start to fold with given mountains and valleys."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from exactfold.assignment.panel_parts import PartAnswer, answered
+from exactfold.assignment.panel_refutation import PanelRefutation, held
+from exactfold.assignment.refutation import Letters
+from exactfold.count.ways import Sheet, open_sheet
+from exactfold.errors import UsageError
+from exactfold.modes.decomposition import groups_of
+from exactfold.modes.stars import stars
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.opening import panels
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.progress import Progress
+from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.wording import agreeing, counted
+
+_FROM_FILES = {"M": "M", "V": "V", "F": "F", "J": "F"}
+
+
+@dataclass(frozen=True, repr=False)
+class PanelMatch:
+    """Whether a sheet of rigid panels starts to fold with given letters.
+
+    `starts`: whether there is a motion to second order in which every fold with a letter goes its
+    way; `truly`: whether true motions of the panels begin like that (docs/assignment.md, 5).
+    `status` is PROVED if `starts` is decided. `reasons` says why, one sentence each;
+    `densities` is one such motion nearly (fold angle / length, up to a positive factor for each
+    part), empty if there is none; `ways` the number of different sets of signs that motions with
+    these letters have, None if it is not known. `refutations` are vectors that refute letters by
+    themselves (`PanelRefutation.holds`). `vertices` are those named in a reason. `parts` are the
+    answers for the parts of the sheet that move apart from each other.
+    """
+
+    pattern: PanelPattern
+    letters: Letters
+    starts: Verdict
+    truly: Verdict
+    reasons: tuple[str, ...]
+    densities: Mapping[Edge, float]
+    ways: int | None
+    refutations: tuple[PanelRefutation, ...]
+    vertices: tuple[int, ...]
+    parts: tuple[PartAnswer, ...]
+    seconds: float = field(default=0.0, compare=False)
+
+    @property
+    def status(self) -> Verdict:
+        """PROVED if the question is answered, whatever the answer; else UNDECIDED."""
+        return UNDECIDED if self.starts is UNDECIDED else PROVED
+
+    @property
+    def assignment(self) -> dict[Edge, str]:
+        """The letters of the motion in `densities`, by fold; F where it is flat."""
+        letters = dict.fromkeys(self.pattern.folds, "F") if self.densities else {}
+        return letters | {e: "V" if x > 0 else "M" for e, x in self.densities.items() if x}
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The answer in words, one line each, for a terminal."""
+        lettered = sum(letter in "MV" for letter in self.letters.values())
+        of = f"{counted(lettered, 'mountain or valley fold')}, {len(self.letters)} folds"
+        if self.starts is PROVED:
+            head = f"starts to fold with these letters: yes ({of})"
+        elif self.starts is REFUTED:
+            head = f"starts to fold with these letters: no ({of})"
+        else:
+            head = f"starts to fold with these letters: undecided ({of})"
+        return (head, *self.reasons)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The answer as it stands in JSON, without the heading."""
+        name = {fold: f"{fold[0]}-{fold[1]}" for fold in self.pattern.folds}
+        match = {
+            "assignment": {name[e]: letter for e, letter in self.assignment.items()},
+            "densities": {name[e]: x for e, x in self.densities.items()},
+            "truly": str(self.truly),
+        }
+        return {
+            "status": str(self.status),
+            "starts": str(self.starts),
+            "truly": str(self.truly),
+            "ways": self.ways,
+            "matches": [match] if self.starts is PROVED else [],
+            "reasons": list(self.reasons),
+            "vertices": list(self.vertices),
+            "letters": {name[e]: letter for e, letter in self.letters.items()},
+            "seconds": round(self.seconds, 3),
+        }
+
+    def __repr__(self) -> str:
+        return f"<PanelMatch: starts {self.starts}, truly {self.truly}, {self.pattern!r}>"
+
+
+def match_panels(
+    pattern: Sheet,
+    letters: Mapping[Edge, str] | str | None = None,
+    *,
+    progress: Progress | None = None,
+) -> PanelMatch:
+    """Whether rigid panels start to fold with given mountains and valleys, with a proof.
+
+    `letters`: by fold (i, j), i < j, or a text in the order of the folds: "M", "V", "F" for a fold
+    that is to stay flat, "U" where anything may be; folds left out are free. None: the letters of
+    the file, where J is F. The question is whether some w with sum_k w_k d_k = 0 and K_v(w) = 0 at
+    every vertex is > 0 at all valleys, < 0 at all mountains and 0 at folds that stay flat. No is
+    shown at one vertex, by vectors (`PanelRefutation`), or by loops that do not close; yes by exact
+    modes where vertices have at most four folds, else by a candidate that balls or bounds prove
+    (docs/assignment.md, 5). UNDECIDED where neither is found.
+
+    Raises `UsageError` for letters that do not fit, and the errors of `open_pattern`.
+
+    >>> from exactfold.assignment import match_panels
+    >>> found = match_panels("bird-base")
+    >>> found.starts, found.truly, match_panels("zigzags").starts
+    (<Verdict.PROVED: 'proved'>, <Verdict.PROVED: 'proved'>, <Verdict.REFUTED: 'refuted'>)
+    """
+    start = time.perf_counter()
+    opened = open_sheet(pattern)
+    sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
+    if letters is None:
+        letters = {
+            fold: _FROM_FILES.get(opened.assignment.get(fold, "U"), "U") for fold in sheet.folds
+        }
+    asked = _asked(sheet, letters)
+    moving = stars(sheet, held(asked))
+    active = {edge for star in moving.values() for edge in star.folds}
+    interior = set(sheet.interior)
+    dead = [e for e in sheet.folds if asked[e] in "MV" and e not in active and interior & set(e)]
+    free = {
+        e: 1.0 if asked[e] == "V" else -1.0
+        for e in sheet.folds
+        if asked[e] in "MV" and not interior & set(e)
+    }
+    groups = groups_of(moving)
+    parts: list[PartAnswer] = []
+    for number, group in enumerate(groups if not dead else ()):
+        if progress is not None:
+            progress("parts of the sheet", number, len(groups))
+        parts.append(answered(sheet, {v: moving[v] for v in group}, asked))
+    return _result(sheet, asked, dead, free, parts, time.perf_counter() - start)
+
+
+def _result(
+    sheet: PanelPattern,
+    letters: Letters,
+    dead: list[Edge],
+    free: dict[Edge, float],
+    parts: list[PartAnswer],
+    seconds: float,
+) -> PanelMatch:
+    if dead:
+        (i, j), more = dead[0], len(dead) - 1
+        others = f", and so {agreeing(more, 'stays')} {counted(more, 'fold')} more" if more else ""
+        reason = (
+            f"fold {i}-{j} has a letter and stays flat in every motion: at one of its ends the "
+            f"folds leave a sector of 180 degrees or more, or there are fewer than four{others}"
+        )
+        return PanelMatch(sheet, letters, REFUTED, REFUTED, (reason,), {}, 0, (), (), (), seconds)
+    starts = _all(part.starts for part in parts)
+    truly = _all(part.truly for part in parts)
+    named = [part for part in parts if part.starts is starts and part.reason]
+    densities: dict[Edge, float] = {}
+    if starts is PROVED:
+        densities = dict(free)
+        for part in parts:
+            densities |= part.densities
+    ways: int | None = 0 if starts is REFUTED else 1
+    if starts is not REFUTED:
+        for part in parts:
+            ways = None if ways is None or part.ways is None else ways * part.ways
+        if any(not set(e) & set(sheet.interior) and x == "U" for e, x in letters.items()):
+            ways = None
+    reasons = list(dict.fromkeys(part.reason for part in named))
+    if starts is PROVED:
+        reasons.append(_of_true(truly))
+    return PanelMatch(
+        sheet,
+        letters,
+        starts,
+        truly,
+        tuple(reasons),
+        dict(sorted(densities.items())),
+        ways,
+        tuple(r for part in parts for r in part.refutations),
+        tuple(v for part in named for v in part.named),
+        tuple(parts),
+        seconds,
+    )
+
+
+def _of_true(truly: Verdict) -> str:
+    if truly is PROVED:
+        return "true motions of the rigid panels begin like this"
+    if truly is REFUTED:
+        return "to second order only: no true motion of the rigid panels begins like this"
+    return "to second order; whether true motions of the rigid panels begin like this is not known"
+
+
+def _all(verdicts: Any) -> Verdict:
+    """REFUTED if one is, PROVED if all are."""
+    found = set(verdicts)
+    if REFUTED in found:
+        return REFUTED
+    return UNDECIDED if UNDECIDED in found else PROVED
+
+
+def _asked(sheet: PanelPattern, letters: Mapping[Edge, str] | str) -> dict[Edge, str]:
+    folds = sheet.folds
+    if isinstance(letters, str):
+        if len(letters) != len(folds):
+            raise UsageError(f"{len(letters)} letters for {len(folds)} folds")
+        letters = dict(zip(folds, letters, strict=True))
+    if not isinstance(letters, Mapping):
+        raise UsageError("letters are a text, or a mapping from folds to letters")
+    known = set(folds)
+    for fold, letter in letters.items():
+        if fold not in known:
+            raise UsageError(f"{fold} is not a fold of the sheet")
+        if letter not in tuple("MVFU"):
+            raise UsageError(f"fold {fold} has the letter {letter!r}, not one of M, V, F, U")
+    return {fold: letters.get(fold, "U") for fold in folds}

@@ -1,0 +1,172 @@
+"""Whether rigid panels start to fold with letters: against all modes, samples, and forgeries."""
+
+import random
+from fractions import Fraction
+from itertools import combinations, product
+
+import numpy as np
+import pytest
+from panel_sheets import tiling
+
+from exactfold.assignment import PanelRefutation, match_panels
+from exactfold.assignment.first_order_program import FirstOrderProgram
+from exactfold.assignment.regular_motion import regular_motion
+from exactfold.assignment.vertex_reasons import vertex_reason
+from exactfold.errors import UsageError
+from exactfold.modes import decompose
+from exactfold.modes.stars import Star, stars
+from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.verdict import PROVED, REFUTED
+
+
+TURNED = str.maketrans("MV", "VM")
+
+
+def assignments(pattern):
+    """The letters of all folds in the sums of modes without a common vertex."""
+    modes = decompose(pattern).modes
+    found = set()
+    for size in range(1, len(pattern.interior) + 1):
+        for chosen in combinations(modes, size):
+            if len({v for m in chosen for v in m.active}) < sum(len(m.active) for m in chosen):
+                continue
+            for sides in product((False, True), repeat=size):
+                letters = dict.fromkeys(pattern.folds, "F")
+                for mode, turned in zip(chosen, sides, strict=True):
+                    for fold, letter in mode.assignment.items():
+                        letters[fold] = letter.translate(TURNED) if turned else letter
+                found.add("".join(letters.values()))
+    return found
+
+
+def test_all_letters_of_two_vertices_are_those_of_the_modes():
+    pattern = tiling(2, 1)
+    expected = assignments(pattern)
+    assert expected
+    for letters in map("".join, product("MV", repeat=len(pattern.folds))):
+        found = match_panels(pattern, letters)
+        assert found.starts is (PROVED if letters in expected else REFUTED)
+        assert all(r.holds(pattern, found.letters) for r in found.refutations)
+        if found.starts is PROVED:
+            assert "".join(found.assignment.values()) == letters
+
+
+def test_letters_with_free_and_flat_folds_are_those_of_the_modes():
+    pattern, rng = tiling(2, 2), random.Random(1)
+    full = sorted(assignments(pattern))
+    answers = set()
+    for number in range(14):
+        own = list(rng.choice(full))
+        for k in rng.sample(range(len(own)), 4):
+            own[k] = rng.choice("MVFU" if number % 2 else "U")
+        wanted = "".join(own)
+        able = any(all(a in ("U", b) for a, b in zip(wanted, x, strict=True)) for x in full)
+        found = match_panels(pattern, wanted)
+        assert found.starts is (PROVED if able or not set(wanted) & {"M", "V"} else REFUTED)
+        answers.add(found.starts)
+    assert answers == {PROVED, REFUTED}
+
+
+@pytest.mark.parametrize(
+    "directions",
+    [
+        ((3, 1), (1, 4), (-3, 1), (-2, -3), (2, -3)),
+        ((3, 0), (2, 3), (-1, 2), (-3, 1), (-1, -2), (2, -3)),
+    ],
+)
+def test_a_vertex_is_refused_the_letters_that_no_sample_has(directions):
+    count = len(directions)
+    star = Star(0, tuple((0, k + 1) for k in range(count)), directions)
+    seen = set(sampled(np.array(directions, dtype=float)))
+    for letters in map("".join, product("MV", repeat=count)):
+        reason = vertex_reason(star, dict(zip(star.folds, letters, strict=True)))
+        assert (reason is None) == (letters in seen)
+
+
+def sampled(d):
+    """The letters of many solutions of both conditions at a vertex: two on each random line."""
+    count = len(d)
+    brackets = np.triu(np.outer(d[:, 0], d[:, 1]) - np.outer(d[:, 1], d[:, 0]), 1)
+    form = brackets + brackets.T
+    plane = np.linalg.svd(d.T)[2][2:]
+    a, b = np.random.default_rng(3).standard_normal((2, 20_000, count - 2)) @ plane
+    square, middle, rest = ((x @ form * y).sum(axis=1) for x, y in ((b, b), (a, b), (a, a)))
+    bent = middle**2 - square * rest
+    real = bent > 0
+    for side in (1, -1):
+        root = (-middle[real] + side * np.sqrt(bent[real])) / square[real]
+        for w in (a[real] + root[:, None] * b[real]) > 0:
+            yield "".join("V" if x else "M" for x in w)
+
+
+def test_twists_are_refuted_by_vectors_that_forgeries_do_not_have():
+    found = match_panels("square-twist")
+    assert (found.starts, found.truly) == (REFUTED, REFUTED)
+    (good,) = found.refutations
+    pattern, letters = found.pattern, found.letters
+    assert good.holds(pattern, letters)
+    v, (x, y) = next(iter(good.planes.items()))
+    for planes in (
+        {**good.planes, v: (-x, -y)},
+        {**good.planes, v: (float(x), float(y))},
+        {**good.planes, v: (x + Fraction(1, 10**9), y)},
+        {u: (Fraction(0), Fraction(0)) for u in good.planes},
+        {**good.planes, max(pattern.border): (x, y)},
+    ):
+        assert not PanelRefutation(planes).holds(pattern, letters)
+    free = dict.fromkeys(letters, "U")
+    assert not good.holds(pattern, free)
+
+
+def test_heights_refute_in_the_nappe_of_their_sign_alone():
+    star = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((2, 1), (-1, 1), (-1, -1), (1, -2)))
+    letters = dict(zip(star.folds, "MVMV", strict=True))
+    both = vertex_reason(star, letters).refutations
+    assert {side for r in both for side in r.signs.values()} == {1, -1}
+    for r in both:
+        (side,) = r.signs.values()
+        assert r.holds_on({0: star}, letters)
+        assert not PanelRefutation({}, {0: -side}, r.heights).holds_on({0: star}, letters)
+        upside = {key: -z for key, z in r.heights.items()}
+        assert not PanelRefutation({}, r.signs, upside).holds_on({0: star}, letters)
+        assert not PanelRefutation({}, {}, r.heights).holds_on({0: star}, letters)
+
+
+def test_folds_that_stay_flat_have_no_letters():
+    outline = [(0, 0), (4, 0), (4, 4), (0, 4), (2, 2)]
+    edges = [(0, 1), (1, 2), (2, 3), (0, 3), (0, 4), (1, 4), (2, 4)]
+    pattern = PanelPattern(outline, edges)
+    found = match_panels(pattern, {(1, 4): "M"})
+    assert (found.starts, found.truly) == (REFUTED, REFUTED)
+    assert match_panels(pattern, {(0, 4): "M", (2, 4): "M"}).truly is PROVED
+    assert match_panels(pattern, {(0, 4): "M", (2, 4): "V"}).truly is REFUTED
+    assert match_panels(pattern, "FMU").starts is REFUTED
+
+
+def test_larger_stars_are_proved_near_a_candidate_and_not_elsewhere():
+    found = match_panels("bird-base")
+    moving = stars(found.pattern)
+    assert found.assignment == dict(found.letters)
+    boxes = regular_motion(moving, found.densities)
+    assert boxes is not None
+    assert max(radius for _, radius in boxes.values()) > 0
+    off = {edge: x * (1 + 0.01 * k) for k, (edge, x) in enumerate(found.densities.items())}
+    assert regular_motion(moving, off) is None
+
+
+def test_what_the_programs_propose_for_some_of_the_folds():
+    found = match_panels("square-twist")
+    program = FirstOrderProgram(stars(found.pattern), found.letters)
+    assert program.motion() is None
+    (refutation,) = found.refutations
+    some = program.lettered[:2]
+    motion = program.motion(some)
+    assert all((motion[f] > 0) == (found.letters[f] == "V") for f in some)
+    assert program.refutation(some) is None
+    assert program.refutation().planes.keys() == refutation.planes.keys()
+
+
+@pytest.mark.parametrize("letters", ["M", {(0, 1): "M"}, "X" * 12, 3, {(0, 99): "V"}])
+def test_letters_that_do_not_fit_are_refused(letters):
+    with pytest.raises(UsageError):
+        match_panels("square-twist", letters)
