@@ -5,6 +5,7 @@ from __future__ import annotations
 _OWN = {
     "vertex": "vertices",
     "family": "families",
+    "half": "halves",
     "has": "have",
     "is": "are",
     "stays": "stay",

@@ -20,6 +20,7 @@ from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.progress import Progress
+from exactfold.showing import Page
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 _LETTERS = "MVFU"
@@ -87,7 +88,7 @@ class Tree:
 
 
 @dataclass(frozen=True, repr=False)
-class Match:
+class Match(Page):
     """Which halves of branches have given letters.
 
     `status` PROVED: `matches` are all. Else `open_signs` are the signs for which not both halves

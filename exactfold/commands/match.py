@@ -15,7 +15,7 @@ from exactfold.assignment.search import Match, match
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import LettersError, NoLettersError, UnreadableFileError
+from exactfold.errors import LettersError, NoLettersError, NotCountedError, UnreadableFileError
 from exactfold.evidence.entries import write_certificate
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.opening import Opened
@@ -48,6 +48,7 @@ class Asked:
         with Bar("reading") as bar:
             opened = read(self.file, self.snap, self.sheet, "match")
             letters = self._letters(opened.pattern, opened.opened)
+            _in_reach(opened.pattern)
             bar("signs")
             found = match(opened.pattern, letters, most=self.most, progress=bar)
             if not found.matches:
@@ -82,6 +83,20 @@ class Asked:
                 "letters with --letters"
             )
         return given_letters(pattern, self.letters)
+
+
+def _in_reach(pattern: CreasePattern) -> None:
+    if pattern.interior and pattern.Ve != 4:
+        border = counted(pattern.Ve, "vertex")
+        more = (
+            "it is rigid"
+            if pattern.Ve == 3
+            else "its ways to fold form continuous families, and whether one of them has these "
+            "letters is undecided"
+        )
+        raise NotCountedError(
+            f"match takes sheets with four corners, and this one has {border} on its border: {more}"
+        )
 
 
 def given_letters(pattern: CreasePattern, text: str) -> dict[Edge, str]:

@@ -82,9 +82,18 @@ def _why(found: Match) -> list[str]:
     """Reasons in plain words: single vertices where they are enough, else what was refuted."""
     alone = vertex_conflicts(found)
     lines = [f"vertex {v} can pop {text}" for v, text in sorted(alone.items())]
-    stuck = [reason for reason in found.reasons if reason.startswith("fold")]
-    if lines or stuck:
-        return stuck + lines
+    pairs = ((found.labels[i], found.labels[j]) for i, j in found.sheet.folds)
+    moving = {fold_text((min(pair), max(pair))) for pair in pairs}
+    stuck = [fold_text(f) for f, x in sorted(found.letters.items()) if x in "MV"]
+    stuck = [name for name in stuck if name not in moving]
+    if stuck:
+        lie, stay = ("lies", "stays") if len(stuck) == 1 else ("lie", "stay")
+        name = "crease" if len(stuck) == 1 else "creases"
+        lines.insert(
+            0, f"{name} {', '.join(stuck)} {lie} in triangulated triangles and {stay} flat"
+        )
+    if lines:
+        return lines
     single = sum(len(refutation.signs) == 1 for refutation in found.refutations)
     single += len(found.reasons)
     several = len(found.refutations) + len(found.reasons) - single

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from exactfold.assignment.search import Match
 from exactfold.branches.branch import Branch
 from exactfold.branches.result import BranchCount
 from exactfold.drawing.drawing import Drawing
@@ -21,7 +23,7 @@ from exactfold.report.pieces import graphs
 from exactfold.report.stills import motion_stills
 from exactfold.report.svg import escape
 from exactfold.showing import shows
-from exactfold.wording import counted
+from exactfold.wording import agreeing, counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -71,6 +73,25 @@ def _count(result: BranchCount) -> str:
         count = f"{escape(graphs(result.pieces))}, "
     head = f"{count}<b>{result.status}</b> ({escape(result.reason)})"
     return _page(head, heads, rows, len(result.branches), result.warning)
+
+
+@shows("html", Match)
+def _match(found: Match) -> str:
+    heads = ("", "", "vertex signs", "side", "folds")
+    shown = [branch_way(half.branch, k) for k, half in enumerate(found.matches[:ROWS], 1)]
+    shown = [
+        replace(way, letters=half.assignment, signs=half.vertex_signs, name=half.sign_text)
+        for way, half in zip(shown, found.matches, strict=False)
+    ]
+    rows = [
+        (way, half.sign_text, "+" if half.side > 0 else "-", way.text)
+        for way, half in zip(shown, found.matches, strict=False)
+    ]
+    number = len(found.matches)
+    have = agreeing(number, "has")
+    head = f"{number or 'no'} {agreeing(number, 'half')} of branches {have} these letters, "
+    head += f"<b>{found.status}</b>"
+    return _page(head, heads, rows, number, None)
 
 
 @shows("html", Decomposition)

@@ -18,7 +18,6 @@ from exactfold.modes.stars import Star, stars
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import PROVED, REFUTED
 
-
 TURNED = str.maketrans("MV", "VM")
 
 

@@ -212,11 +212,14 @@ def test_sheets_out_of_reach(pattern, error):
     letters = ("--letters", "MVMVMV") if pattern == "waterbomb" else ()
     result = run("match", pattern, *letters, "--json")
     assert result.exit_code == UNDECIDED
-    assert error_class_of_last(result) == error
+    assert json.loads(result.stdout)["error"]["class"] == error
+    assert "exactfold: match takes " in result.stderr
 
 
-def error_class_of_last(result):
-    return json.loads(result.stdout)["error"]["class"]
+def test_creases_that_cannot_fold_are_named():
+    result = run("match", "flat-octahedron", "--letters", "4-7=M,7-8=V,0-4=M")
+    assert result.exit_code == INVALID
+    assert "- creases 4-7, 7-8 lie in triangulated triangles and stay flat" in result.stdout
 
 
 def test_the_schema_refuses_what_is_not_documented(wrong):

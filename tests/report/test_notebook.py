@@ -9,6 +9,7 @@ import pytest
 from svg_reading import NAME, letters, shipped, tree, words
 
 from exactfold import count_ways, find_branch, follow, random_square, read_fold
+from exactfold.assignment import match
 from exactfold.data import EXAMPLES, example_path
 from exactfold.drawing import read_drawing
 from exactfold.motion import follow_panels
@@ -115,3 +116,13 @@ def test_values_are_shown_in_a_program_that_has_not_drawn_before():
         [sys.executable, "-c", script], capture_output=True, text=True, check=False
     )
     assert (done.stdout, done.stderr) == ("<svg\n", "")
+
+
+def test_a_match_is_a_table_of_halves():
+    found = match("two-vertex", {(4, 5): "M"})
+    page = found._repr_html_()
+    assert f"<p>{len(found.matches)} halves of branches have these letters, <b>proved" in page
+    assert page.count("<svg") == len(found.matches)
+    assert all(f"<code>{half.sign_text}</code>" in page for half in found.matches)
+    none = match("two-vertex", "M" * 7)._repr_html_()
+    assert none == "<p>no halves of branches have these letters, <b>proved</b></p>"
