@@ -56,7 +56,9 @@ def test_a_convex_star_that_is_never_flat():
 
 
 @pytest.mark.parametrize(
-    ("pattern", "number"), [(pentagon(0, 2), 2), (pentagon(1, 3), 4)], ids=["two", "three"]
+    ("pattern", "number"),
+    [(pentagon(0, 2), 2), pytest.param(pentagon(1, 3), 4, marks=pytest.mark.slow)],
+    ids=["two", "three"],
 )
 def test_shapes_over_many_rims_are_joined_alike(pattern, number):
     assert find_pieces(pattern).number == joined_by_shapes(pattern) == number
@@ -130,7 +132,7 @@ def _cubes(pieces: Pieces) -> set[frozenset[str]]:
 # --- what a joint shows --------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("pattern", [pentagon(0, 3), scrambled(2, HEXAGON, 2, loose=True)])
+@pytest.mark.parametrize("pattern", [pentagon(0, 2), scrambled(2, HEXAGON, 2, loose=True)])
 def test_a_joint_is_a_solution_with_these_signs(pattern):
     pieces = find_pieces(pattern)
     assert pieces.joints
