@@ -229,7 +229,7 @@ class _Search:
                 self.progress("folds", k, len(self.sheet.folds))
             section = flat_sheets(chart, folds=[fold])
             if section is None:
-                continue  # the fold is flat on no sheet but the flat one
+                raise _AtInfinityError  # the fold is flat where lambda = 0
             if section.system is None:
                 raise _UndecidedError(f"fold {self._name(fold)} is flat on whole families")
             solution = groebner(section.system)
@@ -316,8 +316,8 @@ class _Search:
         rim = {self.labels[v]: height / largest for v, height in heights.items()}
         finder = BranchFinder(self.pattern, rim)
         branch = finder.find(dict(zip(finder.poppable, signs, strict=True)))
-        flat = [v for v in finder.poppable if not branch.vertex_signs[v]]
-        if branch.status is not PROVED or branch.undecided_folds or flat:
+        folds = ((self.labels[i], self.labels[j]) for i, j in self.sheet.folds)
+        if branch.status is not PROVED or any(branch.assignment[f] not in "MV" for f in folds):
             raise _UndecidedError(f"the branch {branch.sign_text} of an arc is not proved")
         return Arc(branch)
 

@@ -131,6 +131,16 @@ def test_one_vertex_folds_in_twenty_ways() -> None:
     assert numbers == [1] * 5 + [2] * 5 + [3] * 5 + [4] * 5
 
 
+def test_a_straight_side_on_which_the_first_chart_has_a_fold_at_infinity() -> None:
+    # The fold at vertex 4 is flat exactly where the side is straight, at height 0 of vertex 4.
+    rim = [(0, 0), (16, 0), (20, 0), (20, 20), (0, 20)]
+    found = all_assignments(wheel(rim, (14, 15)))
+    assert found.status is PROVED
+    assert all(((1, 5),) in [c.folds for c in circle.crossings] for circle in found.circles)
+    check_mirrors(found)
+    assert all(set(text) <= set("MV") for text in found.assignments)
+
+
 def test_where_a_star_is_flat_the_circles_of_both_signs_meet() -> None:
     found = all_assignments(PENTAGON)
     meeting = [[c for c in circle.crossings if c.vertices] for circle in found.circles]
