@@ -15,13 +15,13 @@ from exactfold.errors import UsageError
 from exactfold.modes.decomposition import groups_of
 from exactfold.modes.stars import stars
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.described import described_panels
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.progress import Progress
+from exactfold.schemas import headed
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.wording import agreeing, counted
-
-_FROM_FILES = {"M": "M", "V": "V", "F": "F", "J": "F"}
 
 
 @dataclass(frozen=True, repr=False)
@@ -64,33 +64,31 @@ class PanelMatch:
     @property
     def lines(self) -> tuple[str, ...]:
         """The answer in words, one line each, for a terminal."""
-        lettered = sum(letter in "MV" for letter in self.letters.values())
-        of = f"{counted(lettered, 'mountain or valley fold')}, {len(self.letters)} folds"
-        if self.starts is PROVED:
-            head = f"starts to fold with these letters: yes ({of})"
-        elif self.starts is REFUTED:
-            head = f"starts to fold with these letters: no ({of})"
-        else:
-            head = f"starts to fold with these letters: undecided ({of})"
-        return (head, *self.reasons)
+        answer = {
+            PROVED: "the sheet starts to fold with these mountains and valleys",
+            REFUTED: "the sheet does not start to fold with these mountains and valleys",
+            UNDECIDED: "whether the sheet starts to fold with these mountains and valleys is open",
+        }
+        return (answer[self.starts], *self.reasons)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The answer as it stands in JSON, without the heading."""
-        name = {fold: f"{fold[0]}-{fold[1]}" for fold in self.pattern.folds}
+    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+        """The object that `exactfold match --json` prints: `schema("starting")`."""
+        names = {fold: f"{fold[0]}-{fold[1]}" for fold in self.pattern.folds}
         match = {
-            "assignment": {name[e]: letter for e, letter in self.assignment.items()},
-            "densities": {name[e]: x for e, x in self.densities.items()},
-            "truly": str(self.truly),
+            "assignment": {names[e]: letter for e, letter in self.assignment.items()},
+            "densities": {names[e]: x for e, x in self.densities.items()},
         }
         return {
+            **headed("starting"),
+            "pattern": described_panels(self.pattern, name),
             "status": str(self.status),
             "starts": str(self.starts),
             "truly": str(self.truly),
-            "ways": self.ways,
+            "letters": {names[e]: letter for e, letter in self.letters.items()},
             "matches": [match] if self.starts is PROVED else [],
+            "ways": self.ways,
             "reasons": list(self.reasons),
             "vertices": list(self.vertices),
-            "letters": {name[e]: letter for e, letter in self.letters.items()},
             "seconds": round(self.seconds, 3),
         }
 
@@ -108,8 +106,8 @@ def match_panels(
 
     `letters`: by fold (i, j), i < j, or a text in the order of the folds: "M", "V", "F" for a fold
     that is to stay flat, "U" where anything may be; folds left out are free. None: the letters of
-    the file, where J is F. The question is whether some w with sum_k w_k d_k = 0 and K_v(w) = 0 at
-    every vertex is > 0 at all valleys, < 0 at all mountains and 0 at folds that stay flat. No is
+    the file (`Opened.letters`). The question is whether some w with sum_k w_k d_k = 0 and
+    K_v(w) = 0 at every vertex is > 0 at all valleys, < 0 at all mountains and 0 at folds that stay flat. No is
     shown at one vertex, by vectors (`PanelRefutation`), or by loops that do not close; yes by exact
     modes where vertices have at most four folds, else by a candidate that balls or bounds prove
     (docs/assignment.md, 5). UNDECIDED where neither is found.
@@ -125,9 +123,7 @@ def match_panels(
     opened = open_sheet(pattern)
     sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
     if letters is None:
-        letters = {
-            fold: _FROM_FILES.get(opened.assignment.get(fold, "U"), "U") for fold in sheet.folds
-        }
+        letters = opened.letters
     asked = _asked(sheet, letters)
     moving = stars(sheet, held(asked))
     active = {edge for star in moving.values() for edge in star.folds}

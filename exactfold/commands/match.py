@@ -11,14 +11,16 @@ from pathlib import Path
 from exactfold.assignment.certificate import match_certificate
 from exactfold.assignment.document import match_document
 from exactfold.assignment.nearest import nearest_branches
+from exactfold.assignment.panel_match import PanelMatch, match_panels
 from exactfold.assignment.search import Match, match
-from exactfold.commands.patterns import read
+from exactfold.commands.patterns import read_any, warn
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import LettersError, NoLettersError, NotCountedError, UnreadableFileError
 from exactfold.evidence.entries import write_certificate
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.opening import Opened
+from exactfold.pattern.opening import Opened, has_branches, triangles
+from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import PROVED, REFUTED
 from exactfold.wording import counted
 
@@ -40,17 +42,25 @@ class Asked:
     def answer(self) -> int:
         """Find the branches, or why there are none and the nearest, and print; the exit code.
 
-        1 where it is proved that no branch has the letters. Raises the errors of `read` and
-        `match`, `LettersError` and `NoLettersError`.
+        Sheets of panels, and triangles with more than four corners, are asked whether they start
+        to fold. 1 where it is proved that no branch has the letters, or that they do not. Raises
+        the errors of `read_any`, `triangles` and `match`, `LettersError` and `NoLettersError`.
         """
         begin = time.perf_counter()
         nearest = None
         with Bar("reading") as bar:
-            opened = read(self.file, self.snap, self.sheet, "match")
-            letters = self._letters(opened.pattern, opened.opened)
-            _in_reach(opened.pattern)
+            opened = read_any(self.file, self.snap, self.sheet)
+            letters = self._letters(opened.sheet, opened)
+            if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
+                started = match_panels(opened, letters, progress=bar)
+                bar.close()
+                return self._started(started)
+            pattern = triangles(opened, "match")
+            _in_reach(pattern)
+            if not has_branches(pattern):
+                warn(pattern)
             bar("signs")
-            found = match(opened.pattern, letters, most=self.most, progress=bar)
+            found = match(pattern, letters, most=self.most, progress=bar)
             if not found.matches:
                 bar("nearest branches")
                 nearest = nearest_branches(found, tries=self.tries, progress=bar)
@@ -74,7 +84,17 @@ class Asked:
         else:
             say("no certificate was written: not all is proved")
 
-    def _letters(self, pattern: CreasePattern, opened: Opened) -> Mapping[Edge, str]:
+    def _started(self, found: PanelMatch) -> int:
+        """Print whether panels start to fold; the exit code."""
+        if self.as_json:
+            print(json.dumps(found.to_dict(name_of(self.file))))
+        else:
+            from exactfold import report
+
+            report.show(report.panel_match_report(found, everything=self.everything))
+        return EXIT[found.starts]
+
+    def _letters(self, pattern: CreasePattern | PanelPattern, opened: Opened) -> Mapping[Edge, str]:
         if self.letters is None:
             if opened.letters:
                 return opened.letters
@@ -86,20 +106,14 @@ class Asked:
 
 
 def _in_reach(pattern: CreasePattern) -> None:
-    if pattern.interior and pattern.Ve != 4:
-        border = counted(pattern.Ve, "vertex")
-        more = (
-            "it is rigid"
-            if pattern.Ve == 3
-            else "its ways to fold form continuous families, and whether one of them has these "
-            "letters is undecided"
-        )
+    if pattern.interior and pattern.Ve == 3:
         raise NotCountedError(
-            f"match takes sheets with four corners, and this one has {border} on its border: {more}"
+            "match takes sheets that can fold, and this one, with three vertices on its border, "
+            "is rigid"
         )
 
 
-def given_letters(pattern: CreasePattern, text: str) -> dict[Edge, str]:
+def given_letters(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str]:
     """The letters of --letters: in the order of the folds, or by fold as in "0-4=M,1-5=V".
 
     @FILE reads them from a file; folds that are not named are free. Raises `LettersError` and
@@ -115,7 +129,7 @@ def given_letters(pattern: CreasePattern, text: str) -> dict[Edge, str]:
         raise LettersError(f"{where}{error}") from None
 
 
-def _in_order(pattern: CreasePattern, letters: str) -> dict[Edge, str]:
+def _in_order(pattern: CreasePattern | PanelPattern, letters: str) -> dict[Edge, str]:
     folds = pattern.folds
     for fold, letter in zip(folds, letters, strict=False):
         _check(fold, letter)
@@ -127,7 +141,7 @@ def _in_order(pattern: CreasePattern, letters: str) -> dict[Edge, str]:
     return dict(zip(folds, letters, strict=True))
 
 
-def _by_name(pattern: CreasePattern, text: str) -> dict[Edge, str]:
+def _by_name(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str]:
     names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
     names |= {f"{j}-{i}": (i, j) for i, j in pattern.folds}
     found: dict[Edge, str] = {}

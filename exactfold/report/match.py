@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from exactfold.assignment.nearest import Nearest
+    from exactfold.assignment.panel_match import PanelMatch
     from exactfold.assignment.search import Match, Matched
 
 _NEAR = 8
@@ -53,6 +54,15 @@ def match_report(
     return Group(*parts)
 
 
+def panel_match_report(found: PanelMatch, *, everything: bool = False) -> Group:
+    """Whether rigid panels start to fold with the letters, and why, in lines of words."""
+    answer, *reasons = found.lines
+    limit = len(reasons) if everything else SHOWN
+    head = Text.assemble(f"{answer} - ", status_text(found.status), f" ({found.seconds:.2f} s)")
+    rest = [Text(f"- {reason}") for reason in reasons[:limit]]
+    return Group(head, "", Text(_asked(found)), *rest, *more_text(len(reasons) - limit))
+
+
 def _answer(found: Match, seconds: float) -> Text:
     took = f" ({seconds:.2f} s)"
     ways = len({half.branch.sign_text for half in found.matches})
@@ -72,7 +82,7 @@ def _answer(found: Match, seconds: float) -> Text:
     return Text.assemble(f"at least {text}{both}; whether others have is ", proved, took)
 
 
-def _asked(found: Match) -> str:
+def _asked(found: Match | PanelMatch) -> str:
     counts = Counter(found.letters.values())
     kinds = [counted(counts[x], name) for x, name in _LETTERS.items() if counts[x]]
     return f"asked for: {', '.join(kinds)}"

@@ -16,6 +16,7 @@ VERSIONS: Final = {
     "shapes": 1,
     "branch": 1,
     "match": 1,
+    "starting": 1,
     "export": 1,
     "motion": 1,
     "motions": 1,

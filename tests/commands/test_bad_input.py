@@ -224,11 +224,6 @@ def test_an_unknown_format_is_refused_with_a_list_of_those_that_are_read(tmp_pat
 SHEETS_WITHOUT_BRANCHES = {
     "no interior vertex": (CORNERS[:4], [[0, 1, 2], [0, 2, 3]], 0),
     "three boundary vertices": ([*CORNERS[:3], [0.75, 0.5]], [[0, 1, 3], [1, 2, 3], [2, 0, 3]], 0),
-    "with four boundary vertices; this one has 5": (
-        [[0, 0], [4, 0], [5, 3], [2, 5], [-1, 3], [1, 2], [3, 2]],
-        [[0, 1, 5], [1, 6, 5], [1, 2, 6], [2, 3, 6], [3, 5, 6], [3, 4, 5], [4, 0, 5]],
-        0,
-    ),
     "all interior vertices lie in triangulated triangles": (
         [[0, 0], [3, 0], [0, 3], [3, 3], [1, 1]],
         [[0, 1, 4], [1, 2, 4], [2, 0, 4], [1, 3, 2]],
