@@ -28,6 +28,7 @@ from exactfold.motion.events import (
 from exactfold.motion.framework import Framework
 from exactfold.motion.motion import Motion, angles_at, in_space
 from exactfold.motion.start import Start
+from exactfold.motion.straight_folds import straight_fold
 from exactfold.motion.zeros import zero_of
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.problem.problem import Problem
@@ -162,9 +163,15 @@ def _start(framework: Framework, problem: Problem, branch: Branch) -> Start:
         raise UndecidedBranchError("nothing is proved of the branch: there is nothing to follow")
     for vertex, sign in branch.vertex_signs.items():
         if not sign and vertex in problem.foldable:
+            line = "-".join(map(str, straight_fold(branch)))
             raise NotFollowedError(
-                f"vertex {vertex} is flat on this branch: several curves may be tangent to it, and "
-                "none is followed"
+                f"vertex {vertex} is flat on this branch: "
+                + (
+                    f"the sheet turns about the straight line {line}, exactly, up to 180 degrees; "
+                    "this is not followed"
+                    if line
+                    else "several curves may be tangent to it, and none is followed"
+                )
             )
     return Start.of(framework, np.array([heights[v] for v in problem.labels]))
 

@@ -95,6 +95,7 @@ class Placing:
         turned[self.held], moved[self.held] = np.eye(3), 0.0
         for panel, before, fold, i, j in self.steps:
             axis = flat[j] - flat[i]
+            axis = axis / np.abs(axis).max()  # the square of a very large or small one is no float
             spin = _rotations(axis / np.linalg.norm(axis), angles[:, fold])
             turned[panel] = turned[before] @ spin
             shift = flat[i] - spin @ flat[i]

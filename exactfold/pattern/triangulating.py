@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 
 from exactfold.exact.surds import sign
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -79,4 +80,8 @@ def _turn(points: Sequence[Point], a: int, b: int, c: int) -> int:
 
 
 def _length(a: Point, b: Point) -> float:
-    return (float(a[0]) - float(b[0])) ** 2 + (float(a[1]) - float(b[1])) ** 2
+    x, y = float(a[0]) - float(b[0]), float(a[1]) - float(b[1])
+    try:
+        return x**2 + y**2
+    except OverflowError:  # then all that matter are as large
+        return inf

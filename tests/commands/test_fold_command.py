@@ -266,7 +266,8 @@ def test_sheets_that_have_no_single_motion(pattern, words, tmp_path):
 def test_a_branch_with_a_flat_vertex_is_not_followed():
     result = run("fold", "flat-vertex", "--signs", "+0", "--json")
     assert result.exit_code == UNDECIDED
-    assert "vertex 5 is flat on this branch: several curves may be tangent to it" in result.stderr
+    what = "the sheet turns about the straight line 0-4-2, exactly, up to 180 degrees"
+    assert f"vertex 5 is flat on this branch: {what}; this is not followed" in result.stderr
     assert error_class(result) == "NotFollowedError"
 
 

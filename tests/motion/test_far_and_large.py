@@ -5,11 +5,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from panel_sheets import regular_twist
 from sheets import mapped
 
-from exactfold import checker, find_branch, follow, load
-from exactfold.motion import certificate_with_contact, first_contact
+from exactfold import checker, decompose, find_branch, follow, load
+from exactfold.motion import certificate_with_contact, first_contact, follow_panels
 from exactfold.motion.proving import prove
+from exactfold.pattern import PanelPattern
 
 PLAIN = load("two-vertex")
 MOVED = {
@@ -29,6 +31,17 @@ def test_angles_are_those_of_the_sheet_in_its_place(name):
     assert moved.sampled()[1][-1] == pytest.approx(plain.sampled()[1][-1], abs=1e-9)
     # Of the coordinates of the far sheet no digits are left, which is said.
     assert moved.length_error == (1.0 if name == "far" else pytest.approx(0, abs=1e-12))
+
+
+@pytest.mark.parametrize("unit", [Fraction(10**200), Fraction(1, 10**200)])
+@pytest.mark.filterwarnings("error")
+def test_panels_in_large_and_small_units(unit):
+    twist = regular_twist(4, (Fraction(0), Fraction(-3)))
+    points = [(x * unit, y * unit) for x, y in twist.vertices]
+    sheets = [decompose(sheet) for sheet in (twist, PanelPattern(points, twist.edges))]
+    plain, moved = (follow_panels(sheet, frames=3) for sheet in sheets)
+    assert moved.angles == pytest.approx(plain.angles, abs=1e-9)
+    assert moved.length_error < 1e-12
 
 
 @pytest.mark.slow
