@@ -28,6 +28,7 @@ KEYS = {
         "assignment",
     ),
     *("gauge", "saddle", "centres", "radius", "squared_distance", "steps", "warnings", "seconds"),
+    *("curvature", "straight_border"),
 }
 
 
