@@ -32,12 +32,12 @@ def figures(n: int, seed: int, most: int | None = None) -> Counter[str]:
     branch = find_branch(random_square(n, seed=seed), "".join(rng.choice("+-") for _ in range(n)))
     assert branch.status is PROVED
     letters = branch.assignment
-    assert set(letters.values()) <= TURNED.keys()
     own = match(branch.pattern, letters)
     if own.status is PROVED:
         assert (branch.sign_text, 1) in {half.names for half in own.matches}
     counts = Counter({f"own letters {own.status}": 1, "leaves": own.leaves})
-    folds = list(branch.pattern.folds)
+    folds = [fold for fold in branch.pattern.folds if letters[fold] in TURNED]
+    counts["letters not proved"] = len(letters) - len(folds)  # "U", which is free
     for fold in folds if most is None else rng.sample(folds, min(most, len(folds))):
         found = match(branch.pattern, letters | {fold: TURNED[letters[fold]]})
         for half in found.matches:
