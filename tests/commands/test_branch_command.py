@@ -27,8 +27,8 @@ KEYS = {
         "undecided_vertices",
         "assignment",
     ),
-    *("gauge", "saddle", "centres", "radius", "squared_distance", "steps", "warnings", "seconds"),
-    *("curvature", "straight_border"),
+    *("gauge", "curvature", "straight_border", "saddle", "centres", "radius", "squared_distance"),
+    *("steps", "warnings", "seconds"),
 }
 
 
