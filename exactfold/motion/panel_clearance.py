@@ -8,7 +8,7 @@ from functools import cached_property
 from math import inf, nextafter, pi
 
 import numpy as np
-from flint import ctx
+from flint import arb, ctx
 
 from exactfold.arrays import FloatArray, IndexArray
 from exactfold.exact.surds import ball
@@ -148,7 +148,7 @@ class PanelPairs(AnyPairs):
             along = (lx - rx) * e[0] + (ly - ry) * e[1]
             across = e[0] * (ly - iy) - e[1] * (lx - ix) + e[0] * (ry - iy) - e[1] * (rx - ix)
             with ctx.workprec(_BITS):
-                square = ball(dot(e, e), _BITS) * self.unit**2
+                square = ball(dot(e, e), _BITS) * arb(self.unit) ** 2
                 value = (ball(along, _BITS) ** 2 + ball(across, _BITS) ** 2) / square
                 found.append(float(value.upper()) * (1 + 1e-12))
         return np.array(found)

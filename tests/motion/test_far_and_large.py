@@ -9,9 +9,10 @@ from panel_sheets import regular_twist
 from sheets import mapped
 
 from exactfold import checker, decompose, find_branch, follow, load
-from exactfold.motion import certificate_with_contact, first_contact, follow_panels
+from exactfold.motion import certificate_with_contact, first_contact, follow_panels, prove_contacts
 from exactfold.motion.proving import prove
 from exactfold.pattern import PanelPattern
+from exactfold.verdict import PROVED
 
 PLAIN = load("two-vertex")
 MOVED = {
@@ -33,6 +34,7 @@ def test_angles_are_those_of_the_sheet_in_its_place(name):
     assert moved.length_error == (1.0 if name == "far" else pytest.approx(0, abs=1e-12))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unit", [Fraction(10**200), Fraction(1, 10**200)])
 @pytest.mark.filterwarnings("error")
 def test_panels_in_large_and_small_units(unit):
@@ -42,6 +44,8 @@ def test_panels_in_large_and_small_units(unit):
     plain, moved = (follow_panels(sheet, frames=3) for sheet in sheets)
     assert moved.angles == pytest.approx(plain.angles, abs=1e-9)
     assert moved.length_error < 1e-12
+    found = prove_contacts(follow_panels(sheets[1], until="30deg", frames=2))
+    assert (found.status, found.event) == (PROVED, None)
 
 
 @pytest.mark.slow
