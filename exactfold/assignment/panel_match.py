@@ -29,7 +29,8 @@ class PanelMatch:
     """Whether a sheet of rigid panels starts to fold with given letters.
 
     `starts`: whether there is a motion to second order in which every fold with a letter goes its
-    way; `truly`: whether true motions of the panels begin like that (docs/assignment.md, 5).
+    way; `truly`: whether true motions of the panels begin like that (docs/assignment.md, Rigid
+    panels).
     `status` is PROVED if `starts` is decided. `reasons` says why, one sentence each;
     `densities` is one such motion nearly (fold angle / length, up to a positive factor for each
     part), empty if there is none; `ways` the number of different sets of signs that motions with
@@ -107,10 +108,10 @@ def match_panels(
     `letters`: by fold (i, j), i < j, or a text in the order of the folds: "M", "V", "F" for a fold
     that is to stay flat, "U" where anything may be; folds left out are free. None: the letters of
     the file (`Opened.letters`). The question is whether some w with sum_k w_k d_k = 0 and
-    K_v(w) = 0 at every vertex is > 0 at all valleys, < 0 at all mountains and 0 at folds that stay flat. No is
-    shown at one vertex, by vectors (`PanelRefutation`), or by loops that do not close; yes by exact
-    modes where vertices have at most four folds, else by a candidate that balls or bounds prove
-    (docs/assignment.md, 5). UNDECIDED where neither is found.
+    K_v(w) = 0 at every vertex is > 0 at all valleys, < 0 at all mountains and 0 at folds that stay
+    flat. No is shown at one vertex, by vectors (`PanelRefutation`), or by loops that do not close;
+    yes by exact modes where vertices have at most four folds, else by a candidate that balls or
+    bounds prove (docs/assignment.md, Rigid panels). UNDECIDED where neither is found.
 
     Raises `UsageError` for letters that do not fit, and the errors of `open_pattern`.
 

@@ -1,13 +1,17 @@
 """Whether rigid panels start to fold with letters: against all modes, samples, and forgeries."""
 
+import json
 import random
 from fractions import Fraction
 from itertools import combinations, product
 
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator
 from panel_sheets import tiling
+from running import run
 
+import exactfold
 from exactfold.assignment import PanelRefutation, match_panels
 from exactfold.assignment.first_order_program import FirstOrderProgram
 from exactfold.assignment.regular_motion import regular_motion
@@ -169,3 +173,16 @@ def test_what_the_programs_propose_for_some_of_the_folds():
 def test_letters_that_do_not_fit_are_refused(letters):
     with pytest.raises(UsageError):
         match_panels("square-twist", letters)
+
+
+def test_the_command_says_whether_panels_start_to_fold():
+    schema = Draft202012Validator(exactfold.schema("starting"))
+    for name, starts, code in (("bird-base", "proved", 0), ("square-twist", "refuted", 1)):
+        done = run("match", name, "--json")
+        data = json.loads(done.stdout)
+        schema.validate(data)
+        assert (data["starts"], data["status"], done.exit_code) == (starts, "proved", code)
+        assert len(data["matches"]) == (starts == "proved")
+    words = run("match", "square-twist").stdout
+    assert "does not start to fold" in words
+    assert "4, 5, 6, 7" in words

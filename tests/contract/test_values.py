@@ -58,6 +58,7 @@ MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
 DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
 ALL = exactfold.assignment.all_assignments(single_vertex(5))
 MATCH = exactfold.assignment.match(PATTERN, exactfold.find_branch(PATTERN, "+-").assignment)
+TWIST = exactfold.assignment.match_panels("square-twist")
 ONE = exactfold.random_square(1, seed=0)
 LEAVING = exactfold.find_branch(ONE, "+")
 TRACK = exactfold.motion.follow_proved(LEAVING, until=0.3)
@@ -165,6 +166,8 @@ VALUES = {
     "nearest branches": exactfold.assignment.nearest_branches(MATCH),
     "branches with letters": exactfold.branches.Lettered(exactfold.PROVED, ((1, -1),)),
     "refutation of letters": MATCH.refutations[0],
+    "match of panels": TWIST,
+    "refutation of panels": TWIST.refutations[0],
     "directions": DRIVEN.directions,
     "orthogonal torques": DRIVEN.orthogonal,
     "ranked": DRIVEN.ranking()[0],
