@@ -98,8 +98,8 @@ def test_the_paper_is_reproduced_without_gaps() -> None:
 
 
 READ = re.compile(
-    r"exactfold: (read (pinwheel-base|zigzags): |coordinates in |1 point is merged |"
-    r"(4|12) vertices inside of lines: )"
+    r"exactfold: (read (pinwheel-base|zigzags|miura): |coordinates in |1 point is merged |"
+    r"(4|6|12) vertices inside of lines: )"
 )
 """What is told of the shipped drawings as they are read."""
 

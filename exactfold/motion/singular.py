@@ -104,8 +104,8 @@ def _dependent(framework: Framework, labels: Sequence[int], unknowns: FloatArray
     names = _listed("vertex", [str(labels[v]) for v in vertices])
     turned = ""
     if half_turn(framework.sheet, vertices):
-        turned = ", which a half-turn of the flat sheet maps to themselves"
-    return f"the lengths of edges between {names}{turned}, come to depend on each other"
+        turned = ", which a half-turn of the flat sheet maps to themselves,"
+    return f"the lengths of edges between {names}{turned} come to depend on each other"
 
 
 def half_turn(sheet: CreasePattern, vertices: Iterable[int]) -> bool:

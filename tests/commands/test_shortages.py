@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 from running import BAD_INPUT, INTERRUPTED, OUTPUT_FAILED, PROVED, UNDECIDED, run
-from sheets import HEXAGON, scrambled
+from sheets import DENTED, scrambled
 
 from exactfold import random_square, write_fold
 from exactfold.data import example_path
@@ -130,7 +130,7 @@ def test_a_library_that_ends_the_process_is_seen(files: Path, tmp_path: Path, co
 
 @pytest.mark.slow
 def test_answers_and_errors_pass_through_the_guard(files: Path, tmp_path: Path) -> None:
-    write_fold(scrambled(5, HEXAGON, 4, loose=True), tmp_path / "open.fold")
+    write_fold(scrambled(2, DENTED, 4, loose=True), tmp_path / "open.fold")
     (files / "bad.json").write_text(
         (files / "c.json").read_text().replace('"distinct":4', '"distinct":5')
     )
