@@ -24,7 +24,7 @@ class PanelRefutation:
 
     which is negative for letters whose valleys have s_f <= 0, mountains s_f >= 0 and free folds
     s_f = 0, if one sum of a mountain or valley is not 0. Without signs it is 0, and the letters
-    are refuted to first order (docs/assignment.md, Theorem 2). Folds that stay flat may have any.
+    are refuted to first order (docs/assignment.md, Theorem 4). Folds that stay flat may have any.
     """
 
     planes: Mapping[int, Point]

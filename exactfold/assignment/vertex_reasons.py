@@ -34,7 +34,7 @@ def vertex_reason(star: Star, letters: Letters) -> VertexReason | None:
     sectors less than pi. To first order sum_k w_k d_k = 0 is refuted by a vector y with y . d_k
     <= 0 for valleys, >= 0 for mountains, 0 for free folds and not always 0. To second order the
     vertex pops up only if its mountains lie in no closed half-plane and it has a valley, and down
-    with letters exchanged (docs/assignment.md, Theorem 2).
+    with letters exchanged (docs/assignment.md, Theorem 4).
 
     >>> star = Star(4, ((0, 4), (1, 4), (2, 4), (3, 4)), ((2, 1), (-1, 1), (-1, -1), (1, -2)))
     >>> vertex_reason(star, dict(zip(star.folds, "MMMV")))
@@ -44,11 +44,12 @@ def vertex_reason(star: Star, letters: Letters) -> VertexReason | None:
     letter = [letters[fold] for fold in star.folds]
     if not {"M", "V"} & set(letter):
         return None
-    for y in _normals(star):
+    pair = len(star.folds) == 2  # only a vector along the pair tells its two folds apart
+    for y in star.directions if pair else _normals(star):
         if _first_order(star, letter, y):
             text = _first_order_text(star, letter)
             return VertexReason(star.vertex, text, (PanelRefutation({star.vertex: y}),))
-    if len(star.folds) < 4:
+    if pair:
         return None
     found = {side: refuted_side(star, letters, side) for side in (1, -1)}
     if any(value is None for value in found.values()):
@@ -99,7 +100,8 @@ def _first_order(star: Star, letter: list[str], y: Point) -> bool:
 def _first_order_text(star: Star, letter: list[str]) -> str:
     where = f"at vertex {star.vertex}"
     if len(star.folds) == 2:
-        return f"{where} {_pair(star.folds)} are one straight crease and have different letters"
+        both = _pair(star.folds)
+        return f"{where} the folds {both} are one straight crease and have different letters"
     if len(star.folds) == 4:
         return _four_text(star, letter)
     if "U" in letter:
