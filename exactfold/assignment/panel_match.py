@@ -66,7 +66,9 @@ class PanelMatch:
     def lines(self) -> tuple[str, ...]:
         """The answer in words, one line each, for a terminal."""
         answer = {
-            PROVED: "the sheet starts to fold with these mountains and valleys",
+            PROVED: "the sheet starts to fold with these mountains and valleys"
+            if _goes(self.letters)
+            else "no fold is asked to be a mountain or a valley: this holds if nothing moves",
             REFUTED: "the sheet does not start to fold with these mountains and valleys",
             UNDECIDED: "whether the sheet starts to fold with these mountains and valleys is open",
         }
@@ -175,7 +177,7 @@ def _result(
         if any(not set(e) & set(sheet.interior) and x == "U" for e, x in letters.items()):
             ways = None
     reasons = list(dict.fromkeys(part.reason for part in named))
-    if starts is PROVED:
+    if starts is PROVED and _goes(letters):
         reasons.append(_of_true(truly))
     return PanelMatch(
         sheet,
@@ -190,6 +192,11 @@ def _result(
         tuple(parts),
         seconds,
     )
+
+
+def _goes(letters: Letters) -> bool:
+    """Whether some fold is asked to be a mountain or a valley."""
+    return not {"M", "V"}.isdisjoint(letters.values())
 
 
 def _of_true(truly: Verdict) -> str:

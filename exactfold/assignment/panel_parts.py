@@ -178,8 +178,8 @@ def _first_order_text(named: Iterable[int]) -> str:
     shown = [str(v) for v in named]
     where = ", ".join(shown[:12]) + (f" and {len(shown) - 12} more" if len(shown) > 12 else "")
     return (
-        f"together the vertices {where} cannot have these letters even to first order: with one "
-        "vector for each of them the conditions add up to a sum over the folds that is negative"
+        f"the vertices {where} cannot have their letters together, even at the first instant: that "
+        "the folds around each of them close up contradicts these mountains and valleys"
     )
 
 

@@ -40,7 +40,7 @@ def regular_motion(
     system = _System(stars, near)
     if system.count == 0 or system.count > min(_MOST_CONDITIONS, len(system.folds)):
         return None
-    matrix, changes = system.derivative()
+    matrix, changes, terms = system.derivative()
     columns = np.sort(qr(matrix, pivoting=True, mode="r")[1][: system.count])
     square = matrix[:, columns]
     try:
@@ -51,7 +51,8 @@ def regular_motion(
         return None
     size = np.abs(inverse)
     rest = np.abs(np.eye(system.count) - inverse @ square)
-    rest += (system.count + 8) * _UNIT * (size @ np.abs(square) + np.eye(system.count))
+    rounded = (system.count + 8) * _UNIT * (size @ np.abs(square) + np.eye(system.count))
+    rest += rounded + (len(system.folds) + 8) * _UNIT * (size @ terms[:, columns])
     linear = _LARGER * rest.sum(axis=1)
     square_term = _LARGER * (size @ changes[:, columns].sum(axis=1))
     start = _LARGER * (size @ system.values())
@@ -84,15 +85,18 @@ class _System:
             self._rows.append((star, "form", largest**2))
         self.count = len(self._rows)
 
-    def derivative(self) -> tuple[FloatArray, FloatArray]:
-        """J at the candidate, and how much each entry can change for a change of 1 in all folds."""
+    def derivative(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """J at the candidate; how much each entry can change for a change of 1 in all folds; and
+        the sum of the sizes of its terms, to which its rounding error is in proportion.
+        """
         matrix = np.zeros((self.count, len(self.folds)))
-        changes = np.zeros_like(matrix)
+        changes, terms = np.zeros_like(matrix), np.zeros_like(matrix)
         for row, (star, kind, scale) in enumerate(self._rows):
             at = [self._place[edge] for edge in star.folds]
             if kind != "form":
                 axis = "xy".index(kind)
                 matrix[row, at] = [float(d[axis]) / scale for d in star.directions]
+                terms[row, at] = np.abs(matrix[row, at])
                 continue
             w = np.array([self.near[edge] for edge in star.folds])
             forms = np.array(
@@ -104,7 +108,8 @@ class _System:
             forms /= scale
             matrix[row, at] = forms @ w
             changes[row, at] = np.abs(forms).sum(axis=1)
-        return matrix, changes
+            terms[row, at] = np.abs(forms) @ np.abs(w)
+        return matrix, changes, terms
 
     def values(self) -> FloatArray:
         """Bounds of |F(c)|, from balls."""

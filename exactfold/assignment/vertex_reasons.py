@@ -44,11 +44,12 @@ def vertex_reason(star: Star, letters: Letters) -> VertexReason | None:
     letter = [letters[fold] for fold in star.folds]
     if not {"M", "V"} & set(letter):
         return None
-    for y in _normals(star):
+    pair = len(star.folds) == 2  # only a vector along the pair tells its two folds apart
+    for y in star.directions if pair else _normals(star):
         if _first_order(star, letter, y):
             text = _first_order_text(star, letter)
             return VertexReason(star.vertex, text, (PanelRefutation({star.vertex: y}),))
-    if len(star.folds) < 4:
+    if pair:
         return None
     found = {side: refuted_side(star, letters, side) for side in (1, -1)}
     if any(value is None for value in found.values()):
@@ -99,7 +100,8 @@ def _first_order(star: Star, letter: list[str], y: Point) -> bool:
 def _first_order_text(star: Star, letter: list[str]) -> str:
     where = f"at vertex {star.vertex}"
     if len(star.folds) == 2:
-        return f"{where} {_pair(star.folds)} are one straight crease and have different letters"
+        both = _pair(star.folds)
+        return f"{where} the folds {both} are one straight crease and have different letters"
     if len(star.folds) == 4:
         return _four_text(star, letter)
     if "U" in letter:

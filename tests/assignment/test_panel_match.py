@@ -14,7 +14,7 @@ from running import run
 import exactfold
 from exactfold.assignment import PanelRefutation, match_panels
 from exactfold.assignment.first_order_program import FirstOrderProgram
-from exactfold.assignment.regular_motion import regular_motion
+from exactfold.assignment.regular_motion import _System, regular_motion
 from exactfold.assignment.vertex_reasons import vertex_reason
 from exactfold.errors import UsageError
 from exactfold.modes import decompose
@@ -142,8 +142,52 @@ def test_folds_that_stay_flat_have_no_letters():
     found = match_panels(pattern, {(1, 4): "M"})
     assert (found.starts, found.truly) == (REFUTED, REFUTED)
     assert match_panels(pattern, {(0, 4): "M", (2, 4): "M"}).truly is PROVED
-    assert match_panels(pattern, {(0, 4): "M", (2, 4): "V"}).truly is REFUTED
+    other = match_panels(pattern, {(0, 4): "M", (2, 4): "V"})
+    assert other.truly is REFUTED
+    said = "at vertex 4 the folds 2-4 and 0-4 are one straight crease and have different letters"
+    assert other.reasons == (said,)
+    assert all(r.holds(pattern, other.letters) for r in other.refutations)
     assert match_panels(pattern, "FMU").starts is REFUTED
+
+
+def test_a_sheet_that_is_asked_for_no_letter_is_not_said_to_fold():
+    pattern = PanelPattern(
+        [(0, 0), (4, 0), (0, 4), (1, 1)], [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]
+    )
+    for letters in ("UUU", "FFF"):
+        found = match_panels(pattern, letters)
+        assert (found.starts, found.densities) == (PROVED, {})
+        words = "no fold is asked to be a mountain or a valley: this holds if nothing moves"
+        assert found.lines == (words,)
+    assert match_panels(pattern, "UUM").starts is REFUTED
+
+
+def test_rounding_errors_of_the_derivative_are_bounded_where_its_terms_cancel():
+    d = ((3, 0), (2, 3), (-1, 2), (-3, 1), (-1, -2), (2, -3))
+    star = Star(0, tuple((0, k + 1) for k in range(6)), d)
+    first = [cross(d[0], d[k]) for k in range(1, 6)]
+    w = [0.7, 0.1, 0.3, -1 / 7, 0.9]
+    w.append(-sum(c * x for c, x in zip(first, w[1:], strict=False)) / first[4])
+    system = _System({0: star}, dict(zip(star.folds, w, strict=True)))
+    matrix, _, terms = system.derivative()
+    error = [
+        abs(
+            Fraction(matrix[2, j])
+            - sum(Fraction(x) * cross(*sorted_pair(d, j, k)) for k, x in enumerate(w)) / 9
+        )
+        for j in range(6)
+    ]
+    bound = 14 * Fraction(2) ** -52
+    assert error[0] > bound * abs(Fraction(matrix[2, 0]))
+    assert all(e <= bound * Fraction(t) for e, t in zip(error, terms[2], strict=True))
+
+
+def cross(a, b):
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def sorted_pair(d, j, k):
+    return (d[j], d[k]) if j < k else (d[k], d[j])
 
 
 def test_larger_stars_are_proved_near_a_candidate_and_not_elsewhere():
@@ -186,3 +230,4 @@ def test_the_command_says_whether_panels_start_to_fold():
     words = run("match", "square-twist").stdout
     assert "does not start to fold" in words
     assert "4, 5, 6, 7" in words
+    assert "even at the first instant" in words.replace("\n", " ")
