@@ -21,6 +21,7 @@ from exactfold.branches.branch import Branch
 from exactfold.branches.letters import SIGNS, UPSIDE_DOWN
 from exactfold.count.find import BranchFinder
 from exactfold.errors import NotCountedError
+from exactfold.exact.numbers import format_rational
 from exactfold.exact.univariate import Interval
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import described
@@ -119,7 +120,9 @@ class AllAssignments:
                     "arcs": [
                         {
                             "letters": arc.letters,
-                            "rim": {str(v): str(height) for v, height in arc.rim.items()},
+                            "rim": {
+                                str(v): format_rational(height) for v, height in arc.rim.items()
+                            },
                         }
                         for arc in circle.arcs
                     ],

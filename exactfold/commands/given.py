@@ -93,4 +93,6 @@ def _without_repetition(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _vertex(name: str) -> int | str:
     """A vertex by its number; other text stays, to be named in a message."""
-    return int(name) if name.isascii() and name.isdecimal() and len(name) < 20 else name
+    # "00" stays text: it would be vertex 0 a second time, unseen where keys are compared.
+    plain = name.isascii() and name.isdecimal() and len(name) < 20 and name == str(int(name))
+    return int(name) if plain else name

@@ -55,18 +55,24 @@ def _single(pattern: CreasePattern, branches: list[Branch]) -> list[bool]:
     place = {v: k for k, v in enumerate(labels)}
     flat_sheet = panels(sheet)
     known: dict[frozenset[int], tuple[Joint, ...]] = {}
+    complete: dict[frozenset[int], bool] = {}
+    rows = {tuple(branch.vertex_signs.items()) for branch in branches}
     found = []
     for branch in branches:
         held = frozenset(place[v] for v in _flat(pattern, branch))
         if held not in known and len(known) < _MOST_CLASSES:
             moving = stars(flat_sheet, [edge_of(v, u) for v in held for u in sheet.star(v)])
             solutions = flat_solutions(moving)
-            # With a reflex corner two solutions can have the same signs: all must be known.
-            sure = pattern.is_convex or not solutions.open
-            known[held] = solutions.joints if sure else ()
+            known[held], complete[held] = solutions.joints, not solutions.open
         signs = {v: branch.vertex_signs[labels[v]] for v in sheet.interior}
         same = [joint.folds for joint in known.get(held, ()) if _are_same(signs, joint.signs)]
-        found.append(bool(same) and all(same))
+        # A solution does not say on which side of the saddle it is. Where another branch has the
+        # opposite signs, its reflection has the same; with a reflex corner others can, too. Then
+        # all must be known.
+        opposite = tuple((v, -sign) for v, sign in branch.vertex_signs.items())
+        alone = opposite not in rows or not any(signs.values())
+        sure = complete.get(held, False) or (pattern.is_convex and alone)
+        found.append(sure and bool(same) and all(same))
     return found
 
 

@@ -213,6 +213,8 @@ def _sum(values: Sequence[arb], weights: Sequence[Any]) -> arb:
 
 def _sampled(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
     """Points of a family with as many different signs as are found, each proved."""
+    if not part.vertices:
+        return FlatSolutions((), "a vertex is too nearly flat in a solution to say its sign")
     forms = _forms(moving, part)
     names = _active(moving, part.rows)
     wanted = 1 << len(names)

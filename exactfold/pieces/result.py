@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
@@ -48,7 +49,8 @@ class Joint:
             "by": self.by,
             "folds": self.folds,
             "densities": {
-                f"{i}-{j}": [str(low), str(high)] for (i, j), (low, high) in self.densities.items()
+                f"{i}-{j}": [format_rational(low), format_rational(high)]
+                for (i, j), (low, high) in self.densities.items()
             },
         }
 

@@ -10,7 +10,7 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from exactfold.exact.numbers import decimal_above
+from exactfold.exact.numbers import decimal_above, format_rational
 from exactfold.report.terminal import cut, facts_table, letters_text, status_text
 from exactfold.wording import counted
 
@@ -32,7 +32,7 @@ def branch_report(result: Branch) -> Group:
     if flat := _with_sign(result, 0):
         rows.append(("flat", cut(flat)))
     if result.curvature:
-        deficits = ", ".join(f"{v}: {k}" for v, k in sorted(result.curvature.items()))
+        deficits = _by_vertex(dict(sorted(result.curvature.items())))
         rows.append(("angle deficits", cut(deficits)))
     if result.rim is not None:
         rows.append(("heights of the border", cut(_rim(result.rim))))
@@ -62,17 +62,21 @@ def _vertices(chosen: Sequence[int]) -> str:
 
 def _rim(heights: Mapping[int, Fraction]) -> str:
     """Such as "0: 1, 3: -11/20, others 0"."""
-    raised = [f"{v}: {height}" for v, height in heights.items() if height]
+    raised = {v: height for v, height in heights.items() if height}
     if not raised:
         return "all 0"
-    return ", ".join([*raised, "others 0"] if len(raised) < len(heights) else raised)
+    return _by_vertex(raised) + (", others 0" if len(raised) < len(heights) else "")
+
+
+def _by_vertex(numbers: Mapping[int, Fraction]) -> str:
+    return ", ".join(f"{v}: {format_rational(x)}" for v, x in numbers.items())
 
 
 def shapes_report(result: ShapeCount, *, everything: bool = False) -> Group:
     """The number of shapes with given angle deficits."""
     low, high = result.bounds
     number = f"{low}" if low == high else f"at least {low}, at most {high}"
-    deficits = ", ".join(f"{v}: {k}" for v, k in sorted(result.curvature.items()))
+    deficits = _by_vertex(dict(sorted(result.curvature.items())))
     rows: list[tuple[str, str | Text]] = [
         ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
         ("shapes", f"{number}; {result.with_multiplicity} with multiplicity"),

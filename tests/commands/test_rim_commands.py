@@ -61,6 +61,12 @@ def test_a_shape_with_deficits(here: Path) -> None:
         ("--rim", RIM.replace("0.25", "NaN"), "RimHeightError", "the height of vertex 2: 'NaN'"),
         ("--rim", RIM.replace('"3"', '"0"'), "BadRimError", "vertex 0 is there twice"),
         ("--rim", RIM.replace('"3"', '"0-5"'), "RimVertexError", "0-5 is no vertex of the border"),
+        (
+            "--rim",
+            RIM.replace("}", ', "00": 2}'),
+            "RimVertexError",
+            "00 is no vertex of the border",
+        ),
         ("--rim", "[1, 2]", "BadRimError", "holds no numbers by vertex"),
         ("--rim", "{", "BadRimError", "is not JSON"),
         (
@@ -71,6 +77,7 @@ def test_a_shape_with_deficits(here: Path) -> None:
         ),
         ("--curvature", '{"5": -1}', "NegativeDeficitError", "deficit of vertex 5 is negative"),
         ("--curvature", '{"0": 1}', "BadCurvatureError", "0 is no interior vertex"),
+        ("--curvature", '{"5": 1, "05": 0}', "BadCurvatureError", "05 is no interior vertex"),
         ("--curvature", '{"6": true}', "BadCurvatureError", "deficit of vertex 6"),
     ],
 )
@@ -83,6 +90,17 @@ def test_errors_name_the_file_and_the_vertex(
     assert error_class(done) == name
     assert "bad.json" in done.stderr
     assert said in done.stderr
+
+
+def test_numbers_of_any_length_are_printed(here: Path) -> None:
+    """Python alone writes integers of up to 4300 digits."""
+    Path("long.json").write_text(RIM.replace("0.25", "1e-4400"))
+    Path("tall.json").write_text('{"5": 1e4400}')
+    shape = ["--rim", "long.json", "--curvature", "tall.json"]
+    for command in (["branch", "--signs", "+-"], ["count"]):
+        done = run(command[0], "pentagon.fold", *command[1:], *shape)
+        assert done.exit_code == 0
+        assert "5: 1000000" in " ".join(done.stdout.split())
 
 
 def test_such_a_branch_is_drawn_and_exported_and_not_followed(here: Path) -> None:

@@ -15,8 +15,9 @@ from sheets import DENTED, HEXAGON, scrambled, wheel, with_point
 
 from exactfold import PROVED, REFUTED, UNDECIDED, CreasePattern, checker, count_branches, write_fold
 from exactfold.count import hand_over
+from exactfold.count.true_bounds import with_true_bounds
 from exactfold.errors import NotApplicableError
-from exactfold.modes.stars import edge_of, stars
+from exactfold.modes.stars import Star, edge_of, stars
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import flat_vertex_square, single_vertex, waterbomb
 from exactfold.pattern.opening import panels
@@ -245,6 +246,24 @@ def test_a_double_line_that_is_not_shown_to_be_one_curve():
     assert (result.distinct, result.with_multiplicity) == (26, 32)
     assert (result.true_bounds, result.true_branches) == ((26, 32), UNDECIDED)
     assert result.true_branches is not REFUTED
+
+
+def test_a_branch_is_not_taken_for_the_reflection_of_another(monkeypatch):
+    """-+0-+ and +-0+- are two branches; a joint with these signs can belong to either."""
+    result = count_branches(DEGENERATE["waterbomb-pair"]())
+    signs = next(b.vertex_signs for b in result.branches if b.sign_text == "-+0-+")
+    joint = Joint(signs, {}, "regular", folds=True)
+    for reason, most in (("", 30), ("some may be missing", 32)):
+        found = flat_stars.FlatSolutions((joint,), reason)
+        monkeypatch.setattr(flat_stars, "flat_solutions", lambda moving, found=found: found)
+        assert with_true_bounds(result).true_bounds == (28, most)
+
+
+def test_a_vertex_whose_sign_is_not_decided_leaves_the_joint_open(monkeypatch):
+    monkeypatch.setattr(flat_stars, "_joint", lambda *args, **options: None)
+    fold = Star(0, ((0, 1), (0, 2)), ((1, 0), (-2, 0)))
+    found = flat_stars.flat_solutions({0: fold})
+    assert (found.joints, "too nearly flat" in found.open) == ((), True)
 
 
 def test_true_branches_are_bounded_also_where_the_count_is_undecided(monkeypatch):
