@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from exactfold.assignment.asked import by_fold
 from exactfold.assignment.panel_parts import PartAnswer, answered
 from exactfold.assignment.panel_refutation import PanelRefutation, held
 from exactfold.assignment.refutation import Letters
 from exactfold.count.ways import Sheet, open_sheet
-from exactfold.errors import UsageError
 from exactfold.modes.decomposition import groups_of
 from exactfold.modes.stars import stars
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -127,7 +127,7 @@ def match_panels(
     sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
     if letters is None:
         letters = opened.letters
-    asked = _asked(sheet, letters)
+    asked = by_fold(sheet.folds, letters)
     moving = stars(sheet, held(asked))
     active = {edge for star in moving.values() for edge in star.folds}
     interior = set(sheet.interior)
@@ -213,20 +213,3 @@ def _all(verdicts: Any) -> Verdict:
     if REFUTED in found:
         return REFUTED
     return UNDECIDED if UNDECIDED in found else PROVED
-
-
-def _asked(sheet: PanelPattern, letters: Mapping[Edge, str] | str) -> dict[Edge, str]:
-    folds = sheet.folds
-    if isinstance(letters, str):
-        if len(letters) != len(folds):
-            raise UsageError(f"{len(letters)} letters for {len(folds)} folds")
-        letters = dict(zip(folds, letters, strict=True))
-    if not isinstance(letters, Mapping):
-        raise UsageError("letters are a text, or a mapping from folds to letters")
-    known = set(folds)
-    for fold, letter in letters.items():
-        if fold not in known:
-            raise UsageError(f"{fold} is not a fold of the sheet")
-        if letter not in tuple("MVFU"):
-            raise UsageError(f"fold {fold} has the letter {letter!r}, not one of M, V, F, U")
-    return {fold: letters.get(fold, "U") for fold in folds}

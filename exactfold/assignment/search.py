@@ -10,20 +10,19 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from exactfold.assignment.asked import by_fold
 from exactfold.assignment.clauses import Clauses, Refuted
 from exactfold.assignment.cone_program import ConeProgram
 from exactfold.assignment.refutation import Letters, Refutation, refuted_at
 from exactfold.branches.branch import Branch
-from exactfold.branches.letters import SIGNS, UPSIDE_DOWN
+from exactfold.branches.letters import SIGNS, UPSIDE_DOWN, differing
 from exactfold.count.find import BranchFinder
-from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.progress import Progress
 from exactfold.showing import Page
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
-_LETTERS = "MVFU"
 _REMEMBERED = 512
 """Sign vectors that seem possible, kept so that no cone program is solved for a part of them."""
 
@@ -146,24 +145,7 @@ def match(
     <Match: proved, 0 halves, 0 sign vectors>
     """
     sheet = as_pattern(pattern)
-    return _Search(sheet, _letters(sheet, letters), most, progress).result()
-
-
-def _letters(pattern: CreasePattern, letters: Mapping[Edge, str] | str) -> dict[Edge, str]:
-    folds = pattern.folds
-    if not isinstance(letters, str | Mapping):
-        raise UsageError("letters are a text, or a mapping from folds to letters")
-    if isinstance(letters, str):
-        if len(letters) != len(folds):
-            raise UsageError(f"{len(letters)} letters for {len(folds)} folds")
-        letters = dict(zip(folds, letters, strict=True))
-    known = set(folds)
-    for fold, letter in letters.items():
-        if fold not in known:
-            raise UsageError(f"{fold} is not a fold of the sheet")
-        if letter not in tuple(_LETTERS):
-            raise UsageError(f"fold {fold} has the letter {letter!r}, not one of M, V, F, U")
-    return {fold: letters.get(fold, "U") for fold in folds}
+    return _Search(sheet, by_fold(sheet.folds, letters), most, progress).result()
 
 
 class _Search:
@@ -332,19 +314,9 @@ class _Search:
         """Whether a half has the letters; None if it is not proved, or one of them is not."""
         if half.branch.status is not PROVED:
             return None
-        seen = half.assignment
-        compared = [_agrees(letter, seen[fold]) for fold, letter in self.letters.items()]
-        if False in compared:
-            return False
-        return None if None in compared else True
+        other, unknown = differing(self.letters, half.assignment)
+        return False if other else None if unknown else True
 
 
 def _fold(i: int, j: int) -> Edge:
     return (i, j) if i < j else (j, i)
-
-
-def _agrees(wanted: str, letter: str) -> bool | None:
-    """Whether a proved letter is the one wanted; None where it is not known."""
-    if wanted == "U" or letter == wanted:
-        return True
-    return None if letter == "U" else False
