@@ -14,7 +14,7 @@ from scipy.optimize import linprog
 from exactfold.arrays import FloatArray
 from exactfold.assignment.panel_refutation import PanelRefutation
 from exactfold.assignment.refutation import Letters
-from exactfold.modes.kernel import Entry, entry, number
+from exactfold.modes.kernel import Entry, entry, increase, number
 from exactfold.modes.stars import Star
 from exactfold.pattern.panel_pattern import Edge, Point
 
@@ -170,9 +170,9 @@ def eliminated(rows: Iterable[Mapping[int, Entry]]) -> dict[int, dict[int, Entry
         for k, x in given.items():
             if k in solved:
                 for j, c in solved[k].items():
-                    _increase(row, j, x * c)
+                    increase(row, j, x * c)
             else:
-                _increase(row, k, x)
+                increase(row, k, x)
         if not row:
             continue
         pivot = min(row)
@@ -182,17 +182,9 @@ def eliminated(rows: Iterable[Mapping[int, Entry]]) -> dict[int, dict[int, Entry
             if pivot in other:
                 x = other.pop(pivot)
                 for j, c in found.items():
-                    _increase(other, j, x * c)
+                    increase(other, j, x * c)
         solved[pivot] = found
     return solved
-
-
-def _increase(row: dict[int, Entry], key: int, value: Entry) -> None:
-    total = row[key] + value if key in row else value
-    if total:
-        row[key] = total
-    else:
-        row.pop(key, None)
 
 
 def _near(value: float) -> fmpq:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 from flint import fmpq
 
@@ -14,6 +14,8 @@ from exactfold.pattern.panel_pattern import Edge
 
 Entry: TypeAlias = Surd | fmpq
 """A number to compute with: FLINT's rationals are some ten times faster than fractions."""
+
+Key = TypeVar("Key")
 
 Rows: TypeAlias = dict[Edge, Sequence[Entry]]
 """The density of each fold as a linear function of parameters; folds that are flat left out."""
@@ -54,7 +56,7 @@ def first_order(stars: Mapping[int, Star]) -> tuple[Rows, int]:
             for user in users.pop(pivot, set()):
                 weight = pivots[user].pop(pivot)
                 for edge, x in solved.items():
-                    _increase(pivots[user], edge, weight * x)
+                    increase(pivots[user], edge, weight * x)
                     if edge in pivots[user]:
                         users.setdefault(edge, set()).add(user)
                     else:
@@ -112,15 +114,16 @@ def _add(
     row: dict[Edge, Entry], edge: Edge, weight: Entry, pivots: Mapping[Edge, dict[Edge, Entry]]
 ) -> None:
     if edge not in pivots:
-        _increase(row, edge, weight)
+        increase(row, edge, weight)
         return
     for other, x in pivots[edge].items():
-        _increase(row, other, weight * x)
+        increase(row, other, weight * x)
 
 
-def _increase(row: dict[Edge, Entry], edge: Edge, value: Entry) -> None:
-    total = row[edge] + value if edge in row else value
+def increase(row: dict[Key, Entry], key: Key, value: Entry) -> None:
+    """Add a value to an entry of a sparse row, which has no zeros."""
+    total = row[key] + value if key in row else value
     if total:
-        row[edge] = total
+        row[key] = total
     else:
-        row.pop(edge, None)
+        row.pop(key, None)
