@@ -9,11 +9,12 @@ from pathlib import Path
 
 from exactfold.actuation.drive import actuate
 from exactfold.commands.branch import given_signs
+from exactfold.commands.json_numbers import numbers_by_name
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import EXIT, Bar, name_of
 from exactfold.count.find import BranchFinder
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import BadTorquesError, NumberError, UnreadableFileError
+from exactfold.errors import BadTorquesError, NumberError
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
@@ -61,14 +62,8 @@ def torques_in(path: Path, pattern: CreasePattern) -> dict[Edge, Fraction]:
 
     A number may be text such as "1/3". Raises `UnreadableFileError` and `BadTorquesError`.
     """
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"), parse_float=str, parse_constant=str)
-    except OSError as error:
-        raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
-    except (ValueError, RecursionError):
-        raise BadTorquesError(f'{path} is not JSON: write {{"0-4": 0.5, ...}}') from None
-    if not isinstance(data, dict):
-        raise BadTorquesError(f'{path} holds no torques by crease: write {{"0-4": 0.5, ...}}')
+    shape = 'write {"0-4": 0.5, ...}, a torque for each crease'
+    data = numbers_by_name(path, BadTorquesError, "crease", shape)
     names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
     found: dict[Edge, Fraction] = {}
     for name, value in data.items():

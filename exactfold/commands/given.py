@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from exactfold.commands.json_numbers import numbers_by_name
 from exactfold.count.find import BranchFinder, branch_finder
 from exactfold.errors import (
     BadCurvatureError,
@@ -15,7 +15,6 @@ from exactfold.errors import (
     FlatRimError,
     RimHeightError,
     RimVertexError,
-    UnreadableFileError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 
@@ -62,33 +61,8 @@ def numbers_in(
     vertices are is not checked here.
     """
     shape = f'write {{"0": 0.5, "3": "{example}", ...}}, a number for each vertex'
-    try:
-        text = path.read_text(encoding="utf-8")
-        data = json.loads(
-            text, parse_float=str, parse_constant=str, object_pairs_hook=_without_repetition
-        )
-    except OSError as failure:
-        raise UnreadableFileError(f"cannot read {path}: {failure.strerror}") from None
-    except _RepeatedError as repeated:
-        raise error(f"{path}: vertex {repeated} is there twice") from None
-    except (ValueError, RecursionError):
-        raise error(f"{path} is not JSON: {shape}") from None
-    if not isinstance(data, dict):
-        raise error(f"{path} holds no numbers by vertex: {shape}")
+    data = numbers_by_name(path, error, "vertex", shape)
     return {_vertex(name): value for name, value in data.items()}
-
-
-class _RepeatedError(Exception):
-    """A key that is there twice."""
-
-
-def _without_repetition(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for name, value in pairs:
-        if name in found:
-            raise _RepeatedError(name)
-        found[name] = value
-    return found
 
 
 def _vertex(name: str) -> int | str:
