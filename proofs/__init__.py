@@ -16,6 +16,7 @@ MODULES: tuple[str, ...] = (
     "mountain_valley",
     "kapovich_millson",
     "all_real",
+    "generic",
     "potential",
     "inertia",
     "inertia_cases",

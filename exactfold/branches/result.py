@@ -211,6 +211,7 @@ class BranchCount(Page):
             "theory": "branches",
             "letters": None if self.lettered is None else self.lettered.to_dict(),
             "rigid": self.distinct == 0 if self.status is PROVED else None,
+            "exceptional_vertices": list(self.exceptional_vertices),
             **self._families(),
             "pieces": None if self.pieces is None else self.pieces.to_dict(),
             "read": None if self.read is None else dict(self.read),
@@ -225,6 +226,19 @@ class BranchCount(Page):
             found = self.families.to_dict()
             return {key: found[key] for key in ("components", "modes_count", *_LISTS)}
         return {**dict.fromkeys(("components", "modes_count")), **{key: [] for key in _LISTS}}
+
+    @property
+    def exceptional_vertices(self) -> tuple[int, ...]:
+        """Vertices with a flat star on some branch that are in no triangulated triangle, for D = 1.
+
+        If there are any, some branch is multiple although for almost all positions of the interior
+        vertices there are 2^(Vi - Vt) different ones, none with such a vertex (docs/generic.md,
+        Theorem 11). Empty also where branches are not listed.
+        """
+        if self.pattern.Ve != 4:
+            return ()
+        flat = {v for b in self.branches for v, sign in b.vertex_signs.items() if sign == 0}
+        return tuple(sorted(flat - self.pattern.rigid_vertices))
 
     @property
     def sign_vectors(self) -> Counter[str]:

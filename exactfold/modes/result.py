@@ -111,6 +111,7 @@ class Decomposition(Page):
             "theory": self.theory,
             "letters": None,
             "rigid": rigid,
+            "exceptional_vertices": [],
             "components": {
                 key: None if value is None else {str(k): n for k, n in value.items()}
                 for key, value in zip(_COUNTS, counts, strict=True)

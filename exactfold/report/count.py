@@ -157,6 +157,8 @@ def _notes(
         notes.append(
             f"{counted(rigid, 'vertex')} in triangulated triangles {agreeing(rigid, 'stays')} flat"
         )
+    if result.exceptional_vertices:
+        notes.append(_exception(result))
     if result.pieces is not None:
         notes += piece_notes(result)
     if result.snapped:
@@ -168,6 +170,17 @@ def _notes(
     if certificate:
         notes.append(f"certificate: {certificate}")
     return notes
+
+
+def _exception(result: BranchCount) -> str:
+    """That the vertices have an exceptional position, and what is usual."""
+    vertices, pattern = result.exceptional_vertices, result.pattern
+    named = ", ".join(str(v) for v in vertices[:NAMED]) + (", ..." if len(vertices) > NAMED else "")
+    word = "vertex" if len(vertices) == 1 else "vertices"
+    return (
+        f"exceptional: {word} {named} can stay flat; almost all positions of the interior vertices "
+        f"give {1 << (pattern.Vi - pattern.Vt)} different ways"
+    )
 
 
 def _lettered(found: Lettered) -> str:

@@ -6,5 +6,7 @@ from exactfold.rigidity.curvature import wheel_stress as wheel_stress
 from exactfold.rigidity.definite_stresses import definite_stress as definite_stress
 from exactfold.rigidity.facts import PatternFacts as PatternFacts
 from exactfold.rigidity.facts import pattern_facts as pattern_facts
+from exactfold.rigidity.projective import ProjectiveImage as ProjectiveImage
+from exactfold.rigidity.projective import project as project
 from exactfold.rigidity.self_stress import rigidity_matrix as rigidity_matrix
 from exactfold.rigidity.self_stress import self_stresses as self_stresses

@@ -100,6 +100,7 @@ VALUES = {
     "form": exactfold.rigidity.curvature_form(PATTERN, 4),
     "facts": exactfold.pattern_facts(FLAT),
     "reality": exactfold.rigidity.decide_all_branches_real(PATTERN),
+    "projective image": exactfold.rigidity.project(PATTERN, [(9, 0, 0), (1, 9, 0), (0, 0, 9)]),
     "tracks": kapovich_millson([(1, 0), (0, 1), (-1, 0), (0, -1)]),
     "branch system": SYSTEM,
     "chart": SYSTEM.chart,

@@ -20,6 +20,7 @@ ROOT = Path(__file__).parent.parent.parent
 LONG = (
     "all_real",
     "discussion_counts",
+    "generic",
     "inertia",
     "inertia_cases",
     "multiplicity",

@@ -8,7 +8,7 @@ from fractions import Fraction
 from itertools import combinations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from sheets import (
     SQUARE,
@@ -25,10 +25,12 @@ from sheets import (
 from exactfold import BranchCount, count_branches, random_square
 from exactfold.branches.roots import BoxRoot
 from exactfold.certify.isolation import isolate
+from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.problem.branch_system import BranchSystem, Chart
 from exactfold.problem.sign_rows import Functionals
+from exactfold.rigidity import curvature_form, project
 from exactfold.solve.homotopy_ends import homotopy
 from exactfold.verdict import PROVED
 
@@ -113,6 +115,27 @@ def test_scaling(pattern: CreasePattern, scale: Fraction) -> None:
 def test_reflection_keeps_signs_and_folds(pattern: CreasePattern) -> None:
     """Turning the drawing over left to right, not the sheet: what was up stays up."""
     check_same(pattern, mapped(pattern, mirrored))
+
+
+@few
+@given(pattern=patterns(), entries=st.lists(st.integers(-9, 9), min_size=9, max_size=9))
+def test_projective_map(pattern: CreasePattern, entries: list[int]) -> None:
+    """Theorem 10 of docs/generic.md; the first column is the denominator of the map."""
+    furthest = max(abs(x) + abs(y) for x, y in pattern.vertices)
+    rows = [entries[:3], entries[3:6], entries[6:]]
+    slope = max(abs(rows[1][0]), abs(rows[2][0]))
+    rows[0][0] = int(slope * furthest) + 1
+    rows[1][1] += 20 if rows[1][1] >= 0 else -20
+    try:
+        image = project(pattern, rows)
+    except UsageError:
+        reject()
+    heights = {v: Fraction(v**2 % 7) for v in range(len(pattern.vertices))}
+    for v in pattern.interior:
+        before = curvature_form(pattern, v)(heights)
+        after = curvature_form(image.pattern, v)(image.heights(heights))
+        assert after * image.determinant == image.factors[v] * before
+    check_same(pattern, image.pattern)
 
 
 def test_a_reflection_reverses_the_boundary_but_not_the_saddle_ray() -> None:

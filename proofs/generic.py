@@ -1,0 +1,259 @@
+"""The theorems of docs/generic.md: projective invariance, and almost every sheet."""
+
+from __future__ import annotations
+
+import random
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+import networkx as nx
+import sympy
+
+from exactfold import CreasePattern, count_branches, random_square
+from exactfold.pattern.crease_pattern import Triangle
+from exactfold.pattern.families import flat_octahedron_in_square, flat_vertex_square
+from exactfold.verdict import PROVED
+from proofs.framework import Proof, Ruling, Script, run
+
+NAME = "generic"
+TITLE = "Almost every sheet: projective invariance and distinct branches"
+
+
+def prove(change: str | None = None) -> Proof:
+    """The identities behind docs/generic.md, and each step of its proof on examples."""
+    script = Script(
+        NAME,
+        TITLE,
+        (
+            "a triangulated quadrilateral, given up to the positions of its interior vertices; its "
+            "corners are fixed, and may have a reflex angle or an angle of pi",
+        ),
+        change,
+    )
+    script.state(
+        "T.3",
+        "Sections II C and III A, 'generically', 'distinct roots 2^(Vi - Vt)' (numerical)",
+        r"B_{distinct}=2^{V_i-V_t}\text{ for generic patterns}",
+        Ruling.CORRECTED,
+        r"B_{distinct}=2^{V_i-V_t}\text{ unless the interior vertices lie in the zeros of a "
+        r"nonzero polynomial; then all folds outside triangulated triangles are bent on "
+        r"all branches}",
+        "a theorem: docs/generic.md, Theorem 11; not for every pattern: IIIA.12",
+        "BranchCount.exceptional_vertices",
+    )
+    _projective(script)
+    _thin_faces(script)
+    _straight_corner(script)
+    _paths_and_contractions(script)
+    _sheets(script)
+    return script.proof()
+
+
+def _projective(script: Script) -> None:
+    power = script.alter("the factor of one end only", 1, 0)
+    rng = random.Random(1)
+    script.cases(
+        "the stress of a fold obeys omega'_ac = omega_ac mu_a mu_c / det L",
+        (_stress_is_carried_over(rng, power) for _ in range(20)),
+    )
+    w, mu, nu, h, k = sympy.symbols("omega mu nu h k")
+    script.identity(
+        "mu nu omega (k/nu - h/mu) = mu omega (k - h) - h omega (nu - mu): over the star the first "
+        "part is left, as the stress is in equilibrium in the plane",
+        mu * nu * w * (k / nu - h / mu)
+        - mu * w * (k - h)
+        + script.alter("sign of the moment", 1, -1) * h * w * (nu - mu),
+    )
+
+
+def _stress_is_carried_over(rng: random.Random, power: int) -> bool:
+    """Of four random points with heights, a the first, c the second, under a random map."""
+    points = [[1, *(Fraction(rng.randint(-99, 99), 7) for _ in range(3))] for _ in range(4)]
+    matrix = sympy.Matrix(3, 3, [rng.randint(-99, 99) for _ in range(9)])
+    factors, images = [], []
+    for one, x, y, height in points:
+        mu, *image = sympy.Matrix([[one, x, y]]) * matrix
+        factors.append(mu)
+        images.append([1, *(entry / mu for entry in image), height / mu])
+
+    def stress(of: list[list[Any]]) -> Any:
+        """The jump of the gradient over the length, up to a sign that depends on no point."""
+        a, c, y, z = (row[:3] for row in of)
+        return sympy.Matrix(of).det() / (
+            sympy.Matrix([a, c, y]).det() * sympy.Matrix([c, a, z]).det()
+        )
+
+    expected = stress(points) * factors[0] * factors[1] ** power / matrix.det()
+    return bool(stress(images) == expected)
+
+
+def _corner(d: tuple[Any, Any], e: tuple[Any, Any], rise: Any, other: Any) -> Any:
+    """What a face with spokes d, e (counter-clockwise) adds to K, by the heights at their ends."""
+    c, s = d[0] * e[1] - d[1] * e[0], d[0] * e[0] + d[1] * e[1]
+    dd, ee = d[0] ** 2 + d[1] ** 2, e[0] ** 2 + e[1] ** 2
+    return rise * other / c - s / (2 * c) * (rise**2 / dd + other**2 / ee)
+
+
+def _thin_faces(script: Script) -> None:
+    a, b, s, r = sympy.symbols("theta_p theta_q sigma r")
+    m = sympy.Symbol("m", positive=True)
+    sign = script.alter("sign of the mixed term", 1, -1)
+    # the face u, x, p at u: spokes of lengths eps and m, at the angle pi - theta
+    spokes = (sympy.Integer(1), sympy.Integer(0)), (-m * sympy.cos(a), m * sympy.sin(a))
+    script.identity(
+        "a thin face adds (sigma^2 + r^2) cot(theta)/2 - sigma r / sin(theta)",
+        sympy.simplify(
+            _corner(*spokes, -s, r * m)
+            - (s**2 + r**2) * sympy.cot(a) / 2
+            + sign * s * r / sympy.sin(a)
+        ),
+    )
+    total = script.alter("difference of the angles", a + b, a - b)
+    script.identity(
+        "cot(theta_p) + cot(theta_q) = sin(theta_p + theta_q) / (sin(theta_p) sin(theta_q))",
+        sympy.simplify(
+            (sympy.cot(a) + sympy.cot(b)) * sympy.sin(a) * sympy.sin(b) - sympy.sin(total)
+        ),
+    )
+
+
+def _straight_corner(script: Script) -> None:
+    """The limit where x lies on the side pq and has no other neighbour than u."""
+    P, Q, m, eps = sympy.symbols("P Q m epsilon", positive=True)
+    hx, hu, hp, hq = sympy.symbols("h_x h_u h_p h_q")
+    u = (m * eps, eps)
+
+    def spoke(x: Any) -> tuple[Any, Any]:
+        return x - u[0], -u[1]
+
+    thin = _corner(spoke(-Q), spoke(0), hq - hu, hx - hu) + _corner(
+        spoke(0), spoke(P), hx - hu, hp - hu
+    )
+    line = (hp / P + hq / Q) / (1 / P + 1 / Q)
+    half = script.alter("the height of u alone", sympy.Rational(1, 2), 1)
+    mean = half * hu + (1 - half) * hx
+    limit = sympy.cancel(sympy.together(eps * thin)).subs(eps, 0)
+    script.identity(
+        "at a corner x on a side pq, whose height at x is L: eps K_thin tends to "
+        "-(1/|xp| + 1/|xq|)(h_u - h_x)(L - (h_u + h_x)/2); so h_u tends to h_x or to 2 L - h_x",
+        limit + (1 / P + 1 / Q) * (hu - hx) * (line - mean),
+    )
+
+
+def disjoint_paths(
+    triangles: Iterable[Triangle], rim: Iterable[int], corners: Iterable[int]
+) -> list[list[int]]:
+    """As many disjoint paths as there are from corners to the rim, none through the rim."""
+    graph, rim = nx.Graph(), set(rim)
+    for a, b, c in triangles:
+        graph.add_edges_from([(a, b), (b, c), (c, a)])
+    graph.add_edges_from(("from", v) for v in corners)
+    graph.add_edges_from((v, "to") for v in rim)
+    found = nx.node_disjoint_paths(graph, "from", "to")
+    return [path[1 : 2 + min(k for k, v in enumerate(path[1:]) if v in rim)] for path in found]
+
+
+def outside_triangles(pattern: CreasePattern, corners: set[int]) -> bool:
+    """Whether no triangle of edges has all of these vertices on it or inside."""
+    return not any(corners <= {*cycle, *inside} for cycle, inside in pattern.triangulated_triangles)
+
+
+def contracted(triangles: Iterable[Triangle], u: int, x: int) -> list[Triangle]:
+    """The triangles after u is moved into its neighbour x: those with both vanish."""
+    return [
+        (x if a == u else a, x if b == u else b, x if c == u else c)
+        for a, b, c in triangles
+        if not {u, x} <= {a, b, c}
+    ]
+
+
+def is_simple_disk(triangles: Sequence[Triangle]) -> bool:
+    """Whether triangles that fit together form a disk in which no two vertices have two edges."""
+    halves = [half for a, b, c in triangles for half in ((a, b), (b, c), (c, a))]
+    edges = {frozenset(half) for half in halves}
+    vertices = {v for face in triangles for v in face}
+    euler = len(vertices) - len(edges) + len(triangles)
+    return len(set(halves)) == len(halves) and euler == 1
+
+
+def _contractions(pattern: CreasePattern, ends: int) -> Iterator[bool]:
+    """Step 4 of the proof for all folds: whether what is left is as it says."""
+    for fold in pattern.folds:
+        corners = {*fold, *pattern.opposite(fold)}
+        for path in disjoint_paths(pattern.triangles, pattern.boundary, corners):
+            if len(path) > 1:
+                u, x = path[-ends:-1][0], path[-1]
+                left = contracted(pattern.triangles, u, x)
+                a, c, y, z = (x if v == u else v for v in (*fold, *pattern.opposite(fold)))
+                faces = {frozenset(t) for t in left}
+                yield (
+                    is_simple_disk(left)
+                    and {frozenset((a, c, y)), frozenset((a, c, z))} <= faces
+                    and len(disjoint_paths(left, pattern.boundary, {a, c, y, z})) == 4
+                )
+
+
+def _paths_and_contractions(script: Script) -> None:
+    sheets = [random_square(n, seed=seed) for n in (3, 5, 7) for seed in range(4)]
+    sheets += [flat_octahedron_in_square(), flat_vertex_square()]
+    needed = script.alter("three paths suffice", 4, 3)
+
+    def paths(sheet: CreasePattern, corners: set[int]) -> int:
+        return len(disjoint_paths(sheet.triangles, sheet.boundary, corners))
+
+    script.cases(
+        "four disjoint paths lead from the corners of the faces of a fold to the boundary if and "
+        "only if the fold is inside no triangle of edges",
+        (
+            (paths(sheet, corners) >= needed) is outside_triangles(sheet, corners)
+            for sheet in sheets
+            for fold in sheet.folds
+            for corners in [{*fold, *sheet.opposite(fold)}]
+        ),
+    )
+    ends = script.alter("contraction of the first edge of a path", 2, 99)
+    script.cases(
+        "with no vertices inside triangles of edges, the last edge of a path can be contracted: "
+        "a simple disk is left, with both faces of the fold and four disjoint paths",
+        (
+            holds
+            for sheet in sheets
+            for holds in _contractions(sheet.without_rigid_parts()[0], ends)
+        ),
+    )
+
+
+def _sheets(script: Script) -> None:
+    lost = script.alter("vertices inside triangles count", 0, 1)
+    straight = CreasePattern(
+        [(-4, 0), (0, 0), (4, 0), (1, 6), (1, 2), ("1/2", 4)],
+        [(0, 1, 4), (1, 2, 4), (2, 3, 5), (2, 5, 4), (0, 4, 5), (0, 5, 3)],
+    )
+    sheets = [random_square(4, seed=seed) for seed in range(6)] + [
+        flat_octahedron_in_square(),
+        straight,
+    ]
+    results = [count_branches(sheet) for sheet in sheets]
+    script.cases(
+        "random squares, a flat octahedron and a sheet with a corner on a side have 2^(Vi - Vt) "
+        "branches",
+        (
+            r.status is PROVED and r.distinct == 1 << (r.pattern.Vi - (1 - lost) * r.pattern.Vt)
+            for r in results
+        ),
+    )
+    exception = count_branches(flat_vertex_square())
+    script.counterexample(
+        "flat-vertex has 3 branches and no triangulated triangle: the polynomial has zeros",
+        exception.distinct == script.alter("four branches", 3, 4) and exception.pattern.Vt == 0,
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
