@@ -41,6 +41,11 @@ TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
         "Follow a branch in space, prove the motion, and drive it.",
         ("motion", "actuation"),
     ),
+    "studies": (
+        "Studies",
+        "Seeded ensembles of patterns: rows, tables and figures.",
+        ("studies",),
+    ),
     "evidence": (
         "Certificates",
         "Write a certificate, read it back, and verify it.",

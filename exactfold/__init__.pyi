@@ -19,6 +19,7 @@ from exactfold import problem as problem
 from exactfold import rigidity as rigidity
 from exactfold import schemas as schemas
 from exactfold import solve as solve
+from exactfold import studies as studies
 from exactfold import viewer as viewer
 from exactfold.actuation import actuate as actuate
 from exactfold.branches import Branch as Branch

@@ -12,6 +12,7 @@ import typer
 
 from exactfold.cli_branches import COMMANDS as BRANCHES
 from exactfold.cli_pictures import COMMANDS as PICTURES
+from exactfold.cli_studies import COMMANDS as STUDIES
 from exactfold.commands.parameters import (
     Curvature,
     Json,
@@ -189,7 +190,7 @@ def check(
     raise typer.Exit(0 if valid(certificate, workers, as_json) else 1)
 
 
-for command in (*PICTURES, *BRANCHES):
+for command in (*PICTURES, *BRANCHES, *STUDIES):
     app.command(cls=Command)(command)
 
 

@@ -171,6 +171,33 @@ class JournalInUseError(InputError):
     """Another run is writing the file; this one has left it alone."""
 
 
+# --- studies -------------------------------------------------------------------------------------
+
+
+class UnknownStudyError(UsageError):
+    """No study has this name; the message lists those that there are."""
+
+
+class UnknownRowError(InputError):
+    """A journal of a study has no row, or more than one, whose name begins like this."""
+
+
+class ForeignRowsError(ForeignJournalError):
+    """A journal holds the rows of another study, or of another version of it."""
+
+
+class BrokenRowsError(InputError):
+    """A file is not the journal of a study, or is damaged, or holds a row that was changed."""
+
+
+class RowFailedError(ExactfoldError):
+    """Rows of a study ended with an error; all others were written."""
+
+
+class StudyPartsMissingError(ExactfoldError):
+    """Matplotlib, pandas or pyarrow, optional parts of studies, is not installed."""
+
+
 # --- patterns ------------------------------------------------------------------------------------
 
 

@@ -97,6 +97,16 @@ def numbers(text: object) -> tuple[int, ...]:
     return tuple(whole(1)(part.strip()) for part in str(text).split(","))
 
 
+def sizes(text: object) -> tuple[int, ...]:
+    """Numbers from 1 on and ranges of them, such as 2-5,8."""
+    found: set[int] = set()
+    for part in str(text).split(","):
+        first, _, last = part.strip().partition("-")
+        low = whole(1)(first)
+        found.update(range(low, whole(low)(last or first) + 1))
+    return tuple(sorted(found))
+
+
 def sign_vectors(text: object) -> tuple[str, ...]:
     """Vertex signs of several branches, such as +-+,++-."""
     found = tuple(part.strip() for part in str(text).split(",") if part.strip())

@@ -27,6 +27,7 @@ from exactfold.errors import (
     NotCountedError,
     NotEnoughMemoryError,
     NotFollowedError,
+    RowFailedError,
     UnreadableFileError,
     UsageError,
     WorkerDiedError,
@@ -103,7 +104,7 @@ def exit_code(error: Exception) -> int:
     """The exit code of a command that ended with an error."""
     if isinstance(error, NotEnoughMemoryError):
         return NO_MEMORY
-    if isinstance(error, WorkerDiedError) or not isinstance(error, ExactfoldError):
+    if isinstance(error, WorkerDiedError | RowFailedError) or not isinstance(error, ExactfoldError):
         return INTERNAL
     if isinstance(error, NotCountedError | NotFollowedError):
         return EXIT[UNDECIDED]

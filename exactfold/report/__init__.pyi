@@ -25,5 +25,12 @@ from exactfold.report.panels import panels_report as panels_report
 from exactfold.report.picture_files import write_picture as write_picture
 from exactfold.report.plotting import angles_plot as angles_plot
 from exactfold.report.stills import motion_stills as motion_stills
+from exactfold.report.study import row_report as row_report
+from exactfold.report.study import studies_report as studies_report
+from exactfold.report.study import study_report as study_report
+from exactfold.report.study import table_of as table_of
+from exactfold.report.study_figures import check_figures as check_figures
+from exactfold.report.study_figures import drawn as drawn
+from exactfold.report.study_html import study_page as study_page
 from exactfold.report.terminal import console as console
 from exactfold.report.terminal import show as show

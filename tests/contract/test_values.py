@@ -87,8 +87,21 @@ PROVING = {
     "arc of a graph": LOOPS.graph.arcs[0],
     "proof of a loop": LoopFinder(Problem.of(ONE)).follow(LEAVING),
 }
+RUN = exactfold.studies.run_study("table1", numbers={2: 1})
+STUDIES = {
+    "study": RUN.study,
+    "run of a study": RUN,
+    "table of a study": RUN.tables[0],
+    "stored row": exactfold.studies.StoredRow("0", {"seed": 1}, {"status": "proved"}),
+    "row computed again": exactfold.studies.Recomputed(
+        RUN.study,
+        exactfold.studies.StoredRow("0", {"seed": 1}, {"status": "proved"}),
+        {"status": "undecided"},
+    ),
+}
 VALUES = {
     **PROVING,
+    **STUDIES,
     "pattern": PATTERN,
     "pattern with long coordinates": exactfold.CreasePattern(
         [(0, 0), (10**5000, 0), (0, "1/7"), (1, "1/50")], [(0, 1, 3), (1, 2, 3), (2, 0, 3)]

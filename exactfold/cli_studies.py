@@ -1,0 +1,113 @@
+"""The command that runs studies: its options, no decisions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from exactfold.commands.parameters import Json, flag, number, sizes, written
+from exactfold.commands.shell import reported
+
+
+def _complete(incomplete: str) -> list[str]:
+    """The studies that begin with what is typed."""
+    from exactfold.studies.registry import MODULES
+
+    return [name for name in MODULES if name.startswith(incomplete)]
+
+
+@reported
+def study(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[NAME]",
+            autocompletion=_complete,
+            help="The study. Without a name, the studies are listed.",
+            show_default=False,
+        ),
+    ] = None,
+    seed: Annotated[int, number("Seed of all that is drawn at random.", "S", least=0)] = 0,
+    sizes: Annotated[
+        Any,
+        typer.Option(
+            parser=sizes,
+            metavar="SIZES",
+            help="Only these sizes, such as 2-5,8: most often numbers of interior vertices.",
+        ),
+    ] = None,
+    number_: Annotated[
+        int | None,
+        number("Rows of each size. Default: as many as in the paper.", "N", "--number"),
+    ] = None,
+    extend: Annotated[bool, flag("--extend", text="Also the larger sizes of the study.")] = False,
+    workers: Annotated[int | None, number("Processes. Default: all cores.")] = None,
+    dask: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Run on the dask.distributed cluster with this scheduler; `local` starts one "
+            "here.",
+        ),
+    ] = None,
+    journal: Annotated[
+        Path | None,
+        written(
+            "Where rows are kept: the same command goes on with them, and a row that is there is "
+            "not computed again. Default: NAME.sqlite.",
+            "FILE.sqlite",
+        ),
+    ] = None,
+    csv: Annotated[
+        Path | None, written("Write the rows as a table, with recipes.", "OUT.csv")
+    ] = None,
+    parquet: Annotated[Path | None, written("The same for Parquet.", "OUT.parquet")] = None,
+    html: Annotated[
+        Path | None,
+        written("Write a report with tables and pictures, one file.", "OUT.html"),
+    ] = None,
+    figures: Annotated[
+        Path | None,
+        written("Write each picture into this folder, as SVG and as PDF.", "FOLDER"),
+    ] = None,
+    row: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ID",
+            help="Instead: compute one row of the journal again, and compare. The first digits "
+            "of its name are enough.",
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Run a study: a table or figure of the paper, each number in it proved.
+
+    Rows are kept as they are ready; the same command goes on after an
+    interruption, and asks for no row twice. The result depends on the seed, not
+    on the number of processes.
+    """
+    from exactfold.commands.study import Wanted
+
+    wanted = Wanted(
+        name,
+        seed,
+        sizes,
+        number_,
+        extend,
+        workers,
+        dask,
+        journal,
+        csv,
+        parquet,
+        html,
+        figures,
+        row,
+        as_json,
+    )
+    raise typer.Exit(wanted.answer())
+
+
+COMMANDS = (study,)
+"""In the order in which the help lists them."""

@@ -1,0 +1,13 @@
+from exactfold.studies.registry import all_studies as all_studies
+from exactfold.studies.registry import study_named as study_named
+from exactfold.studies.runner import Recomputed as Recomputed
+from exactfold.studies.runner import StudyRun as StudyRun
+from exactfold.studies.runner import recompute_row as recompute_row
+from exactfold.studies.runner import run_study as run_study
+from exactfold.studies.store import StoredRow as StoredRow
+from exactfold.studies.store import read_row as read_row
+from exactfold.studies.study import Study as Study
+from exactfold.studies.study import StudyTable as StudyTable
+from exactfold.studies.writing import frame as frame
+from exactfold.studies.writing import write_csv as write_csv
+from exactfold.studies.writing import write_parquet as write_parquet

@@ -1,0 +1,202 @@
+"""All branches of a pattern as arrays: proved signs and letters, directions with error bounds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+import numpy.typing as npt
+
+from exactfold.arrays import FloatArray
+from exactfold.branches.branch import Branch
+from exactfold.branches.letters import LETTERS
+from exactfold.branches.result import BranchCount
+from exactfold.count.collect import count_branches
+from exactfold.count.conveyor import LISTED_BITS, Conveyor
+from exactfold.errors import NotCountedError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.problem.problem import Problem
+from exactfold.rigidity.functionals import fold_functional
+from exactfold.solve.dense_newton import sign_vectors
+from exactfold.verdict import PROVED, Verdict
+
+SignArray = npt.NDArray[np.int8]
+
+UNKNOWN = 2
+"""In place of the sign of a fold that is not decided."""
+
+_U = 2.0**-53
+_UP = 1.0 + 2.0**-20
+_VALUES = {letter: UNKNOWN if sign is None else sign for sign, letter in LETTERS.items()}
+_BITS = 80
+"""Bits of the bounds that are asked for where branches come one by one."""
+
+
+@dataclass(frozen=True)
+class Lines:
+    """All branches of a pattern with four corners: one row each, seen from any of its two sides.
+
+    `signs` (branches, interior vertices): 1 up, -1 down, 0 proved flat. `letters` (branches,
+    folds): 1 valley, -1 mountain, 0 proved flat, `UNKNOWN`. `directions` (branches, folds): the
+    unit vector of the first-order fold angles of each branch (`fold_angles`), as doubles that are
+    within `errors` of the true ones in the Euclidean norm. Interior vertices and folds in the order
+    of the pattern. If `status` is PROVED these are all branches, each once, and
+    `with_multiplicity` is the number of solutions with multiplicity; otherwise there are no rows.
+    """
+
+    pattern: CreasePattern
+    status: Verdict
+    signs: SignArray
+    letters: SignArray
+    directions: FloatArray
+    errors: FloatArray
+    with_multiplicity: int | None
+
+    @classmethod
+    def of(cls, pattern: CreasePattern) -> Lines:
+        """All branches, proved as by `count_branches`, and read from arrays where that is possible.
+
+        Raises as `count_branches` does.
+
+        >>> from exactfold.pattern.families import two_vertex
+        >>> lines = Lines.of(two_vertex())
+        >>> lines.signs.tolist()
+        [[1, 1], [-1, 1], [1, -1], [-1, -1]]
+        >>> bool(lines.errors.max() < 1e-9)
+        True
+        """
+        try:
+            conveyor = Conveyor.of(pattern, bits=LISTED_BITS)
+        except NotCountedError:
+            return _one_by_one(count_branches(pattern))
+        return _by_blocks(conveyor) or _one_by_one(count_branches(pattern))
+
+    @property
+    def distinct(self) -> int | None:
+        """The number of branches, None if it is not proved."""
+        return len(self.signs) if self.status is PROVED else None
+
+    @property
+    def flat_vertices(self) -> int:
+        """How many foldable vertices are flat in some branch."""
+        rigid = {v for _, inside in self.pattern.triangulated_triangles for v in inside}
+        flat = (self.signs == 0).any(axis=0).tolist()
+        interior = self.pattern.interior
+        return sum(f for v, f in zip(interior, flat, strict=True) if v not in rigid)
+
+
+def _by_blocks(conveyor: Conveyor) -> Lines | None:
+    """The branches of all blocks; None unless every sign vector has a proved root with letters."""
+    problem, count = conveyor.problem, conveyor.block_size
+    pattern = problem.pattern
+    total = 1 << conveyor.size
+    signs = np.zeros((total, pattern.Vi), dtype=np.int8)
+    letters = np.zeros((total, len(pattern.folds)), dtype=np.int8)
+    points = np.empty((total, conveyor.size + 1))
+    radii = np.empty(total)
+    points[:, -1] = 1.0
+    vertices = [pattern.interior.index(v) for v in problem.foldable]
+    places = {fold: k for k, fold in enumerate(pattern.folds)}
+    labels = problem.labels
+    folds = [places[labels[i], labels[j]] for i, j in sorted(problem.sheet.folds)]
+    for index in range(conveyor.blocks):
+        block = conveyor.prove(index)
+        if block.open or any("U" in root.assignment for root in block.exact.values()):
+            return None
+        rows = slice(index * count, (index + 1) * count)
+        found = np.where(block.valleys, 1, -1).astype(np.int8)
+        points[rows, :-1] = block.boxes.points
+        radii[rows] = block.boxes.radii
+        for j, root in block.exact.items():
+            found[j] = [_VALUES[letter] for letter in root.assignment]
+            box = root.box
+            points[index * count + j, :-1] = [x / (1 << box.bits) for x in box.real]
+            radii[index * count + j] = (box.radius / (1 << box.bits)) * _UP
+            radii[index * count + j] += _U * float(np.abs(points[index * count + j]).max())
+        letters[rows, folds] = found
+        signs[rows, vertices] = sign_vectors(index * count, count, conveyor.size)
+    directions, errors = _directions(problem, points, radii)
+    return Lines(pattern, PROVED, signs, letters, directions, errors, 1 << pattern.Vi)
+
+
+def _directions(
+    problem: Problem, points: FloatArray, radii: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors of fold angles at points (x, 1) with boxes of these radii, and error bounds.
+
+    A bend is a row of rationals times the length of the fold. With B the nearest doubles, all off
+    by at most 4 u, z = (x, 1) of n + 1 terms and gamma as in `float_krawczyk`, the error of fl(B z)
+    is at most r sum_k |B_k| + c |B| |z| for c = 3 (n + 5) u; and a vector within e of one of length
+    l has a direction within 2 e / (l - e) of it, to which rounding adds less than (F + 4) u.
+    """
+    pattern, rows = problem.pattern, problem.height_rows(problem.chart)
+    size = points.shape[1]
+    matrix = np.empty((len(pattern.folds), size))
+    for k, fold in enumerate(pattern.folds):
+        weights = fold_functional(pattern, fold)
+        left, right = pattern.opposite(fold)
+        scale = Fraction(1, weights[left] * weights[right])
+        length = _length(pattern, fold)
+        for column in range(size):
+            value = sum((w * rows[v][column] for v, w in weights.items()), Fraction(0))
+            matrix[k, column] = float(value * scale) * length
+    absolute = np.abs(matrix)
+    bends = points @ matrix.T
+    off = radii[:, None] * absolute[:, :-1].sum(axis=1)
+    off += 3.0 * (size + 4) * _U * (np.abs(points) @ absolute.T)
+    return _units(bends, np.sqrt((off**2).sum(axis=1)) * _UP)
+
+
+def _units(bends: FloatArray, errors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Vectors scaled to length 1, and what becomes of their error bounds."""
+    lengths = np.sqrt((bends**2).sum(axis=1))
+    with np.errstate(all="ignore"):
+        spread = np.where(
+            lengths > 2.0 * errors, 2.0 * errors / (lengths * (1.0 - 2.0**-30) - errors), 2.0
+        )
+    return bends / lengths[:, None], spread * _UP + (bends.shape[1] + 4) * _U
+
+
+def _length(pattern: CreasePattern, fold: tuple[int, int]) -> float:
+    """The length of a fold in integer coordinates: correctly rounded but for two units."""
+    points, _ = pattern.integer_vertices
+    (ax, ay), (bx, by) = points[fold[0]], points[fold[1]]
+    return float(np.sqrt(float((bx - ax) ** 2 + (by - ay) ** 2)))
+
+
+def _one_by_one(result: BranchCount) -> Lines:
+    """The branches of a count, whose roots may be multiple."""
+    pattern = result.pattern
+    proved = result.status is PROVED and bool(result.branches)
+    branches = [_sharp(branch) for branch in result.branches] if proved else []
+    bends = np.empty((len(branches), len(pattern.folds)))
+    errors = np.zeros(len(branches))
+    for k, branch in enumerate(branches):
+        angles = branch.fold_angles
+        bends[k] = [float(angles.bends[fold]) for fold in pattern.folds]
+        for fold, bend in zip(pattern.folds, bends[k], strict=True):
+            low, high = angles.densities[fold]
+            middle = (low + high) / 2
+            reach = float((high - low) / 2) * abs(float(bend) / float(middle)) if middle else 0.0
+            if not middle and high > low:  # no bound of the bend follows from its middle
+                reach = float("inf")
+            errors[k] += reach * _UP + 4 * _U * abs(bend)
+    directions, spread = _units(bends, errors)
+    return Lines(
+        pattern,
+        result.status,
+        np.array(
+            [[b.vertex_signs[v] for v in pattern.interior] for b in branches], dtype=np.int8
+        ).reshape(len(branches), pattern.Vi),
+        np.array(
+            [[_VALUES[b.assignment[f]] for f in pattern.folds] for b in branches], dtype=np.int8
+        ).reshape(len(branches), len(pattern.folds)),
+        directions,
+        spread,
+        result.with_multiplicity,
+    )
+
+
+def _sharp(branch: Branch) -> Branch:
+    return branch.sharpened(_BITS)

@@ -1,0 +1,30 @@
+"""The studies by name; each is a module of this room with a `STUDY`."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from exactfold.errors import UnknownStudyError
+from exactfold.studies.study import Study
+
+MODULES = {
+    "table1": "exactfold.studies.table1",
+}
+"""The module of each study, in the order in which they are listed."""
+
+
+def study_named(name: str) -> Study:
+    """The study with a name; raises `UnknownStudyError`, which lists the names.
+
+    >>> study_named("table1").numbers[5]
+    1000
+    """
+    if name not in MODULES:
+        raise UnknownStudyError(f"no study {name!r}; there are: {', '.join(MODULES)}")
+    found: Study = import_module(MODULES[name]).STUDY
+    return found
+
+
+def all_studies() -> dict[str, Study]:
+    """All studies by name."""
+    return {name: study_named(name) for name in MODULES}

@@ -1,0 +1,162 @@
+"""What a study is: recipes, a row for each, and tables and figures made of the rows."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from exactfold.errors import UsageError
+from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.wording import counted
+
+Recipe: TypeAlias = Mapping[str, int | str]
+"""What makes a row: numbers and texts by name, such as a size and a seed."""
+
+Row: TypeAlias = Mapping[str, Any]
+"""What was found, by name; where tables and figures are made, with the recipe and its `row`."""
+
+Cell: TypeAlias = int | str | None
+"""What stands in a table; None where there is nothing to say."""
+
+STATUSES = (str(PROVED), str(UNDECIDED))
+"""What the key `status` of a row may be."""
+
+
+@dataclass(frozen=True, repr=False)
+class StudyTable:
+    """A table of a study: plain values, which a terminal, a page or a program shows.
+
+    `name` names the table in files; `notes` are whole sentences below it.
+    """
+
+    name: str
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<StudyTable: {self.name}, {counted(len(self.rows), 'row')}>"
+
+    @property
+    def words(self) -> tuple[bool, ...]:
+        """Which columns hold words and not numbers: these are flush left."""
+        return tuple(
+            any(isinstance(row[k], str) and row[k][:1].isalpha() for row in self.rows)  # type: ignore[index]
+            for k in range(len(self.columns))
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """The table as `exactfold study --json` has it."""
+        return {
+            "name": self.name,
+            "title": self.title,
+            "columns": list(self.columns),
+            "rows": [list(row) for row in self.rows],
+            "notes": list(self.notes),
+        }
+
+
+@dataclass(frozen=True)
+class StudyFigure:
+    """A figure of a study: `draw(axes)` draws it on axes of Matplotlib, in the style of the report.
+
+    `name` names its file. `width` and `height` are in inches. With `panels` = (rows, columns) other
+    than (1, 1), `draw` gets a list of axes, row by row. What is drawn is a picture; the numbers
+    that are proved stand in the tables.
+    """
+
+    name: str
+    title: str
+    caption: str
+    draw: Callable[[Any], None] = field(compare=False)
+    width: float = 5.0
+    height: float = 3.4
+    panels: tuple[int, int] = (1, 1)
+
+
+@dataclass(frozen=True, repr=False)
+class Study:
+    """A function from a seeded recipe to a row, and from rows to tables and figures.
+
+    `recipes(seed, numbers)` yields the recipes of `numbers[size]` rows of each size; different
+    sizes and seeds share none. `row(recipe)` is a function of a module, as it is sent to other
+    processes; it depends on the recipe only. Its mapping has a `status`, "proved" or "undecided".
+    `tables` and `figures` get rows with their recipes. `numbers` are those of the paper, and
+    `extended` go past it. Rows of another `version` are not read: it rises when `row` changes.
+    """
+
+    name: str
+    about: str
+    version: int
+    numbers: Mapping[int, int]
+    extended: Mapping[int, int]
+    recipes: Callable[[int, Mapping[int, int]], Iterator[Recipe]]
+    row: Callable[[Recipe], Row]
+    tables: Callable[[Iterable[Row]], Sequence[StudyTable]]
+    figures: Callable[[Iterable[Row]], Sequence[StudyFigure]]
+
+    def __repr__(self) -> str:
+        return f"<Study: {self.name}, version {self.version}>"
+
+    def id_of(self, recipe: Recipe) -> str:
+        """The name of the row of a recipe: 16 hexadecimal digits of the SHA-256 of all it means.
+
+        >>> from exactfold.studies.registry import study_named
+        >>> study_named("table1").id_of({"interior": 4, "seed": 0, "denominator": 1024})
+        'fd848fb1597c9886'
+        """
+        return digest([self.name, self.version, recipe])[:16]
+
+    def chosen(
+        self,
+        sizes: Iterable[int] | None = None,
+        number: int | None = None,
+        *,
+        extend: bool = False,
+    ) -> dict[int, int]:
+        """How many rows of each size: those of the study, of these `sizes` only, or this `number`.
+
+        Raises `UsageError` for a size that the study has no number for, where none is given.
+        """
+        known = {**self.numbers, **(self.extended if extend else {})}
+        wanted = sorted(set(sizes)) if sizes is not None else sorted(known)
+        if number is not None:
+            return dict.fromkeys(wanted, number)
+        missing = [size for size in wanted if size not in known]
+        if missing:
+            raise UsageError(
+                f"the study {self.name} has no number of rows for size {missing[0]}: give --number"
+            )
+        return {size: known[size] for size in wanted}
+
+
+def canonical(value: object) -> str:
+    """The one JSON text of a value; raises `ValueError` for NaN and infinities.
+
+    >>> canonical({"b": 1, "a": [True, None]})
+    '{"a":[true,null],"b":1}'
+    """
+    return json.dumps(
+        value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False
+    )
+
+
+def digest(value: object) -> str:
+    """The SHA-256 of a value as JSON, in hexadecimal digits."""
+    return hashlib.sha256(canonical(value).encode("utf-8")).hexdigest()
+
+
+_COLOURS = ("#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da39", "#e3c01a")
+
+
+def of_size(size: int) -> dict[str, str]:
+    """The colour of a number of interior vertices in figures: from dark to light, 2 to 8 and on.
+
+    >>> of_size(2)
+    {'color': '#440154'}
+    """
+    return {"color": _COLOURS[(size - 2) % len(_COLOURS)]}

@@ -1,0 +1,324 @@
+"""Table I of the paper, proved: branches of random squares, and which share their letters.
+
+A row is one random square. Branches share their letters if the letters of one are those of the
+other, or all of them reversed, as the other side of the sheet shows them. Such a pair shares its
+vertex signs too if these agree when the letters do.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from exactfold.studies.closest import closest_pair
+from exactfold.studies.lines import UNKNOWN, Lines, SignArray
+from exactfold.studies.squares import square_of, square_recipes
+from exactfold.studies.statistics import agreement, interval, interval_text, same_probability
+from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.verdict import PROVED
+
+PAPER: Final = {
+    2: (100, 0, 0, 0),
+    3: (5000, 0, 0, 0),
+    4: (1000, 2, 0, 0),
+    5: (1000, 1, 17, 1),
+    6: (1000, 1, 28, 2),
+    7: (300, 0, 17, 1),
+    8: (50, 0, 8, 0),
+}
+"""By Vi: squares, those with V_t > 0, with MV duplicates (Table I), with signs too (IIIC)."""
+
+
+def row(recipe: Recipe) -> dict[str, Any]:
+    """What is proved of the branches of one random square.
+
+    `with_letters` and `with_signs`: how many branches share their letters, and their signs too,
+    with another; None where a letter is not decided. `closest` bounds the distance of the closest
+    pair of branches, as unit vectors of fold angles up to sign, from below; `digits` tell all
+    branches apart. `flat`: vertices outside triangulated triangles that are flat in a branch.
+    """
+    lines = Lines.of(square_of(recipe))
+    pattern = lines.pattern
+    found: dict[str, Any] = {
+        "status": str(lines.status),
+        "rigid": pattern.Vt,
+        "distinct": lines.distinct,
+        "with_multiplicity": lines.with_multiplicity,
+        "pairs_of_signs": None,
+        "flat": None,
+        "with_letters": None,
+        "with_signs": None,
+        "closest": None,
+        "digits": None,
+    }
+    if lines.status is not PROVED:
+        return found
+    found["flat"] = lines.flat_vertices
+    found["pairs_of_signs"] = _two_for_each_pair(lines.signs)
+    if not (lines.letters == UNKNOWN).any():
+        letters, signs = same_side(lines.letters, lines.signs)
+        found["with_letters"] = _repeated(letters)
+        found["with_signs"] = _repeated(np.hstack([letters, signs]))
+    pair = closest_pair(lines.directions, lines.errors)
+    if pair is not None and pair.digits is not None:
+        found["closest"] = float(f"{pair.low * (1 - 1e-5):.5e}")
+        found["digits"] = pair.digits
+    return found
+
+
+def same_side(letters: SignArray, signs: SignArray) -> tuple[SignArray, SignArray]:
+    """Letters and signs of lines, each seen from the side on which its first letter is "V".
+
+    >>> same_side(np.array([[0, -1, 1], [0, 1, 1]], np.int8), np.array([[1], [1]], np.int8))
+    (array([[ 0,  1, -1],
+           [ 0,  1,  1]], dtype=int8), array([[-1],
+           [ 1]], dtype=int8))
+    """
+    first = (letters != 0).argmax(axis=1)
+    side = letters[np.arange(len(letters)), first][:, None]
+    return letters * side, signs * side
+
+
+def _repeated(rows: SignArray) -> int:
+    """How many rows are equal to another."""
+    counts = np.unique(rows, axis=0, return_counts=True)[1]
+    return int(counts[counts > 1].sum())
+
+
+def _two_for_each_pair(signs: SignArray) -> bool:
+    """Whether two branches have each pair of opposite sign vectors of the foldable vertices."""
+    foldable = signs[:, (signs != 0).any(axis=0)]
+    size = foldable.shape[1]
+    if not size or (foldable == 0).any():
+        return False
+    turned = foldable * foldable[:, :1]
+    counts = np.unique(turned, axis=0, return_counts=True)[1]
+    return len(counts) == 1 << (size - 1) and bool((counts == 2).all())
+
+
+@dataclass
+class _Tally:
+    """What the rows of one size add up to."""
+
+    number: int = 0
+    undecided: int = 0
+    rigid: int = 0
+    letters: int = 0
+    signs: int = 0
+    flat: int = 0
+    unclear: int = 0
+    as_in_caption: int = 0
+    closest: float = 2.0
+    closest_seed: int = 0
+    digits: int = 0
+    histogram: dict[int, int] = field(default_factory=lambda: defaultdict(int))
+
+    def add(self, row: Row) -> None:
+        """One more row."""
+        self.number += 1
+        if row["status"] != str(PROVED):
+            self.undecided += 1
+            return
+        self.rigid += row["rigid"] > 0
+        self.flat += row["flat"] > 0
+        size, rigid = row["interior"], row["rigid"]
+        self.as_in_caption += (
+            row["distinct"] == 1 << (size - rigid)
+            and row["with_multiplicity"] == 1 << size
+            and row["pairs_of_signs"]
+        )
+        if row["with_letters"] is None:
+            self.unclear += 1
+        else:
+            self.letters += row["with_letters"] > 0
+            self.signs += row["with_signs"] > 0
+        if row["digits"] is not None:
+            self.digits = max(self.digits, row["digits"])
+            self.histogram[row["digits"]] += 1
+            if row["closest"] < self.closest:
+                self.closest, self.closest_seed = row["closest"], row["seed"]
+
+
+def _tallies(rows: Iterable[Row]) -> dict[int, _Tally]:
+    found: dict[int, _Tally] = defaultdict(_Tally)
+    for row in rows:
+        found[row["interior"]].add(row)
+    return dict(sorted(found.items()))
+
+
+def tables(rows: Iterable[Row]) -> list[StudyTable]:
+    """The table of the paper, the comparison with it, and how close branches come."""
+    tallies = _tallies(rows)
+    return [_main(tallies), _comparison(tallies), _distances(tallies)]
+
+
+def _main(tallies: dict[int, _Tally]) -> StudyTable:
+    lines = tuple(
+        (
+            size,
+            t.number,
+            t.number - t.undecided,
+            t.as_in_caption,
+            t.rigid,
+            t.letters,
+            t.signs,
+            t.flat,
+        )
+        for size, t in tallies.items()
+    )
+    unclear = sum(t.unclear for t in tallies.values())
+    notes = [
+        "as in the caption: 2^Vi branches with multiplicity, 2^(Vi - Vt) different ones, two for "
+        "each pair of opposite vertex signs.",
+        "same MV: some branches share their mountains and valleys; and signs: some of these share "
+        "their vertex signs too; flat: a vertex outside triangulated triangles is flat in a "
+        "branch.",
+    ]
+    if unclear:
+        notes.append(f"squares with a letter that is not decided, not counted there: {unclear}.")
+    return StudyTable(
+        "squares",
+        "Table I: random squares, each counted with proof",
+        ("Vi", "squares", "proved", "as in the caption", "Vt > 0", "same MV", "and signs", "flat"),
+        lines,
+        tuple(notes),
+    )
+
+
+_KINDS = (("Vt > 0", "rigid"), ("same MV", "letters"), ("and signs", "signs"))
+
+
+def _comparison(tallies: dict[int, _Tally]) -> StudyTable:
+    lines: list[tuple[Cell, ...]] = []
+    for size, tally in tallies.items():
+        if size not in PAPER:
+            continue
+        number, *counts = PAPER[size]
+        for (kind, name), count in zip(_KINDS, counts, strict=True):
+            found = getattr(tally, name)
+            ours = tally.number - tally.undecided - (tally.unclear if name != "rigid" else 0)
+            p = same_probability((count, number), (found, ours))
+            lines.append(
+                (
+                    size,
+                    kind,
+                    f"{count}/{number}",
+                    interval_text(count, number),
+                    f"{found}/{ours}",
+                    interval_text(found, ours),
+                    f"{p:.2g}",
+                    agreement(p),
+                )
+            )
+    return StudyTable(
+        "comparison",
+        "The paper and this study: shares of squares, with exact 95 % intervals",
+        ("Vi", "", "paper", "interval", "here", "interval", "p", ""),
+        tuple(lines),
+        (
+            "Intervals of Clopper and Pearson; p is that of Fisher's exact test, and samples "
+            "differ if it is below 0.01.",
+        ),
+    )
+
+
+def _distances(tallies: dict[int, _Tally]) -> StudyTable:
+    lines = tuple(
+        (size, f"{t.closest:.2e}", t.closest_seed, t.digits, _median(t.histogram))
+        for size, t in tallies.items()
+        if t.digits
+    )
+    return StudyTable(
+        "distances",
+        "How close branches come",
+        ("Vi", "closest pair", "seed of its square", "digits, at most", "digits, median"),
+        lines,
+        (
+            "The distance of two branches is that of their unit vectors of fold angles, up to "
+            "sign; all branches of a square are told apart by so many decimals of these. The "
+            "paper used up to 690.",
+        ),
+    )
+
+
+def _median(histogram: dict[int, int]) -> int:
+    half, seen = sum(histogram.values()) / 2, 0
+    for digits in sorted(histogram):
+        seen += histogram[digits]
+        if seen >= half:
+            return digits
+    return 0
+
+
+def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
+    """The share of squares with branches that share their letters, and the digits needed."""
+    tallies = {size: t for size, t in _tallies(rows).items() if t.digits}
+
+    def shares(axes: Any) -> None:
+        for label, points in (
+            ("paper", {n: (k, m) for n, (m, _, k, _) in PAPER.items() if n in tallies}),
+            ("here", {n: (t.letters, t.number - t.undecided) for n, t in tallies.items()}),
+        ):
+            shift = 0.12 if label == "here" else -0.12
+            for place, (size, (count, number)) in enumerate(points.items()):
+                low, high = interval(count, number)
+                colour = "C0" if label == "here" else "C1"
+                share = count / number
+                axes.errorbar(
+                    size + shift,
+                    100 * share,
+                    [[100 * (share - low)], [100 * (high - share)]],
+                    fmt="o" if label == "here" else "s",
+                    color=colour,
+                    label=label if not place else None,
+                )
+        axes.set_xlabel("interior vertices $V_i$")
+        axes.set_ylabel("squares (%)")
+        axes.set_xticks(sorted(tallies))
+        axes.legend(loc="upper left")
+
+    def digits(axes: Any) -> None:
+        most = max(t.digits for t in tallies.values())
+        for size, tally in tallies.items():
+            total, seen, shares = sum(tally.histogram.values()), 0, []
+            for d in range(most + 1):
+                seen += tally.histogram.get(d, 0)
+                shares.append(100 * seen / total)
+            axes.plot(range(most + 1), shares, "o-", label=f"$V_i = {size}$", **of_size(size))
+        axes.set_xlabel("decimals")
+        axes.set_ylabel("squares (%)")
+        axes.set_xticks(range(most + 1))
+        axes.legend()
+
+    return [
+        StudyFigure(
+            "letters",
+            "Squares with branches that share their mountains and valleys",
+            "Shares of random squares, with exact 95 % intervals.",
+            shares,
+        ),
+        StudyFigure(
+            "digits",
+            "Decimals that tell all branches of a square apart",
+            "Of the unit vectors of fold angles: the share of squares for which so many are "
+            "enough.",
+            digits,
+        ),
+    ]
+
+
+STUDY: Final = Study(
+    "table1",
+    "Table I: branches of random squares, counted with proof",
+    1,
+    {size: number for size, (number, *_) in PAPER.items()},
+    dict.fromkeys(range(9, 15), 1000),
+    square_recipes,
+    row,
+    tables,
+    figures,
+)

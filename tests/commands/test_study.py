@@ -1,0 +1,160 @@
+"""`exactfold study`: tables in the terminal, files, rows computed again."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import sqlite3
+import sys
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from running import BAD_INPUT, INVALID, PROVED, USAGE, error_class, run
+from test_schemas import valid
+
+from exactfold.studies import StudyTable, all_studies, table1
+from exactfold.studies.registry import MODULES
+
+SMALL = ("study", "table1", "--sizes", "2,3", "--number", "3", "--workers", "1")
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """The journal of a small run."""
+    path = tmp_path_factory.mktemp("study") / "a.sqlite"
+    assert run(*SMALL, "--journal", path).exit_code == PROVED
+    return path
+
+
+def test_studies_are_listed():
+    shown = run("study").stdout
+    assert all(name in shown for name in MODULES)
+    data = valid(json.loads(run("study", "--json").stdout), "studies")
+    assert [study["study"] for study in data["studies"]] == list(all_studies())
+
+
+def test_tables_are_printed_and_rows_kept(here):
+    first = run(*SMALL)
+    assert first.exit_code == PROVED
+    assert "6 rows of seed 0, 6 computed now; rows in table1.sqlite" in first.stdout
+    assert " 2        3       3                  3" in first.stdout
+    again = run(*SMALL)
+    assert again.stdout == first.stdout.replace("6 computed", "0 computed")
+
+
+def test_json_has_the_tables(done):
+    data = valid(json.loads(run(*SMALL, "--journal", done, "--json").stdout), "study")
+    assert (data["rows"], data["computed"], data["undecided"]) == (6, 0, 0)
+    assert (data["journal"], data["files"]) == (str(done), [])
+    assert data["tables"][0]["rows"] == [[2, 3, 3, 3, 0, 0, 0, 0], [3, 3, 3, 3, 0, 0, 0, 0]]
+
+
+def test_rows_are_written_as_csv(here, done):
+    assert run(*SMALL, "--journal", done, "--csv", "a.csv").exit_code == PROVED
+    with open("a.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["interior"], row["distinct"]) for row in rows] == [("2", "4")] * 3 + [
+        ("3", "8")
+    ] * 3
+    assert rows[0]["pairs_of_signs"] == "true"
+
+
+def test_rows_are_written_as_parquet(here, done):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    assert run(*SMALL, "--journal", done, "--parquet", "a.parquet").exit_code == PROVED
+    table = parquet.read_table("a.parquet")
+    assert table["distinct"].to_pylist() == [4, 4, 4, 8, 8, 8]
+    assert len(set(table["row"].to_pylist())) == 6
+
+
+@pytest.mark.slow
+def test_the_report_is_one_file_and_pictures_are_svg_and_pdf(here, done):
+    files = ("--html", "a.html", "--figures", "pictures")
+    assert run(*SMALL, "--journal", done, *files).exit_code == PROVED
+    page = Path("a.html").read_text(encoding="utf-8")
+    assert page.count("<svg") == 2
+    assert "src=" not in page
+    assert "exactfold study table1 --sizes 2,3 --number 3 --journal" in page
+    names = sorted(os.listdir("pictures"))
+    assert names == [f"table1-{k}.{e}" for k in ("digits", "letters") for e in ("pdf", "svg")]
+    ElementTree.parse("pictures/table1-digits.svg")
+    assert Path("pictures/table1-digits.pdf").read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    ("module", "option", "file", "said"),
+    [
+        ("matplotlib", "--html", "a.html", "need Matplotlib: pip install 'exactfold[study]'"),
+        ("matplotlib", "--figures", "a", "need Matplotlib: pip install 'exactfold[study]'"),
+        ("pyarrow", "--parquet", "a.parquet", "need pyarrow: pip install 'exactfold[study]'"),
+    ],
+)
+def test_what_is_not_installed_is_said_at_once(here, monkeypatch, module, option, file, said):
+    for name in (module, "pyarrow.parquet"):
+        monkeypatch.setitem(sys.modules, name, None)
+    found = run(*SMALL, option, file)
+    assert (found.exit_code, os.listdir()) == (USAGE, [])
+    assert said in found.stderr
+
+
+def test_a_row_is_computed_again(done):
+    with sqlite3.connect(done) as rows:
+        ((name,),) = rows.execute("SELECT id FROM rows LIMIT 1").fetchall()
+    shown = run("study", "table1", "--journal", done, "--row", name)
+    assert shown.exit_code == PROVED
+    assert f"row {name}: agrees" in shown.stdout
+    found = run("study", "table1", "--journal", done, "--row", name[:12], "--json")
+    data = valid(json.loads(found.stdout), "study-row")
+    assert (data["row"], data["agrees"], data["differing"]) == (name, True, [])
+    assert data["stored"] == data["recomputed"]
+
+
+def test_a_row_that_differs_is_said(here, done, monkeypatch):
+    other = replace(table1.STUDY, row=lambda _: {"status": "undecided"})
+    monkeypatch.setattr(table1, "STUDY", other)
+    with sqlite3.connect(done) as rows:
+        ((name,),) = rows.execute("SELECT id FROM rows LIMIT 1").fetchall()
+    found = run("study", "table1", "--journal", done, "--row", name)
+    assert found.exit_code == INVALID
+    assert "differs in closest, digits" in found.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "cause"),
+    [
+        (("nothing",), USAGE, "UnknownStudyError"),
+        (("table1", "--row", "00"), BAD_INPUT, "UnknownRowError"),
+        (("table1", "--sizes", "40"), USAGE, "UsageError"),
+        (("table1", "--row", "00", "--seed", "2"), USAGE, "UsageError"),
+        (("--seed", "2"), USAGE, "UsageError"),
+        (("table1", "--csv", "a.txt"), USAGE, "UsageError"),
+        (("table1", "--csv", "a.csv", "--journal", "a.csv"), USAGE, "UsageError"),
+        (("table1", "--dask", "tcp://127.0.0.1:1", "--workers", "2"), USAGE, "UsageError"),
+        (("table1", "--journal", "text"), BAD_INPUT, "BrokenRowsError"),
+        (("table1", "--figures", "text"), USAGE, "UsageError"),
+    ],
+)
+def test_wrong_usage_has_a_class_of_its_own(here, arguments, code, cause):
+    Path("text").write_text("no journal")
+    found = run("study", *arguments, "--json")
+    assert (found.exit_code, error_class(found)) == (code, cause)
+    assert os.listdir() == ["text"]
+
+
+@pytest.mark.parametrize("sizes", ["0", "x", "5-2", "2,,3", "-"])
+def test_sizes_that_are_none_are_refused(here, sizes):
+    assert run("study", "table1", f"--sizes={sizes}").exit_code == USAGE
+
+
+def test_columns_of_words_are_known():
+    table = StudyTable("t", "T", ("a", "b", "c"), (("x", 1, "0 %"), ("y", 2, "5 %")))
+    assert table.words == (True, False, False)
