@@ -9,6 +9,9 @@ from exactfold.studies.study import Study
 
 MODULES = {
     "table1": "exactfold.studies.table1",
+    "mv": "exactfold.studies.mv",
+    "perturbed": "exactfold.studies.perturbed",
+    "flat": "exactfold.studies.flat",
 }
 """The module of each study, in the order in which they are listed."""
 
