@@ -11,7 +11,9 @@ MODULES = {
     "table1": "exactfold.studies.table1",
     "mv": "exactfold.studies.mv",
     "perturbed": "exactfold.studies.perturbed",
+    "selffold": "exactfold.studies.selffold",
     "flat": "exactfold.studies.flat",
+    "motions": "exactfold.studies.motions",
 }
 """The module of each study, in the order in which they are listed."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from exactfold import count_branches, random_square
@@ -10,6 +11,7 @@ from exactfold.algebra.hermite import hermite_counts
 from exactfold.problem import BranchSystem, perturbed
 from exactfold.studies import run_study
 from exactfold.studies.flat import has_straight_folds
+from exactfold.studies.lines import Lines
 from exactfold.studies.squares import square_of
 
 TURNED = str.maketrans("MV", "VM")
@@ -25,8 +27,8 @@ def columns(run, name):
 
 
 def test_exceptions_are_those_of_the_counts():
-    run = run_study("flat", numbers={3: 24})
-    assert columns(run, "exceptions")["squares"] == (6, 6, 6, 6)
+    run = run_study("flat", numbers={3: 8})
+    assert columns(run, "exceptions")["squares"] == (2, 2, 2, 2)
     coarse = [row for row in run.rows if row["denominator"] == 16]
     for row in coarse:
         result = count_branches(square_of(row))
@@ -89,3 +91,33 @@ def test_real_zeros_are_counted_by_hermite_forms_as_well():
             assert (row["nonreal"], row["two_for_each_pair"]) == (0, True)
     assert columns(run, "real")["systems"] == (1,) * 5 + (2,) * 5
     assert sum(row["nonreal"] for row in run.rows) > 0
+
+
+def test_margins_are_no_smaller_than_those_of_torques_along_the_branch():
+    """The unit vector of fold angles itself, as a torque, has at most the best margin."""
+    run = run_study("selffold", numbers={2: 1, 4: 1})
+    for row in run.rows:
+        lines = Lines.of(square_of(row))
+        signs = [1 if sign == "+" else -1 for sign in row["signs"]]
+        (own,) = np.flatnonzero((lines.signs == signs).all(axis=1))
+        direction = lines.directions[own]
+        powers = np.abs(lines.directions @ direction) / np.abs(direction).max()
+        margin = powers[own] - np.delete(powers, own).max()
+        assert margin <= row["best"] + 1e-9
+        assert row["margin"] <= row["best"] < row["margin"] + 1e-4
+        assert row["dimension"] == [0, 0]
+
+
+@pytest.mark.slow
+def test_loops_flip_one_sign_on_single_vertices_and_every_branch_ends():
+    """Theorem 3 of docs/matching.md for one vertex of degree four, which is an H1 sheet."""
+    run = run_study("motions", numbers={1: 2, 2: 1})
+    for row in run.rows:
+        n = row["interior"]
+        assert row["status"] == "proved"
+        assert [loop["flips"] for loop in row["loops"]] == [1] * 2 ** (n - 1)
+        assert sum(row["ends"].values()) == 2**n
+        assert row["ends"]["open"] == 0
+    assert columns(run, "loops")["followed"] == (2, 2)
+    for loop in run.rows[0]["loops"]:
+        assert 0 < loop["length"][0] < loop["length"][1]
