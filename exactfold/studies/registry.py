@@ -9,6 +9,11 @@ from exactfold.studies.study import Study
 
 MODULES = {
     "table1": "exactfold.studies.table1",
+    "mv": "exactfold.studies.mv",
+    "perturbed": "exactfold.studies.perturbed",
+    "selffold": "exactfold.studies.selffold",
+    "flat": "exactfold.studies.flat",
+    "motions": "exactfold.studies.motions",
 }
 """The module of each study, in the order in which they are listed."""
 

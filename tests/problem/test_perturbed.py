@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import re
-import runpy
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
 from sheets import SQUARE, scrambled
@@ -20,8 +17,6 @@ from exactfold.problem import BranchSystem
 from exactfold.problem.perturbation import perturbed
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve import homotopy
-
-DOCS = Path(__file__).parents[2] / "docs"
 
 
 def system_of(pattern: CreasePattern) -> QuadraticSystem:
@@ -87,28 +82,3 @@ def test_nonreal_zeros_come_in_conjugate_pairs() -> None:
         mirrored = IsolatingBox(box.real, tuple(-y for y in box.imag), box.radius, box.bits)
         assert mirrored.is_disjoint_from(box)
         assert sum(not mirrored.is_disjoint_from(other) for other in boxes) == 1
-
-
-def test_patterns_have_real_zeros_only_and_perturbed_ones_have_not() -> None:
-    """The control: over eight systems of three quadrics, none and more than a quarter."""
-    experiment = runpy.run_path(str(DOCS / "control_experiment.py"))["experiment"]
-    honest, control = experiment(3, "0", 8), experiment(3, "1/2", 8)
-    assert (honest.undecided, honest.nonreal, honest.even) == (0, 0, 8)
-    assert (honest.zeros, control.zeros, control.undecided) == (64, 64, 0)
-    assert control.nonreal * 4 > control.zeros
-    assert control.some >= 4
-    assert control.even <= 4
-
-
-@pytest.mark.slow
-def test_the_page_shows_what_the_script_prints() -> None:
-    page = (DOCS / "control.md").read_text(encoding="utf-8")
-    script = runpy.run_path(str(DOCS / "control_experiment.py"))
-    (table,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
-    assert table.startswith(script["HEAD"])
-    lines = table.splitlines()[2:]
-    assert len(lines) == 5 * len(script["SIZES"])
-    assert lines[2] == str(script["experiment"](2, "1/10", 100))
-    for line in lines:
-        assert int(line.split()[3]) == 0  # nothing undecided
-        assert line.split()[1] != "0" or line.split()[4] == "0.0"

@@ -1,0 +1,245 @@
+"""How often a random square is an exception: a vertex outside triangulated triangles can stay flat.
+
+For almost all positions of the vertices there is none (docs/generic.md, Theorem 11); on a grid of
+multiples of 1/denominator some squares are exceptions. A row is one random square on one grid.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import Any, Final
+
+import networkx as nx
+import numpy as np
+
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.studies.lines import Lines, SignArray
+from exactfold.studies.squares import square_of, square_recipes
+from exactfold.studies.statistics import interval, interval_text
+from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.verdict import PROVED
+
+DENOMINATORS: Final = (16, 64, 256, 1024)
+"""Of the grids."""
+
+
+def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
+    """Random squares in their order, on each grid in turn.
+
+    >>> [(r["seed"], r["denominator"]) for r in recipes(0, {2: 5})][3:]
+    [(20000003, 1024), (20000004, 16)]
+    """
+    for place, recipe in enumerate(square_recipes(seed, numbers)):
+        yield {**recipe, "denominator": DENOMINATORS[place % len(DENOMINATORS)]}
+
+
+def row(recipe: Recipe) -> dict[str, Any]:
+    """Whether a branch of one random square has flat vertices outside triangulated triangles.
+
+    `flat`: the sets of such vertices that are joined by folds, each once, as the folds at its
+    vertices (those inside triangulated triangles left out): [[4]] is one vertex of degree four.
+    `straight`: whether at some interior vertex two folds continue each other.
+    """
+    lines = Lines.of(square_of(recipe))
+    proved = lines.status is PROVED
+    return {
+        "status": str(lines.status),
+        "distinct": lines.distinct,
+        "flat": clusters(lines.pattern, lines.signs) if proved else None,
+        "straight": has_straight_folds(lines.pattern),
+    }
+
+
+def has_straight_folds(pattern: CreasePattern) -> bool:
+    """Whether two folds outside triangulated triangles continue each other at an interior vertex.
+
+    >>> from exactfold.pattern.families import flat_vertex_square, two_vertex
+    >>> has_straight_folds(flat_vertex_square()), has_straight_folds(two_vertex())
+    (True, False)
+    """
+    sheet, _ = pattern.without_rigid_parts()
+    points, _ = sheet.integer_vertices
+    for v in sheet.interior:
+        x, y = points[v]
+        spokes = [(points[w][0] - x, points[w][1] - y) for w in sheet.star(v)]
+        for (a, b), (c, d) in combinations(spokes, 2):
+            if a * d == b * c and a * c + b * d < 0:
+                return True
+    return False
+
+
+def clusters(pattern: CreasePattern, signs: SignArray) -> list[list[int]]:
+    """The degrees of flat vertices that are joined by folds, for each such set of vertices.
+
+    >>> from exactfold.pattern.families import flat_vertex_square
+    >>> clusters(flat_vertex_square(), np.array([[1, 1], [-1, 1], [1, 0]], np.int8))
+    [[4]]
+    """
+    rigid = np.array([v in pattern.rigid_vertices for v in pattern.interior], dtype=bool)
+    found: set[frozenset[int]] = set()
+    for flat in np.unique((signs == 0) & ~rigid, axis=0).tolist():
+        vertices = [v for v, is_flat in zip(pattern.interior, flat, strict=True) if is_flat]
+        graph = pattern.graph.subgraph(vertices)
+        found |= {frozenset(part) for part in nx.connected_components(graph)}
+    reduced, labels = pattern.without_rigid_parts()
+    degrees = {v: reduced.degree(k) for k, v in enumerate(labels)}
+    return sorted(sorted(degrees[v] for v in part) for part in found)
+
+
+@dataclass
+class _Tally:
+    """What the rows of one number of vertices and one grid add up to."""
+
+    squares: int = 0
+    undecided: int = 0
+    exceptions: int = 0
+    straight: int = 0
+    exceptions_straight: int = 0
+    causes: Counter[str] = field(default_factory=Counter)
+    first: int | None = None
+
+    def add(self, row: Row) -> None:
+        """One more row."""
+        self.squares += 1
+        if row["status"] != str(PROVED):
+            self.undecided += 1
+            return
+        self.straight += row["straight"]
+        if row["flat"]:
+            self.exceptions += 1
+            self.exceptions_straight += row["straight"]
+            self.causes.update("+".join(map(str, part)) for part in row["flat"])
+            seed = row["seed"]
+            self.first = seed if self.first is None else min(self.first, seed)
+
+    @property
+    def proved(self) -> int:
+        """Squares whose branches are proved."""
+        return self.squares - self.undecided
+
+
+def _tallies(rows: Iterable[Row]) -> dict[tuple[int, int], _Tally]:
+    found: dict[tuple[int, int], _Tally] = defaultdict(_Tally)
+    for row in rows:
+        found[row["interior"], row["denominator"]].add(row)
+    return dict(sorted(found.items()))
+
+
+def tables(rows: Iterable[Row]) -> list[StudyTable]:
+    """How many squares are exceptions, by grid, and the stars that are flat on them."""
+    tallies = _tallies(rows)
+    lines = tuple(
+        (
+            n,
+            d,
+            t.squares,
+            t.proved,
+            t.exceptions,
+            interval_text(t.exceptions, t.proved),
+            t.first,
+        )
+        for (n, d), t in tallies.items()
+    )
+    causes: Counter[str] = Counter()
+    for tally in tallies.values():
+        causes.update(tally.causes)
+    return [
+        StudyTable(
+            "exceptions",
+            "Squares on which a vertex outside triangulated triangles can stay flat",
+            (
+                "Vi",
+                "grid",
+                "squares",
+                "proved",
+                "exceptions",
+                "95 % interval",
+                "first seed",
+            ),
+            lines,
+            (
+                "grid d: coordinates are multiples of 1/d; for almost all positions there are no "
+                "exceptions.",
+            ),
+        ),
+        StudyTable(
+            "straight",
+            "Squares on which two folds continue each other at an interior vertex",
+            ("grid", "squares", "straight", "exceptions", "of these straight"),
+            tuple(
+                (
+                    d,
+                    sum(t.proved for t in found),
+                    sum(t.straight for t in found),
+                    sum(t.exceptions for t in found),
+                    sum(t.exceptions_straight for t in found),
+                )
+                for d in sorted({d for _, d in tallies})
+                for found in [[t for (_, e), t in tallies.items() if e == d]]
+            ),
+            ("straight: with such folds, outside triangulated triangles.",),
+        ),
+        StudyTable(
+            "stars",
+            "Which stars are flat",
+            ("degrees", "number"),
+            tuple(
+                (f"degree {name}", number)
+                for name, number in sorted(causes.items(), key=lambda item: (-item[1], item[0]))
+            ),
+            ("degree 4+5: two vertices joined by a fold, with four and five folds.",),
+        ),
+    ]
+
+
+def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
+    """The share of exceptions against the grid."""
+    tallies = _tallies(rows)
+
+    def shares(axes: Any) -> None:
+        for n in sorted({n for n, _ in tallies}):
+            points = [(d, t) for (m, d), t in tallies.items() if m == n and t.exceptions]
+            bounds = [interval(t.exceptions, t.proved) for _, t in points]
+            middle = [t.exceptions / t.proved for _, t in points]
+            axes.errorbar(
+                [d for d, _ in points],
+                middle,
+                [
+                    [m - low for m, (low, _) in zip(middle, bounds, strict=True)],
+                    [high - m for m, (_, high) in zip(middle, bounds, strict=True)],
+                ],
+                fmt="o-",
+                label=f"$V_i = {n}$",
+                **of_size(n),
+            )
+        axes.set_xscale("log", base=2)
+        axes.set_yscale("log")
+        axes.set_xlabel("denominator of the grid")
+        axes.set_ylabel("share of exceptions")
+        axes.legend()
+
+    return [
+        StudyFigure(
+            "exceptions",
+            "Exceptions become rare on fine grids",
+            "The share of random squares with a vertex outside triangulated triangles that can "
+            "stay flat, with exact 95 % intervals.",
+            shares,
+        )
+    ]
+
+
+STUDY: Final = Study(
+    "flat",
+    "How often a random square has a multiple branch, by the grid of its coordinates",
+    1,
+    dict.fromkeys(range(2, 7), 40_000),
+    {7: 40_000, 8: 40_000},
+    recipes,
+    row,
+    tables,
+    figures,
+)

@@ -1,0 +1,207 @@
+"""Mountain-valley assignments: how many occur on random squares, and which branches share them.
+
+A row is one random square. Assignments are counted up to turning the sheet over, which reverses all
+letters, the vertex signs and the boundary saddle.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from exactfold.studies.lines import UNKNOWN, Lines
+from exactfold.studies.squares import square_of, square_recipes
+from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.table1 import same_side
+from exactfold.verdict import PROVED
+
+
+def row(recipe: Recipe) -> dict[str, Any]:
+    """The assignments of one random square.
+
+    `assignments` of its `distinct` branches differ. `with_letters` and `with_signs` branches share
+    their letters, and their vertex signs too, with another. `separated`: no two branches have the
+    same vertex signs on the side where the boundary saddle is positive. None: not decided.
+    """
+    lines = Lines.of(square_of(recipe))
+    found: dict[str, Any] = {
+        "status": str(lines.status),
+        "rigid": lines.pattern.Vt,
+        "folds": len(lines.pattern.without_rigid_parts()[0].folds),
+        "distinct": lines.distinct,
+        "assignments": None,
+        "with_letters": None,
+        "with_signs": None,
+        "separated": None,
+    }
+    if lines.status is not PROVED:
+        return found
+    found["separated"] = len(np.unique(lines.signs, axis=0)) == len(lines.signs)
+    if (lines.letters == UNKNOWN).any():
+        return found
+    letters, signs = same_side(lines.letters, lines.signs)
+    for name, kinds in (("with_letters", letters), ("with_signs", np.hstack([letters, signs]))):
+        counts = np.unique(kinds, axis=0, return_counts=True)[1]
+        found[name] = int(counts[counts > 1].sum())
+    found["assignments"] = len(np.unique(letters, axis=0))
+    return found
+
+
+@dataclass
+class _Tally:
+    """What the rows of one size add up to."""
+
+    squares: int = 0
+    undecided: int = 0
+    unclear: int = 0
+    assignments: int = 0
+    branches: int = 0
+    share: float = 0.0
+    letters: int = 0
+    signs: int = 0
+    separated: int = 0
+    first_letters: int | None = None
+    first_signs: int | None = None
+
+    def add(self, row: Row) -> None:
+        """One more row."""
+        self.squares += 1
+        if row["status"] != str(PROVED):
+            self.undecided += 1
+            return
+        self.separated += row["separated"]
+        if row["assignments"] is None:
+            self.unclear += 1
+            return
+        self.assignments += row["assignments"]
+        self.branches += row["distinct"]
+        self.share += row["assignments"] / 2.0 ** (row["folds"] - 1)
+        if row["with_letters"]:
+            self.letters += 1
+            self.first_letters = _first(self.first_letters, row["seed"])
+        if row["with_signs"]:
+            self.signs += 1
+            self.first_signs = _first(self.first_signs, row["seed"])
+
+    @property
+    def proved(self) -> int:
+        """Squares whose branches are proved."""
+        return self.squares - self.undecided
+
+    @property
+    def known(self) -> int:
+        """Squares whose letters are proved."""
+        return self.proved - self.unclear
+
+
+def _first(seed: int | None, other: int) -> int:
+    return other if seed is None else min(seed, other)
+
+
+def _tallies(rows: Iterable[Row]) -> dict[int, _Tally]:
+    found: dict[int, _Tally] = defaultdict(_Tally)
+    for row in rows:
+        found[row["interior"]].add(row)
+    return dict(sorted(found.items()))
+
+
+def tables(rows: Iterable[Row]) -> list[StudyTable]:
+    """How many assignments occur, and what tells branches with equal letters apart."""
+    tallies = _tallies(rows)
+    occurring = tuple(
+        (
+            size,
+            t.known,
+            f"{t.branches / t.known:.2f}",
+            f"{t.assignments / t.known:.2f}",
+            f"{t.share / t.known:.2e}",
+            f"{4.0**-size:.2e}",
+        )
+        for size, t in tallies.items()
+        if t.known
+    )
+    shared = tuple(
+        (
+            size,
+            t.known,
+            t.letters,
+            t.first_letters,
+            t.signs,
+            t.first_signs,
+            f"{t.separated}/{t.proved}",
+        )
+        for size, t in tallies.items()
+    )
+    return [
+        StudyTable(
+            "occurring",
+            "Assignments that occur, up to turning the sheet over",
+            ("Vi", "squares", "branches", "assignments", "of all", "(1/4)^Vi"),
+            occurring,
+            (
+                "branches and assignments: means; of all: the mean share of the 2^(folds - 1) "
+                "assignments, whose largest value is (1/4)^(Vi - Vt).",
+            ),
+        ),
+        StudyTable(
+            "shared",
+            "Squares with branches that share their letters",
+            (
+                "Vi",
+                "squares",
+                "same MV",
+                "first seed",
+                "and signs",
+                "first seed",
+                "told apart",
+            ),
+            shared,
+            (
+                "and signs: the branches with equal letters have equal vertex signs too; told "
+                "apart: squares whose branches all differ in their vertex signs, seen from the "
+                "side on which the boundary saddle is positive.",
+            ),
+        ),
+    ]
+
+
+def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
+    """The share of all assignments that occurs, against the number of vertices."""
+    tallies = {size: t for size, t in _tallies(rows).items() if t.known}
+
+    def shares(axes: Any) -> None:
+        sizes = sorted(tallies)
+        axes.plot(sizes, [4.0**-n for n in sizes], "-", color="0.6", label="$(1/4)^{V_i}$")
+        for size, tally in tallies.items():
+            axes.plot([size], [tally.share / tally.known], "o", **of_size(size))
+        axes.set_yscale("log")
+        axes.set_xticks(sizes)
+        axes.set_xlabel("interior vertices $V_i$")
+        axes.set_ylabel("share of assignments\nthat occur")
+        axes.legend()
+
+    return [
+        StudyFigure(
+            "occurring",
+            "Few assignments occur",
+            "The mean share of all assignments of letters that a branch of a random square has.",
+            shares,
+        )
+    ]
+
+
+STUDY: Final = Study(
+    "mv",
+    "Mountain-valley assignments: how many occur, and which branches share them",
+    1,
+    dict.fromkeys(range(2, 9), 2000),
+    dict.fromkeys(range(9, 13), 500),
+    square_recipes,
+    row,
+    tables,
+    figures,
+)

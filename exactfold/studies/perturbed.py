@@ -1,0 +1,192 @@
+"""The control experiment of the paper: how many zeros stay real if the quadrics come from no sheet.
+
+A row is one random square with each coefficient of its branch system multiplied by a random factor
+between 1 - size and 1 + size (`exactfold.problem.perturbed`). All zeros are proved, real or not.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from exactfold.branches.roots import BoxRoot
+from exactfold.certify.isolation import isolate
+from exactfold.problem.branch_system import BranchSystem
+from exactfold.problem.perturbation import perturbed
+from exactfold.problem.sign_rows import Functionals
+from exactfold.solve.homotopy_ends import homotopy
+from exactfold.studies.squares import square_of, square_recipes
+from exactfold.studies.statistics import interval, percent
+from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.verdict import PROVED
+
+SIZES: Final = ("0", "1/1000", "1/100", "1/10", "1/2")
+"""Of the perturbations: the largest relative change of a coefficient."""
+
+
+def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
+    """Random squares in their order, each with every size of a perturbation in turn.
+
+    >>> [(r["seed"], r["size"]) for r in recipes(0, {2: 6})][4:]
+    [(20000000, '1/2'), (20000001, '0')]
+    """
+    squares = {size: -(-number // len(SIZES)) for size, number in numbers.items()}
+    left = dict(numbers)
+    for recipe in square_recipes(seed, squares):
+        for size in SIZES:
+            if left[int(recipe["interior"])]:
+                left[int(recipe["interior"])] -= 1
+                yield {**recipe, "size": size}
+
+
+def row(recipe: Recipe) -> dict[str, Any]:
+    """What is proved of the zeros of one perturbed system.
+
+    `nonreal` of `zeros` are not real. `two_for_each_pair`: two real zeros have each pair of
+    opposite sign vectors, by the vertex functionals of the square; None for a sign not decided.
+    """
+    chart = BranchSystem(square_of(recipe)).chart
+    seed = int(recipe["seed"])
+    system = perturbed(chart.system, str(recipe["size"]), seed)
+    found = isolate(system, homotopy(system, seed=seed))
+    status = str(found.complete)
+    if found.complete is not PROVED:
+        return {"status": status, "zeros": None, "nonreal": None, "two_for_each_pair": None}
+    functionals = Functionals(chart).vertices.values()
+    pairs: Counter[tuple[int | None, ...]] = Counter()
+    for box in found.boxes:
+        if box.is_real:
+            signs = [BoxRoot(box).sign(functional) for functional in functionals]
+            first = signs[0]
+            pairs[tuple(None if s is None or first is None else s * first for s in signs)] += 1
+    unclear = any(None in pair for pair in pairs)
+    two = len(pairs) == 1 << (len(functionals) - 1) and set(pairs.values()) == {2}
+    return {
+        "status": status,
+        "zeros": len(found.boxes),
+        "nonreal": found.nonreal,
+        "two_for_each_pair": None if unclear else two,
+    }
+
+
+@dataclass
+class _Tally:
+    """What the rows of one number of vertices and one size add up to."""
+
+    systems: int = 0
+    undecided: int = 0
+    zeros: int = 0
+    nonreal: int = 0
+    some: int = 0
+    two: int = 0
+    unclear: int = 0
+
+    def add(self, row: Row) -> None:
+        """One more row."""
+        self.systems += 1
+        if row["status"] != str(PROVED):
+            self.undecided += 1
+            return
+        self.zeros += row["zeros"]
+        self.nonreal += row["nonreal"]
+        self.some += row["nonreal"] > 0
+        self.two += bool(row["two_for_each_pair"])
+        self.unclear += row["two_for_each_pair"] is None
+
+    @property
+    def proved(self) -> int:
+        """Systems whose zeros are proved."""
+        return self.systems - self.undecided
+
+
+def _tallies(rows: Iterable[Row]) -> dict[tuple[int, str], _Tally]:
+    found: dict[tuple[int, str], _Tally] = defaultdict(_Tally)
+    for row in rows:
+        found[row["interior"], row["size"]].add(row)
+    return dict(sorted(found.items(), key=lambda item: (item[0][0], SIZES.index(item[0][1]))))
+
+
+def _share(part: int, whole: int) -> str | None:
+    return percent(part / whole) if whole else None
+
+
+def tables(rows: Iterable[Row]) -> list[StudyTable]:
+    """For each number of vertices and size: what share of zeros and of systems is not real."""
+    tallies = _tallies(rows)
+    lines = tuple(
+        (
+            n,
+            size,
+            t.systems,
+            t.proved,
+            _share(t.nonreal, t.zeros),
+            _share(t.some, t.proved),
+            _share(t.two, t.proved - t.unclear),
+        )
+        for (n, size), t in tallies.items()
+    )
+    return [
+        StudyTable(
+            "real",
+            "Zeros that stay real when the coefficients change",
+            ("Vi", "size", "systems", "proved", "zeros not real", "with some", "two for each pair"),
+            lines,
+            (
+                "size 0 is the sheet itself, where all zeros are real by Theorem 2; with some: "
+                "systems with zeros that are not real; two for each pair: systems with two real "
+                "zeros for each pair of opposite sign vectors, by the functionals of the sheet.",
+            ),
+        )
+    ]
+
+
+def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
+    """The share of systems with zeros that are not real, against the size of the change."""
+    tallies = _tallies(rows)
+
+    def shares(axes: Any) -> None:
+        places = dict(zip(SIZES, range(len(SIZES)), strict=True))
+        for n in sorted({n for n, _ in tallies}):
+            points = [(places[s], t) for (m, s), t in tallies.items() if m == n and t.proved]
+            bounds = [interval(t.some, t.proved) for _, t in points]
+            middle = [100 * t.some / t.proved for _, t in points]
+            axes.errorbar(
+                [x for x, _ in points],
+                middle,
+                [
+                    [m - 100 * low for m, (low, _) in zip(middle, bounds, strict=True)],
+                    [100 * high - m for m, (_, high) in zip(middle, bounds, strict=True)],
+                ],
+                fmt="o-",
+                label=f"$V_i = {n}$",
+                **of_size(n),
+            )
+        axes.set_xticks(range(len(SIZES)), SIZES)
+        axes.set_xlabel("largest relative change of a coefficient")
+        axes.set_ylabel("systems with zeros\nthat are not real (%)")
+        axes.legend(loc="upper left")
+
+    return [
+        StudyFigure(
+            "real",
+            "Systems that lose real zeros",
+            "Random squares with perturbed coefficients: the share of systems with zeros that are "
+            "not real, with exact 95 % intervals.",
+            shares,
+        )
+    ]
+
+
+STUDY: Final = Study(
+    "perturbed",
+    "Control: how many zeros stay real when the coefficients change",
+    1,
+    dict.fromkeys(range(2, 7), 500),
+    {7: 500},
+    recipes,
+    row,
+    tables,
+    figures,
+)

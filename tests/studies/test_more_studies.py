@@ -1,0 +1,123 @@
+"""The studies of exceptions, of letters and of perturbed systems, beside counts made one by one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from exactfold import count_branches, random_square
+from exactfold.algebra.groebner_bases import quotient_algebra
+from exactfold.algebra.hermite import hermite_counts
+from exactfold.problem import BranchSystem, perturbed
+from exactfold.studies import run_study
+from exactfold.studies.flat import has_straight_folds
+from exactfold.studies.lines import Lines
+from exactfold.studies.squares import square_of
+
+TURNED = str.maketrans("MV", "VM")
+
+
+def columns(run, name):
+    """A table of a run as a mapping from its columns to tuples; the first of equal names."""
+    (table,) = [table for table in run.tables if table.name == name]
+    found = {}
+    for k, column in enumerate(table.columns):
+        found.setdefault(column, tuple(row[k] for row in table.rows))
+    return found
+
+
+def test_exceptions_are_those_of_the_counts():
+    run = run_study("flat", numbers={3: 8})
+    assert columns(run, "exceptions")["squares"] == (2, 2, 2, 2)
+    coarse = [row for row in run.rows if row["denominator"] == 16]
+    for row in coarse:
+        result = count_branches(square_of(row))
+        assert bool(row["flat"]) == bool(result.exceptional_vertices)
+        assert row["distinct"] == result.distinct
+    assert sum(bool(row["flat"]) for row in run.rows) == sum(
+        columns(run, "exceptions")["exceptions"]
+    )
+
+
+@pytest.mark.slow
+def test_degrees_of_flat_vertices_and_what_causes_them():
+    run = run_study("flat", numbers={2: 200, 4: 200})
+    exceptional = [row for row in run.rows if row["flat"]]
+    assert exceptional
+    for row in exceptional:
+        pattern = square_of(row)
+        vertices = count_branches(pattern).exceptional_vertices
+        reduced, labels = pattern.without_rigid_parts()
+        degrees = {reduced.degree(labels.index(v)) for v in vertices}
+        assert {degree for part in row["flat"] for degree in part} == degrees
+        assert row["straight"] == has_straight_folds(pattern)
+    assert all(row["straight"] for row in exceptional)  # of these; no theorem says it of all
+
+
+def test_letters_are_those_of_the_counts():
+    run = run_study("mv", numbers={4: 4, 5: 3})
+    for row in run.rows:
+        result = count_branches(square_of(row))
+        assert row["with_letters"] == result.repeated_assignments
+        known = {min(b.assignment_text, b.assignment_text.translate(TURNED)) for b in result}
+        assert row["assignments"] == len(known)
+        assert row["separated"]
+    occurring = columns(run, "occurring")
+    assert occurring["Vi"] == (4, 5)
+    assert all(
+        float(share) <= 1.001 * 4.0**-n
+        for n, share in zip((4, 5), occurring["of all"], strict=True)
+    )
+
+
+@pytest.mark.slow
+def test_the_square_with_shared_letters_of_the_documentation():
+    """Square 50000058 has two pairs of branches with equal letters."""
+    run = run_study("mv", numbers={5: 59})
+    assert columns(run, "shared")["first seed"] == (50000058,)
+    assert count_branches(random_square(5, 50000058)).repeated_assignments > 0
+
+
+def test_real_zeros_are_counted_by_hermite_forms_as_well():
+    run = run_study("perturbed", numbers={2: 5, 3: 10})
+    for row in run.rows:
+        system = BranchSystem(square_of(row)).chart.system
+        other = perturbed(system, row["size"], row["seed"])
+        assert hermite_counts(quotient_algebra(other)) == (
+            row["zeros"],
+            row["zeros"] - row["nonreal"],
+        )
+        if row["size"] == "0":
+            assert (row["nonreal"], row["two_for_each_pair"]) == (0, True)
+    assert columns(run, "real")["systems"] == (1,) * 5 + (2,) * 5
+    assert sum(row["nonreal"] for row in run.rows) > 0
+
+
+def test_margins_are_no_smaller_than_those_of_torques_along_the_branch():
+    """The unit vector of fold angles itself, as a torque, has at most the best margin."""
+    run = run_study("selffold", numbers={2: 1, 4: 1})
+    for row in run.rows:
+        lines = Lines.of(square_of(row))
+        signs = [1 if sign == "+" else -1 for sign in row["signs"]]
+        (own,) = np.flatnonzero((lines.signs == signs).all(axis=1))
+        direction = lines.directions[own]
+        powers = np.abs(lines.directions @ direction) / np.abs(direction).max()
+        margin = powers[own] - np.delete(powers, own).max()
+        assert margin <= row["best"] + 1e-9
+        assert row["margin"] <= row["best"] < row["margin"] + 1e-4
+        assert row["dimension"] == [0, 0]
+
+
+@pytest.mark.slow
+def test_loops_flip_one_sign_on_single_vertices_and_every_branch_ends():
+    """Theorem 3 of docs/matching.md for one vertex of degree four, which is an H1 sheet."""
+    run = run_study("motions", numbers={1: 2, 2: 1})
+    for row in run.rows:
+        n = row["interior"]
+        assert row["status"] == "proved"
+        assert [loop["flips"] for loop in row["loops"]] == [1] * 2 ** (n - 1)
+        assert sum(row["ends"].values()) == 2**n
+        assert row["ends"]["open"] == 0
+    assert columns(run, "loops")["followed"] == (2, 2)
+    for loop in run.rows[0]["loops"]:
+        assert 0 < loop["length"][0] < loop["length"][1]
