@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,13 +10,11 @@ from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.errors import NotProvedAtTheFlatStateError
 from exactfold.motion.angles import fold_angles_of
+from exactfold.motion.chain import Chain, Step
 from exactfold.motion.half_branches import HalfBranch
-from exactfold.motion.length_equations import LengthEquations
-from exactfold.motion.links import Link, onwards
+from exactfold.motion.links import Link
 from exactfold.motion.loop_proofs import ArcProof, Landing, LoopProof, named
 from exactfold.motion.node_tube import NodeTube
-from exactfold.motion.passages import Passage, passage_ahead
-from exactfold.motion.singular import singular_at
 from exactfold.motion.tracks import half_branch
 from exactfold.motion.tube import Tube
 from exactfold.motion.tube_start import (
@@ -73,55 +70,36 @@ class LoopFinder:
         raise NotProvedAtTheFlatStateError(f"the branch has not the half-branch {source}")
 
     def _proof(self, start: StartTube, progress: Progress | None = None) -> LoopProof:
-        equations = LengthEquations.of(start.framework, start.bits)
-        last, time = start.last, start.length(0, start.last)
-        ahead = onwards(
-            equations, start.ball(last), start.ball_velocity(last), time, float(time[0]) / 2
-        )
-        steps, landing, reason = self._followed(equations, ahead, progress=progress)
+        chain = Chain.from_flat(start, self.problem.labels)
+        steps, landing, reason = self._followed(chain, progress=progress)
         return LoopProof(self.problem, start, tuple(steps), landing, reason)
 
     def follow_from_node(self, tube: NodeTube) -> ArcProof:
         """The arc from a node on, forwards along a tube through it, to the next node."""
-        equations, end = LengthEquations.of(tube.framework), tube.longest * 3 // 4
-        left = tube.length(0, end)
-        ahead = onwards(equations, tube.ball(end), tube.ball_velocity(end), left, float(left[0]))
-        steps, landing, reason = self._followed(equations, ahead, at_node=True)
+        chain = Chain.from_node(tube, self.problem.labels)
+        steps, landing, reason = self._followed(chain, at_node=True)
         return ArcProof(tube, tuple(steps), landing, reason)
 
     def _followed(
-        self,
-        equations: LengthEquations,
-        ahead: Iterator[Link | str],
-        at_node: bool = False,
-        progress: Progress | None = None,
-    ) -> tuple[list[Link | Passage], Landing | None, str]:
-        """The steps on links ahead, to a landing or to what stopped the proof.
+        self, chain: Chain, at_node: bool = False, progress: Progress | None = None
+    ) -> tuple[list[Step], Landing | None, str]:
+        """The steps of a chain to a landing, or to what stopped the proof.
 
         With `at_node` the passage of the first node is the last step.
         """
-        steps: list[Link | Passage] = []
-        while len(steps) < MOST_TUBES:
-            link = next(ahead)
-            if isinstance(link, Link):
-                steps.append(link)
+        while len(chain.steps) < MOST_TUBES:
+            step = chain.extend()
+            if isinstance(step, str):
+                return chain.steps, None, step
+            if isinstance(step, Link):
                 if progress is not None:
-                    progress("proving, tubes", len(steps), 0)
-                landing = self._landing(link)
+                    progress("proving, tubes", len(chain.steps), 0)
+                landing = self._landing(step)
                 if landing is not None:
-                    return steps, landing, ""
-                continue
-            found = passage_ahead(self.problem.labels, steps)
-            if found is None:
-                return steps, None, singular_at(self.problem.labels, steps, link)
-            kept, passage = found
-            steps = [*steps[:kept], passage]
-            if at_node:
-                return steps, None, ""
-            tube, at = passage.tube, passage.exit
-            step = float(tube.length(0, at)[0])
-            ahead = onwards(equations, tube.ball(at), tube.ball_velocity(at), passage.left, step)
-        return steps, None, f"{MOST_TUBES} tubes were not enough"
+                    return chain.steps, landing, ""
+            elif at_node:
+                return chain.steps, None, ""
+        return chain.steps, None, f"{MOST_TUBES} tubes were not enough"
 
     def _landing(self, link: Link) -> Landing | None:
         """The start tube of another half-branch a point of which lies on this tube."""
