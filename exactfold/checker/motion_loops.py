@@ -22,10 +22,10 @@ from .motion import (
     check_steps,
     first_piece,
     framework,
-    names,
     start_of,
     walked,
 )
+from .motion_names import names
 from .motion_paths import Path
 from .motion_tubes import Ball, Start
 from .reading import (
