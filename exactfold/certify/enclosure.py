@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
 
 import numpy as np
 
-from exactfold.arrays import BigArray
+from exactfold.arrays import BigArray, FloatArray, IndexArray
 from exactfold.problem.sheet import Sheet
 
 _LENGTH_BITS = 64
@@ -197,16 +197,28 @@ def height_radius(sheet: Sheet, squared: Fraction) -> Fraction:
     widest = np.maximum(folds.left, folds.right)
     costs = (2 * folds.squared_length / widest).astype(np.float64) ** 0.5
     costs = np.maximum(costs, _LEAST_COST)
-    from scipy.sparse import csr_array  # here, as loading SciPy takes longer than a small proof
-    from scipy.sparse.csgraph import dijkstra
-
-    count, ends = len(sheet.pattern.vertices), folds.corners[:, :2]
-    graph = csr_array((costs, (ends[:, 0], ends[:, 1])), shape=(count, count))
-    rim = list(sheet.pattern.boundary)
-    far = dijkstra(graph, directed=False, indices=rim, min_only=True)
+    far = _distances(
+        len(sheet.pattern.vertices), folds.corners[:, :2], costs, sheet.pattern.boundary
+    )
     reached = float(far[list(sheet.pattern.interior)].max(initial=0.0))
     longest = Fraction(reached) * (1 + Fraction(1, 1 << 20))
     return round_up(longest * root_above(squared))
+
+
+def _distances(
+    count: int, ends: IndexArray, costs: FloatArray, sources: Sequence[int]
+) -> FloatArray:
+    """The length of a shortest path to each vertex, by Bellman and Ford.
+
+    Not by SciPy, which takes longer to load than a small proof.
+    """
+    begin, end = np.concatenate([ends, ends[:, ::-1]]).T
+    far, nearer = np.full(count, np.inf), np.full(count, np.inf)
+    nearer[list(sources)] = 0.0
+    while not np.array_equal(far, nearer):
+        far = nearer.copy()
+        np.minimum.at(nearer, end, far[begin] + np.tile(costs, 2))
+    return far
 
 
 def root_above(value: Fraction) -> Fraction:

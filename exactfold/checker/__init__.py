@@ -25,8 +25,10 @@ name; none is named like a module of the standard library, as their folder is on
 when it is run.
 """
 
-from .command import check, is_compact, load, main, summary, verify
-from .reading import CertificateError, FormatError
+TYPE_CHECKING = False  # as in typing, which takes a while to load
+if TYPE_CHECKING:
+    from .command import check, is_compact, load, main, summary, verify
+    from .reading import CertificateError, FormatError
 
 __all__ = [
     "CertificateError",
@@ -38,3 +40,16 @@ __all__ = [
     "summary",
     "verify",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """A public name, loaded where it is used: whoever writes certificates needs `formats` only."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name.endswith("Error"):
+        from . import reading as home
+    else:
+        from . import command as home  # type: ignore[no-redef]
+    found: object = getattr(home, name)
+    globals()[name] = found
+    return found

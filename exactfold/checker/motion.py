@@ -9,17 +9,18 @@ at a node: its last piece is an arc through it, a point of which lies on the las
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
+from itertools import zip_longest
 from typing import Any
 
 from .formats import MOST_TUBES, MOST_WORK, MOTION, MOTION_BITS, MOTION_VERSION, NODE_WORK
 from .motion_contacts import check_contacts, said
 from .motion_equations import SPARE, LengthEquations
+from .motion_names import names
 from .motion_nodes import NodeTube
 from .motion_patches import Patch
 from .motion_paths import Path
-from .motion_stretches import Arc, Link
+from .motion_stretches import Arc, Link, Step
 from .motion_tubes import Start, Tube
 from .reading import (
     MALFORMED,
@@ -34,8 +35,8 @@ from .reading import (
     require,
     shown,
 )
-from .reduced import closed, emptied_sheet
-from .sheet import Sheet, read_sheet, turn
+from .reduced import emptied_sheet
+from .sheet import Sheet, read_sheet
 
 REACH_BITS = 6
 PARAMETER_BITS = 40
@@ -58,7 +59,9 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     With `clear`, no two faces touch beyond what they share before this length of the motion; with
     `contact`, some do between two lengths (docs/contacts.md). With `node` the motion ends at a
     configuration in which the stars of the vertices `flat` are flat; all before it are regular. If
-    `clear` is true there, no two faces touch up to it, nor in it.
+    `clear` is true there, no two faces touch up to it, nor in it. With `through` the curve goes
+    through such configurations, where the vertices listed are flat, in this order; it is regular
+    but for them.
     """
     try:
         return _check(data)
@@ -72,30 +75,25 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     more = ["clear"] if "clear" in claims else []
     more = ["clear", "contact"] if "contact" in claims else more
     ends = ["node"] if "node" in claims else []
-    keys(claims, " ".join(["vertex_signs side length", *more, *ends]), "claims")
+    through = ["through"] if "through" in claims else []
+    keys(claims, " ".join(["vertex_signs side length", *more, *ends, *through]), "claims")
     found = ["contacts"] if more else []
     keys(evidence, " ".join(["emptied pinned bits start tubes", *found, *ends]), "evidence")
     equations, removed = framework(given, evidence)
     tubes = items(evidence["tubes"], "tubes")
-    check_work(equations, len(tubes) + NODE_WORK * len(ends))
+    check_steps(equations, tubes, len(ends))
     start, tau = first_piece(equations, evidence["start"])
     _check_names(given, removed, start, claims)
     path = Path(start.configuration(tau), equations.bits)
-    links: list[Link] = []
-    for k, entry in enumerate(tubes):
-        onwards = k + 1 < len(tubes) or not ends
-        keys(entry, "centre row reach exit" if onwards else "centre row reach", "tube")
-        tube, ball, end = tube_of(equations, entry), path.here, None
-        path.enter(tube)
-        if onwards:
-            end = Fraction(natural(entry["exit"], "exit"), 1 << PARAMETER_BITS)
-            path.leave(end)
-        links.append((tube, ball, end))
-    arc = _to_the_node(equations, path, claims["node"], evidence["node"]) if ends else None
+    steps = walked(equations, path, tubes, leaves=not ends)
+    if through or any(map(is_node, tubes)):
+        _check_passed(claims, [entry["flat"] for entry in tubes if is_node(entry)])
+    if ends:
+        steps.append(_to_the_node(equations, path, claims["node"], evidence["node"]))
     claimed = parse_rational(claims["length"])
     require(claimed <= path.length * equations.unit, "the motion is shorter than claimed")
     if more:
-        check_contacts(start, tau, links, claims, evidence["contacts"], arc)
+        check_contacts(start, tau, steps, claims, evidence["contacts"])
     if ends and claims["node"]["clear"]:
         given_end = (evidence["contacts"]["tube"], evidence["contacts"]["clear"]) if more else None
         shown_to_be = given_end == (len(tubes) + 1, 0)
@@ -109,11 +107,64 @@ def _to_the_node(equations: LengthEquations, path: Path, claim: Any, entry: Any)
     require(type(claim["clear"]) is bool, "clear is not true or false")
     keys(entry, "node centre row reach entry", "node")
     arc = arc_of(equations, claim["flat"], entry)
-    # That it is negative need not be asked for: docs/motion.md, Theorem 6.
-    begin = Fraction(integer(entry["entry"]), 1 << PARAMETER_BITS)
+    begin, end = _parameter(entry["entry"]), Fraction(0)
+    path.meet(*arc.configuration(begin))
+    # Only where a node was passed before can it be otherwise: docs/motion.md, Theorem 6.
+    require(begin < end, "an arc does not lead to its node")
+    path.go(*arc.configuration(end))
+    return Arc(arc, begin, end)
+
+
+def _check_passed(claims: Any, passed: list[Any]) -> None:
+    """The nodes that are passed are those claimed."""
+    require(passed and "through" in claims, "a motion passes nodes that it does not claim, or none")
+    claimed = [
+        [natural(v, "flat vertex") for v in items(flat, "flat")]
+        for flat in items(claims["through"], "through")
+    ]
+    require(claimed == passed, "the nodes that are passed are others")
+
+
+def walked(equations: LengthEquations, path: Path, entries: list[Any], leaves: bool) -> list[Step]:
+    """Follow the steps of a motion: tubes, and arcs through nodes.
+
+    A tube is left at its exit unless an arc follows; at the end the last one is if `leaves`.
+    """
+    steps: list[Step] = []
+    for entry, after in zip_longest(entries, entries[1:]):
+        if is_node(entry):
+            steps.append(through_a_node(equations, path, entry))
+            continue
+        onwards = leaves if after is None else not is_node(after)
+        keys(entry, "centre row reach exit" if onwards else "centre row reach", "tube")
+        tube, here, end = tube_of(equations, entry), path.here, None
+        path.enter(tube)
+        if onwards:
+            end = _parameter(entry["exit"])
+            path.leave(end)
+        steps.append(Link(tube, here, end))
+    return steps
+
+
+def through_a_node(equations: LengthEquations, path: Path, entry: Any) -> Arc:
+    """An arc through a node, from before it until after it."""
+    keys(entry, "flat node centre row reach entry exit", "node")
+    arc = arc_of(equations, entry["flat"], entry)
+    begin, end = _parameter(entry["entry"]), _parameter(entry["exit"])
+    require(begin < 0 < end, "an arc does not go through its node")
     path.meet(*arc.configuration(begin))
     path.go(*arc.configuration(Fraction(0)))
-    return arc, begin
+    path.go(*arc.configuration(end))
+    return Arc(arc, begin, end)
+
+
+def is_node(step: Any) -> bool:
+    """Whether a step is an arc through a node, not a tube."""
+    return isinstance(step, dict) and "flat" in step
+
+
+def _parameter(value: Any) -> Fraction:
+    return Fraction(integer(value), 1 << PARAMETER_BITS)
 
 
 def framework(given: Sheet, evidence: Any) -> tuple[LengthEquations, set[int]]:
@@ -127,8 +178,10 @@ def framework(given: Sheet, evidence: Any) -> tuple[LengthEquations, set[int]]:
     return LengthEquations(sheet, pinned, bits), removed
 
 
-def check_work(equations: LengthEquations, tubes: int) -> None:
-    """Raise if so many tubes are too much work."""
+def check_steps(equations: LengthEquations, entries: list[Any], more: int = 0) -> None:
+    """Raise if so many tubes and nodes, and `more` nodes, are too much work."""
+    nodes = sum(map(is_node, entries))
+    tubes = len(entries) - nodes + NODE_WORK * (nodes + more)
     require(tubes <= MOST_TUBES, "there are too many tubes")
     size, digits = equations.size, 1 + equations.bits // 256
     work = (tubes + 1) * size**2 * (size + 200) * digits
@@ -203,38 +256,6 @@ def _check_names(given: Sheet, removed: set[int], start: Start, claims: Any) -> 
     require(type(claims["side"]) is int and claims["side"] == side, "the side is another")
 
 
-def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int]:
-    """The vertex signs, 0 for vertices that were removed, and the side of a half-branch.
-
-    They are those of the heights at the flat state.
-    """
-    box, place = start.enclosure(Fraction(0)), start.equations.place
-
-    def sign(functional: Mapping[int, Fraction]) -> int:
-        """The sign of a functional of the heights, 0 if it is not certain."""
-        terms = [(c, place[v] + 2) for v, c in functional.items() if v in place]
-        middle = sum((c * box.centre[k] for c, k in terms), Fraction(0))
-        spread = sum((abs(c) * box.radii[k] for c, k in terms), Fraction(0))
-        return 0 if abs(middle) <= spread else 1 if middle > 0 else -1
-
-    sheet = start.equations.sheet
-    signs = [0 if v in removed else sign(sheet.sign_of_vertex(v)) for v in given.interior]
-    for v, found in zip(given.interior, signs, strict=True):
-        require(found or v in removed, f"vertex {v} may be flat")
-    whole, corner = closed(sheet)
-    side = sign(saddle_of(sheet) if corner is None else whole.sign_of_vertex(corner))
-    require(side, "the side of the branch is not certain")
-    return signs, side
-
-
-def saddle_of(sheet: Sheet) -> dict[int, Fraction]:
-    """The functional of the boundary heights that vanishes on planes, as docs/conventions.md."""
-    p, q, r, s = (sheet.points[v] for v in sheet.boundary)
-    weights = (turn(q, r, s), -turn(p, r, s), turn(p, q, s), -turn(p, q, r))
-    first = next(w for w in weights if w)
-    return {v: w / first for v, w in zip(sheet.boundary, weights, strict=True)}
-
-
 def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
@@ -243,19 +264,22 @@ def summary(claims: dict[str, Any]) -> str:
     tubes = counted(claims["tubes"], "tube", "tubes")
     return (
         f"VALID: the motion along the half-branch {letters} ({len(signs)}), side {side}, is one "
-        f"curve without a gap of length {shown(claims['length'])} or more{_end(claims)}"
+        f"curve without a gap of length {shown(claims['length'])} or more{_nodes(claims)}"
         f"{said(claims)}; {tubes}; "
         f"sha256 {claims['sha256']}"
     )
 
 
-def _end(claims: dict[str, Any]) -> str:
-    """Where a motion ends, if it is claimed to be at a node."""
-    if "node" not in claims:
-        return ""
-    flat = claims["node"]["flat"]
+def _nodes(claims: dict[str, Any]) -> str:
+    """Which nodes a motion passes, and whether it is claimed to end at one."""
+    text = "".join(f", through a node where {_flat(flat)}" for flat in claims.get("through", []))
+    if "node" in claims:
+        text += f", to a node where {_flat(claims['node']['flat'])}"
+    return text
+
+
+def _flat(flat: list[int]) -> str:
+    """That vertices are flat."""
     several = len(flat) > 1
     names = " and ".join(map(str, flat))
-    return f", to a node where {'vertices' if several else 'vertex'} {names} " + (
-        "are flat" if several else "is flat"
-    )
+    return f"{'vertices' if several else 'vertex'} {names} {'are' if several else 'is'} flat"

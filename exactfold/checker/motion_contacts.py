@@ -30,7 +30,7 @@ from .motion_boxes import (
 )
 from .motion_equations import LengthEquations
 from .motion_lengths import GRID, Path
-from .motion_stretches import Arc, Link, stretches_of
+from .motion_stretches import Step, stretches_of
 from .motion_tubes import Start
 from .reading import integer, items, keys, natural, parse_rational, require, shown
 from .sheet import Edge
@@ -180,21 +180,20 @@ def folded_over(
 def check_contacts(
     start: Start,
     tau: Fraction,
-    links: list[Link],
+    steps: list[Step],
     claims: Any,
     given: Any,
-    arc: Arc | None = None,
 ) -> None:
     """Refuse unless the claims `clear` and, if there is one, `contact` hold.
 
-    `given`: the tube, by its number from 1 on, in which what is clear ends at the parameter
+    `given`: the step, by its number from 1 on, in which what is clear ends at the parameter
     `clear`, and in which a contact is proved at `to`, or a fold closes between `from` and `to`. The
-    arc to a node comes after the last tube.
+    arc to a node at the end comes after the last tube.
     """
     keys(given, "tube clear from to" if "contact" in claims else "tube clear", "contacts")
     number = natural(given["tube"], "tube")
-    require(1 <= number <= len(links) + (arc is not None), "there is no such tube")
-    stretches = stretches_of(start, tau, links[:number], arc)[: number + 1]
+    require(1 <= number <= len(steps), "there is no such tube")
+    stretches = stretches_of(start, tau, steps[:number])
     last = stretches[-1]
 
     def parameter(key: str, least: Fraction) -> Fraction:

@@ -16,18 +16,16 @@ from typing import Any
 
 from .compact import Engine, Share, on_processes
 from .compact_lines import read_object
-from .formats import LOOPS, LOOPS_VERSION, NODE_WORK
+from .formats import LOOPS, LOOPS_VERSION
 from .motion import (
-    PARAMETER_BITS,
     ROOT_BITS,
-    arc_of,
-    check_work,
+    check_steps,
     first_piece,
     framework,
-    names,
     start_of,
-    tube_of,
+    walked,
 )
+from .motion_names import names
 from .motion_paths import Path
 from .motion_tubes import Ball, Start
 from .reading import (
@@ -84,20 +82,11 @@ class LoopSheet:
         evidence = entry["evidence"]
         keys(evidence, "start steps landing", "evidence")
         steps = items(evidence["steps"], "steps")
-        nodes = sum(_is_node(step) for step in steps)
-        check_work(self.equations, len(steps) + (NODE_WORK - 1) * nodes)
+        check_steps(self.equations, steps)
         start, tau = first_piece(self.equations, evidence["start"])
         require(self._named(start) == self.half_branch(entry["from"]), "it begins along another")
         path = Path(start.configuration(tau), self.equations.bits)
-        for k, step in enumerate(steps):
-            if _is_node(step):
-                self._pass_node(path, step)
-            else:
-                onwards = k + 1 < len(steps) and not _is_node(steps[k + 1])
-                keys(step, "centre row reach exit" if onwards else "centre row reach", "tube")
-                path.enter(tube_of(self.equations, step))
-                if onwards:
-                    path.leave(_parameter(step["exit"]))
+        walked(self.equations, path, steps, leaves=False)
         landing = evidence["landing"]
         keys(landing, "centre halvings held reach tau", "landing")
         end, side = start_of(self.equations, landing), 1
@@ -115,26 +104,9 @@ class LoopSheet:
         claimed = parse_rational(entry["length"])
         require(claimed <= path.land() * self.equations.unit, "it is shorter than claimed")
 
-    def _pass_node(self, path: Path, entry: Any) -> None:
-        keys(entry, "flat node centre row reach entry exit", "node")
-        arc = arc_of(self.equations, entry["flat"], entry)
-        begin, end = _parameter(entry["entry"]), _parameter(entry["exit"])
-        require(begin < 0 < end, "an arc does not go through its node")
-        path.meet(*arc.configuration(begin))
-        path.go(*arc.configuration(Fraction(0)))
-        path.go(*arc.configuration(end))
-
     def _named(self, start: Start) -> HalfBranch:
         signs, side = names(self.given, self.removed, start)
         return tuple(signs), side
-
-
-def _is_node(step: Any) -> bool:
-    return isinstance(step, dict) and "flat" in step
-
-
-def _parameter(value: Any) -> Fraction:
-    return Fraction(integer(value), 1 << PARAMETER_BITS)
 
 
 # --- files ---------------------------------------------------------------------------------------

@@ -1,19 +1,39 @@
-"""The parts of tubes, and of an arc to a node, that a motion passes."""
+"""The parts of tubes, and of arcs through nodes, that a motion passes."""
 
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import zip_longest
+from typing import NamedTuple
 
 from .motion_lengths import Path, entry
 from .motion_nodes import NodeTube
 from .motion_tubes import Ball, Start, Tube
 
-Link = tuple[Tube, Ball, Fraction | None]
-"""A tube, the box in which the motion enters it, and the parameter at which it leaves it; None if
-it goes over to the arc through a node."""
 
-Arc = tuple[NodeTube, Fraction]
-"""The arc on which a motion comes to a node, and the parameter at which it begins."""
+class Link(NamedTuple):
+    """A tube, the box in which the motion enters it, and the parameter at which it leaves it.
+
+    None if it goes over to an arc through a node.
+    """
+
+    tube: Tube
+    here: Ball
+    end: Fraction | None
+
+
+class Arc(NamedTuple):
+    """An arc through a node, and the parameters at which the motion comes to it, and leaves it.
+
+    The second is after the node or, where the motion ends there, at it.
+    """
+
+    tube: NodeTube
+    begin: Fraction
+    end: Fraction
+
+
+Step = Link | Arc
 
 _Interval = tuple[Fraction, Fraction]
 
@@ -43,26 +63,30 @@ class Stretch:
         )
 
 
-def stretches_of(
-    start: Start, tau: Fraction, links: list[Link], arc: Arc | None = None
-) -> list[Stretch]:
+def stretches_of(start: Start, tau: Fraction, steps: list[Step]) -> list[Stretch]:
     """The parts of all pieces of a motion, in order."""
     zero = Fraction(0)
     radii, rates = start.enclosure(tau**2).radii, start.velocity(tau**2).radii
     path = Path.of_start(start.curve, start.bits, start.halvings, tau, radii, rates)
     found = [Stretch(path, (zero, zero), (tau, tau), zero, tau)]
-    for tube, ball, end in links:
-        reach = tube.reach
+    for step, after in zip_longest(steps, steps[1:]):
+        if isinstance(step, Arc):
+            found.append(_on_arc(step))
+            continue
+        tube, reach = step.tube, step.tube.reach
         radii, rates = tube.enclosure(reach).radii, tube.velocity(reach).radii
         path = Path.of_tube(tube.curve, tube.bits, reach, radii, rates)
-        left = (end, end) if end is not None else (reach, reach)
-        if end is None and arc is not None:
-            left = entry(tube, arc[0].configuration(arc[1])[0])
-        found.append(Stretch(path, entry(tube, ball), left, -reach, reach))
-    if arc is not None:
-        piece, begin = arc
-        box, rate = piece.configuration(begin)
-        curve = [piece.node.centre, *piece.curve]
-        path = Path.of_tube(curve, piece.bits, -begin, box.radii, rate.radii)
-        found.append(Stretch(path, (begin, begin), (zero, zero), begin, zero))
+        left = (step.end, step.end) if step.end is not None else (reach, reach)
+        if isinstance(after, Arc):
+            left = entry(tube, after.tube.configuration(after.begin)[0])
+        found.append(Stretch(path, entry(tube, step.here), left, -reach, reach))
     return found
+
+
+def _on_arc(arc: Arc) -> Stretch:
+    """The part of an arc."""
+    piece, begin, end = arc
+    far = max(-begin, end)
+    box, rate = piece.configuration(far)
+    path = Path.of_tube([piece.node.centre, *piece.curve], piece.bits, far, box.radii, rate.radii)
+    return Stretch(path, (begin, begin), (end, end), begin, end)

@@ -13,7 +13,7 @@ from exactfold.commands.patterns import read
 from exactfold.commands.resuming import require_file, resumable
 from exactfold.commands.shell import EXIT, Bar, apart, interruptible, name_of
 from exactfold.count.on_dask import LOCAL
-from exactfold.count.pools import dask_pool, process_pool
+from exactfold.count.pools import dask_pool
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UsageError
 from exactfold.motion.matching import find_loops
@@ -64,13 +64,13 @@ class Wanted:
                     require_file(self.certificate, self.resume)
                     stack.enter_context(resumable(self.certificate, self.again))
                 stack.enter_context(interruptible())
-                if self.dask is None:
-                    few = len(pattern.foldable_vertices) <= _FEW
-                    pool = process_pool(self.workers or (1 if few else os.cpu_count() or 1))
-                else:
+                pool = None
+                if self.dask is not None:
                     pool = stack.enter_context(dask_pool(self.dask, self.workers))
+                few = len(pattern.foldable_vertices) <= _FEW
                 found = find_loops(
                     pattern,
+                    processes=self.workers or (1 if few else os.cpu_count() or 1),
                     pool=pool,
                     progress=bar,
                     certificate=self.certificate,

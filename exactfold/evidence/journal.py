@@ -9,8 +9,8 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 
-from exactfold.checker import FormatError
 from exactfold.checker.compact_lines import digest, lines, read_object
+from exactfold.checker.reading import FormatError
 from exactfold.errors import ForeignJournalError, UnwritableFileError, UsageError
 from exactfold.evidence.durable import locked, synced, synced_entry, unwritable
 

@@ -20,15 +20,18 @@ def motion_certificate(
     bits: int,
     start: Document,
     tubes: Sequence[Document],
-    arc: Document | None = None,
+    ends_at_a_node: bool = False,
 ) -> Document:
     """The proof of a motion as a JSON object (docs/motion.md, The certificate).
 
     `signs`: those of the foldable vertices on the half-branch, by vertex of the pattern; `pinned`
     and the vertex `held` of `start` are vertices of the pattern, too. `Track.certificate` calls it.
-    With `arc` the motion ends at a node, where the vertices `flat` of it are flat. The certificate
-    does not claim that nothing touches up to there.
+    Of `tubes` those with the key `flat` are arcs through nodes, at which these vertices are flat.
+    With `ends_at_a_node` the motion ends at the node of the last one. The certificate does not
+    claim that nothing touches up to there.
     """
+    *steps, last = tubes if ends_at_a_node else [*tubes, {}]
+    through = [step["flat"] for step in steps if "flat" in step]
     document: Document = {
         "format": MOTION,
         "version": MOTION_VERSION,
@@ -43,10 +46,14 @@ def motion_certificate(
             "pinned": list(pinned),
             "bits": bits,
             "start": start,
-            "tubes": list(tubes),
+            "tubes": steps,
         },
     }
-    if arc is not None:
-        document["claims"]["node"] = {"flat": arc["flat"], "clear": False}
-        document["evidence"]["node"] = {key: x for key, x in arc.items() if key != "flat"}
+    if through:
+        document["claims"]["through"] = through
+    if ends_at_a_node:
+        document["claims"]["node"] = {"flat": last["flat"], "clear": False}
+        document["evidence"]["node"] = {
+            key: x for key, x in last.items() if key not in ("flat", "exit")
+        }
     return document

@@ -31,7 +31,6 @@ from exactfold.motion.proving import prove as prove
 from exactfold.motion.start import Start as Start
 from exactfold.motion.tracks import Frame as Frame
 from exactfold.motion.tracks import Track as Track
-from exactfold.motion.tracks import continued as continued
 from exactfold.motion.tracks import follow_proved as follow_proved
 from exactfold.motion.tracks import half_branch as half_branch
 from exactfold.motion.tube import Tube as Tube

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import zip_longest
 
 from exactfold.checker.motion_lengths import Path
 from exactfold.evidence.entries import Document
@@ -84,17 +85,18 @@ class _Part:
 
 
 def _parts(track: Track) -> list[_Part]:
-    """The start tube, the tubes, and the arc to a node."""
+    """The start tube, the tubes, and the arcs through nodes."""
     zero, last = Fraction(0), Fraction(track.start.last, 1 << ROOT_BITS)
     parts = [_Part(_start_path(track), (zero, zero), (last, last))]
-    for link in track.links:
-        ends = link.exit, link.exit
-        if track.node is not None and link is track.links[-1]:
-            ends = track.node.met
-        parts.append(_Part(_tube_path(link), _parameters(link.entry), _parameters(ends)))
-    if track.node is not None:
-        begin = _parameters((track.node.entry, track.node.entry))
-        parts.append(_Part(_arc_path(track.node), begin, (zero, zero)))
+    for step, after in zip_longest(track.steps, track.steps[1:]):
+        ends = step.exit, step.exit
+        if isinstance(step, Passage):
+            begin = step.entry, step.entry
+            parts.append(_Part(_arc_path(step), _parameters(begin), _parameters(ends)))
+            continue
+        if isinstance(after, Passage):
+            ends = after.met
+        parts.append(_Part(_tube_path(step), _parameters(step.entry), _parameters(ends)))
     return parts
 
 
@@ -127,13 +129,13 @@ def _tube_path(link: Link) -> Path:
 
 
 def _arc_path(node: Passage) -> Path:
-    arc = node.tube
+    arc, far = node.tube, max(-node.entry, node.exit)
     return Path.of_tube(
         [list(row) for row in (arc.node.finer(arc.bits).centre, *arc.coefficients)],
         arc.bits,
-        Fraction(-node.entry, 1 << PARAMETER_BITS),
-        list(arc.ball(node.entry).radii),
-        list(arc.ball_velocity(node.entry).radii),
+        Fraction(far, 1 << PARAMETER_BITS),
+        list(arc.ball(far).radii),
+        list(arc.ball_velocity(far).radii),
     )
 
 

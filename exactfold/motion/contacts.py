@@ -12,6 +12,7 @@ import numpy as np
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.motion.arclength import in_floats
+from exactfold.motion.chain import Step
 from exactfold.motion.contraction import SCALE, WEIGHT_BITS
 from exactfold.motion.crossings import Crossing, Crossings
 from exactfold.motion.events import CONTACT, FLAT_FOLD, Event
@@ -30,6 +31,8 @@ _FINEST = 2.0**-22
 _STEPS = 20
 _ROOM, _MORE = 4.0, 1e-10
 """Tubes are taken to be so much wider, so that a checker with weights of its own sees the same."""
+_FIRST = "the first contact"
+_NEITHER = "some faces are not proved to stay apart, nor to touch"
 _AFTER = 1 << 14
 """Over 2^PARAMETER_BITS: so much later than the entry of its tube a contact is looked for."""
 
@@ -44,10 +47,10 @@ class FirstContact:
     ended before, or nothing was proved to touch; `open_faces` are the pairs then that are not
     proved to stay apart after `clear`. `status` is PROVED if the first contact is enclosed.
 
-    `parameters`: on the last piece of the track, over 2^PARAMETER_BITS, where what is clear ends,
+    `parameters`: on the last step of the track, over 2^PARAMETER_BITS, where what is clear ends,
     and between which two the contact is proved, the last two equal for an edge that runs through a
-    face; None if nothing is proved to be clear. That of a track that ends at a node is the arc
-    through it, or the last tube if `before_the_arc`.
+    face; None if nothing is proved to be clear. If that step is an arc through a node, and
+    `before_the_arc`, they are on the tube before.
     """
 
     status: Verdict
@@ -85,7 +88,7 @@ def first_contact(branch: Branch, side: int = 1, *, most: int = 1000) -> tuple[T
 
 @dataclass
 class ContactWatch:
-    """Looks for the first contact on one link of a track after the other.
+    """Looks for the first contact on one step of a track after the other.
 
     Times are in the unit of the framework.
     """
@@ -94,11 +97,17 @@ class ContactWatch:
     touching: _Touching | None = None
     open_pairs: Open | None = None
     parameters: tuple[int, int, int] | None = None
+    before_the_arc: bool = False
     _pairs: FacePairs | None = field(default=None, repr=False)
 
-    def __call__(self, link: Link) -> str | None:
+    def __call__(self, step: Step) -> str | None:
         """Why the track may end: a contact, or pairs that are not separated; None to go on."""
-        pairs = self._pairs = self._pairs or FacePairs(link.tube.framework)
+        pairs = self._pairs = self._pairs or FacePairs(step.tube.framework)
+        if isinstance(step, Passage):
+            return self._at_a_node(step, pairs)
+        return self._on_a_tube(step, pairs)
+
+    def _on_a_tube(self, link: Link, pairs: FacePairs) -> str | None:
         coefficients, radius = positions_of(link.tube)
         radius = _ROOM * radius + _MORE
         low, high, longest = (
@@ -117,11 +126,42 @@ class ContactWatch:
         after = (max(link.entry) + _AFTER) / (1 << PARAMETER_BITS)
         found = _touching(pairs, coefficients, radius, (after, max(at, after), longest))
         if found is None:
-            return "some faces are not proved to stay apart, nor to touch"
+            return _NEITHER
         begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (found.begin, found.end))
         self.parameters = parameter, begin, end
         self.touching = replace(found, latest=link.time(end)[1])
-        return "the first contact"
+        return _FIRST
+
+    def _at_a_node(self, node: Passage, pairs: FacePairs) -> str | None:
+        """The tube before is clear to its exit; the arc may begin a little after.
+
+        On an arc that ends at the node a contact is looked for before it, not in the node itself,
+        where those of the other arcs begin, too.
+        """
+        link = node.before
+        coefficients, radius = positions_of(link.tube)
+        low, high = (x / (1 << PARAMETER_BITS) for x in (link.exit, max(link.exit, node.met[1])))
+        left = _clear(pairs, coefficients, radius, low, high)[1]
+        if left:
+            self.open_pairs, self.before_the_arc = left, True
+            self.clear, self.parameters = link.left[0], (link.exit, link.exit, link.exit)
+            return _NEITHER
+        arc = on_node_tube(node.tube, node.entry, node.exit)
+        at, left = _clear(pairs, arc.coefficients, arc.radius, arc.begin, arc.end)
+        # Of a float that is no whole number of units the whole ones below it.
+        parameter = max(node.entry, math.floor(at * (1 << PARAMETER_BITS))) if left else node.exit
+        self.clear, self.parameters = node.time(parameter)[0], (parameter, parameter, parameter)
+        if not left:
+            return None
+        self.open_pairs = left
+        where = arc.begin, max(at, arc.begin), arc.end
+        found = _touching(pairs, arc.coefficients, _ROOM * arc.radius + _MORE, where)
+        if found is None:
+            return _NEITHER
+        begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (found.begin, found.end))
+        self.parameters = parameter, begin, end
+        self.touching = replace(found, latest=node.time(end)[1])
+        return _FIRST
 
     def result(self, track: Track) -> FirstContact:
         """What was found on a track that was followed with this as its `stop`."""
@@ -132,54 +172,20 @@ class ContactWatch:
         if left:
             reason = "some faces are not proved to stay apart near the flat state"
             return FirstContact(UNDECIDED, Fraction(0), None, _named(track, pairs, left), reason)
-        if track.node is not None and self.touching is None and not self.open_pairs:
-            return self._to_the_node(track, track.node, pairs)
         clear = self.clear * track.framework.unit
         if self.touching is None:
             left = self.open_pairs or left
             return FirstContact(
-                UNDECIDED, clear, None, _named(track, pairs, left), track.reason, self.parameters
+                UNDECIDED,
+                clear,
+                None,
+                _named(track, pairs, left),
+                track.reason,
+                self.parameters,
+                self.before_the_arc,
             )
         event = _event(track, self.touching, clear)
         return FirstContact(PROVED, clear, event, (), "", self.parameters)
-
-    def _to_the_node(self, track: Track, node: Passage, pairs: FacePairs) -> FirstContact:
-        """The first contact on a track all of whose tubes are clear to their exits.
-
-        A contact is looked for on the arc to the node, not in the node itself, where those of the
-        other arcs begin, too.
-        """
-        link, unit = track.links[-1], track.framework.unit
-        coefficients, radius = positions_of(link.tube)
-        # The arc may begin a little after the exit.
-        low, high = (x / (1 << PARAMETER_BITS) for x in (link.exit, max(link.exit, node.met[1])))
-        left = _clear(pairs, coefficients, radius, low, high)[1]
-        parameter, time, on_the_arc = link.exit, link.left[0], not left
-        if on_the_arc:
-            arc = on_node_tube(node.tube, node.entry, 0)
-            at, left = _clear(pairs, arc.coefficients, arc.radius, arc.begin, arc.end)
-            # Of a float that is no whole number of units the whole ones below it.
-            parameter = max(node.entry, math.floor(at * (1 << PARAMETER_BITS))) if left else 0
-            time = node.time(parameter)[0]
-            if left:
-                radius = _ROOM * arc.radius + _MORE
-                where = arc.begin, max(at, arc.begin), arc.end
-                found = _touching(pairs, arc.coefficients, radius, where)
-                if found is not None:
-                    begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (found.begin, found.end))
-                    found = replace(found, latest=node.time(end)[1])
-                    event = _event(track, found, time * unit)
-                    return FirstContact(PROVED, time * unit, event, (), "", (parameter, begin, end))
-        reason = "some faces are not proved to stay apart before the node" if left else track.reason
-        return FirstContact(
-            UNDECIDED,
-            time * unit,
-            None,
-            _named(track, pairs, left),
-            reason,
-            (parameter, parameter, parameter),
-            not on_the_arc,
-        )
 
 
 @dataclass(frozen=True)

@@ -200,7 +200,9 @@ def contraction(
             [(v + (1 << drop >> 1)) >> drop for v, drop in zip(rows, drops, strict=True)][1:]
         )
         images = np.asarray(abs(_product(coarse, places, nearest)))
-        above = np.reshape(_above(images.reshape(-1, n), weights), (-1, n)).tolist()
+        # Not by an array: of integers on both sides of 2^63 that would be one of floats.
+        whole = _above(images.reshape(-1, n), weights)
+        above = [whole[k : k + n] for k in range(0, len(whole), n)]
         spreads = (abs(nearest) * sums).sum(axis=(1, 2)).tolist()
         for image, spread, drop in zip(above, spreads, drops[1:], strict=True):
             sizes = [

@@ -6,14 +6,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import comb
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse.linalg import SuperLU, splu
 
 from exactfold.arrays import FloatArray
 from exactfold.errors import NotApplicableError
 from exactfold.motion.framework import Framework
-from exactfold.motion.start import Start, blown_up, blown_up_jacobian, bordered
+from exactfold.motion.start import Start, blown_up, blown_up_jacobian, bordered, factorised
+
+if TYPE_CHECKING:
+    from scipy.sparse.linalg import SuperLU
 
 ORDER = 10
 TOLERANCE = 1e-11
@@ -227,7 +230,7 @@ def orientation_at(framework: Framework, x: FloatArray, direction: FloatArray) -
     """The sign of det [J; T] at a configuration, T the tangent in the direction given, or 0."""
     held = int(np.argmax(np.abs(direction)))
     try:
-        factors = splu(bordered(framework.jacobian(x), held))
+        factors = factorised(bordered(framework.jacobian(x), held))
     except RuntimeError:
         return 0
     return _orientation(factors, float(direction[held]))
@@ -242,7 +245,7 @@ def on_curve(
     """
     held = int(np.argmax(np.abs(direction)))
     try:
-        factors = splu(bordered(framework.jacobian(x), held))
+        factors = factorised(bordered(framework.jacobian(x), held))
     except RuntimeError:
         raise LostCurveError("the Jacobian is singular") from None
     last = np.inf
@@ -272,7 +275,7 @@ def near_flat(framework: Framework, x: FloatArray) -> FloatArray:
     y = x / scale
     held = 3 * int(np.argmax(np.abs(y[2::3]))) + 2
     try:
-        factors = splu(bordered(blown_up_jacobian(framework, y, t * t), held))
+        factors = factorised(bordered(blown_up_jacobian(framework, y, t * t), held))
     except RuntimeError:
         return x
     for _ in range(2):

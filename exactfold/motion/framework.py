@@ -5,13 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csc_array
 
 from exactfold.arrays import FloatArray, IndexArray
 from exactfold.motion.angles import hinges_of
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
+
+if TYPE_CHECKING:  # SciPy takes as long to load as a small sheet to follow
+    from scipy.sparse import csc_array
 
 Points = tuple[tuple[int, int], ...]
 
@@ -122,9 +125,19 @@ class Framework:
 
     def matrix(self, rows: FloatArray) -> csc_array:
         """The matrix that takes d to rows_e . d_e, sparse; `rows` has the shape (edges, 3)."""
+        from scipy.sparse import csc_array
+
         row, starts, source, sign = self._structure
         data = sign * rows.reshape(-1)[source]
         return csc_array((data, row, starts), shape=(len(self.edges), self.size))
+
+    def dense(self, rows: FloatArray) -> FloatArray:
+        """The matrix of `matrix`, dense, shape (edges, unknowns)."""
+        row, starts, source, sign = self._structure
+        found = np.zeros((len(self.edges), self.size))
+        columns = np.repeat(np.arange(self.size), np.diff(starts))
+        found[row, columns] = sign * rows.reshape(-1)[source]
+        return found
 
     @cached_property
     def _structure(self) -> tuple[IndexArray, IndexArray, IndexArray, FloatArray]:

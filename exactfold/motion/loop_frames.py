@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from fractions import Fraction
 
 from exactfold.errors import UsageError
 from exactfold.motion.arclength import Interval
+from exactfold.motion.chain import point_near
 from exactfold.motion.links import Link
 from exactfold.motion.loop_proofs import Landing, LoopProof
-from exactfold.motion.passages import Passage
 from exactfold.motion.piece import Ball
 from exactfold.motion.tracks import Frame
-from exactfold.motion.tube import sharpened
 
 
 def frame_of(proof: LoopProof, time: float) -> Frame:
@@ -39,20 +37,12 @@ def frame_of(proof: LoopProof, time: float) -> Frame:
 
 def _at(proof: LoopProof, wanted: Fraction) -> tuple[Interval, Ball]:
     """Bounds of the time, in the unit of the framework, and a box at about that time."""
-    start, steps = proof.start, proof.steps
-    begun = bisect_right([step.entered[1] for step in steps], wanted)
-    if not begun:
-        tau = start.near(float(wanted), 0, start.last)
-        return start.length(0, tau), start.sharpened(tau)
-    step = steps[begun - 1]
-    if isinstance(step, Passage):
-        return step.near(wanted)
-    if begun == len(steps) and proof.landing is not None:
-        landed = _landed(step, proof.landing)
+    landing, last = proof.landing, proof.steps[-1] if proof.steps else None
+    if landing is not None and isinstance(last, Link) and wanted >= last.entered[1]:
+        landed = _landed(last, landing)
         if wanted >= landed[0]:
-            return _before_the_end(proof.landing, landed, wanted)
-    at = step.tube.near(float(wanted - step.entered[0]), max(step.entry), step.exit)
-    return step.time(at), sharpened(step.tube, at)
+            return _before_the_end(landing, landed, wanted)
+    return point_near(proof.start, proof.steps, wanted)
 
 
 def _landed(link: Link, landing: Landing) -> Interval:

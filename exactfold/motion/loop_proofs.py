@@ -7,13 +7,12 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import zip_longest
 
-import numpy as np
-
 from exactfold.errors import NotCountedError
 from exactfold.evidence.entries import Document
 from exactfold.evidence.loops import loop_line
 from exactfold.exact.numbers import format_rational
 from exactfold.motion.arclength import Interval, in_floats
+from exactfold.motion.chain import Step, chords, step_documents
 from exactfold.motion.fold_ranges import SLACK, FoldRange, fold_ranges
 from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.links import Link
@@ -99,7 +98,7 @@ class LoopProof:
 
     problem: Problem
     start: StartTube
-    steps: tuple[Link | Passage, ...]
+    steps: tuple[Step, ...]
     landing: Landing | None
     reason: str
 
@@ -165,14 +164,14 @@ class LoopProof:
         if self.landing is None:
             raise NotCountedError(f"the loop is not proved to its end: {self.reason}")
         landing, loop, unit = self.landing, self.loop, self.start.framework.unit
-        steps = [self._entry(a, b) for a, b in zip_longest(self.steps, self.steps[1:])]
+        length = chords(self.start, self.steps, leaves=False, landing=landing.ball)
         return loop_line(
             self._named(loop.source),
             self._named(landing.to),
-            format_rational(self._chords * unit),
+            format_rational(length * unit),
             {
                 "start": {**self._flat_end(self.start), "exit": self.start.last},
-                "steps": steps,
+                "steps": step_documents(self.steps, leaves=False),
                 "landing": {**self._flat_end(landing.start), "tau": landing.tau},
             },
             provenance_of(loop),
@@ -192,37 +191,6 @@ class LoopProof:
             "held": self.problem.labels[held],
             "reach": start.reach,
         }
-
-    def _entry(self, step: Link | Passage, after: Link | Passage | None) -> Document:
-        tube = step.tube
-        found: Document = {
-            "centre": list(tube.coefficients[0]),
-            "row": list(tube.row),
-            "reach": tube.reach,
-        }
-        if isinstance(step, Passage):
-            node = step.tube.node.centre
-            found = {"flat": list(step.vertices), "node": list(node), **found, "entry": step.entry}
-        if isinstance(step, Passage) or isinstance(after, Link):
-            found["exit"] = step.exit
-        return found
-
-    @property
-    def _chords(self) -> Fraction:
-        """A little less than the lengths of the chords between the points where pieces meet."""
-        balls = [self.start.ball(self.start.last)]
-        for step, after in zip_longest(self.steps, self.steps[1:]):
-            if isinstance(step, Passage):
-                balls += [step.tube.ball(at) for at in (step.entry, 0, step.exit)]
-            elif isinstance(after, Link):
-                balls.append(step.tube.enclosure(step.exit))
-        if self.landing is not None:
-            balls.append(self.landing.ball)
-        none = np.zeros((1, self.start.framework.size))
-        points = np.array([ball.floats[0] for ball in balls])
-        steps = np.diff(points, axis=0, prepend=none, append=none)
-        total = float(np.linalg.norm(steps, axis=1).sum())
-        return Fraction(int(total * (1 - 1e-5) * (1 << 30)), 1 << 30)
 
     def __repr__(self) -> str:
         return f"<LoopProof: {len(self.steps)} steps, {self.outline!r}>"
@@ -255,7 +223,7 @@ class ArcProof:
     """
 
     begin: NodeTube
-    steps: tuple[Link | Passage, ...]
+    steps: tuple[Step, ...]
     landing: Landing | None
     reason: str
 
@@ -309,7 +277,7 @@ def named(start: StartTube, side: int = 1) -> HalfBranch:
     return named if side > 0 else named.mirrored
 
 
-def whole_length(step: Link | Passage, landing: Landing) -> Interval:
+def whole_length(step: Step, landing: Landing) -> Interval:
     """Bounds of the length of a loop, whose last tube is met by the start tube of the landing."""
     found = step.tube.located(landing.ball) if isinstance(step, Link) else None
     if not isinstance(step, Link) or found is None or found[0] < step.entry[1]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,13 +10,11 @@ from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.errors import NotProvedAtTheFlatStateError
 from exactfold.motion.angles import fold_angles_of
+from exactfold.motion.chain import Chain, Step
 from exactfold.motion.half_branches import HalfBranch
-from exactfold.motion.length_equations import LengthEquations
-from exactfold.motion.links import Link, onwards
+from exactfold.motion.links import Link
 from exactfold.motion.loop_proofs import ArcProof, Landing, LoopProof, named
 from exactfold.motion.node_tube import NodeTube
-from exactfold.motion.passages import Passage, passage_ahead
-from exactfold.motion.singular import singular_at
 from exactfold.motion.tracks import half_branch
 from exactfold.motion.tube import Tube
 from exactfold.motion.tube_start import (
@@ -30,6 +27,8 @@ from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 
 MOST_TUBES = 4000
+_ALIKE = 0.25
+"""How different heights may be, of the largest one, that are taken to be those of a start tube."""
 _NEAR_FLAT = 0.8
 """Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
 
@@ -73,83 +72,96 @@ class LoopFinder:
         raise NotProvedAtTheFlatStateError(f"the branch has not the half-branch {source}")
 
     def _proof(self, start: StartTube, progress: Progress | None = None) -> LoopProof:
-        equations = LengthEquations.of(start.framework, start.bits)
-        last, time = start.last, start.length(0, start.last)
-        ahead = onwards(
-            equations, start.ball(last), start.ball_velocity(last), time, float(time[0]) / 2
-        )
-        steps, landing, reason = self._followed(equations, ahead, progress=progress)
+        chain = Chain.from_flat(start, self.problem.labels)
+        steps, landing, reason = self._followed(chain, progress=progress)
         return LoopProof(self.problem, start, tuple(steps), landing, reason)
 
     def follow_from_node(self, tube: NodeTube) -> ArcProof:
         """The arc from a node on, forwards along a tube through it, to the next node."""
-        equations, end = LengthEquations.of(tube.framework), tube.longest * 3 // 4
-        left = tube.length(0, end)
-        ahead = onwards(equations, tube.ball(end), tube.ball_velocity(end), left, float(left[0]))
-        steps, landing, reason = self._followed(equations, ahead, at_node=True)
+        chain = Chain.from_node(tube, self.problem.labels)
+        steps, landing, reason = self._followed(chain, at_node=True)
         return ArcProof(tube, tuple(steps), landing, reason)
 
     def _followed(
-        self,
-        equations: LengthEquations,
-        ahead: Iterator[Link | str],
-        at_node: bool = False,
-        progress: Progress | None = None,
-    ) -> tuple[list[Link | Passage], Landing | None, str]:
-        """The steps on links ahead, to a landing or to what stopped the proof.
+        self, chain: Chain, at_node: bool = False, progress: Progress | None = None
+    ) -> tuple[list[Step], Landing | None, str]:
+        """The steps of a chain to a landing, or to what stopped the proof.
 
         With `at_node` the passage of the first node is the last step.
         """
-        steps: list[Link | Passage] = []
-        while len(steps) < MOST_TUBES:
-            link = next(ahead)
-            if isinstance(link, Link):
-                steps.append(link)
+        known: StartTube | None = None
+        while len(chain.steps) < MOST_TUBES:
+            step = chain.extend()
+            if isinstance(step, str):
+                return chain.steps, None, step
+            if isinstance(step, Link):
                 if progress is not None:
-                    progress("proving, tubes", len(steps), 0)
-                landing = self._landing(link)
+                    progress("proving, tubes", len(chain.steps), 0)
+                landing, known = self._landing(step, known)
                 if landing is not None:
-                    return steps, landing, ""
-                continue
-            found = passage_ahead(self.problem.labels, steps)
-            if found is None:
-                return steps, None, singular_at(self.problem.labels, steps, link)
-            kept, passage = found
-            steps = [*steps[:kept], passage]
-            if at_node:
-                return steps, None, ""
-            tube, at = passage.tube, passage.exit
-            step = float(tube.length(0, at)[0])
-            ahead = onwards(equations, tube.ball(at), tube.ball_velocity(at), passage.left, step)
-        return steps, None, f"{MOST_TUBES} tubes were not enough"
+                    return chain.steps, landing, ""
+            elif at_node:
+                return chain.steps, None, ""
+        return chain.steps, None, f"{MOST_TUBES} tubes were not enough"
 
-    def _landing(self, link: Link) -> Landing | None:
-        """The start tube of another half-branch a point of which lies on this tube."""
+    def _landing(
+        self, link: Link, known: StartTube | None
+    ) -> tuple[Landing | None, StartTube | None]:
+        """That a point of the start tube of another half-branch lies on this tube; and that tube.
+
+        `known`: the start tube found on the link before. It is not sought anew where the motion
+        points to it and is still beyond its reach.
+        """
         tube = link.tube
-        x = tube.enclosure(link.exit).floats[0]
+        x, velocity = tube.enclosure(link.exit).floats[0], tube.velocity(link.exit).floats[0]
+        if x @ velocity > 0:  # away from the flat state
+            return None, None
         framework = tube.framework
         angles = fold_angles_of(framework.positions(x), framework.hinges)
         if np.abs(angles).max(initial=0.0) > _NEAR_FLAT:
-            return None
-        heights = framework.displacement(x)[:, 2]
-        start = self._start(tube, heights)
-        if start is None:
-            return None
-        held = start.coefficients[0][start.held] / (1 << start.bits)
-        # The height that is held is the same along the whole start tube: it gives t, and tau.
-        tau = round(float(x[start.held]) / held * (1 << (ROOT_BITS + start.halvings)))
-        if not 0 < abs(tau) <= start.last:
-            return None
-        found = tube.located(start.ball(tau))
-        if found is None or found[0] < link.entry[1]:
-            return None
-        velocity = start.ball_velocity(tau)
-        if tube.goes_along(velocity) * (1 if tau > 0 else -1) != -1:
-            return None
-        return Landing(named(start, 1 if tau > 0 else -1), start, tau)
+            return None, None
+        if known is not None and _points_to(known, x):
+            if abs(tau := _tau_at(known, x)) > known.last:
+                return None, known
+            landing = _landed(link, known, tau)
+            if landing is not None:
+                return landing, known
+        start = self._start(tube, framework.displacement(x)[:, 2])
+        return (None if start is None else _landed(link, start, _tau_at(start, x))), start
 
     def _start(self, tube: Tube, heights: FloatArray) -> StartTube | None:
         try:
             return prove_start(tube.framework, self.problem.gauge, heights, bits=tube.bits)
         except NotProvedAtTheFlatStateError:
             return None
+
+
+def _tau_at(start: StartTube, x: FloatArray) -> int:
+    """The tau at which a start tube, or for negative ones its mirror image, is next to unknowns x.
+
+    The height that is held is the same along the whole start tube: it gives t, and tau.
+    """
+    held = start.coefficients[0][start.held] / (1 << start.bits)
+    return round(float(x[start.held]) / held * (1 << (ROOT_BITS + start.halvings)))
+
+
+def _points_to(start: StartTube, x: FloatArray) -> bool:
+    """Whether the heights of unknowns x are nearly a multiple of those of a start tube."""
+    heights = np.array([a / (1 << start.bits) for a in start.coefficients[0][2::3]])
+    scale = float(x[start.held]) / heights[start.held // 3]
+    off, most = np.abs(x[2::3] - scale * heights).max(), np.abs(scale * heights).max()
+    return bool(off < _ALIKE * most)
+
+
+def _landed(link: Link, start: StartTube, tau: int) -> Landing | None:
+    """That a point of a start tube lies on the tube of a link, which it passes backwards."""
+    tube = link.tube
+    if not 0 < abs(tau) <= start.last:
+        return None
+    found = tube.located(start.ball(tau))
+    if found is None or found[0] < link.entry[1]:
+        return None
+    velocity = start.ball_velocity(tau)
+    if tube.goes_along(velocity) * (1 if tau > 0 else -1) != -1:
+        return None
+    return Landing(named(start, 1 if tau > 0 else -1), start, tau)

@@ -112,7 +112,8 @@ def find_loops(
 
     Each loop is one analytic curve, proved from end to end by tubes (docs/motion.md), through nodes
     as well; of mirror images and of the two directions one is followed. Then the arcs that leave
-    the nodes on other lines are followed, likewise proved. Four boundary vertices.
+    the nodes on other lines are followed, likewise proved. Four boundary vertices. `processes`
+    share the work, or one does it, where others would hardly have started before the end.
 
     The file `certificate` takes the proof of each loop as it is found, and at last the claims, for
     `exactfold.checker` (docs/motions.md). With `resume`, a file left by an interrupted run is
@@ -139,7 +140,7 @@ def find_loops(
         for branch in ways.branches
         if any(not branch.vertex_signs[v] for v in problem.foldable)
     }
-    runs = pool or process_pool(processes)
+    runs = pool or process_pool(processes if len(problem.foldable) > _ALONE else 1)
     if certificate is None:
         found = _matching(_followed(sheet, problem, runs, progress, None))
     else:
@@ -177,6 +178,9 @@ def _why_skipped(branch: Branch) -> str:
     )
 
 
+_ALONE = 3
+"""With at most so many foldable vertices all is done before other processes would have started."""
+
 Job = tuple[HalfBranch, bool]
 """A half-branch on which the saddle, or the reflex corner, is positive; and whether to certify."""
 
@@ -204,6 +208,15 @@ class _Follow:
         return proof.loop, proof.line() if certified and proof.landing else ""
 
 
+def _turn(signs: tuple[int, ...]) -> tuple[int, tuple[int, ...]]:
+    """When the half-branch with these signs is followed: first those with an even number of `+`.
+
+    Most loops flip one sign (docs/matching.md). If it is that of a vertex, one end has an even
+    number and the other an odd one; so loops that are followed at one time are seldom the same.
+    """
+    return signs.count(1) % 2, signs
+
+
 @lru_cache(maxsize=4)
 def _finders(pattern: CreasePattern) -> tuple[BranchFinder, LoopFinder]:
     return BranchFinder(pattern), LoopFinder(Problem.of(pattern))
@@ -221,7 +234,7 @@ def _followed(
     number = len(problem.foldable)
 
     def left() -> Iterator[Job]:
-        for k, signs in enumerate(product((-1, 1), repeat=number)):
+        for k, signs in enumerate(sorted(product((-1, 1), repeat=number), key=_turn)):
             if progress is not None:
                 progress("half-branches", k, 1 << number)
             if (named := HalfBranch(signs, 1)) not in ended:
@@ -253,7 +266,9 @@ def _once(found: Iterable[Loop]) -> list[Loop]:
     seen: set[HalfBranch] = set()
     kept = []
     # First those that are proved: one that is not may be the end of another.
-    for loop in sorted(found, key=lambda loop: loop.target is None):
+    for loop in sorted(
+        found, key=lambda loop: (loop.target is None, _turn(loop.source.vertex_signs))
+    ):
         if loop.source not in seen:
             kept.append(loop)
         seen |= {loop.source, loop.source.mirrored}

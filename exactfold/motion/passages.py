@@ -30,14 +30,15 @@ _LEAST = 1e-7
 class Passage:
     """How a motion passes a node: on an arc `tube` through it, from one parameter to another.
 
-    The configuration at `entry` lies on the link before, between its parameters `met`; both go the
-    same way there. The next link begins at `exit`; of a motion that ends at the node `exit` is 0.
-    `entered` and `left` bound the time as in `Link`. `vertices` are flat at the node, by the
+    The configuration at `entry` lies on the link `before`, between its parameters `met`; both go
+    the same way there. The next link begins at `exit`; of a motion that ends at the node `exit` is
+    0. `entered` and `left` bound the time as in `Link`. `vertices` are flat at the node, by the
     numbers of the pattern.
     """
 
     tube: NodeTube
     vertices: tuple[int, ...]
+    before: Link
     met: tuple[int, int]
     entry: int
     exit: int
@@ -138,7 +139,7 @@ def _passage_at(
         shortest, longest = tube.length(entry, at)
         left = entered[0] + shortest, entered[1] + longest
         vertices = tuple(labels[v] for v in flat)
-        return k + 1, Passage(tube, vertices, met, entry, at, entered, left)
+        return k + 1, Passage(tube, vertices, link, met, entry, at, entered, left)
     return None
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from operator import mul
 
 import numpy as np
 
@@ -108,12 +109,18 @@ class Piece:
 
     def radius_within(self, most: int) -> int:
         """A radius for the parameters |s| <= most, over 2^PARAMETER_BITS."""
-        found = None
-        if most <= self.longest:
+        found = self._radii.get(most)
+        if found is None and most <= self.longest:
             found = self.contraction.radius(most << (SCALE - PARAMETER_BITS))
         if found is None:
             raise ArithmeticError("nothing is proved beyond the reach of a piece")
+        self._radii[most] = found
         return found
+
+    @cached_property
+    def _radii(self) -> dict[int, int]:
+        """Those that were asked for: each is, for several boxes."""
+        return {}
 
     @cached_property
     def uniqueness(self) -> int:
@@ -174,7 +181,5 @@ def evaluated(curve: Sequence[Sequence[int]], parameter: int) -> Row:
     """The curve at a parameter over 2^PARAMETER_BITS, rounded down to whole units."""
     top = len(curve) - 1
     powers = [parameter**k << PARAMETER_BITS * (top - k) for k in range(top + 1)]
-    return tuple(
-        sum(a * power for a, power in zip(column, powers, strict=True)) >> PARAMETER_BITS * top
-        for column in zip(*curve, strict=True)
-    )
+    down = PARAMETER_BITS * top
+    return tuple([sum(map(mul, column, powers)) >> down for column in zip(*curve, strict=True)])

@@ -12,12 +12,12 @@ from typing import Any
 from exactfold.errors import NotProvedAtTheFlatStateError
 from exactfold.evidence.entries import Document, write_certificate
 from exactfold.motion.arclength import Interval, in_floats
+from exactfold.motion.chain import Step
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import ContactWatch, FirstContact
 from exactfold.motion.enclosed import with_enclosed_frames
 from exactfold.motion.events import CONTACT, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
 from exactfold.motion.framework import Framework
-from exactfold.motion.links import Link
 from exactfold.motion.loop_file import LoopFile
 from exactfold.motion.loop_frames import frame_of
 from exactfold.motion.loop_proofs import Loop, LoopProof
@@ -79,9 +79,25 @@ class MotionProof:
         return None if self.track is None else self.track.node
 
     @property
+    def through(self) -> tuple[Passage, ...]:
+        """The passages of the nodes that the motion goes through."""
+        if self.looped is not None:
+            return tuple(step for step in self.looped.steps if isinstance(step, Passage))
+        return () if self.track is None else self.track.through
+
+    @property
     def clear_to_the_end(self) -> bool:
         """Whether no two faces touch on all that is proved, nor in its last configuration."""
         return self.contact is not None and not self.passed and self.contact.clear_to_the_end
+
+    @property
+    def through_text(self) -> str:
+        """Which nodes the motion goes through, in words; empty if it meets none."""
+        nodes = [
+            f"a node at the time {in_floats(self._time_of(node))[1]:.6g}, where {node.what}"
+            for node in self.through
+        ]
+        return f"through {' and '.join(nodes)}" if nodes else ""
 
     @property
     def end_text(self) -> str:
@@ -95,8 +111,6 @@ class MotionProof:
     def may_succeed_otherwise(self) -> bool:
         """Whether tubes failed at a place where floats see nothing singular."""
         if self.status is PROVED or self.motion.end == SINGULAR:
-            return False
-        if self.looped is None and self.motion.end != NODE and _node_of(self.motion) is not None:
             return False
         return self.reason != _STRAYED and (self.track is None or self.track.status is not PROVED)
 
@@ -155,9 +169,19 @@ class MotionProof:
             "length": list(in_floats(self.length)),
             "clear": None if contact is None else in_floats((contact.clear, contact.clear))[0],
             "contact": None if event is None else event.to_dict(),
+            "through": [
+                {"flat": list(node.vertices), "time": list(in_floats(self._time_of(node)))}
+                for node in self.through
+            ],
             "node": None if self.node is None else self._node_dict(self.node),
             "to": None if loop is None or loop.target is None else loop.target.to_dict(),
         }
+
+    def _time_of(self, node: Passage) -> Interval:
+        """Bounds of the time at a node, in the unit of the sheet."""
+        low, high = node.time(0)
+        unit = node.tube.framework.unit
+        return low * unit, high * unit
 
     def _node_dict(self, node: Passage) -> dict[str, Any]:
         return {
@@ -176,8 +200,8 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
     Tubes hold one configuration for each parameter, from the flat state to the end of the motion
     (docs/motion.md), and separating planes show what does not touch (docs/contacts.md). A motion
     until its first contact is proved with that contact; any other one with how far it is clear.
-    Nodes are passed where the motion returns to the flat state (docs/motions.md), and are the end
-    of the proof otherwise: a motion that ends at a node is proved up to it. The frames of the
+    Through nodes that the motion passes the proof goes on along the same arc (docs/motions.md); a
+    motion that ends at a node is proved up to it. The frames of the
     motion that is returned are those of the proved curve, each in a box (`Motion.bounds`). `bits`:
     after the point, of all numbers in the tubes.
 
@@ -249,30 +273,34 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
     to_node = motion.end == NODE
     missed = Fraction(motion.duration) * (1 + _FARTHER)
     found: FirstContact | None = None
-    links: list[Link] = []
+    seen = 0
 
-    def stop(link: Link) -> str | None:
-        nonlocal found
-        links.append(link)
+    def stop(step: Step) -> str | None:
+        nonlocal found, seen
+        seen += 1
         if progress is not None:
-            progress("proving, tubes", len(links), 0)
-        if to_node and link.entered[0] * so_far.framework.unit > missed:
+            progress("proving, tubes", seen, 0)
+        if to_node and step.entered[0] * so_far.framework.unit > missed:
             return _NO_NODE
         if found is not None:
             return None
-        said = watch(link)
-        if said is None:
-            return None
-        if to_contact:
+        said = watch(step)
+        if said is None or to_contact:
             return said
-        found = watch.result(replace(so_far, links=tuple(links)))
+        found = watch.result(so_far)
         return None
 
     until = None if to_contact or to_node else motion.duration
     pinned = motion.curve.framework.pinned
     so_far = half_branch(motion.branch, motion.side, pinned, bits=bits)
     track = follow_proved(
-        motion.branch, motion.side, until=until, stop=stop, pinned=pinned, bits=bits
+        motion.branch,
+        motion.side,
+        until=until,
+        stop=stop,
+        through_nodes=_passes_nodes(motion),
+        pinned=pinned,
+        bits=bits,
     )
     contact = watch.result(track) if found is None else found
     status, reason = _judged(motion, track, contact)
@@ -295,11 +323,11 @@ def _judged(motion: Motion, track: Track, contact: FirstContact) -> tuple[Verdic
     if to_contact and contact.status is PROVED:
         return PROVED, ""
     if track.node is not None and (to_contact or track.status is not PROVED):
-        return UNDECIDED, "only motions back to the flat sheet are proved through nodes"
+        return UNDECIDED, "floats went on without seeing this node"
     if track.status is PROVED:
         proved = contact.status is PROVED or not to_contact
         return (PROVED, "") if proved else (UNDECIDED, contact.reason)
-    if node is None:
+    if node is None or track.through:
         return UNDECIDED, track.reason
     unproved = f"floats see a node at the time {node.time[1]:.6g}, which is not proved"
     return UNDECIDED, f"{track.reason}; {unproved}"
@@ -315,6 +343,11 @@ def _not_apart(contact: FirstContact) -> str:
 def _node_of(motion: Motion) -> Event | None:
     """The first node on a motion, as floats see it."""
     return next((event for event in motion.events if event.kind == NODE), None)
+
+
+def _passes_nodes(motion: Motion) -> bool:
+    """Whether a motion goes on beyond a node, as floats see it."""
+    return motion.end != NODE and _node_of(motion) is not None
 
 
 def _ends_at_the_first_contact(motion: Motion) -> bool:

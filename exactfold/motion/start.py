@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import SuperLU, splu
 
 from exactfold.arrays import FloatArray
 from exactfold.errors import NotFollowedError
@@ -14,7 +13,13 @@ from exactfold.motion.angles import fold_angles_of
 from exactfold.motion.framework import Framework
 from exactfold.solve.least_squares import least_squares
 
+if TYPE_CHECKING:  # as in `framework`
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import SuperLU
+
 _NEWTON = 30
+_DENSE = 60
+"""Unknowns up to which matrices are dense, so that SciPy, which takes a while, is not loaded."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -98,9 +103,13 @@ def blown_up(framework: Framework, y: FloatArray, s: float = 0.0) -> FloatArray:
 
 def blown_up_jacobian(framework: Framework, y: FloatArray, s: float = 0.0) -> csc_array:
     """The derivative of `blown_up` by the unknowns, sparse."""
+    return framework.matrix(_blown_up_rows(framework, y, s))
+
+
+def _blown_up_rows(framework: Framework, y: FloatArray, s: float) -> FloatArray:
     rows = framework.along(y)
     rows[:, :2] = framework.flat_edges[:, :2] + s * rows[:, :2]
-    return framework.matrix(rows)
+    return rows
 
 
 def bordered(jacobian: csc_array, held: int) -> csc_array:
@@ -109,18 +118,51 @@ def bordered(jacobian: csc_array, held: int) -> csc_array:
     end = jacobian.indptr[held + 1]
     starts = jacobian.indptr.copy()
     starts[held + 1 :] += 1
-    return csc_array(
+    return type(jacobian)(
         (np.insert(jacobian.data, end, 1.0), np.insert(jacobian.indices, end, rows), starts),
         shape=(rows + 1, columns),
     )
 
 
-def _newton(framework: Framework, y: FloatArray, held: int) -> tuple[FloatArray, SuperLU]:
+def factorised(matrix: csc_array) -> SuperLU:
+    """The factors of a square matrix; raises `RuntimeError` for a singular one."""
+    from scipy.sparse.linalg import splu
+
+    return splu(matrix)
+
+
+@dataclass(frozen=True)
+class _Inverse:
+    """What solves with a dense matrix."""
+
+    inverse: FloatArray
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """The solution for a right side."""
+        return np.asarray(self.inverse @ right)
+
+
+def _factors(framework: Framework, y: FloatArray, held: int) -> SuperLU | _Inverse:
+    """What solves with the derivative at t = 0 and a last row that holds one unknown.
+
+    Raises `RuntimeError` or `LinAlgError` where it is singular.
+    """
+    if framework.size > _DENSE:
+        return factorised(bordered(blown_up_jacobian(framework, y), held))
+    last = np.zeros((1, framework.size))
+    last[0, held] = 1.0
+    matrix = framework.dense(_blown_up_rows(framework, y, 0.0))
+    return _Inverse(np.linalg.inv(np.concatenate([matrix, last])))
+
+
+def _newton(
+    framework: Framework, y: FloatArray, held: int
+) -> tuple[FloatArray, SuperLU | _Inverse]:
     last = np.inf
     for _ in range(_NEWTON):
         try:
-            factors = splu(bordered(blown_up_jacobian(framework, y), held))
-        except RuntimeError:
+            factors = _factors(framework, y, held)
+        except (RuntimeError, np.linalg.LinAlgError):
             break
         step = factors.solve(np.append(-blown_up(framework, y), 0.0))
         y = y + step
@@ -162,7 +204,10 @@ def _with_plane(framework: Framework, y: FloatArray) -> FloatArray:
     e = framework.along(y)
     rows = framework.flat_edges
     columns = np.arange(framework.size) % 3 != 2
-    matrix = csc_array(framework.matrix(rows)[:, columns])
+    right = -0.5 * e[:, 2] ** 2
     y = y.copy()
-    y[columns] = least_squares(matrix, -0.5 * e[:, 2] ** 2)
+    if framework.size > _DENSE:
+        y[columns] = least_squares(framework.matrix(rows)[:, columns], right)
+    else:
+        y[columns] = np.linalg.lstsq(framework.dense(rows)[:, columns], right)[0]
     return y

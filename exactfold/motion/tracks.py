@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -16,14 +15,12 @@ from exactfold.errors import FlatVertexError, UsageError
 from exactfold.evidence.entries import Document
 from exactfold.evidence.motion import motion_certificate
 from exactfold.motion.arclength import Interval
+from exactfold.motion.chain import Chain, Step, chords, point_near, step_documents
 from exactfold.motion.framework import Framework
-from exactfold.motion.length_equations import LengthEquations
-from exactfold.motion.links import Link, onwards
-from exactfold.motion.passages import Passage, passage_ahead
+from exactfold.motion.links import Link
+from exactfold.motion.passages import Passage
 from exactfold.motion.piece import Ball
-from exactfold.motion.singular import singular_at
 from exactfold.motion.straight_folds import straight_fold
-from exactfold.motion.tube import sharpened
 from exactfold.motion.tube_start import StartTube, prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 from exactfold.problem.problem import Problem
@@ -51,16 +48,15 @@ class Frame:
 class Track:
     """The motion from the flat state along a half-branch, proved without a gap.
 
-    `start` and `links` hold pieces of one analytic curve of configurations, in its order: the exit
-    of each lies on the next, and both go the same way there (docs/motion.md, Theorem 4).
+    `start` and `steps` hold pieces of one analytic curve of configurations, in its order: the exit
+    of each lies on the next, and both go the same way there (docs/motion.md, Theorem 4). Steps are
+    tubes (`links`) and arcs through nodes: configurations in which other curves cross, where the
+    track goes straight on (docs/motions.md, Nodes). With `node` it ends at one: the last step is
+    the part of this passage up to there.
     `vertex_signs` are those on the half-branch itself, by foldable vertex of `pattern`; `side` is
     1 or -1, the sign of the boundary saddle or, if `corner` is not None, the vertex sign of this
     reflex corner in the sheet with its notch closed. `labels[v]` is the vertex of `pattern` that
     vertex v of the framework is: what lies in triangulated triangles moves with them.
-
-    With `node` it ends at a node, a configuration in which other curves cross: the last piece is
-    the part of this passage up to there, which begins on the last link before its exit or next to
-    it (docs/motions.md, Nodes).
 
     `status` is PROVED if the track goes as far as asked, else UNDECIDED; what there is is proved in
     any case. `reason` says where it ended and why.
@@ -70,15 +66,31 @@ class Track:
     labels: tuple[int, ...]
     corner: int | None
     start: StartTube
-    links: tuple[Link, ...]
+    steps: tuple[Step, ...]
     status: Verdict
     reason: str
-    node: Passage | None = None
 
     @property
     def framework(self) -> Framework:
         """The sheet that moves, without what stays flat, and its pinned triangle."""
         return self.start.framework
+
+    @property
+    def links(self) -> tuple[Link, ...]:
+        """The tubes after the start tube."""
+        return tuple(step for step in self.steps if isinstance(step, Link))
+
+    @property
+    def through(self) -> tuple[Passage, ...]:
+        """The passages of the nodes on the way."""
+        steps = self.steps if self.node is None else self.steps[:-1]
+        return tuple(step for step in steps if isinstance(step, Passage))
+
+    @property
+    def node(self) -> Passage | None:
+        """The way to the node at which the track ends, None if it ends elsewhere."""
+        last = self.steps[-1] if self.steps else None
+        return last if isinstance(last, Passage) and last.exit == 0 else None
 
     @property
     def vertex_signs(self) -> dict[int, int]:
@@ -100,14 +112,12 @@ class Track:
     @property
     def _left(self) -> Interval:
         """Bounds of the time at the end, in the unit of the framework."""
-        if self.node is not None:
-            return self.node.left
-        return self.links[-1].left if self.links else self.started
+        return self.steps[-1].left if self.steps else self.started
 
     @property
     def tubes(self) -> int:
         """How many pieces prove it."""
-        return 1 + len(self.links) + (self.node is not None)
+        return 1 + len(self.steps)
 
     @cached_property
     def started(self) -> Interval:
@@ -133,7 +143,7 @@ class Track:
             self.pattern,
             self.vertex_signs,
             self.side,
-            self._chords * self.framework.unit,
+            chords(start, self.steps, leaves=True) * self.framework.unit,
             pinned,
             start.bits,
             {
@@ -143,44 +153,9 @@ class Track:
                 "reach": start.reach,
                 "exit": start.last,
             },
-            [self._tube(link) for link in self.links],
-            None if self.node is None else self._arc(self.node),
+            step_documents(self.steps, leaves=True),
+            ends_at_a_node=self.node is not None,
         )
-
-    def _tube(self, link: Link) -> Document:
-        tube = link.tube
-        found: Document = {
-            "centre": list(tube.coefficients[0]),
-            "row": list(tube.row),
-            "reach": tube.reach,
-        }
-        if self.node is None or link is not self.links[-1]:
-            found["exit"] = link.exit
-        return found
-
-    def _arc(self, node: Passage) -> Document:
-        arc = node.tube
-        return {
-            "flat": sorted(node.vertices),
-            "node": list(arc.node.centre),
-            "centre": list(arc.coefficients[0]),
-            "row": list(arc.row),
-            "reach": arc.reach,
-            "entry": node.entry,
-        }
-
-    @property
-    def _chords(self) -> Fraction:
-        """A little less than the lengths of the chords from exit to exit."""
-        balls = [self.start.ball(self.start.last)]
-        links = self.links if self.node is None else self.links[:-1]
-        balls += [link.tube.enclosure(link.exit) for link in links]
-        if self.node is not None:
-            balls += [self.node.tube.ball(at) for at in (self.node.entry, 0)]
-        points = np.array([[x / (1 << self.start.bits) for x in ball.centre] for ball in balls])
-        steps = np.diff(points, axis=0, prepend=np.zeros((1, points.shape[1])))
-        total = float(np.linalg.norm(steps, axis=1).sum())
-        return Fraction(int(total * (1 - 1e-5) * (1 << 30)), 1 << 30)
 
     def frames(self, times: FloatArray | list[float]) -> list[Frame]:
         """Enclosed configurations near given times, in the unit of the sheet.
@@ -196,18 +171,7 @@ class Track:
         wanted = Fraction(time) / unit
         if not 0 <= wanted <= self._left[1]:
             raise UsageError(f"the track does not reach the time {time:g}")
-        k = min(bisect_left([link.left[1] for link in self.links], wanted), len(self.links) - 1)
-        if wanted <= self.started[1]:
-            tau = self.start.near(float(wanted), 0, self.start.last)
-            low, high = self.start.length(0, tau)
-            ball = self.start.sharpened(tau)
-        elif self.node is not None and wanted > self.node.entered[1]:
-            (low, high), ball = self.node.near(wanted)
-        else:
-            link = self.links[k]
-            parameter = link.tube.near(float(wanted - link.entered[0]), max(link.entry), link.exit)
-            low, high = link.time(parameter)
-            ball = sharpened(link.tube, parameter)
+        (low, high), ball = point_near(self.start, self.steps, wanted)
         return Frame((Fraction(low * unit), Fraction(high * unit)), ball)
 
     def __repr__(self) -> str:
@@ -219,8 +183,8 @@ class Track:
         )
 
 
-Stop = Callable[[Link], "str | None"]
-"""Called with each proved link; a text, why the track ends here, or None to go on."""
+Stop = Callable[[Step], "str | None"]
+"""Called with each proved step; a text, why the track ends here, or None to go on."""
 
 
 def half_branch(
@@ -270,6 +234,7 @@ def follow_proved(
     *,
     until: float | None = None,
     stop: Stop | None = None,
+    through_nodes: bool = False,
     most: int = MOST_TUBES,
     pinned: Triangle | None = None,
     bits: int = 64,
@@ -278,9 +243,10 @@ def follow_proved(
 
     The time is the length of the curve in the unknowns of the framework, in the unit of the sheet.
     `side` and `pinned` as in `half_branch`, whose errors are raised. Where tubes become shorter
-    than 1e-7 of the sheet, and a node ahead is proved, the track ends at it (`Track.node`): PROVED
-    if no time was asked for. It is UNDECIDED if it ends before what was asked for: at a node, near
-    another configuration where several curves meet, or after `most` tubes.
+    than 1e-7 of the sheet, and a node ahead is proved, the track goes straight on `through_nodes`,
+    and else ends at it (`Track.node`): PROVED if no time was asked for. It is UNDECIDED if it ends
+    before what was asked for: at a node, near another configuration where several curves meet, or
+    after `most` tubes.
 
     >>> from exactfold.count.find import find_branch
     >>> from exactfold.pattern.random_squares import random_square
@@ -290,48 +256,30 @@ def follow_proved(
     """
     track = half_branch(branch, side, pinned, bits=bits)
     goal = None if until is None else Fraction(until) / track.framework.unit
-    links: list[Link] = []
-    node: Passage | None = None
     if goal is not None and track.started[0] >= goal:
         return replace(track, reason=_FAR_ENOUGH)
     status, reason = UNDECIDED, ""
-    for link in continued(track, bits=bits):
-        if isinstance(link, str):
-            reason = singular_at(track.labels, links, link)
-            found = passage_ahead(track.labels, links) if links else None
-            if found is not None:
-                kept, passage = found
-                node, links = passage.to_the_node, links[:kept]
-                reason = f"a node, where {node.what}"
-                status = PROVED if goal is None or node.left[0] >= goal else UNDECIDED
+    chain = Chain.from_flat(track.start, track.labels)
+    while True:
+        step = chain.extend()
+        if isinstance(step, str):
+            reason = step
             break
-        links.append(link)
-        said = None if stop is None else stop(link)
+        ends = isinstance(step, Passage) and not through_nodes
+        if isinstance(step, Passage) and ends:
+            step = chain.steps[-1] = step.to_the_node
+            reason = f"a node, where {step.what}"
+            status = PROVED if goal is None or step.left[0] >= goal else UNDECIDED
+        said = None if stop is None else stop(step)
+        if ends:
+            break
         if said is not None:
             status, reason = PROVED, said
             break
-        if goal is not None and link.left[0] >= goal:
+        if goal is not None and step.left[0] >= goal:
             status, reason = PROVED, _FAR_ENOUGH
             break
-        if len(links) >= most:
+        if len(chain.steps) >= most:
             reason = f"{most} tubes were not enough"
             break
-    return replace(track, links=tuple(links), status=status, reason=reason, node=node)
-
-
-def continued(track: Track, *, bits: int = 64) -> Iterator[Link | str]:
-    """The links that continue a track, one by one; at last, if there is no next one, why."""
-    equations = LengthEquations.of(track.framework, bits)
-    if track.links:
-        before = track.links[-1]
-        ball, velocity = before.tube.enclosure(before.exit), before.tube.velocity(before.exit)
-        return onwards(
-            equations,
-            ball,
-            velocity,
-            before.left,
-            float(before.tube.length(before.entry, before.exit)[0]),
-        )
-    last, time = track.start.last, track.started
-    ball, velocity = track.start.ball(last), track.start.ball_velocity(last)
-    return onwards(equations, ball, velocity, time, float(time[0]) / 2)
+    return replace(track, steps=tuple(chain.steps), status=status, reason=reason)

@@ -89,8 +89,8 @@ def _proof(proof: MotionProof) -> RenderableType:
     if proof.status is not PROVED:
         return Text.assemble(status_text(proof.status), f": {proof.reason}")
     parts = [f": one curve without a gap, {counted(proof.tubes, 'tube')}"]
-    if proof.end_text:
-        parts[0] += f", {proof.end_text}"
+    for text in filter(None, (proof.through_text, proof.end_text)):
+        parts[0] += f", {text}"
     contact = proof.contact
     if contact is not None and contact.event is None and proof.passed:
         parts.append(f"no two faces touch before {float(contact.clear):.8g}, then some may")

@@ -112,8 +112,8 @@ def _proof(motion: Motion) -> dict[str, Any]:
         return {"said": f"followed in floats; its proof is undecided: {proof.reason}"}
     event = None if proof.contact is None else proof.contact.event
     parts = [f"it exists, without a gap, in {counted(proof.tubes, 'tube')}"]
-    if proof.end_text:
-        parts[0] += f", {proof.end_text}"
+    for text in filter(None, (proof.through_text, proof.end_text)):
+        parts[0] += f", {text}"
     if proof.end_text and proof.clear_to_the_end:
         parts.append("no two faces touch before it, nor at it")
     if event is not None:

@@ -17,7 +17,7 @@ from forge import Document, Lines, chained, given_lines
 from exactfold import checker
 from exactfold.checker import motion_loops, motion_nodes, motion_patches
 from exactfold.checker.compact_lines import lines
-from exactfold.checker.motion import PARAMETER_BITS, tube_of, vector
+from exactfold.checker.motion import PARAMETER_BITS, through_a_node, tube_of, vector
 from exactfold.checker.motion_bounds import value as polynomial
 from exactfold.checker.motion_equations import LengthEquations, at
 from exactfold.checker.motion_loops import LoopSheet, Matching
@@ -394,7 +394,7 @@ def passed(entry: Any, backwards: bool = False) -> Path:
         tube.curve = [[(-1) ** k * x for x in row] for k, row in enumerate(tube.curve)]
     path = Path((tube.enclosure(Fraction(0)), tube.velocity(Fraction(0))), sheet.equations.bits)
     path.enter(tube)
-    sheet._pass_node(path, entry)
+    through_a_node(sheet.equations, path, entry)
     return path
 
 

@@ -186,7 +186,7 @@ def test_numbers_out_of_range() -> None:
         ("start", {"exit": 0}, "the motion does not leave the flat state"),
         ("start", {"exit": -1}, "exit is not a natural number"),
         ("tube", {"reach": 0}, "the reach is out of range"),
-        ("tube", {"exit": True}, "exit is not a natural number"),
+        ("tube", {"exit": True}, "True is not an integer"),
     ):
         forged = given()
         evidence = forged["evidence"]

@@ -10,13 +10,13 @@ from typing import Any
 
 import pytest
 from forge import Document, refused, verified, with_one_key_more, without
+from forge_motions import pieces_once
 
 from exactfold import checker
 from exactfold.checker import motion, motion_contacts
 from exactfold.checker.motion_contacts import check_contacts
-from exactfold.checker.motion_nodes import NodeTube
-from exactfold.checker.motion_stretches import stretches_of
-from exactfold.checker.motion_tubes import Ball, Piece
+from exactfold.checker.motion_stretches import Arc, stretches_of
+from exactfold.checker.motion_tubes import Ball
 from exactfold.checker.reading import CertificateError
 from exactfold.count.find import find_branch
 from exactfold.motion.contact_claims import certificate_with_contact
@@ -42,38 +42,8 @@ def given() -> Document:
 
 @pytest.fixture(autouse=True, scope="module")
 def _pieces_once() -> Iterator[None]:
-    """Pieces of one description are proved once: forgeries leave most of them as they are."""
-    with pytest.MonkeyPatch.context() as patch:
-        for name in ("read_sheet", "framework", "first_piece", "tube_of", "arc_of"):
-            patch.setattr(motion, name, _once(getattr(motion, name)))
-        patch.setattr(motion, "_check_names", lambda *given_: None)  # no name is forged here
-        patch.setattr(motion_contacts, "stretches_of", _once(stretches_of))
-        for method in ("enclosure", "velocity"):
-            patch.setattr(Piece, method, cache(getattr(Piece, method)))
-        patch.setattr(NodeTube, "configuration", cache(NodeTube.configuration))
+    with pieces_once():
         yield
-
-
-def _once(make: Callable[..., Any]) -> Callable[..., Any]:
-    known: dict[Any, Any] = {}
-
-    def made(*given_: Any) -> Any:
-        key = _key(given_)
-        if key not in known:
-            known[key] = make(*given_), given_  # what has an id lives as long
-        return known[key][0]
-
-    return made
-
-
-def _key(value: Any) -> Any:
-    """The same for two descriptions of a piece, wherever it is entered; of an object its place."""
-    if isinstance(value, (list, tuple)):
-        return tuple(map(_key, value))
-    if isinstance(value, dict):
-        within = {k: x for k, x in value.items() if k not in ("entry", "exit")}
-        return json.dumps(within)
-    return value if isinstance(value, (int, str, Fraction, type(None))) else id(value)
 
 
 def stopped(message: str, change: Callable[[Document], None]) -> None:
@@ -245,8 +215,8 @@ def test_the_length_is_that_up_to_the_node() -> None:
     forged["claims"]["length"] = str(length * Fraction(10001, 10000))
     refused(forged, "the motion is shorter than claimed")
     # Up to the arc it is much shorter than claimed.
-    start, tau, links, _, _, arc = pieces()
-    most = sum((s.length()[1] for s in stretches_of(start, tau, links, arc)[:-1]), Fraction(0))
+    start, tau, steps, _, _ = pieces()
+    most = sum((s.length()[1] for s in stretches_of(start, tau, steps)[:-1]), Fraction(0))
     assert most * start.equations.unit < length
 
 
@@ -299,7 +269,7 @@ def test_there_is_nothing_beyond_the_node() -> None:
 
 
 def pieces() -> tuple[Any, ...]:
-    """What `check_contacts` is given: start, tau, tubes, claims, evidence, arc."""
+    """What `check_contacts` is given: start, tau, steps, claims, evidence."""
     found: list[tuple[Any, ...]] = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(motion, "check_contacts", lambda *all_: found.append(all_))
@@ -309,42 +279,44 @@ def pieces() -> tuple[Any, ...]:
 
 def test_faces_that_may_touch_on_the_arc() -> None:
     """A node that may be anywhere: only the arc is not clear then."""
-    start, tau, links, claims, contacts, (arc, begin) = pieces()
-    check_contacts(start, tau, links, claims, contacts, (arc, begin))
+    start, tau, steps, claims, contacts = pieces()
+    check_contacts(start, tau, steps, claims, contacts)
+    arc, begin, end = steps[-1]
     vague = type("Vague", (), {"node": arc.node, "curve": arc.curve, "bits": arc.bits})()
     box, rate = arc.configuration(begin)
     wide = Ball(box.centre, [r + (1 << arc.bits - 2) for r in box.radii])
     vague.configuration = lambda s: (wide, rate)
+
+    def stretches(_: Any, __: Any, some: list[Any]) -> list[Any]:
+        """The tube is left where the true arc begins."""
+        found = stretches_of(start, tau, steps)
+        found[-1] = stretches_of(start, tau, [Arc(vague, begin, end)])[-1]
+        return found[: len(some) + 1]
+
     with pytest.MonkeyPatch.context() as patch:
-        # The tube is left where the true arc begins.
-        patch.setattr(
-            motion_contacts,
-            "stretches_of",
-            lambda *given_: [
-                *stretches_of(start, tau, links, (arc, begin))[:-1],
-                stretches_of(start, tau, [], (vague, begin))[-1],
-            ],
-        )
+        patch.setattr(motion_contacts, "stretches_of", stretches)
         with pytest.raises(CertificateError, match=MAY_TOUCH):
-            check_contacts(start, tau, links, claims, contacts, (arc, begin))
-        before = {"tube": len(links), "clear": 0}
-        check_contacts(start, tau, links, claims | {"clear": "0"}, before, (arc, begin))
+            check_contacts(start, tau, steps, claims, contacts)
+        before = {"tube": len(steps) - 1, "clear": 0}
+        check_contacts(start, tau, steps, claims | {"clear": "0"}, before)
 
 
 def test_the_last_tube_is_clear_up_to_the_arc() -> None:
     """The stretch of the last tube ends where the arc may begin, not before."""
-    start, tau, links, _, _, (arc, begin) = pieces()
-    *_, tube, last = stretches_of(start, tau, links, (arc, begin))
-    low, high = links[-1][0].met(*arc.configuration(begin))
+    start, tau, steps, _, _ = pieces()
+    arc, begin, _ = steps[-1]
+    *_, tube, last = stretches_of(start, tau, steps)
+    low, high = steps[-2].tube.met(*arc.configuration(begin))
     assert (tube.first, tube.last) == (low, high)
-    assert tube.high < low < high < tube.most == links[-1][0].reach
+    assert tube.high < low < high < tube.most == steps[-2].tube.reach
     assert last.low == last.high == last.least == begin
     assert [last.first, last.last, last.most] == [0, 0, 0]
 
 
 def test_positions_on_the_arc_are_those_of_its_configurations() -> None:
-    start, tau, links, _, _, (arc, begin) = pieces()
-    path = stretches_of(start, tau, links, (arc, begin))[-1].path
+    start, tau, steps, _, _ = pieces()
+    arc, begin, _ = steps[-1]
+    path = stretches_of(start, tau, steps)[-1].path
     unit = Fraction(1, 1 << arc.bits)
     for k in range(9):
         s = begin * Fraction(k, 8)
@@ -355,7 +327,7 @@ def test_positions_on_the_arc_are_those_of_its_configurations() -> None:
             q = sum(c * x**m for m, c in enumerate(column))
             assert abs(q / (1 << 60) - box.centre[i] * unit) < Fraction(1, 10**15)
             assert path.errors[i] * Fraction(1, 1 << 60) >= box.radii[i] * unit
-    shortest, longest = stretches_of(start, tau, links, (arc, begin))[-1].length()
+    shortest, longest = stretches_of(start, tau, steps)[-1].length()
     ends = [arc.configuration(s)[0].centre for s in (begin, Fraction(0))]
     chord = sum((a - b) ** 2 for a, b in zip(*ends, strict=True)) ** 0.5 / (1 << arc.bits)
     assert chord * 0.99999 < shortest <= longest < chord * 1.1

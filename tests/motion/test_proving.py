@@ -8,7 +8,6 @@ import pytest
 
 from exactfold import checker, find_branch, follow, random_square
 from exactfold.motion import prove, proving
-from exactfold.motion.events import Event
 from exactfold.motion.proving import MotionProof
 from exactfold.verdict import PROVED, UNDECIDED
 
@@ -131,13 +130,8 @@ def test_more_bits_and_another_triangle_are_tried(branch, succeeds, monkeypatch)
         assert proof.motion.pinned == made[-1][1]
 
 
-@pytest.mark.parametrize("where", ["singular end", "node"])
-def test_nothing_more_is_tried_at_a_singular_place(branch, where, monkeypatch):
-    motion = follow(branch, until="20deg", frames=2)
-    if where == "node":
-        motion = replace(motion, events=(Event("node", (0.1, 0.1)),))
-    else:
-        motion = replace(motion, end="singular")
+def test_nothing_more_is_tried_at_a_singular_place(branch, monkeypatch):
+    motion = replace(follow(branch, until="20deg", frames=2), end="singular")
     attempt, made = failing(2)
     monkeypatch.setattr(proving, "prove", attempt)
     proof = proving.prove_persistently(motion, lambda held: motion)
@@ -145,15 +139,23 @@ def test_nothing_more_is_tried_at_a_singular_place(branch, where, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_motion_that_passes_a_node_is_proved_up_to_it():
+def test_a_motion_through_a_node_is_proved_with_its_first_contact():
     branch = find_branch(random_square(8, seed=1), "------++")
     motion = follow(branch, until="contact", through_nodes=True, frames=2)
     assert motion.end == "flat-fold"
     proof = prove(motion)
-    assert proof.status is UNDECIDED
-    assert proof.reason == (
-        "proved until a node at the time 1.72875, where vertex 9 is flat and another curve "
-        "crosses, but only motions back to the flat sheet are proved through nodes"
+    assert (proof.status, proof.reason, proof.node) == (PROVED, "", None)
+    assert proof.through_text == (
+        "through a node at the time 1.72875, where vertex 9 is flat and another curve crosses"
     )
-    assert proof.length[1] < 1.73 < motion.duration
-    assert checker.check(proof.certificate())["vertex_signs"] == [-1] * 6 + [1, 1]
+    low, high = proof.contact.event.time
+    assert 1.73 < low <= motion.duration <= high < low * (1 + 1e-5)
+    claims = checker.check(proof.certificate())
+    assert claims["vertex_signs"] == [-1] * 6 + [1, 1]
+    assert (claims["through"], claims["contact"]["kind"]) == ([[9]], "flat-fold")
+    # At the mirror image of the node, after the same time, the mirror image of the motion.
+    image = prove(follow(branch, side=-1, through_nodes=True, frames=2))
+    assert image.status is PROVED
+    assert image.through[0].tube.node.misses(proof.through[0].tube.node)
+    assert not image.through[0].tube.node.misses(proof.through[0].tube.node.mirrored)
+    assert image.contact.event.folds == proof.contact.event.folds

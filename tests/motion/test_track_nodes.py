@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from io import StringIO
 from itertools import product
 from typing import Any
@@ -17,11 +18,11 @@ from exactfold import checker, find_branch, follow, random_square, schema
 from exactfold.exact.surds import float_bounds
 from exactfold.motion import (
     certificate_with_contact,
+    chain,
     contacts,
     follow_proved,
     prove,
     proving,
-    tracks,
 )
 from exactfold.motion.contacts import first_contact
 from exactfold.motion.separation import Open
@@ -119,15 +120,38 @@ def test_a_track_to_a_time_ends_there_or_at_the_node(proof):
 
 
 @pytest.mark.slow
-def test_a_motion_that_passes_a_node_is_proved_up_to_it(proof):
-    motion = follow(find_branch(SHEET, SIGNS), until=0.6, through_nodes=True, frames=2)
+def test_a_motion_that_passes_a_node_is_proved_beyond_it(proof):
+    motion = follow(find_branch(SHEET, SIGNS), until=0.6, through_nodes=True, frames=7)
     passing = prove(motion)
-    assert passing.status is UNDECIDED
-    assert passing.reason == (
-        f"proved {proof.end_text}, but only motions back to the flat sheet are proved through nodes"
-    )
-    assert not passing.may_succeed_otherwise
-    assert checker.check(passing.certificate())["node"] == {"flat": [FLAT], "clear": True}
+    assert (passing.status, passing.node, passing.end_text) == (PROVED, None, "")
+    [node] = passing.through
+    assert node.vertices == (FLAT,)
+    assert passing.clear_to_the_end
+    assert passing.track.length[0] >= Fraction(motion.duration)
+    time = pytest.approx(float(proof.length[0]))
+    assert passing.to_dict()["through"] == [{"flat": [FLAT], "time": [time, time]}]
+    told = f"one curve without a gap, 4 tubes, {passing.through_text}; no two faces touch on it"
+    assert told in shown(passing)
+    jsonschema.validate(passing.to_dict(), schema("motion")["properties"]["proof"])
+    claims = checker.check(passing.certificate())
+    assert claims["through"] == [[FLAT]]
+    assert "node" not in claims
+    assert Fraction(claims["clear"]) > 0.6
+    # At the node all angles of its star change their signs.
+    assert max(passing.motion.bounds.radii) < 1e-14
+    at = (np.array(SHEET.folds) == FLAT).any(axis=1)
+    before, after = (np.sign(passing.motion.angles[k, at]) for k in (3, -1))
+    assert (before * after == -1).all()
+
+
+@pytest.mark.slow
+def test_a_node_that_floats_do_not_see_is_not_passed(motion):
+    unseen = replace(motion, events=(), end="contact")
+    proof = prove(unseen)
+    assert proof.status is UNDECIDED
+    assert proof.reason.endswith("crosses, but floats went on without seeing this node")
+    assert not proof.may_succeed_otherwise
+    assert checker.check(proof.certificate())["node"] == {"flat": [FLAT], "clear": True}
 
 
 @pytest.mark.slow
@@ -169,7 +193,7 @@ def test_faces_that_are_not_parted_on_the_arc_are_named(motion, proof, monkeypat
 
 @pytest.mark.slow
 def test_a_node_that_is_not_found_is_not_claimed(motion, monkeypatch):
-    monkeypatch.setattr(tracks, "passage_ahead", lambda labels, links: None)
+    monkeypatch.setattr(chain, "passage_ahead", lambda labels, links: None)
     proof = prove(motion)
     assert proof.status is UNDECIDED
     assert proof.reason.startswith(

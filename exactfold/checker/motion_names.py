@@ -1,0 +1,43 @@
+"""The name of a half-branch: the vertex signs and the side at the beginning of a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from .motion_tubes import Start
+from .reading import require
+from .reduced import closed
+from .sheet import Sheet, turn
+
+
+def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int]:
+    """The vertex signs, 0 for vertices that were removed, and the side of a half-branch.
+
+    They are those of the heights at the flat state.
+    """
+    box, place = start.enclosure(Fraction(0)), start.equations.place
+
+    def sign(functional: Mapping[int, Fraction]) -> int:
+        """The sign of a functional of the heights, 0 if it is not certain."""
+        terms = [(c, place[v] + 2) for v, c in functional.items() if v in place]
+        middle = sum((c * box.centre[k] for c, k in terms), Fraction(0))
+        spread = sum((abs(c) * box.radii[k] for c, k in terms), Fraction(0))
+        return 0 if abs(middle) <= spread else 1 if middle > 0 else -1
+
+    sheet = start.equations.sheet
+    signs = [0 if v in removed else sign(sheet.sign_of_vertex(v)) for v in given.interior]
+    for v, found in zip(given.interior, signs, strict=True):
+        require(found or v in removed, f"vertex {v} may be flat")
+    whole, corner = closed(sheet)
+    side = sign(saddle_of(sheet) if corner is None else whole.sign_of_vertex(corner))
+    require(side, "the side of the branch is not certain")
+    return signs, side
+
+
+def saddle_of(sheet: Sheet) -> dict[int, Fraction]:
+    """The functional of the boundary heights that vanishes on planes, as docs/conventions.md."""
+    p, q, r, s = (sheet.points[v] for v in sheet.boundary)
+    weights = (turn(q, r, s), -turn(p, r, s), turn(p, q, s), -turn(p, q, r))
+    first = next(w for w in weights if w)
+    return {v: w / first for v, w in zip(sheet.boundary, weights, strict=True)}
