@@ -7,13 +7,14 @@ All in integers over 2^GRID. On the stretch the vertex v is at (1 - y) a + y b +
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from math import isqrt
 from operator import mul
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from .motion_bounds import Vector, dot
 from .motion_equations import LengthEquations
-from .motion_lengths import GRID, Path
+from .motion_lengths import GRID
 
 Box = tuple[Vector, Vector, int]
 Boxes = dict[int, Box]
@@ -22,6 +23,20 @@ Point = list[float]
 
 _Number = TypeVar("_Number", int, float)
 _DIRECTION_BITS = 30
+
+
+class Curved(Protocol):
+    """Positions as polynomials q(x) + e for |x| <= 1, as `motion_lengths.Path` has them."""
+
+    columns: list[Vector]
+    errors: Vector
+    degree: int
+
+    def below(self, s: Fraction) -> int:
+        """x for a parameter, over 2^GRID, rounded down."""
+
+    def above(self, s: Fraction) -> int:
+        """x for a parameter, over 2^GRID, rounded up."""
 
 
 def flat_of(equations: LengthEquations) -> dict[int, Vector]:
@@ -35,7 +50,7 @@ def flat_of(equations: LengthEquations) -> dict[int, Vector]:
 
 
 def boxes_on(
-    path: Path, flat: dict[int, Vector], place: dict[int, int], low: int, high: int, planar: bool
+    path: Curved, flat: dict[int, Vector], place: dict[int, int], low: int, high: int, planar: bool
 ) -> Boxes:
     """The boxes of all vertices for low <= x <= high, over 2^GRID; in the plane z = 0 if `planar`.
 

@@ -7,28 +7,14 @@ Near the flat state the same is shown of the projections to the plane of the fac
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
-from itertools import combinations
 from math import ceil, floor
 from typing import Any
 
 from .formats import MOST_TESTS
-from .motion_boxes import (
-    Boxes,
-    Direction,
-    best_apart,
-    best_corner,
-    boxes_on,
-    flat_of,
-    nearer,
-    open_by_distance,
-    parted,
-    parted_at,
-    upright,
-    volume_sign,
-)
+from .motion_boxes import flat_of, nearer, volume_sign
 from .motion_equations import LengthEquations
+from .motion_faces import FacePairs, Hinge
 from .motion_lengths import GRID, Path
 from .motion_stretches import Step, stretches_of
 from .motion_tubes import Start
@@ -37,113 +23,23 @@ from .sheet import Edge
 
 _KINDS = "contact", "flat-fold"
 _PARAMETER_BITS = 40
-_NARROWEST = 1 << 16  # of an interval of x, over 2^GRID
-_KEPT = 1 << 10  # stretches whose boxes are kept for the next pairs
 
 
-class Faces:
-    """The pairs of faces of a sheet by what they share, and the tests that they do not touch."""
+class Faces(FacePairs):
+    """The pairs of faces of a triangulated sheet, and the test that a fold closes."""
 
     def __init__(self, equations: LengthEquations) -> None:
         sheet = equations.sheet
-        self.faces = sorted(sheet.face(t) for t in sheet.triangles)
-        self.place, self.flat = equations.place, flat_of(equations)
-        self.apart: list[tuple[int, int]] = []
-        self.corner: list[tuple[int, int]] = []
-        for i, j in combinations(range(len(self.faces)), 2):
-            shared = len(set(self.faces[i]) & set(self.faces[j]))
-            if shared < 2:
-                (self.corner if shared else self.apart).append((i, j))
-        self.folds: dict[Edge, tuple[int, int, int, int]] = {}
+        faces = sorted(sheet.face(t) for t in sheet.triangles)
+        folds: dict[Edge, Hinge] = {}
+        self.means: dict[Edge, int] = {}
         for i, j in sheet.folds:
             left, right = sheet.next[i][j], sheet.next[j][i]
             closed, flat = folded_over(equations, (i, j), left, right)
             unit = Fraction(1 << 2 * GRID)
-            mean = floor((closed + flat) / 2 * unit)
-            self.folds[i, j] = left, right, ceil(closed * unit), mean
-        self.known: dict[tuple[int, int], Direction] = {}
-        self.work = MOST_TESTS
-
-    def spend(self, tests: int) -> None:
-        """Count tests; raises `CertificateError` if they are too many."""
-        self.work -= tests
-        require(self.work >= 0, "the contacts take too much work")
-
-    def clear(self, path: Path, low: int, high: int, planar: bool = False) -> None:
-        """Refuse unless no two faces touch for low <= x <= high beyond what they share."""
-        boxes: dict[tuple[int, int], Boxes] = {}
-
-        def on(a: int, b: int) -> Boxes:
-            if (a, b) not in boxes:
-                self.spend(len(self.flat))
-                if len(boxes) >= _KEPT:
-                    boxes.clear()
-                boxes[a, b] = boxes_on(path, self.flat, self.place, a, b, planar)
-            return boxes[a, b]
-
-        tests = (
-            (self._apart, self.apart),
-            (self._at_corner, self.corner),
-            (self._open, self.folds),
-        )
-        for test, pairs in tests:
-            for i, j in pairs:
-                stack = [(low, high)] if low <= high else []
-                while stack:
-                    a, b = stack.pop()
-                    self.spend(1)
-                    if test(on(a, b), i, j, planar):
-                        continue
-                    names = (i, j) if test == self._open else (self.faces[i], self.faces[j])
-                    what = "the faces at {}-{}" if test == self._open else "the faces {} and {}"
-                    may = what.format(*names) + " may touch where the motion is claimed to be clear"
-                    require(b - a > _NARROWEST, may)
-                    middle = (a + b) >> 1
-                    stack += [(middle, b), (a, middle)]
-
-    def _apart(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
-        """Whether a plane parts two faces: with the direction that did last, or a new one."""
-        one, two = self.faces[i], self.faces[j]
-        known = self.known.get((i, j))
-        if known and not (planar and known[2]) and parted(boxes, one, two, known):
-            return True
-        self.spend(3)
-        found = self.known[i, j] = best_apart(boxes, one, two, planar)
-        return parted(boxes, one, two, found)
-
-    def _at_corner(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
-        """Whether a plane through their common vertex parts two faces."""
-        [v] = set(self.faces[i]) & set(self.faces[j])
-        one, two = ([w for w in self.faces[k] if w != v] for k in (i, j))
-        known = self.known.get((i, j))
-        if known and not (planar and known[2]) and parted_at(boxes, v, one, two, known):
-            return True
-        self.spend(3)
-        found = self.known[i, j] = best_corner(boxes, v, one, two, planar)
-        return parted_at(boxes, v, one, two, found)
-
-    def _open(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
-        """Whether the fold between two vertices is not closed."""
-        left, right, closed, _ = self.folds[i, j]
-        if open_by_distance(boxes, left, right, closed):
-            return True
-        if planar:
-            return upright(boxes, i, j, left) and upright(boxes, j, i, right)
-        return volume_sign(boxes, i, j, left, right) != 0
-
-    def crossing(self, path: Path, s: Fraction, one: Sequence[int], two: Sequence[int]) -> bool:
-        """Whether a side of one face runs through the other at a parameter."""
-        boxes = self._at(path, s, s)
-        for first, second in ((one, two), (two, one)):
-            a, b, c = second
-            for p, q in combinations(first, 2):
-                if {p, q} & set(second):
-                    continue
-                ends = [volume_sign(boxes, v, a, b, c) for v in (p, q)]
-                around = [volume_sign(boxes, p, q, *side) for side in ((a, b), (b, c), (c, a))]
-                if ends[0] * ends[1] == -1 and abs(sum(around)) == 3:
-                    return True
-        return False
+            folds[i, j] = left, right, ceil(closed * unit)
+            self.means[i, j] = floor((closed + flat) / 2 * unit)
+        super().__init__(faces, faces, folds, flat_of(equations), equations.place, MOST_TESTS)
 
     def closes(self, path: Path, first: Fraction, last: Fraction, fold: Edge) -> bool:
         """Whether a fold is closed between two parameters.
@@ -151,13 +47,11 @@ class Faces:
         It is a valley at one of them and a mountain at the other; between, its two faces lie in
         one plane, and near each other: nearer than at 90 degrees.
         """
-        left, right, _, mean = self.folds[fold]
-        signs = [volume_sign(self._at(path, s, s), *fold, left, right) for s in (first, last)]
-        return signs[0] * signs[1] == -1 and nearer(self._at(path, first, last), left, right, mean)
-
-    def _at(self, path: Path, first: Fraction, last: Fraction) -> Boxes:
-        """The boxes of all vertices between two parameters."""
-        return boxes_on(path, self.flat, self.place, path.below(first), path.above(last), False)
+        left, right, _ = self.folds[fold]
+        signs = [volume_sign(self.at(path, s, s), *fold, left, right) for s in (first, last)]
+        return signs[0] * signs[1] == -1 and nearer(
+            self.at(path, first, last), left, right, self.means[fold]
+        )
 
 
 def folded_over(

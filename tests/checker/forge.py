@@ -95,8 +95,8 @@ def without(message: str) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         names = "algebraic boxes branch branch_proof classes compact compact_blocks equations "
         names += "flat_sheets letters letters_refuted listing motion motion_bounds "
-        names += "motion_contacts motion_equations motion_loops motion_nodes motion_patches "
-        names += "motion_paths motion_tubes reduced "
+        names += "motion_contacts motion_equations motion_faces motion_loops motion_nodes "
+        names += "motion_patches motion_paths motion_tubes reduced "
         names += "panel_components panel_cones panel_leaves panel_loops panel_modes "
         names += "panel_reduction panel_sheet panel_spaces panels "
         for name in (names + "reading sheet stress towers").split():
