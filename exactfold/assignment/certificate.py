@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import lcm
 
 from exactfold.assignment.clauses import Refuted
+from exactfold.assignment.panel_certificate import starting_certificate
+from exactfold.assignment.panel_match import PanelMatch
 from exactfold.assignment.search import Match, Matched, Step
 from exactfold.checker.formats import LETTERS, LETTERS_VERSION
 from exactfold.errors import NotApplicableError
@@ -14,10 +16,12 @@ from exactfold.exact.numbers import format_integer
 from exactfold.verdict import PROVED
 
 
-def match_certificate(found: Match) -> Document:
+def match_certificate(found: Match | PanelMatch) -> Document:
     """The proof that a match has all halves, as a JSON object (docs/assignment.md, Certificates).
 
-    `write_certificate` writes it to a file. Raises `NotApplicableError` unless the match is proved.
+    Of rigid panels: that they start to fold with the letters, or do not. `write_certificate` writes
+    it to a file. Raises `NotApplicableError` unless the answer is proved, or if a motion was found
+    by splitting forms.
 
     >>> from exactfold import checker
     >>> from exactfold.assignment.search import match
@@ -26,6 +30,8 @@ def match_certificate(found: Match) -> Document:
     >>> len(checker.check(certificate)["halves"])
     4
     """
+    if isinstance(found, PanelMatch):
+        return starting_certificate(found)
     if found.status is not PROVED:
         raise NotApplicableError(f"there is no certificate of a match that is {found.status}")
     pattern = found.pattern

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final, TypeAlias
 
 import networkx as nx
 
@@ -15,6 +15,9 @@ from exactfold.modes.densities import Density, Roots
 from exactfold.modes.local import LocalMode, local_modes
 from exactfold.modes.stars import Star
 from exactfold.pattern.panel_pattern import Edge
+
+Steps: TypeAlias = list[tuple[str, Any]]
+"""Cases as a walk meets them, depth first: ("at", vertex), ("loop", vertices), ("cell", number)."""
 
 _MOST_STEPS: Final = 200_000
 _BITS: Final = 256
@@ -64,7 +67,9 @@ class CellSearch:
     comes a vertex with the fewest ways that fit. Vertices that share a moving fold are joined, with
     the exact quotient of their densities; where a loop closes that quotient has to be 1 (docs/
     panels.md, Structure theorem). `open_loops` are those that did not. The search is complete
-    if it ends; it raises `TooManyModesError` after a fixed number of steps.
+    if it ends; it raises `TooManyModesError` after a fixed number of steps. `cases` are then those
+    that it went through: at each vertex its ways that fit, by the sides of its folds, the
+    neighbours taken by number.
     """
 
     def __init__(self, stars: Mapping[int, Star], letters: Letters, ground: SurdField) -> None:
@@ -72,15 +77,18 @@ class CellSearch:
         self.roots = Roots(ground)
         self.ways = {v: list(self._ways(star)) for v, star in stars.items()}
         self.open_loops: list[OpenLoop] = []
+        self.cases: Steps = []
         self._steps = 0
+        self._cells = 0
         self._signs: dict[Edge, int] = {}
         self._chosen: dict[int, tuple[LocalMode | None, int]] = {}
         self._joined: dict[int, tuple[int, Density]] = {}
 
     def __iter__(self) -> Iterator[Cell]:
         """The cells, one after the other."""
-        wanted = {v: len(ways) for v, ways in self.ways.items()}
-        if not all(wanted.values()):
+        stuck = next((v for v, ways in self.ways.items() if not ways), None)
+        if stuck is not None:
+            self.cases = [("at", stuck)]
             return
         yield from self._search(set(self.stars))
 
@@ -107,6 +115,7 @@ class CellSearch:
         waiting = dict.fromkeys(sorted(start))
         levels: list[_Level] = []
         if not waiting:
+            self.cases = [("cell", 0)]
             yield self._cell()
             return
         near = {v: {u for e in s.folds for u in e if u != v} for v, s in self.stars.items()}
@@ -119,7 +128,11 @@ class CellSearch:
             self._undo(level)
             if not level.ways:
                 waiting[level.vertex] = None
-                levels.pop()
+                done = levels.pop().cases()
+                if levels:
+                    levels[-1].children[-1][1].extend(done)
+                else:
+                    self.cases = done
                 continue
             self._steps += 1
             if self._steps > _MOST_STEPS:
@@ -127,9 +140,14 @@ class CellSearch:
                     f"the motions with these letters were not all found in {_MOST_STEPS} steps"
                 )
             mode, side, signs = level.ways.pop(0)
+            child: Steps = []
+            level.children.append((signs, child))
             if not self._take(level, mode, side, signs):
+                child.append(("loop", self.open_loops[-1].loop))
                 continue
             if not waiting:
+                child.append(("cell", self._cells))
+                self._cells += 1
                 yield self._cell()
                 continue
             new = _Level(self._next(waiting, counts, near))
@@ -242,6 +260,18 @@ class _Level:
         self.signs: list[Edge] = []
         self.joined: list[int] = []
         self.taken = False
+        self.children: list[tuple[Mapping[Edge, int], Steps]] = []
+
+    def cases(self) -> Steps:
+        """The vertex, and then what came of each of its ways."""
+
+        def sides(child: tuple[Mapping[Edge, int], Steps]) -> list[int]:
+            return [child[0][edge] for edge in sorted(child[0], key=sum)]
+
+        steps: Steps = [("at", self.vertex)]
+        for _, child in sorted(self.children, key=sides):
+            steps += child
+        return steps
 
 
 def _agrees(letter: str, s: int) -> bool:

@@ -13,7 +13,7 @@ from exactfold.assignment.panel_refutation import PanelRefutation, held
 from exactfold.assignment.refutation import Letters
 from exactfold.count.ways import Sheet, open_sheet
 from exactfold.modes.decomposition import groups_of
-from exactfold.modes.stars import stars
+from exactfold.modes.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.opening import panels
@@ -129,9 +129,8 @@ def match_panels(
         letters = opened.letters
     asked = by_fold(sheet.folds, letters)
     moving = stars(sheet, held(asked))
-    active = {edge for star in moving.values() for edge in star.folds}
     interior = set(sheet.interior)
-    dead = [e for e in sheet.folds if asked[e] in "MV" and e not in active and interior & set(e)]
+    dead = flat_with_letters(sheet, asked, moving)
     free = {
         e: 1.0 if asked[e] == "V" else -1.0
         for e in sheet.folds
@@ -144,6 +143,15 @@ def match_panels(
             progress("parts of the sheet", number, len(groups))
         parts.append(answered(sheet, {v: moving[v] for v in group}, asked))
     return _result(sheet, asked, dead, free, parts, time.perf_counter() - start)
+
+
+def flat_with_letters(
+    sheet: PanelPattern, letters: Letters, moving: Mapping[int, Star]
+) -> list[Edge]:
+    """The folds with a letter that the flat closure, which leaves these stars, holds flat."""
+    active = {edge for star in moving.values() for edge in star.folds}
+    inner = set(sheet.interior)
+    return [e for e in sheet.folds if letters[e] in "MV" and e not in active and inner & set(e)]
 
 
 def _result(

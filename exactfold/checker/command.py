@@ -14,9 +14,9 @@ from os import PathLike
 from types import ModuleType
 from typing import Any
 
-from . import branch, compact, letters, listing, motion, motion_loops, panels
+from . import branch, compact, letters, listing, motion, motion_loops, panel_letters, panels
 from .compact_lines import lines
-from .formats import BRANCH, COMPACT, LETTERS, LISTING, LOOPS, MOST_LINE, MOTION
+from .formats import BRANCH, COMPACT, LETTERS, LISTING, LOOPS, MOST_LINE, MOTION, PANEL_LETTERS
 from .reading import CertificateError, FormatError, UnfinishedError, plain, read_json
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
@@ -63,6 +63,8 @@ def _reader(data: dict[str, Any]) -> ModuleType:
         return branch
     if data.get("format") == LETTERS:
         return letters
+    if data.get("format") == PANEL_LETTERS:
+        return panel_letters
     if data.get("format") == MOTION:
         return motion
     if data.get("format") == LISTING and "kind" in data:
@@ -142,6 +144,8 @@ def summary(claims: dict[str, Any]) -> str:
         return panels.summary(claims)
     if "loops" in claims:
         return motion_loops.summary(claims)
+    if "starts" in claims:
+        return panel_letters.summary(claims)
     if "halves" in claims:
         return letters.summary(claims)
     if "tubes" in claims:

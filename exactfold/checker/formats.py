@@ -17,6 +17,9 @@ CURVED_VERSION = 2
 LETTERS, LETTERS_VERSION = "exactfold letters", 1
 """All halves of branches with given mountains and valleys (docs/assignment.md)."""
 
+PANEL_LETTERS, PANEL_LETTERS_VERSION = "exactfold letters on panels", 1
+"""Whether rigid panels start to fold with given mountains and valleys (docs/assignment.md)."""
+
 PANELS, PANELS_VERSION = "panels", 3
 """All motions of a sheet of rigid panels: a kind of the format `LISTING` (docs/certificate.md)."""
 

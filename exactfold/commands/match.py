@@ -16,7 +16,13 @@ from exactfold.assignment.search import Match, match
 from exactfold.commands.patterns import read_any, warn
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import LettersError, NoLettersError, NotCountedError, UnreadableFileError
+from exactfold.errors import (
+    LettersError,
+    NoLettersError,
+    NotApplicableError,
+    NotCountedError,
+    UnreadableFileError,
+)
 from exactfold.evidence.entries import write_certificate
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.opening import Opened, has_branches, triangles
@@ -53,6 +59,7 @@ class Asked:
             letters = self._letters(opened.sheet, opened)
             if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
                 started = match_panels(opened, letters, progress=bar)
+                self._write(started, bar)
                 bar.close()
                 return self._started(started)
             pattern = triangles(opened, "match")
@@ -75,14 +82,19 @@ class Asked:
         refuted = found.status is PROVED and not found.matches
         return EXIT[REFUTED if refuted else found.status]
 
-    def _write(self, found: Match, bar: Bar) -> None:
+    def _write(self, found: Match | PanelMatch, bar: Bar) -> None:
         if self.certificate is None:
             return
-        if found.status is PROVED:
-            bar("certificate")
-            write_certificate(match_certificate(found), self.certificate)
-        else:
+        if found.status is not PROVED:
             say("no certificate was written: not all is proved")
+            return
+        bar("certificate")
+        try:
+            certificate = match_certificate(found)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
+        else:
+            write_certificate(certificate, self.certificate)
 
     def _started(self, found: PanelMatch) -> int:
         """Print whether panels start to fold; the exit code."""

@@ -5,13 +5,12 @@ from __future__ import annotations
 import platform
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 
 from exactfold.checker.formats import LISTING, PANELS, PANELS_VERSION
 from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.evidence.entries import Document
 from exactfold.exact.numbers import format_rational
-from exactfold.exact.surds import Number, Surd
+from exactfold.exact.surds import Number, SurdField
 from exactfold.modes.decomposition import MOST_LISTED
 from exactfold.modes.elementary import ModeSearch, Support
 from exactfold.modes.extension import Loops, extension
@@ -53,7 +52,7 @@ def certificate_of_panels(result: Decomposition) -> Document:
         "format": LISTING,
         "version": PANELS_VERSION,
         "kind": PANELS,
-        "pattern": _pattern(pattern),
+        "pattern": panels_document(pattern),
         "claims": {
             "interior": len(pattern.interior),
             "border": len(pattern.border),
@@ -73,17 +72,23 @@ def certificate_of_panels(result: Decomposition) -> Document:
     }
 
 
-def _pattern(pattern: PanelPattern) -> Document:
-    def parts(value: Number) -> list[str]:
-        if isinstance(value, Surd):
-            return [format_rational(c) for c in value.coefficients]
-        return [format_rational(Fraction(value))]
-
+def panels_document(pattern: PanelPattern) -> Document:
+    """Vertices in their field, and edges, exactly."""
+    field = pattern.field
     return {
-        "radicands": [[format_rational(c) for c in r] for r in pattern.field.radicands],
-        "vertices": [[parts(x), parts(y)] for x, y in pattern.vertices],
+        "radicands": [[format_rational(c) for c in r] for r in field.radicands],
+        "vertices": [[number_document(x, field) for x in point] for point in pattern.vertices],
         "edges": _pairs(pattern.edges),
     }
+
+
+def number_document(value: Number, field: SurdField) -> list[str]:
+    """The coefficients of a number in a field.
+
+    >>> number_document(2, SurdField(()).adjoined(3))
+    ['2', '0']
+    """
+    return [format_rational(c) for c in field.number(value).coefficients]
 
 
 def _spaces(part: Part) -> Document:
