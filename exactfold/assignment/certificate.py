@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import lcm
 
 from exactfold.assignment.clauses import Refuted
-from exactfold.assignment.search import Match, Matched, Step
+from exactfold.assignment.search import Match, Matched
+from exactfold.assignment.sign_tree import Step
 from exactfold.checker.formats import LETTERS, LETTERS_VERSION
 from exactfold.errors import NotApplicableError
 from exactfold.evidence.entries import Document, emptied_evidence, pattern_document
@@ -48,7 +49,7 @@ def match_certificate(found: Match) -> Document:
             "emptied": emptied,
             "refuted": [_refuted(found, each) for each in found.tree.refuted],
             "tree": [_step(found, step) for step in found.tree.steps],
-            "leaves": [[_half(half, emptied) for half in both] for both in found.tree.halves],
+            "leaves": [[_half(half, emptied) for half in both] for _, both in found.tree.leaves],
         },
     }
 
