@@ -5,10 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
+from typing import Final
 
 from exactfold.assignment.asked import by_fold
 from exactfold.assignment.bend_program import BendProgram
+from exactfold.assignment.circles import all_assignments
 from exactfold.assignment.refutation import Letters, Refutation
 from exactfold.assignment.rim_search import RimSearch
 from exactfold.assignment.sign_tree import SignSearch, Tree
@@ -19,17 +22,20 @@ from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.progress import Progress
-from exactfold.showing import Page
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+
+_MOST_LISTED: Final = 4
+"""Most foldable vertices of a pentagon whose assignments are listed where a rim is not found."""
 
 
 @dataclass(frozen=True, repr=False)
-class RimMatch(Page):
+class RimMatch:
     """Whether a sheet with more than four corners starts to fold with given letters.
 
     `starts` PROVED: `branch` has them, over the heights `Branch.rim` of the border. REFUTED: no
     solution has; `tree` covers all signs of vertices by sets that are refuted, `refutations` by
-    vectors, `reasons` says those that need none. UNDECIDED: neither was shown for the signs
+    vectors, `reasons` says those that need none; `listed`: for some signs that is shown by the
+    complete list of `all_assignments` instead. UNDECIDED: neither was shown for the signs
     `open_signs`. `sheet` is the pattern without what lies in triangulated triangles, where vertex v
     is `labels[v]` of the pattern; `leaves`: for how many sign vectors a rim was looked for.
     """
@@ -43,6 +49,7 @@ class RimMatch(Page):
     reasons: tuple[str, ...]
     open_signs: tuple[Mapping[int, int], ...]
     tree: Tree[Branch | None]
+    listed: bool = False
     seconds: float = field(default=0.0, compare=False)
 
     @property
@@ -78,7 +85,8 @@ def match_rim(
     refuted as by `match`, for any border. For the signs of all vertices that are left, a rim is
     looked for, in floating point, whose branch has the letters; its heights are rounded, and the
     branch over it is proved by `find_branch` (docs/assignment.md, More than four corners). The
-    first that is found ends the search. At most `most` sign vectors are tried.
+    first that is found ends the search. At most `most` sign vectors are tried; what is open then is
+    decided by `all_assignments` where the sheet has five corners and few vertices.
 
     A rim is looked for only if the border is convex and no fold with "F" can move. Raises
     `UsageError` for letters that do not fit, and `NotCountedError` for fewer than five boundary
@@ -97,6 +105,16 @@ def match_rim(
             f"a rim is looked for on sheets with more than four corners; this one has {given.Ve}"
         )
     return _Search(given, by_fold(given.folds, letters), most, progress).result()
+
+
+def can_pop(pattern: CreasePattern) -> bool:
+    """Whether some vertex can pop: one that lies in no triangulated triangle.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> can_pop(single_vertex(5))
+    True
+    """
+    return bool(pattern.without_rigid_parts()[0].interior)
 
 
 class _Search(SignSearch["Branch | None"]):
@@ -127,19 +145,44 @@ class _Search(SignSearch["Branch | None"]):
 
     def result(self) -> RimMatch:
         self.searched()
-        starts = REFUTED if self.branch is None else PROVED
+        listed = self.branch is None and bool(self.open) and self._is_listed()
+        if listed or self.branch is not None:
+            self.open = []
+        starts = PROVED if self.branch is not None else UNDECIDED if self.open else REFUTED
         return RimMatch(
             self.pattern,
             self.letters,
-            UNDECIDED if starts is REFUTED and self.open else starts,
+            starts,
             self.branch,
             self.sheet,
             self.labels,
             tuple(self.reasons),
-            () if self.branch else tuple(self.open),
+            tuple(self.open),
             self.tree(),
+            listed,
             time.perf_counter() - self.start,
         )
+
+    def _is_listed(self) -> bool:
+        """Whether a complete list of assignments shows what is open; the branch, if there is one.
+
+        Letters M and V hold near a solution that has them, and so on some arc without flat folds.
+        """
+        if self.rims is None or self.sheet.Ve != 5 or self.sheet.Vi > _MOST_LISTED:
+            return False
+        found = all_assignments(self.pattern, progress=self.progress)
+        for circle in found.circles:
+            for arc in circle.arcs:
+                letters = dict(zip(self.pattern.folds, arc.letters, strict=True))
+                if not any(differing(self.letters, letters)):
+                    self._take(circle.signs, arc.rim)
+        return found.status is PROVED and self.branch is None
+
+    def _take(self, signs: str | Mapping[int, int], rim: Mapping[int, Fraction]) -> None:
+        """Keep the branch over a rim if it is proved and has the letters."""
+        branch = find_branch(self.pattern, signs, rim=rim)
+        if branch.status is PROVED and not any(differing(self.letters, branch.assignment)):
+            self.branch, self.done = branch, True
 
     def _at_leaf(self, signs: dict[int, int]) -> Branch | None:
         """The branch with these signs over a rim that seems to give it the letters, if it has."""
@@ -150,10 +193,7 @@ class _Search(SignSearch["Branch | None"]):
         if self.rims is not None:
             rim = self.rims.found(signs, None if bends is None else bends.slopes)
         if rim is not None:
-            heights = {self.labels[v]: height for v, height in rim.items()}
-            branch = find_branch(self.pattern, self.named(signs), rim=heights)
-            if branch.status is PROVED and not any(differing(self.letters, branch.assignment)):
-                self.branch, self.done = branch, True
-                return branch
-        self.open.append(self.named(signs))
-        return None
+            self._take(self.named(signs), {self.labels[v]: height for v, height in rim.items()})
+        if self.branch is None:
+            self.open.append(self.named(signs))
+        return self.branch

@@ -12,6 +12,8 @@ from exactfold.assignment.certificate import match_certificate
 from exactfold.assignment.document import match_document
 from exactfold.assignment.nearest import nearest_branches
 from exactfold.assignment.panel_match import PanelMatch, match_panels
+from exactfold.assignment.rim_document import rim_match_document
+from exactfold.assignment.rim_match import RimMatch, can_pop, match_rim
 from exactfold.assignment.search import Match, match
 from exactfold.commands.patterns import read_any, warn
 from exactfold.commands.shell import EXIT, Bar, name_of, say
@@ -24,6 +26,10 @@ from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import PROVED, REFUTED
 from exactfold.wording import counted
 
+_HALVES = 256
+_RIMS = 16
+"""How many sign vectors are compared, and for how many a rim is looked for, unless it is said."""
+
 
 @dataclass(frozen=True)
 class Asked:
@@ -33,7 +39,7 @@ class Asked:
     snap: Snap | None
     sheet: int | None
     letters: str | None
-    most: int
+    most: int | None
     tries: int | None
     as_json: bool
     everything: bool
@@ -52,15 +58,23 @@ class Asked:
             opened = read_any(self.file, self.snap, self.sheet)
             letters = self._letters(opened.sheet, opened)
             if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
+                if isinstance(opened.sheet, CreasePattern) and can_pop(opened.sheet):
+                    over = match_rim(opened.sheet, letters, most=self.most or _RIMS, progress=bar)
+                    if over.status is PROVED:
+                        self._write(over, bar)
+                        bar.close()
+                        return self._over_a_rim(over)
                 started = match_panels(opened, letters, progress=bar)
                 bar.close()
+                if self.certificate is not None:
+                    say("no certificate was written: there is none of rigid panels with letters")
                 return self._started(started)
             pattern = triangles(opened, "match")
             _in_reach(pattern)
             if not has_branches(pattern):
                 warn(pattern)
             bar("signs")
-            found = match(pattern, letters, most=self.most, progress=bar)
+            found = match(pattern, letters, most=self.most or _HALVES, progress=bar)
             if not found.matches:
                 bar("nearest branches")
                 nearest = nearest_branches(found, tries=self.tries, progress=bar)
@@ -75,14 +89,26 @@ class Asked:
         refuted = found.status is PROVED and not found.matches
         return EXIT[REFUTED if refuted else found.status]
 
-    def _write(self, found: Match, bar: Bar) -> None:
+    def _write(self, found: Match | RimMatch, bar: Bar) -> None:
         if self.certificate is None:
             return
-        if found.status is PROVED:
+        if isinstance(found, RimMatch) and found.listed:
+            say("no certificate was written: there is none of a list of all assignments")
+        elif found.status is PROVED:
             bar("certificate")
             write_certificate(match_certificate(found), self.certificate)
         else:
             say("no certificate was written: not all is proved")
+
+    def _over_a_rim(self, found: RimMatch) -> int:
+        """Print whether a sheet with more than four corners starts to fold; the exit code."""
+        if self.as_json:
+            print(json.dumps(rim_match_document(found, name_of(self.file))))
+        else:
+            from exactfold import report
+
+            report.show(report.rim_match_report(found, everything=self.everything))
+        return EXIT[found.starts]
 
     def _started(self, found: PanelMatch) -> int:
         """Print whether panels start to fold; the exit code."""
