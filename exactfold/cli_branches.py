@@ -97,7 +97,14 @@ def match(
             "order of `count`, or by fold, the others free; @FILE reads.",
         ),
     ] = None,
-    most: Annotated[int, number("Compare the branches of N sign vectors at most.", least=1)] = 256,
+    most: Annotated[
+        int | None,
+        number(
+            "Compare the branches of N sign vectors at most. Default: 256; 16 where heights of the "
+            "border have to be found.",
+            least=1,
+        ),
+    ] = None,
     tries: Annotated[
         int | None,
         number(

@@ -7,21 +7,25 @@ from math import lcm
 from exactfold.assignment.clauses import Refuted
 from exactfold.assignment.panel_certificate import starting_certificate
 from exactfold.assignment.panel_match import PanelMatch
-from exactfold.assignment.search import Match, Matched, Step
+from exactfold.assignment.rim_match import RimMatch
+from exactfold.assignment.search import Match, Matched
+from exactfold.assignment.sign_tree import Step
 from exactfold.checker.formats import LETTERS, LETTERS_VERSION
 from exactfold.errors import NotApplicableError
 from exactfold.evidence.entries import Document, emptied_evidence, pattern_document
-from exactfold.evidence.single import heights_evidence
+from exactfold.evidence.single import branch_certificate, heights_evidence
 from exactfold.exact.numbers import format_integer
 from exactfold.verdict import PROVED
 
 
-def match_certificate(found: Match | PanelMatch) -> Document:
-    """The proof that a match has all halves, as a JSON object (docs/assignment.md, Certificates).
+def match_certificate(found: Match | RimMatch | PanelMatch) -> Document:
+    """The proof of a match, as a JSON object (docs/assignment.md, Certificates).
 
-    Of rigid panels: that they start to fold with the letters, or do not. `write_certificate` writes
-    it to a file. Raises `NotApplicableError` unless the answer is proved, or if a motion was found
-    by splitting forms.
+    It shows that a match has all halves; of a sheet with more than four corners, that no solution
+    has the letters, or, as a certificate of one branch, that one has; of rigid panels, that they
+    start to fold with the letters, or do not. `write_certificate` writes it to a file. Raises
+    `NotApplicableError` unless the answer is proved, where it rests on a list of all assignments,
+    and if a motion of panels was found by splitting forms.
 
     >>> from exactfold import checker
     >>> from exactfold.assignment.search import match
@@ -34,8 +38,21 @@ def match_certificate(found: Match | PanelMatch) -> Document:
         return starting_certificate(found)
     if found.status is not PROVED:
         raise NotApplicableError(f"there is no certificate of a match that is {found.status}")
+    if isinstance(found, Match):
+        emptied = emptied_evidence(found.pattern)
+        leaves = [[_half(half, emptied) for half in both] for _, both in found.tree.leaves]
+        return _letters(found, found.matches, leaves)
+    if found.branch is not None:
+        return branch_certificate(found.branch)
+    if found.listed:
+        raise NotApplicableError("there is no certificate of a list of all assignments")
+    return _letters(found, (), [])
+
+
+def _letters(
+    found: Match | RimMatch, matches: tuple[Matched, ...], leaves: list[list[Document]]
+) -> Document:
     pattern = found.pattern
-    emptied = emptied_evidence(pattern)
     return {
         "format": LETTERS,
         "version": LETTERS_VERSION,
@@ -47,19 +64,19 @@ def match_certificate(found: Match | PanelMatch) -> Document:
                     "vertex_signs": [half.vertex_signs[v] for v in pattern.interior],
                     "side": half.side,
                 }
-                for half in found.matches
+                for half in matches
             ],
         },
         "evidence": {
-            "emptied": emptied,
+            "emptied": emptied_evidence(pattern),
             "refuted": [_refuted(found, each) for each in found.tree.refuted],
             "tree": [_step(found, step) for step in found.tree.steps],
-            "leaves": [[_half(half, emptied) for half in both] for both in found.tree.halves],
+            "leaves": leaves,
         },
     }
 
 
-def _refuted(found: Match, refuted: Refuted) -> Document:
+def _refuted(found: Match | RimMatch, refuted: Refuted) -> Document:
     """The signs and the integer heights of the stars that are not flat."""
     signs = [[found.labels[v], sign] for v, sign in sorted(refuted.signs.items())]
     if refuted.refutation is None:
@@ -75,7 +92,7 @@ def _refuted(found: Match, refuted: Refuted) -> Document:
     return {"signs": signs, "heights": stars}
 
 
-def _step(found: Match, step: Step) -> list[str | int]:
+def _step(found: Match | RimMatch, step: Step) -> list[str | int]:
     """A step of the tree, its vertices named as in the pattern."""
     kind, *at = step
     if kind in ("split", "force"):

@@ -17,6 +17,7 @@ from exactfold.arrays import FloatArray, IntArray
 from exactfold.assignment.refutation import Letters, Refutation
 from exactfold.exact.linalg import nullspace
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.remembered import remembered
 from exactfold.rigidity.curvature import curvature_form, spokes
 from exactfold.rigidity.timelike import round_cone
 
@@ -94,34 +95,20 @@ class ConeProgram:
         return sides
 
     @cached_property
-    def fold_numbers(self) -> dict[tuple[int, int], int]:
-        """The place of each fold among the folds of the sheet."""
-        return {fold: k for k, fold in enumerate(self.sheet.folds)}
-
-    @cached_property
     def factors(self) -> FloatArray:
         """By fold: 1 for a valley, -1 for a mountain, 0 for a free fold, NaN if it stays flat."""
         value = {"V": 1.0, "M": -1.0, "U": 0.0, "F": np.nan}
         return np.array([value[self.letters[fold]] for fold in self.sheet.folds])
 
-    @cached_property
-    def unit(self) -> Fraction:
-        """A power of two near the middle length of the folds, which is about 1 in the programs."""
-        points = self.sheet.vertices
-        spans = sorted(
-            max(abs(points[i][k] - points[j][k]) for k in (0, 1)) for i, j in self.sheet.folds
-        )
-        return Fraction(2) ** frexp(float(spans[len(spans) // 2]))[1]
-
-    @cached_property
-    def stars(self) -> dict[int, _StarRows]:
+    @property
+    def stars(self) -> dict[int, StarRows]:
         """What the programs need to know of each star."""
-        return {v: _star_rows(self, v) for v in self.sheet.interior}
+        return star_rows(self.sheet)
 
 
 @dataclass(frozen=True)
-class _StarRows:
-    """One star in floats, in units of `ConeProgram.unit`; its neighbours are counter-clockwise.
+class StarRows:
+    """One star in floats, in multiples of `unit_of`; its neighbours are counter-clockwise.
 
     On the up nappe, the first of the rows `cone` is at least the norm of the others: it is
     K_v(t, .) for the round cone t, the others are a root of K_v(t, .)^2 - K_v. `curvature` is
@@ -136,15 +123,30 @@ class _StarRows:
     curvature: FloatArray
 
 
-def _star_rows(program: ConeProgram, v: int) -> _StarRows:
-    ring, d = spokes(program.sheet, v)
-    numbers = [program.fold_numbers[min(v, w), max(v, w)] for w in ring]
-    vectors = np.array([[float(x / program.unit) for x in spoke] for spoke in d])
+@remembered
+def unit_of(sheet: CreasePattern) -> Fraction:
+    """A power of two near the middle length of the folds, which is about 1 in the programs."""
+    points = sheet.vertices
+    spans = sorted(max(abs(points[i][k] - points[j][k]) for k in (0, 1)) for i, j in sheet.folds)
+    return Fraction(2) ** frexp(float(spans[len(spans) // 2]))[1]
+
+
+@remembered
+def star_rows(sheet: CreasePattern) -> dict[int, StarRows]:
+    """The rows of all stars of a sheet, by vertex."""
+    numbers = {fold: k for k, fold in enumerate(sheet.folds)}
+    return {v: _star_rows(sheet, v, numbers) for v in sheet.interior}
+
+
+def _star_rows(sheet: CreasePattern, v: int, numbers: Mapping[tuple[int, int], int]) -> StarRows:
+    ring, d = spokes(sheet, v)
+    unit = unit_of(sheet)
+    vectors = np.array([[float(x / unit) for x in spoke] for spoke in d])
     x, y = vectors.T
-    cone = _second_order_cone(program.sheet, v)
-    return _StarRows(
+    cone = _second_order_cone(sheet, v)
+    return StarRows(
         ring,
-        np.array(numbers),
+        np.array([numbers[min(v, w), max(v, w)] for w in ring]),
         vectors,
         np.hypot(x, y),
         cone / np.linalg.norm(cone[0]),
@@ -217,7 +219,7 @@ class _Program:
         goal = np.zeros(margin + 1)
         goal[margin] = -1.0
         nothing = sparse.csc_matrix((margin + 1, margin + 1))
-        found = clarabel.DefaultSolver(nothing, goal, matrix, limits, cones, _settings()).solve()
+        found = clarabel.DefaultSolver(nothing, goal, matrix, limits, cones, settings()).solve()
         x, dual = np.array(found.x), np.array(found.z)
         if not (np.isfinite(x).all() and np.isfinite(dual).all()):
             return np.zeros(margin + 1), np.zeros(size)
@@ -251,7 +253,7 @@ class _Program:
 
     def _planes(self, x: FloatArray, places: int) -> dict[int, tuple[Fraction, Fraction]]:
         """The planes of the vertices without a sign, which agree on the free folds among them."""
-        unit = self.whole.unit
+        unit = unit_of(self.whole.sheet)
         unsigned = [v for v in self.at if v not in self.signs]
         near = {v: [_near(x[self.at[v] + k], places) / unit for k in (0, 1)] for v in unsigned}
         equations = []
@@ -285,12 +287,13 @@ class _Program:
         return {v: (p, q) for v, (p, q) in near.items()}
 
 
-def _settings() -> Any:
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_threads = 1
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-6
-    return settings
+def settings() -> Any:
+    """Clarabel, quiet and on one core, as exact as is needed to round what it finds."""
+    chosen = clarabel.DefaultSettings()
+    chosen.verbose = False
+    chosen.max_threads = 1
+    chosen.tol_gap_abs = chosen.tol_gap_rel = chosen.tol_feas = 1e-6
+    return chosen
 
 
 def _second_order_cone(sheet: CreasePattern, v: int) -> FloatArray:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
+from functools import cached_property
 
 from exactfold.assignment.asked import by_fold
-from exactfold.assignment.clauses import Clauses, Refuted
 from exactfold.assignment.cone_program import ConeProgram
-from exactfold.assignment.refutation import Letters, Refutation, refuted_at
+from exactfold.assignment.refutation import Letters, Refutation
+from exactfold.assignment.sign_tree import SignSearch, Tree
 from exactfold.branches.branch import Branch
 from exactfold.branches.letters import SIGNS, UPSIDE_DOWN, differing
 from exactfold.count.find import BranchFinder
@@ -22,11 +18,6 @@ from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.progress import Progress
 from exactfold.showing import Page
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
-
-_REMEMBERED = 512
-"""Sign vectors that seem possible, kept so that no cone program is solved for a part of them."""
-
-SignArray = npt.NDArray[np.int8]
 
 
 @dataclass(frozen=True, repr=False)
@@ -65,25 +56,8 @@ class Matched:
         return f"<Matched: {self.sign_text}, side {self.side}>"
 
 
-Step = tuple[Any, ...]
-"""The kind of a step of a `Tree`, then numbers."""
-
-
-@dataclass(frozen=True)
-class Tree:
-    """Why no half is missing: the refuted sets of signs, and how they cover all sign vectors.
-
-    `steps`, in the order in which the tree is walked: ("force", k, v), v has the opposite of its
-    sign in the k-th refuted set, of which all others are there; ("split", v), first all that
-    follows with v up, then with v down; ("refuted", k), the signs contain the k-th set; ("leaf",),
-    all signs are there, and the next two of `halves` have them; ("flat", i, j), a mountain or a
-    valley is asked for where the sheet stays flat. Vertices are those of `Match.sheet`, but for
-    "flat".
-    """
-
-    refuted: tuple[Refuted, ...]
-    steps: tuple[Step, ...]
-    halves: tuple[tuple[Matched, Matched], ...]
+Compared = tuple[Mapping[int, int], tuple[Matched, Matched]]
+"""Signs by vertex of the pattern, and the two halves of branches that have them."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -109,8 +83,8 @@ class Match(Page):
     reasons: tuple[str, ...]
     open_signs: tuple[Mapping[int, int], ...]
     leaves: int
-    tree: Tree
-    compared: tuple[tuple[Mapping[int, int], tuple[Matched, Matched]], ...] = ()
+    tree: Tree[Compared]
+    compared: tuple[Compared, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Match: {self.status}, {len(self.matches)} halves, {self.leaves} sign vectors>"
@@ -148,34 +122,26 @@ def match(
     return _Search(sheet, by_fold(sheet.folds, letters), most, progress).result()
 
 
-class _Search:
-    """The tree of vertex signs, on the sheet without what lies in triangulated triangles."""
+class _Search(SignSearch[Compared]):
+    """The search whose leaves are two halves of branches."""
 
     def __init__(
         self, pattern: CreasePattern, letters: dict[Edge, str], most: int, progress: Progress | None
     ) -> None:
-        self.pattern, self.letters, self.most, self.progress = pattern, letters, most, progress
+        self.pattern, self.progress = pattern, progress
         self.finder = BranchFinder(pattern)
         problem = self.finder.problem
-        self.labels, self.sheet = problem.labels, problem.sheet
-        self.own = {
-            (i, j): letters[_fold(self.labels[i], self.labels[j])] for i, j in self.sheet.folds
-        }
-        self.place = {v: k for k, v in enumerate(self.sheet.interior)}
-        self.program = ConeProgram(self.sheet, self.own)
-        self.clauses = Clauses()
-        self.possible: deque[SignArray] = deque(maxlen=_REMEMBERED)
-        self.steps: list[Step] = []
-        self.reasons: list[str] = []
+        super().__init__(problem.sheet, problem.labels, letters, most)
         self.matches: list[Matched] = []
-        self.open: list[dict[int, int]] = []
-        self.compared: list[tuple[dict[int, int], tuple[Matched, Matched]]] = []
+
+    @cached_property
+    def program(self) -> ConeProgram:
+        """The cone program in heights of stars."""
+        return ConeProgram(self.sheet, self.own)
 
     def result(self) -> Match:
-        if not self._stays_flat():
-            self._at_vertices()
-            self._search()
-        tree = self._tree()
+        self.searched()
+        tree = self.tree()
         return Match(
             self.pattern,
             self.letters,
@@ -183,131 +149,30 @@ class _Search:
             tuple(self.matches),
             self.sheet,
             self.labels,
-            tuple(each.refutation for each in tree.refuted if each.refutation is not None),
+            tree.refutations,
             tuple(self.reasons),
             tuple(self.open),
-            len(self.compared),
+            len(tree.leaves),
             tree,
-            tuple(self.compared),
+            tree.leaves,
         )
 
-    def _tree(self) -> Tree:
-        """What the search has done, with the refuted sets that it used."""
-        used = sorted({at[0] for kind, *at in self.steps if kind in ("force", "refuted")})
-        place = {number: k for k, number in enumerate(used)}
-        refuted = tuple(self.clauses.known[number] for number in used)
-        steps = tuple(
-            (kind, place[at[0]], *at[1:]) if kind in ("force", "refuted") else (kind, *at)
-            for kind, *at in self.steps
-        )
-        return Tree(refuted, steps, tuple(halves for _, halves in self.compared))
-
-    def _stays_flat(self) -> bool:
-        """Whether a letter is on a fold inside a triangulated triangle."""
-        moving = {_fold(self.labels[i], self.labels[j]) for i, j in self.sheet.folds}
-        for fold, letter in self.letters.items():
-            if letter in "MV" and fold not in moving:
-                self.reasons.append(f"fold {fold} lies in a triangulated triangle and stays flat")
-                self.steps.append(("flat", *fold))
-                return True
-        return False
-
-    def _at_vertices(self) -> None:
-        """Learn what the letters of single stars refute, up to one that has no sign left."""
-        for v in self.sheet.interior:
-            left = 2
-            for sign in (1, -1):
-                found = refuted_at(self.sheet, self.own, v, sign)
-                if isinstance(found, str):
-                    self.reasons.append(f"vertex {self.labels[v]} {found}")
-                    self.clauses.learn(Refuted({v: sign}, None))
-                    left -= 1
-                elif found is not None and found.holds(self.sheet, self.own):
-                    self.clauses.learn(Refuted(found.signs, found))
-                    left -= 1
-            if not left:
-                return
-
-    def _search(self) -> None:
-        """Try all signs that are not refuted."""
-        stack: list[dict[int, int]] = [{}]
-        while stack:
-            signs = self._closed(stack.pop())
-            if signs is None:
-                continue
-            unknown = [v for v in self.sheet.interior if v not in signs]
-            if not unknown:
-                self._compare(signs)
-            elif len(self.compared) + len(stack) + 2 > self.most:
-                self.open.append({self.labels[v]: sign for v, sign in signs.items()})
-            else:
-                v = self._by_weight(unknown)[0]
-                self.steps.append(("split", v))
-                stack += [signs | {v: sign} for sign in (-1, 1)]
-
-    def _closed(self, before: dict[int, int]) -> dict[int, int] | None:
-        """The signs with all that is found to follow; None if they contradict."""
-        signs = self._forced(before)
-        if signs is None:
-            return None
-        if not self._seems_possible(signs):
-            return self._forced(signs)
-        for v in self._by_weight([v for v in self.sheet.interior if v not in signs]):
-            for sign in (1, -1):
-                if v in signs or self._seems_possible(signs | {v: sign}):
-                    continue
-                signs = self._forced(signs)
-                if signs is None:
-                    return None
-        return signs
-
-    def _by_weight(self, vertices: list[int]) -> list[int]:
-        """Those that most refutations name first."""
-        return sorted(vertices, key=lambda v: -self.clauses.weight[v])
-
-    def _forced(self, signs: dict[int, int]) -> dict[int, int] | None:
-        """The signs with those that the refuted sets force; None if they contradict."""
-        forced = self.clauses.forced(signs)
-        self.steps += [("force", number, v) for number, v in forced.steps]
-        if forced.contradicted is None:
-            return forced.signs
-        self.steps.append(("refuted", forced.contradicted))
-        return None
-
-    def _seems_possible(self, signs: dict[int, int]) -> bool:
-        """False if the signs are refuted, which is learned then."""
-        at = [self.place[v] for v in signs]
-        values = np.array(list(signs.values()), dtype=np.int8)
-        if any(np.array_equal(known[at], values) for known in self.possible):
-            return True
-        found = self.program.solved(signs)
-        if isinstance(found, Refutation):
-            self.clauses.learn(Refuted(found.signs, found))
-            return False
-        if found is not None:
-            known = np.zeros(len(self.place), dtype=np.int8)
-            for v, sign in found.items():
-                known[self.place[v]] = sign
-            self.possible.appendleft(known)
-        return True
-
-    def _compare(self, signs: dict[int, int]) -> None:
+    def _at_leaf(self, signs: dict[int, int]) -> Compared:
         """Find both halves with all signs given, and compare their letters."""
         if self.progress is not None:
-            self.progress("sign vectors", len(self.compared) + 1, 0)
+            self.progress("sign vectors", len(self.leaves) + 1, 0)
         up, down = (self._half(signs, side) for side in (1, -1))
-        self.steps.append(("leaf",))
-        named = {self.labels[v]: sign for v, sign in signs.items()}
-        self.compared.append((named, (up, down)))
+        named = self.named(signs)
         agreed = [self._agrees(half) for half in (up, down)]
         if None in agreed:
             self.open.append(named)
         for half, agrees in zip((up, down), agreed, strict=True):
             if agrees and half.names not in {m.names for m in self.matches}:
                 self.matches.append(half)
+        return named, (up, down)
 
     def _half(self, signs: dict[int, int], side: int) -> Matched:
-        branch = self.finder.find({self.labels[v]: side * sign for v, sign in signs.items()})
+        branch = self.finder.find({v: side * sign for v, sign in self.named(signs).items()})
         return Matched(branch, side)
 
     def _agrees(self, half: Matched) -> bool | None:
@@ -316,7 +181,3 @@ class _Search:
             return None
         other, unknown = differing(self.letters, half.assignment)
         return False if other else None if unknown else True
-
-
-def _fold(i: int, j: int) -> Edge:
-    return (i, j) if i < j else (j, i)

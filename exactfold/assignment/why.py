@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from exactfold.assignment.refutation import refuted_at
+from exactfold.assignment.rim_match import RimMatch
 from exactfold.assignment.search import Match
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
@@ -11,7 +12,7 @@ _NAMED = 8
 """Folds that are named; more are counted."""
 
 
-def vertex_conflicts(found: Match) -> dict[int, str]:
+def vertex_conflicts(found: Match | RimMatch) -> dict[int, str]:
     """By vertex whose letters leave it no way to pop: why it can pop neither up nor down.
 
     A vertex pops up only if its mountains, and the folds that are free, lie in no closed half-plane

@@ -4,7 +4,9 @@ Why it is a proof: a branch is a line of solutions; each of its two halves lies 
 of some sign vector. The tree covers all sign vectors. Those that contain the signs of a refuted set
 have no solution with these letters (`letters_refuted`); for each other, that is left as a leaf, the
 two halves are proved as those of one branch are (`branch`, Theorem 5 of docs/branch.md): the one in
-its nappes with a positive saddle, and the opposite of the one in the opposite nappes.
+its nappes with a positive saddle, and the opposite of the one in the opposite nappes. With another
+number of boundary vertices there are no leaves: every solution lies in the closed nappes of some
+sign vector all the same, so that none has the letters if all ends of the tree are refuted.
 """
 
 from __future__ import annotations
@@ -57,7 +59,8 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     keys(claims, "letters halves", "claims")
     keys(evidence, "emptied refuted tree leaves", "evidence")
     place = Place(given, evidence["emptied"])
-    place.fix_rim()  # the boundary is convex then
+    if len(place.sheet.boundary) == 4:
+        place.fix_rim()  # the boundary is convex then
     text = claims["letters"]
     fits = isinstance(text, str) and len(text) == len(given.folds) and set(text) <= set("MVFU")
     require(fits, "letters do not fit")
@@ -111,6 +114,7 @@ class _Search:
             signs = stack.pop()
             kind, *at = items(step, "a step")
             if kind == "leaf":
+                require(self.place.fixed, "a leaf needs a sheet with four corners")
                 require(signs.keys() == self.inside, "a leaf has not the signs of all vertices")
                 yield signs
             elif kind == "split":

@@ -12,6 +12,8 @@ from exactfold.assignment.certificate import match_certificate
 from exactfold.assignment.document import match_document
 from exactfold.assignment.nearest import nearest_branches
 from exactfold.assignment.panel_match import PanelMatch, match_panels
+from exactfold.assignment.rim_document import rim_match_document
+from exactfold.assignment.rim_match import RimMatch, can_pop, match_rim
 from exactfold.assignment.search import Match, match
 from exactfold.commands.patterns import read_any, warn
 from exactfold.commands.shell import EXIT, Bar, name_of, say
@@ -30,6 +32,10 @@ from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import PROVED, REFUTED
 from exactfold.wording import counted
 
+_HALVES = 256
+_RIMS = 16
+"""How many sign vectors are compared, and for how many a rim is looked for, unless it is said."""
+
 
 @dataclass(frozen=True)
 class Asked:
@@ -39,7 +45,7 @@ class Asked:
     snap: Snap | None
     sheet: int | None
     letters: str | None
-    most: int
+    most: int | None
     tries: int | None
     as_json: bool
     everything: bool
@@ -58,6 +64,12 @@ class Asked:
             opened = read_any(self.file, self.snap, self.sheet)
             letters = self._letters(opened.sheet, opened)
             if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
+                if isinstance(opened.sheet, CreasePattern) and can_pop(opened.sheet):
+                    over = match_rim(opened.sheet, letters, most=self.most or _RIMS, progress=bar)
+                    if over.status is PROVED:
+                        self._write(over, bar)
+                        bar.close()
+                        return self._over_a_rim(over)
                 started = match_panels(opened, letters, progress=bar)
                 self._write(started, bar)
                 bar.close()
@@ -67,7 +79,7 @@ class Asked:
             if not has_branches(pattern):
                 warn(pattern)
             bar("signs")
-            found = match(pattern, letters, most=self.most, progress=bar)
+            found = match(pattern, letters, most=self.most or _HALVES, progress=bar)
             if not found.matches:
                 bar("nearest branches")
                 nearest = nearest_branches(found, tries=self.tries, progress=bar)
@@ -82,7 +94,7 @@ class Asked:
         refuted = found.status is PROVED and not found.matches
         return EXIT[REFUTED if refuted else found.status]
 
-    def _write(self, found: Match | PanelMatch, bar: Bar) -> None:
+    def _write(self, found: Match | RimMatch | PanelMatch, bar: Bar) -> None:
         if self.certificate is None:
             return
         if found.status is not PROVED:
@@ -95,6 +107,16 @@ class Asked:
             say(f"no certificate was written: {error}")
         else:
             write_certificate(certificate, self.certificate)
+
+    def _over_a_rim(self, found: RimMatch) -> int:
+        """Print whether a sheet with more than four corners starts to fold; the exit code."""
+        if self.as_json:
+            print(json.dumps(rim_match_document(found, name_of(self.file))))
+        else:
+            from exactfold import report
+
+            report.show(report.rim_match_report(found, everything=self.everything))
+        return EXIT[found.starts]
 
     def _started(self, found: PanelMatch) -> int:
         """Print whether panels start to fold; the exit code."""

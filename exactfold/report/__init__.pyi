@@ -18,6 +18,7 @@ from exactfold.report.info import info_report as info_report
 from exactfold.report.info import panels_info as panels_info
 from exactfold.report.match import match_report as match_report
 from exactfold.report.match import panel_match_report as panel_match_report
+from exactfold.report.match import rim_match_report as rim_match_report
 from exactfold.report.motion import motion_report as motion_report
 from exactfold.report.motions import motions_report as motions_report
 from exactfold.report.multiples import sheet_of_multiples as sheet_of_multiples

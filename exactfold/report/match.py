@@ -10,9 +10,10 @@ from rich.table import Table
 from rich.text import Text
 
 from exactfold.assignment.document import fold_text
+from exactfold.assignment.rim_document import reasons
 from exactfold.assignment.why import vertex_conflicts
 from exactfold.report.terminal import SHOWN, more_text, status_text
-from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.wording import agreeing, counted
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from exactfold.assignment.nearest import Nearest
     from exactfold.assignment.panel_match import PanelMatch
+    from exactfold.assignment.rim_match import RimMatch
     from exactfold.assignment.search import Match, Matched
 
 _NEAR = 8
@@ -63,6 +65,19 @@ def panel_match_report(found: PanelMatch, *, everything: bool = False) -> Group:
     return Group(head, "", Text(_asked(found)), *rest, *more_text(len(reasons) - limit))
 
 
+def rim_match_report(found: RimMatch, *, everything: bool = False) -> Group:
+    """Whether a sheet with more than four corners starts to fold with the letters, and how."""
+    answer = {
+        PROVED: "the sheet starts to fold with these mountains and valleys",
+        REFUTED: "the sheet does not start to fold with these mountains and valleys",
+    }.get(found.starts, "whether the sheet starts to fold with these mountains and valleys is open")
+    lines = reasons(found)
+    limit = len(lines) if everything else SHOWN
+    head = Text.assemble(f"{answer} - ", status_text(found.status), f" ({found.seconds:.2f} s)")
+    rest = [Text(f"- {line}") for line in lines[:limit]]
+    return Group(head, "", Text(_asked(found)), *rest, *more_text(len(lines) - limit))
+
+
 def _answer(found: Match, seconds: float) -> Text:
     took = f" ({seconds:.2f} s)"
     ways = len({half.branch.sign_text for half in found.matches})
@@ -82,7 +97,7 @@ def _answer(found: Match, seconds: float) -> Text:
     return Text.assemble(f"at least {text}{both}; whether others have is ", proved, took)
 
 
-def _asked(found: Match | PanelMatch) -> str:
+def _asked(found: Match | PanelMatch | RimMatch) -> str:
     counts = Counter(found.letters.values())
     kinds = [counted(counts[x], name) for x, name in _LETTERS.items() if counts[x]]
     return f"asked for: {', '.join(kinds)}"

@@ -9,13 +9,14 @@ import pytest
 from forge import Document, given, refused, verified, with_one_key_more, without
 
 from exactfold import CreasePattern, checker, find_branch
-from exactfold.assignment import match, match_certificate
+from exactfold.assignment import match, match_certificate, match_rim
 from exactfold.certify import enclosed
 from exactfold.checker import letters
 from exactfold.checker.branch import Place
 from exactfold.checker.letters_refuted import Stars
 from exactfold.checker.sheet import read_sheet
 from exactfold.evidence.single import heights_evidence
+from exactfold.pattern.families import single_vertex
 
 RANDOM, BOWL, REFLEX, RIGID = "letters-random", "letters-bowl", "letters-reflex", "letters-rigid"
 
@@ -134,12 +135,6 @@ def test_values_of_another_kind(key: str, value: Any, message: str) -> None:
     document = given(RANDOM)
     document["evidence"][key] = value
     refused(document, message)
-
-
-def test_more_than_four_corners_are_refused() -> None:
-    document = given(RANDOM)
-    document["pattern"] = given("branch-rim")["pattern"]
-    refused(document, "there are not four boundary vertices")
 
 
 def test_letters_fit_the_folds() -> None:
@@ -423,3 +418,22 @@ def test_sums_are_on_the_side_of_their_letters() -> None:
                 stopped(document, message)
                 seen.add(letter + wrong)
     assert seen == {"MV", "MU", "VM", "VU"}
+
+
+def test_a_leaf_is_no_proof_with_five_corners() -> None:
+    """Over each rim there is another branch: those over one rim have not the letters of others."""
+    pattern = single_vertex(5)
+    document = match_certificate(match_rim(pattern, "MMVVV"))
+    assert isinstance(document, dict)
+    up, down = (
+        dict(zip(("heights", "denominator"), heights_evidence(branch, []), strict=True))
+        for branch in (find_branch(pattern, "+"), find_branch(pattern, "-"))
+    )
+    occurring = "MMVMV"
+    assert match_rim(pattern, occurring).branch is not None
+    none_left(document, [], [["split", 5], ["leaf"], ["leaf"]])
+    document["claims"]["letters"] = occurring
+    document["evidence"]["leaves"] = [[up, down], [down, up]]
+    with without("a leaf needs a sheet with four corners"):
+        verified(document)
+    refused(document, "a leaf needs a sheet with four corners")

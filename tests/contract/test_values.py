@@ -58,6 +58,7 @@ MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
 DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
 ALL = exactfold.assignment.all_assignments(single_vertex(5))
 MATCH = exactfold.assignment.match(PATTERN, exactfold.find_branch(PATTERN, "+-").assignment)
+OVER_A_RIM = exactfold.assignment.match_rim(single_vertex(5), "MMVMV")
 TWIST = exactfold.assignment.match_panels("square-twist")
 ONE = exactfold.random_square(1, seed=0)
 LEAVING = exactfold.find_branch(ONE, "+")
@@ -181,6 +182,7 @@ VALUES = {
     "branches with letters": exactfold.branches.Lettered(exactfold.PROVED, ((1, -1),)),
     "refutation of letters": MATCH.refutations[0],
     "match of panels": TWIST,
+    "match over a rim": OVER_A_RIM,
     "refutation of panels": TWIST.refutations[0],
     "directions": DRIVEN.directions,
     "orthogonal torques": DRIVEN.orthogonal,
