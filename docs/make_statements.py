@@ -193,12 +193,25 @@ def pages() -> dict[str, str]:
     return {"statements.md": body.rstrip() + "\n", "errata.md": errata.rstrip() + "\n"}
 
 
-ERRATA = """# Errata of the paper
+STANDARD = (
+    "**The standard.** A statement is judged as it is worded, for the patterns that its section "
+    "admits. If it says that it is about generic patterns, special ones that break it are named in "
+    "a note and do not count against it; if it does not say so, one exact counterexample does. "
+    "Where the paper draws a conclusion (\u201cwe have thus shown\u201d), the inference is judged "
+    "as well. What the paper calls conjectural is judged like the rest. Reports of its "
+    "computations are taken as reported, and compared with samples of our own."
+)
+
+
+ERRATA = f"""# Errata of the paper
 
 What an author could act upon: every statement of Chen & Santangelo, "Branches of triangulated
 origami near the unfolded state", that does not hold as printed, with the correction and the script
-that checks it. None of them touches the paper's main observation, which is a theorem
-([all branches are real](theorem.md)). Written by `python docs/make_statements.py`.
+that checks it. None of them touches the paper's main observation, which is a theorem: all branches
+are real ([Theorem 2](theorem.md)), and on almost every sheet $`2^{V_i - V_t}`$ of them differ
+([Theorem 11](generic.md)). Written by `python docs/make_statements.py`.
+
+{textwrap.fill(STANDARD, 100)}
 
 """
 

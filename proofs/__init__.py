@@ -29,6 +29,7 @@ MODULES: tuple[str, ...] = (
     "counting",
     "discussion_counts",
     "random_squares",
+    "branch_angles",
     "branch_counts",
     "multiplicity",
     "panels",

@@ -57,6 +57,7 @@ def prove(change: str | None = None) -> Proof:
     _one_positive_direction(script)
     _wirtinger(script)
     _theorem_1_on_patterns(script)
+    _five_corners(script)
     _conclusions_on_patterns(script)
     return script.proof()
 
@@ -247,6 +248,25 @@ def _theorem_1_on_patterns(script: Script) -> None:
     script.counterexample(
         "convexity is needed: hub (0,0) in (4,-4), (1/10,0), (4,4), (-4,0) has K(hub) < 0",
         curvature_form(sheet, 4)(hub) < 0 and definite_stress(sheet) is None,
+    )
+
+
+def _five_corners(script: Script) -> None:
+    """Right-hand side 0 without convexity, five boundary vertices."""
+    notch = script.alter("the notch closed", (1, 0), (5, 0))
+    sheet = CreasePattern(
+        [(4, -4), notch, (4, 4), (-4, 2), (-4, -2), (0, 0)],
+        [(k, (k + 1) % 5, 5) for k in range(5)],
+    )
+    form = curvature_form(sheet, 5)
+    rim = {v: Fraction(v == 4) for v in range(6)}
+    hub = {v: Fraction(v == 5) for v in range(6)}
+    script.counterexample(
+        "with five boundary vertices convexity is needed for right-hand side 0, too: hub (0,0) in "
+        "(4,-4), (1,0), (4,4), (-4,2), (-4,-2) at heights 0, 0, 0, 0, 1 has K = -(38 x^2 + 8 x + "
+        "1)/96 in its own height x, and no real solution",
+        [96 * form(hub), 96 * 2 * form.polar(rim, hub), 96 * form(rim)] == [-38, -8, -1]
+        and form.polar(rim, hub) ** 2 < form(hub) * form(rim),
     )
 
 

@@ -47,6 +47,7 @@ def prove(change: str | None = None) -> Proof:
     _single_vertex(script)
     _rigid_triangles(script)
     _components(script)
+    _linear_branches(script)
     return script.proof()
 
 
@@ -146,11 +147,12 @@ def _rigid_triangles(script: Script) -> None:
         r"\text{triangulated triangles are equivalent to ``planar projections (Schlegel diagrams) "
         r"of "
         r"triangulations of spheres''}",
-        AS_PRINTED,
-        note="as planar projections of triangulated spheres, which is all that is used; Schlegel "
-        "diagrams in the strict sense up to combinatorial type (Steinitz), as drawings only if "
-        "regular: corners (0,0), (4,0), (0,4), inner (1,1), (2,1), (1,2), diagonals 04, 15, 23 "
-        "have no convex lifting",
+        CORRECTED,
+        r"\text{to planar projections of triangulated spheres; they are Schlegel diagrams iff they "
+        r"have a convex lifting}",
+        note="no convex lifting: corners (0,0), (4,0), (0,4), inner (1,1), (2,1), (1,2), diagonals "
+        "04, 15, 23. Up to combinatorial type the printed words hold (Steinitz), and nothing else "
+        "is used",
     )
     chord = CreasePattern(
         [*SQUARE, *inner_points((0, 0), (1, 1), (0, 1))],
@@ -225,6 +227,50 @@ def _components(script: Script) -> None:
         "from the unfolded state: boundary (6,0), (5,-5), (-4,-4), (-6,4), (-6,6), inner (0,0) of "
         "degree 4 and (1,2) of degree 5 have two cones that share two lines, in which the vertex "
         "of degree 4 is flat",
+    )
+
+
+TWO_LINES = CreasePattern(
+    [(0, 0), (6, 1), (4, 4), (0, 6), (-2, 3), (2, 2), (0, 3)],
+    [(0, 1, 5), (1, 2, 5), (0, 5, 6), (5, 2, 6), (2, 3, 6), (3, 4, 6), (4, 0, 6)],
+)
+"""Five boundary vertices; the straight crease paths 0-5-2 and 0-6-3 do not cross; no chords."""
+
+
+def _linear_branches(script: Script) -> None:
+    """A branch for D = 2 that is a plane, and smooth there."""
+    p = TWO_LINES
+    span = []
+    end = script.alter("a line that is no crease path", 3, 4)
+    start = 0 if end == 3 else 2
+    for a, b in ((0, 2), (start, end)):  # bent along the line from a to b only
+        (ax, ay), (bx, by) = p.vertices[a], p.vertices[b]
+        sides = [(bx - ax) * (y - ay) - (by - ay) * (x - ax) for x, y in p.vertices]
+        span.append(dict(enumerate(max(s, Fraction(0)) for s in sides)))
+    first, second = span
+    forms = [curvature_form(p, v) for v in p.interior]
+    free = len(BranchSystem(p).variables)
+    script.counterexample(
+        "Ve = 5 without chords, two straight crease paths that do not cross: all sums of the two "
+        "folded sheets solve the equations, a plane of dimension 2 = D",
+        p.D == 2
+        and not p.chords
+        and free == 4
+        and all(
+            form(h) == form(k) == form.polar(h, k) == 0
+            for form in forms
+            for h, k in ((first, second),)
+        ),
+    )
+    script.state(
+        "IIC.15",
+        "Section II C, branches as cones",
+        r"\text{``the origins of these cones (singular when }D>1\text{)''}",
+        CORRECTED,
+        r"\text{singular iff the cone is not a linear space}",
+        "a cone is its own tangent cone at the origin. Singular for a single vertex with D > 1 "
+        "(IIB.23); with two straight crease paths that do not cross one branch is a plane: corners "
+        "(0,0), (6,1), (4,4), (0,6), (-2,3), inner (2,2), (0,3)",
     )
 
 

@@ -48,6 +48,10 @@ _DART = [(-4, -1), (0, 0), (4, -1), (0, 6), (-1, 1), (1, 2), (0, -4)]
 _INNER = [(0, 1, 4), (1, 5, 4), (1, 2, 5), (2, 3, 5), (3, 4, 5), (3, 0, 4)]
 DART = CreasePattern(_DART[:6], _INNER)
 """A quadrilateral with the reflex corner v2 = 1 of degree 4."""
+STRAIGHT = CreasePattern(
+    [(1, 0), (0, 1), (-1, 0), (0, -1), (0, 0)], [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+)
+"""w = 1 attached at v1, v2, v3 = 0, 4, 2 in one line, to two faces with the fold 34."""
 KITE = CreasePattern(_DART, [*_INNER, (0, 6, 1), (6, 2, 1)])
 """The dart with w = 6 attached at v1, v2, v3 = 0, 1, 2."""
 
@@ -166,7 +170,7 @@ def _doubling(script: Script) -> None:
 def _reflex(script: Script) -> None:
     """A > pi: fine for four boundary vertices, not for five."""
     heights = dict(zip(range(4), (0, 1, -1, 0), strict=True))
-    c, b, a = _quadratic(FAN, 5, 4, heights)
+    c, b, a = quadratic(FAN, 5, 4, heights)
     bend = script.alter("the folded fan replaced by a flat one", 1, 0)
     script.counterexample(
         "five boundary vertices: the fan folded to heights 0, 1, -1, 0 admits no height of w "
@@ -187,22 +191,50 @@ def _reflex(script: Script) -> None:
         "dart of degree 4 at its reflex corner: 4 branches; with w attached: 8, all real",
         before.distinct == 4 and after.real == factor * before.distinct,
     )
+    heights = script.alter("T unfolded", {0: 1, 2: 1, 3: 0}, {0: 1, 2: -1, 3: 0})
+    script.counterexample(
+        "angle pi and degree 3: v1, v4, v3 = (1,0), (0,-1), (-1,0) at heights 1, 0, 1, hub 0, and "
+        "w = (0,1): K = 2 h_w, so that there is one height of w and not two",
+        list(quadratic(STRAIGHT, 4, 1, heights)) == [0, 2, 0],
+    )
     script.state(
         "IV.4",
         "Section IV, key property of H1 moves",
         r"\text{faces around }v_2\text{ folded: ``always two distinct folded configurations of }T'"
         r"\text{''}",
         Ruling.CORRECTED,
-        r"\text{near the unfolded state true if the angle of }T\text{ at }v_2\text{ is less than "
-        r"}\pi\text{, if }v_2\text{ has degree 3 in }T\text{, or (to second order) if }V_e=4\text{ "
-        r"and that angle is not }\pi",
+        r"\text{near the unfolded state: two if the angle of }T\text{ at }v_2\text{ is less than "
+        r"}\pi\text{; if it is larger, two if }v_2\text{ has degree 3 in }T\text{ or (to second "
+        r"order) if }V_e=4\text{; only one can be sure if it is }\pi",
         "hub (0,0) with spokes (2,-1), (1,2), (-1,2), (-2,-1) at heights 0, 1, -1, 0 and w = "
         "(0,-2): "
         "|v1 v3| exceeds d_max and nothing can be attached, to second order and hence near the "
         "unfolded state. Below pi it holds for true configurations too: the faces at v2 are a "
         "chain of "
-        "arcs on a sphere, of length below pi, so that |v1 v3| < d_max as soon as it is bent",
+        "arcs on a sphere, of length below pi, so that |v1 v3| < d_max as soon as it is bent. At "
+        "an angle of pi K is linear in the height of w: (1,0), (0,-1), (-1,0) at heights 1, 0, 1, "
+        "hub 0, with w = (0,1) have h_w = 0 only (the other attachment is folded over)",
         "families.sample_h1_sequence",
+    )
+    half = script.alter("half of the flat-folded angle", sympy.Integer(1), sympy.Integer(0))
+    p, q, tau = sympy.symbols("p q tau", positive=True)
+    square = -2 * p * q * (1 - tau**2) / (1 + tau**2)  # d^2 less a constant, IV.2
+    script.counterexample(
+        "in the unfolded state d = d_max, which is the angle pi of the new butterfly (tau = oo); "
+        "the angle 0 (tau = 0) is d_min",
+        sympy.limit(square, tau, sympy.oo) == 2 * p * q * half
+        and square.subs(tau, 0) == -2 * p * q * half,
+    )
+    script.state(
+        "IV.19",
+        "Section IV, the first H1 move",
+        r"\text{``a small enough interval around the unfolded state \dots\ where the dihedral "
+        r"angle of the new butterfly never reaches }\pi\text{''}",
+        Ruling.CORRECTED,
+        r"\text{never reaches }0\text{; it is }\pi\text{ in the unfolded state, and nowhere else "
+        r"if }v_1,v_2,v_3\text{ are not collinear}",
+        "the angle is pi iff d = d_max (IV.2). What a small interval excludes is d = d_min, the "
+        "angle 0, where the two attachments meet again",
     )
     script.state(
         "IV.5",
@@ -217,7 +249,7 @@ def _reflex(script: Script) -> None:
     )
 
 
-def _quadratic(
+def quadratic(
     pattern: CreasePattern, hub: int, free: int, heights: dict[int, int]
 ) -> tuple[Fraction, Fraction, Fraction]:
     """Coefficients c, b, a of K_hub = c + b x + a x^2 in the height x of one vertex, hub at 0."""

@@ -111,6 +111,28 @@ def _rigid_folds(script: Script) -> None:
         and flat
         and grid.Ve - 3 - len(diagonals) < script.alter("the formula is not negative", 0, -3),
     )
+    extra = script.alter("a third triangle closes the notch", [(6, 3), (3, 6)], [(6, 3), (6, 6)])
+    number = {p: v for v, p in enumerate(points)}
+    first, second, hub = len(points), len(points) + 1, number[4, 4]
+    flap = CreasePattern(
+        [*points, *extra],
+        [
+            *triangles,
+            (number[4, 3], first, hub),
+            (first, second, hub),
+            *([(second, number[3, 4], hub)] if extra[1] == (3, 6) else []),
+        ],
+    )
+    form = curvature_form(flap, hub) if hub in flap.interior else None
+    raised = [{v: Fraction(v == k) for v in range(len(flap.vertices))} for k in (first, second)]
+    script.counterexample(
+        "4 x 4 squares with two vertices (6,3), (3,6) and three triangles more round the corner "
+        "(4,4): Ve - 3 - E = 17 - 3 - 16 < 0; with all squares flat the corner has a form of "
+        "inertia (1, 1), two lines, and so has every sheet nearby",
+        form is not None
+        and inertia([[form.polar(a, b) for b in raised] for a in raised]) == (1, 1, 0)
+        and flap.Ve - 3 - len(diagonals) == -2,
+    )
     state = script.state
     state(
         "V.1",
@@ -128,9 +150,52 @@ def _rigid_folds(script: Script) -> None:
         "Section V, non-triangulated origami",
         r"\text{``When this formula becomes negative \dots\ we instead take }D=0\text{''}",
         FALSE,
-        r"D\text{ can be positive when the formula is negative}",
-        "4 x 4 unit squares: Ve - 3 - E = -3 (as printed: -4), but heights |x - 2| fold it along a "
-        "straight line, and D >= 1",
+        r"D\text{ can be positive when the formula is negative, for generic patterns, too}",
+        "the formula adds up a part with too many constraints and one with too few. 4 x 4 unit "
+        "squares with (6,3) and (3,6) joined to the corner (4,4), to each other and to the ends "
+        "of its sides: Ve - 3 - E = -2 (as printed: -3), but the corner has four folds and moves "
+        "while all squares stay flat, also after small changes of all vertices. The 4 x 4 squares "
+        "alone (-3) fold along a straight line",
+    )
+    state(
+        "V.8",
+        "Section V, non-triangulated origami",
+        r"\text{``triangulate the origami, then add additional quadratic constraints to rigidify "
+        r"certain folds''}",
+        AS_PRINTED,
+        note="a bar across the fold: with it the two faces carry one self stress, whose equation "
+        "(compat) is the square of the bend. The linear equation, bend = 0, says the same and "
+        "counts no solution twice",
+        code="fold_functional",
+    )
+    *ends, h1, h2, h3, h4 = sympy.symbols("x1 y1 x2 y2 x3 y3 x4 y4 h1:5")
+    corners_ = [ends[2 * k : 2 * k + 2] for k in range(4)]
+
+    def area(k: int) -> sympy.Expr:
+        """Signed area of the triangle without corner k, alternating: an affine dependency."""
+        rows = [[1, *corners_[j]] for j in range(4) if j != k]
+        return (-1) ** k * sympy.Matrix(rows).det()
+
+    w, lift = [area(k) for k in range(4)], (h1, h2, h3, h4)
+    bar = script.alter("the bar left out", 1, 0)
+    pairs = [(i, j) for j in range(4) for i in range(j)]
+    stress = {(i, j): w[i] * w[j] * (bar if (i, j) == (2, 3) else 1) for i, j in pairs}
+    script.identity(
+        "four points with all six bars carry the stress w_i w_j, w an affine dependency, and sum "
+        "w_i w_j (h_i - h_j)^2 = -(sum w_i h_i)^2",
+        sum(w),
+        *(sum(x * p[k] for x, p in zip(w, corners_, strict=True)) for k in range(2)),
+        *(
+            sum(
+                stress[min(i, j), max(i, j)] * (corners_[j][k] - corners_[i][k])
+                for j in range(4)
+                if j != i
+            )
+            for i in range(4)
+            for k in range(2)
+        ),
+        sum(s * (lift[i] - lift[j]) ** 2 for (i, j), s in stress.items())
+        + sum(x * h for x, h in zip(w, lift, strict=True)) ** 2,
     )
 
 
@@ -188,11 +253,12 @@ def _orthogonality(script: Script) -> None:
         "V.5",
         "Section V",
         r"N_F=3V_i+\mathrm{const}\text{ and }2^{V_i}\text{ branches: orthogonality ``impossible''}",
-        AS_PRINTED,
-        note="for generic patterns, from Vi = 2 on, because the undesired branches then span the "
-        "(Vi + 1)-dimensional space of foldings (tested, not proved). The two numbers alone do not "
-        "show it: many vectors can lie in a hyperplane. A special geometry where it is possible: "
-        "the square with a flat vertex has two undesired branches in R^3",
+        CORRECTED,
+        r"\text{impossible wherever the }2^{V_i}-1\text{ undesired branches span the }(V_i+1)"
+        r"\text{-dimensional space of foldings}",
+        note="the two numbers alone do not show it, as many vectors can lie in a hyperplane. That "
+        "generic patterns with Vi >= 2 have such branches is tested, not proved. The square with a "
+        "flat vertex has two undesired branches in R^3, and there it is possible",
     )
     theta, target, k = sympy.symbols("theta target k")
     pull = script.alter("gradient with the wrong sign", -1, 1)

@@ -6,26 +6,49 @@ the one negative eigenvalue in the sign of Appendix C. What it says of popping i
 
 from __future__ import annotations
 
+import random
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from itertools import pairwise
+from math import atan2
 from pathlib import Path
 
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from exactfold.exact.linalg import inertia
+import numpy as np
+
+from exactfold.exact.linalg import inertia, nullspace
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity import curvature_form, wheel_stress
 from exactfold.rigidity.timelike import round_cone
 from proofs.framework import Proof, Ruling, Script, run
-from proofs.vertex_forms import cot, csc, star, symbols, unit
+from proofs.vertex_forms import cot, cross, csc, star, symbols, unit
 
 NAME = "eigenvector"
 TITLE = "The eigenvector h_- and the two nappes of a vertex"
 HYPOTHESES = (
     "flat vertices, angles in (0, pi) with sum 2 pi, spokes of any lengths: inertia (1, N-3, 3)",
 )
+LARGEST = """
+Theorem. Let h be an eigenvector of the positive eigenvalue l of K, popping up. Then its component
+at the hub is larger than all others; so it is positive, as their sum is 0.
+
+Proof. Let rho be the slope of h round the hub, on each sector the sinusoid with the slopes of its
+two spokes; of all functions with these slopes it has the largest integral of rho^2 - rho'^2
+(Picone). (1) No arc on which rho >= 0 is as long as pi: let g be sin x for 0 <= x <= pi on a half
+circle in it and 0 elsewhere, the sheet folded along one straight valley, popping down. Then
+K(h, g) = (rho(0) + rho(pi))/2 >= 0, but K(h, g) < 0 for h in the open up nappe and g in the closed
+down nappe. (2) Hence clipping, h -> min(h, h_0), does not lower K: what is lost is an integral over
+arcs with rho > 0, shorter than pi, and not positive (Wirtinger, docs/theorem.md, 2). (3) K does not
+see constants, and K <= l |.|^2. If h_0 <= 0, min(h, h_0) - h_0 is nowhere larger than h in
+magnitude and somewhere smaller; if h_0 > 0, so is min(h, h_0), unless all h_n <= h_0. As
+l |h|^2 = K(h) <= K(clipped) <= l |clipped|^2, only h_0 > 0 and all h_n <= h_0 is left. (4) If h_n =
+h_0 > 0, the slope at n is 0 and those beside it are not positive, so that the bend at n is not
+positive; but row n of K h = l h says that it is 2 l L_n h_n > 0. QED
+"""
+LOYAL = [(-3, -1), (6, 0), (4, 1), (2, 3)]  # reflex at (4, 1); eigenvalue 163/180
 SPIKY = [(1, 0), (3, 4), (-2, -1), (8, -2)]  # eigenvalues 4/5 and -31/8
 EIGENVECTOR = [25, 15, -9, -26, -5]  # its h_-, hub first
 CONVEX = [(0, -3), (2, 1), (1, 1), (-3, 1)]
@@ -189,6 +212,7 @@ def _components(script: Script) -> None:
         "other sign, so each is smaller (N >= 3); e.g. four equal spokes: (-4, 1, 1, 1, 1)",
         [_dot(row, ones) for row in square.matrix] == [5 * e for e in ones] and sum(ones) == 0,
     )
+    _largest(script)
     stress = wheel_stress(star(*SPIKY), 4)
     j = script.alter("another neighbour", 1, 3)
     script.counterexample(
@@ -204,13 +228,92 @@ def _components(script: Script) -> None:
         r"\text{the component of largest magnitude is the displacement at the vertex itself; the "
         r"neighbouring vertices are moved by smaller amounts in the opposite direction}",
         Ruling.CORRECTED,
-        r"\text{if the link polygon has no reflex corner (all spokes compressed or unstressed): "
-        r"}h_0=-\sum_jh_j\text{ with all }h_j\ne0\text{ of the sign opposite to }h_0.\text{ False "
-        r"for other links}",
-        note="spokes (1,0), (3,4), (-2,-1), (8,-2), eigenvalue 4/5, h_- = (25; 15, -9, -26, -5): "
-        "a neighbour moves more than the vertex, another one in the same direction",
+        r"h_0>h_n\text{ for all }n\text{, where }\mathbf h_-\text{ pops up; if the link polygon "
+        r"has no reflex corner, also }h_n<0\text{ for all }n\text{, so that }|h_n|<h_0",
+        note="the first part for every vertex (proof: LARGEST in proofs/eigenvector.py). With a "
+        "reflex corner the printed words can fail: spokes (1,0), (3,4), (-2,-1), (8,-2), "
+        "eigenvalue 4/5, h_- = (25; 15, -9, -26, -5): a neighbour moves more than the vertex, "
+        "another one in the same direction. They can hold, too: (-3,-1), (6,0), (4,1), (2,3)",
         code="curvature_form, round_cone",
     )
+
+
+def _largest(script: Script) -> None:
+    """Steps of LARGEST, and its claim on stars with reflex links."""
+    s, t, r, q, p = symbols("s t r q p")
+    u, v = unit(s), unit(t)  # a sector; slopes r and q of h at its spokes
+    polar = ((r * v[1] + q * u[1]) * csc(u, v) - cot(u, v) * (r * u[1] + q * v[1])) / 2
+    end = script.alter("the ends of the half circle subtracted", 1, -1)
+    script.identity(
+        "(1): with g = sin x a sector from x to y gives K(h, g) the part (rho(x) cos x - rho(y) "
+        "cos y)/2, over a half circle (rho(0) + rho(pi))/2",
+        polar - (r * u[0] - end * q * v[0]) / 2,
+    )
+    q, p = symbols("q p")
+    larger = script.alter("clipped from below", 1, -1)
+    script.certificate(
+        "(3): h_n = -(p + q), h_0 = -p <= 0: h_n^2 - (h_n - h_0)^2 = p^2 + 2 p q; h_n = p + q, h_0 "
+        "= p > 0: h_n^2 - h_0^2 = q^2 + 2 p q; positive coefficients",
+        all(
+            c > 0
+            for difference in ((p + q) ** 2 - q**2, larger * ((p + q) ** 2 - p**2))
+            for c in difference.numer.coeffs()
+        ),
+    )
+    stars = [SPIKY, LOYAL, *_random_stars(20)]
+    order = script.alter("the hub smallest", 1, -1)
+    script.cases(
+        "h_0 > h_n for all n, by exact enclosures of h_-, on stars with reflex links",
+        (_hub_is_largest(spokes, order) for spokes in stars),
+    )
+    matrix = curvature_form(star(*LOYAL), 4).matrix
+    value = script.alter("another eigenvalue of the loyal star", Fraction(163, 180), Fraction(1))
+    rest = [[k - value * (i == j) for j, k in enumerate(row)] for i, row in enumerate(matrix)]
+    (loyal,) = nullspace(rest) or [[Fraction(1)] * 5]
+    script.counterexample(
+        "spokes (-3,-1), (6,0), (4,1), (2,3), link reflex at (4,1): the printed words hold, the "
+        "hub moves most and all others against it",
+        wheel_stress(star(*LOYAL), 4)[2, 4] < 0
+        and all(x * loyal[0] < 0 and abs(x) < abs(loyal[0]) for x in loyal[1:]),
+    )
+
+
+def _random_stars(count: int) -> Iterator[list[tuple[int, int]]]:
+    """Integer spokes in counter-clockwise order, all angles below pi, the link not convex."""
+    source = random.Random(5)
+    while count:
+        size = source.randint(4, 7)
+        spokes = [(source.randint(-9, 9), source.randint(-9, 9)) for _ in range(size)]
+        spokes.sort(key=lambda d: atan2(d[1], d[0]))
+        around = [*spokes, *spokes[:2]]
+        if any(cross(a, b) <= 0 for a, b in pairwise(around)):
+            continue
+        sides = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(around)]
+        if any(cross(a, b) < 0 for a, b in pairwise(sides)):
+            count -= 1
+            yield spokes
+
+
+def _hub_is_largest(spokes: list[tuple[int, int]], order: int) -> bool:
+    """Whether the eigenvector of the positive eigenvalue has its largest component at the hub.
+
+    A floating point eigenvector h is taken as exact numbers. All other eigenvalues are at most 0,
+    so with m = K(h)/|h|^2 and r = K h - m h an eigenvector is within |r|/m of h.
+    """
+    form = curvature_form(star(*spokes), len(spokes))
+    _, vectors = np.linalg.eigh(np.array(form.matrix, dtype=float))
+    h = [Fraction(float(x)) for x in vectors[:, -1]]
+    image = [sum((a * x for a, x in zip(row, h, strict=True)), Fraction(0)) for row in form.matrix]
+    m = sum(a * x for a, x in zip(image, h, strict=True)) / sum(x * x for x in h)
+    error = sum((a - m * x) ** 2 for a, x in zip(image, h, strict=True)) / m**2
+    cone = round_cone(star(*spokes), len(spokes))
+    row = [cone[v] for v in form.labels]
+    up = sum(a * x for a, x in zip(row, image, strict=True))
+    functional = form.functional({v: cone[v] for v in form.labels})
+    if up**2 <= error * sum(x * x for x in functional.values()):
+        return False
+    side = order if up > 0 else -order
+    return m > 0 and all(side * (h[0] - x) > 0 and (h[0] - x) ** 2 > 4 * error for x in h[1:])
 
 
 if __name__ == "__main__":

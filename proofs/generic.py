@@ -37,7 +37,7 @@ def prove(change: str | None = None) -> Proof:
         change,
     )
     script.state(
-        "T.3",
+        "T.11",
         "Sections II C and III A, 'generically', 'distinct roots 2^(Vi - Vt)' (numerical)",
         r"B_{distinct}=2^{V_i-V_t}\text{ for generic patterns}",
         Ruling.CORRECTED,

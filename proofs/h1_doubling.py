@@ -43,7 +43,7 @@ import sympy
 
 from exactfold import CreasePattern, count_branches, families, random_square
 from exactfold.branches.result import BranchCount
-from proofs.butterfly import DART, KITE
+from proofs.butterfly import DART, FAN, KITE, quadratic
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.mountain_valley import sector
 
@@ -155,12 +155,50 @@ def _straight(script: Script) -> None:
     )
 
 
+def attached(pattern: CreasePattern) -> CreasePattern:
+    """A convex quadrilateral with w attached at its corners 0, 1, 2, convex again."""
+    (x, y), (far_x, far_y) = pattern.vertices[1], pattern.vertices[3]
+    w, new = (x + (x - far_x) / 3, y + (y - far_y) / 4), len(pattern.vertices)
+    return CreasePattern([*pattern.vertices, w], [*pattern.triangles, (1, 0, new), (2, 1, new)])
+
+
 def _doubling(script: Script) -> None:
     counts = [count_branches(families.h1_sequence(k, seed)) for k in (1, 2, 3) for seed in (0, 1)]
     factor = script.alter("tripling", 2, 3)
     script.cases(
         "random H1 sequences without collinear folds double at each of three moves",
         (c.distinct == c.real == factor**c.pattern.Vi for c in counts),
+    )
+    seeds = [families.hypar(1), random_square(3, 1), random_square(4, 2)]
+    script.cases(
+        "other seeds with four boundary vertices, no collinear folds: a move doubles the branches",
+        (
+            not families.collinear_folds(larger)
+            and after.distinct == after.real == factor * len(count_branches(seed).branches)
+            for seed in seeds
+            for larger in (attached(seed),)
+            for after in (count_branches(larger),)
+        ),
+    )
+    c, b, a = quadratic(FAN, 5, 4, dict(zip(range(4), (0, 1, -1, 0), strict=True)))
+    flat = quadratic(FAN, 5, 4, dict.fromkeys(range(4), 0))
+    c, b, a = script.alter("the seed unfolded", (c, b, a), flat)
+    script.counterexample(
+        "a seed with five boundary vertices, folded at its reflex corner: no height of w (IV.4)",
+        b * b - 4 * a * c < 0,
+    )
+    script.state(
+        "IV.20",
+        "Section IV, last paragraph",
+        r"\text{``one can generalize the arguments in this section to H1-like triangulations where "
+        r"the seed is \dots\ e.g. a single-vertex origami''}",
+        Ruling.CORRECTED,
+        r"\text{for seeds with four boundary vertices: each move doubles the branches. With five "
+        r"or more there are two attachments if the angle of }T\text{ at }v_2\text{ is less than }"
+        r"\pi\text{, which may belong to one branch, and there may be none if it is larger}",
+        "four boundary vertices: the arguments of the section (IV.7) do not use the seed. Five or "
+        "more: IV.4; the two attachments meet where T is flat at v2",
+        "count_branches",
     )
     script.state(
         "IV.14",

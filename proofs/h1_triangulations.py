@@ -261,9 +261,10 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         "IV.12",
         "Section IV",
         r"\text{``can be decomposed into a sequence of }V_i\text{ butterflies''}",
-        Ruling.AS_PRINTED,
-        note="besides the seed, as in the figure: (1) to (4) and the seed (5) for Vi = 4; 2 Vi + 2 "
-        "triangles in all",
+        Ruling.CORRECTED,
+        r"\text{of }V_i+1\text{ butterflies, the seed included}",
+        note="2 Vi + 2 triangles, two a butterfly. The figure counts so: (1) to (4) and the seed "
+        "(5) for Vi = 4",
     )
     script.state(
         "IV.13",

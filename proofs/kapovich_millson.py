@@ -301,10 +301,12 @@ def _changes(script: Script) -> None:
         "C.19",
         "Appendix C, after Theorem 1",
         r"\text{the signature changes when any of }f,b,w\text{ change}",
-        Ruling.AS_PRINTED,
-        note="each time one angle passes a multiple of pi, by (-1, 1) or (1, -1). Two changes can "
-        "cancel: (f, b, w) and (f - 2, b + 2, w - 1) have the same signature, as the pentagram "
-        "(5, 0, 2) and spokes (1,0), (-5,1), (-1,5), (0,-1), (-5,-2) with (3, 2, 1), both (0, 3)",
+        Ruling.CORRECTED,
+        r"\text{the signature changes each time one angle passes a multiple of }\pi,\text{ by "
+        r"}(-1,1)\text{ or }(1,-1)",
+        note="two such changes can cancel: (f, b, w) and (f - 2, b + 2, w - 1) have the same "
+        "signature, as the pentagram (5, 0, 2) and spokes (1,0), (-5,1), (-1,5), (0,-1), (-5,-2) "
+        "with (3, 2, 1), both (0, 3)",
         code="kapovich_millson",
     )
 

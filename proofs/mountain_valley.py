@@ -29,10 +29,11 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, families
+from exactfold import CreasePattern, count_branches, families
 from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
 from proofs.framework import Proof, Ruling, Script, run
+from proofs.vertex_forms import star
 
 NAME = "mountain_valley"
 TITLE = "Popping both ways with one mountain-valley assignment"
@@ -224,6 +225,25 @@ def _examples(script: Script) -> None:
         "hub (0,0), spokes (1,0), (1,1), (0,1), (-1,1), (-1,0), (0,-1), (1,-2), folds VMVMVVM: "
         "heights (1,3,1,3,1,0,3) pop down, (-9,-9,-6,-1,-9,-6,-1) up. Holds as printed without "
         "collinear folds",
+    )
+    narrow = star((1, 0), (1, 1), (0, 1), (-1, -2))
+    letters = {b.assignment_text for b in count_branches(narrow).branches}
+    odd = script.alter("the last of the three counted as the odd one", "VVVM", "MVVV")
+    script.counterexample(
+        "spokes (1,0), (1,1), (0,1), (-1,-2): no branch is VVVM or MMMV, although the angles from "
+        "the first to the second and from the second to the third are below pi",
+        letters.isdisjoint({odd, odd.translate(str.maketrans("MV", "VM"))}) and len(letters) == 2,
+    )
+    script.state(
+        "IIIC.6",
+        "Section III C, definition of a bird's foot",
+        r"\text{``four \dots\ folds }c_1,c_2,c_3,c_4\text{ in counter-clockwise order \dots\ such "
+        r"that the angles between }c_1,c_2,c_3\text{ are between 0 and }\pi\text{'', with }c_1,c_2,"
+        r"c_3\text{ of one sign and }c_4\text{ of the other}",
+        Ruling.AS_PRINTED,
+        note="all three angles, also that from c_3 to c_1, which holds c_4: the directions of one "
+        "sign lie in no closed half-plane. With two angles only three folds within a right angle "
+        "would do",
     )
     script.state(
         "IIIC.3",

@@ -11,10 +11,12 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, families
+from exactfold import CreasePattern, decompose, families
 from exactfold.exact.linalg import rank
+from exactfold.pattern import PanelPattern
 from exactfold.rigidity import curvature_form, rigidity_matrix
 from exactfold.rigidity.functionals import fold_functional
+from exactfold.verdict import REFUTED
 from proofs.framework import Proof, Ruling, Script, run
 from proofs.length_equations import CROSS, Heights, is_solution
 
@@ -28,6 +30,7 @@ def prove(change: str | None = None) -> Proof:
         NAME, TITLE, ("a triangulated disk; a second-order solution X = U + t^2 u + t h z",), change
     )
     _extension(script)
+    _not_true(script)
     _energy(script)
     _fold_angles(script)
     return script.proof()
@@ -88,6 +91,62 @@ def _extension(script: Script) -> None:
         "with independent rows at t = 0, so the implicit function theorem gives an analytic curve "
         "of true configurations (docs/mathematics.md, 5)",
         code="BranchCount.true_branches",
+    )
+
+
+def _not_true(script: Script) -> None:
+    """A second-order solution of rigid panels without a true motion; the tangent space."""
+    shape, inclined = (0, 2, 3, 8), script.alter("the second zigzag parallel to the first", 1, 0)
+    points = [
+        (Fraction(10 * i + shape[j] + i * inclined * j), Fraction(4 * j))
+        for i in range(4)
+        for j in range(4)
+    ]
+    sides = [(4 * i + j, 4 * i + j + 4) for i in range(3) for j in range(4)]
+    sides += [(4 * i + j, 4 * i + j + 1) for i in range(4) for j in range(3)]
+    found = decompose(PanelPattern(points, sides))
+    verdicts = [mode.extends.verdict for mode in found.modes]
+    script.counterexample(
+        "3 x 3 panels, vertices (10 i + s_j + i j, 4 j) with s = 0, 2, 3, 8: a mode with both "
+        "zigzags solves the equations of second order, and its loop of four vertices does not "
+        "close at order 3",
+        found.second_order == {1: 3, 2: 1}
+        and found.true == {1: 2, 2: 1}
+        and [m.extends.order for m in found.modes if m.extends.verdict is REFUTED] == [3]
+        and len(verdicts) == 5,
+    )
+    script.state(
+        "IIA.16",
+        "Section II A, last paragraph",
+        r"\text{``there are (non-triangulated) origami examples where second-order solutions do "
+        r"not correspond to points lying in the true configuration space''}",
+        Ruling.AS_PRINTED,
+        note="cited in the paper; an exact example is two zigzags of one shape, the second "
+        "sheared, crossed by straight rows",
+        code="decompose",
+    )
+    lengths = script.alter("all lengths independent at the flat state", False, True)
+    patterns = (families.single_vertex(4), families.waterbomb(), families.two_vertex())
+    script.cases(
+        "first-order motions at the flat state, 3 V - rank - 6, are D + Vi, more than D",
+        (
+            3 * len(p.vertices) - (len(p.edges) if lengths else rank(rigidity_matrix(p))) - 6
+            == p.D + p.Vi
+            > p.D
+            for p in patterns
+        ),
+    )
+    script.state(
+        "IIC.14",
+        "Section II C, after Eq. (Dcount)",
+        r"\text{the unfolded configuration is a singular point, ``where the dimension of the "
+        r"tangent space exceeds the dimension at other nearby points''}",
+        Ruling.AS_PRINTED,
+        note="Vi >= 1: by IIA.5 the lengths have rank 2 V - 3 there, so that D + Vi first-order "
+        "motions are left. Nearby the dimension is at most D where the second-order solutions have "
+        "dimension D (convex boundary: IIC.1). Where all of the sheet is a triangulated triangle "
+        "there are no other points nearby",
+        code="BranchSystem",
     )
 
 

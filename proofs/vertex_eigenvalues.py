@@ -65,18 +65,19 @@ def _equal_angles(script: Script) -> None:
         "Appendix C, eigenvalues of the Toeplitz matrix",
         r"\lambda_m=f+2|g|\cos\frac{m\pi}{N-1},\quad m=1,\dots,N-1",
         Ruling.CORRECTED,
-        r"\text{the same for }m=1,\dots,N-2",
-        note="the matrix has N-2 rows; m = N-1 gives f - 2|g|, no eigenvalue (N = 4, L = 1: -2 "
-        "besides 1 and -1). The sign of the cosine is a matter of numbering: with the minus sign "
-        "of Eq. (equalangleeigs), to which 'Thus' leads, m is replaced by N-1-m",
+        r"\lambda_m=f-2|g|\cos\frac{m\pi}{N-1},\quad m=1,\dots,N-2",
+        note="range: the matrix has N-2 rows; m = N-1 is no eigenvalue (N = 4, L = 1: -2 or 2 "
+        "besides 1 and -1). Label: with the plus sign lambda_m is the lambda_{N-1-m} of Eq. "
+        "(equalangleeigs), which does not follow then, nor that lambda_1 is the negative one "
+        "(C.10); the set of eigenvalues is the same",
     )
     script.state(
         "C.9",
         "Appendix C, Eq. (equalangleeigs)",
         r"\lambda_m=2\frac{\csc(2\pi/N)}{L^2}\Big[\cos\frac{2\pi}{N}-\cos\frac{m\pi}{N-1}\Big]",
         Ruling.AS_PRINTED,
-        note="for m = 1, ..., N-2 (C.8). Its sign differs from the printed line before it, whose "
-        "lambda_m is this lambda_{N-1-m}",
+        note="for m = 1, ..., N-2, and from C.8 as corrected: the printed line before it would "
+        "give cos(2 pi/N) + cos(m pi/(N-1))",
     )
     k, j = symbols("k j")  # N = 3 + k, m = 2 + j with k, j >= 0
     N, m = k + 3, 2 + script.alter("m from 1", j, j - 1)

@@ -166,12 +166,15 @@ def _stress_signs(script: Script) -> None:
     script.state(
         "C.3",
         "Appendix C, first paragraph",
-        r"\text{this form ``has the interpretation as the energy if the wheel self stress is "
-        r"applied as a pre-stress''; it places ``the outer edges under tension''}",
-        Ruling.AS_PRINTED,
-        note="``with our sign convention'', which counts compression as positive: the rim stresses "
-        "of Eqs. (constraint), (wheelstress) are -csc a < 0. The energy (1/2) sum_e w_e (h_n - "
-        "h_m)^2, w_e > 0 for tension, is then the form as Appendix C goes on to write it, -2 K_v",
+        r"\text{the form of Eq. (constraint) ``has the interpretation as the energy if the wheel "
+        r"self stress is applied as a pre-stress''; it places ``the outer edges under tension''}",
+        Ruling.CORRECTED,
+        r"\text{the form of Eq. (constraint) is the energy of a pre-stress with the outer edges "
+        r"under compression; its negative, the form that is written next, that of one with the "
+        r"outer edges under tension}",
+        note="the energy of a pre-stress is (1/2) sum_e w_e (h_n - h_m)^2 with w_e > 0 for "
+        "tension. Eq. (constraint) has w = -csc a/(L L') < 0 on the rim; the form of Appendix C, "
+        "-2 K_v, has the opposite stress, to which the sentence applies (C.23 for the spokes)",
         code="wheel_stress",
     )
     script.state(
@@ -181,7 +184,9 @@ def _stress_signs(script: Script) -> None:
         Ruling.CORRECTED,
         r"\text{spoke }n\text{ is under compression iff the link polygon is strictly convex at }n"
         r"\text{, unstressed iff it is straight there, under tension iff it is reflex there}",
-        note="under tension: hub (0,0), spokes (4,0), (1,1), (0,4), (-1,-1), at (1,1)",
+        note="for the pre-stress of C.3 with the outer edges under tension; all signs are opposite "
+        "for the other. Spoke under tension: hub (0,0), spokes (4,0), (1,1), (0,4), (-1,-1), at "
+        "(1,1)",
         code="wheel_stress",
     )
 

@@ -19,6 +19,7 @@ ROOT = Path(__file__).parent.parent.parent
 
 LONG = (
     "all_real",
+    "branch_angles",
     "discussion_counts",
     "generic",
     "inertia",
