@@ -208,7 +208,7 @@ ERRATA = f"""# Errata of the paper
 What an author could act upon: every statement of Chen & Santangelo, "Branches of triangulated
 origami near the unfolded state", that does not hold as printed, with the correction and the script
 that checks it. None of them touches the paper's main observation, which is a theorem: all branches
-are real ([Theorem 2](theorem.md)), and on almost every sheet $`2^{V_i - V_t}`$ of them differ
+are real ([Theorem 2](theorem.md)), and on almost every sheet $`2^{{V_i - V_t}}`$ of them differ
 ([Theorem 11](generic.md)). Written by `python docs/make_statements.py`.
 
 {textwrap.fill(STANDARD, 100)}
