@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
 from typing import Any, Final
 
 import networkx as nx
 import numpy as np
 
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.families import collinear_folds
 from exactfold.studies.lines import Lines, SignArray
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.statistics import interval, interval_text
@@ -60,15 +60,7 @@ def has_straight_folds(pattern: CreasePattern) -> bool:
     >>> has_straight_folds(flat_vertex_square()), has_straight_folds(two_vertex())
     (True, False)
     """
-    sheet, _ = pattern.without_rigid_parts()
-    points, _ = sheet.integer_vertices
-    for v in sheet.interior:
-        x, y = points[v]
-        spokes = [(points[w][0] - x, points[w][1] - y) for w in sheet.star(v)]
-        for (a, b), (c, d) in combinations(spokes, 2):
-            if a * d == b * c and a * c + b * d < 0:
-                return True
-    return False
+    return bool(collinear_folds(pattern.without_rigid_parts()[0]))
 
 
 def clusters(pattern: CreasePattern, signs: SignArray) -> list[list[int]]:

@@ -14,6 +14,7 @@ MODULES = {
     "selffold": "exactfold.studies.selffold",
     "flat": "exactfold.studies.flat",
     "motions": "exactfold.studies.motions",
+    "figures": "exactfold.studies.figures",
 }
 """The module of each study, in the order in which they are listed."""
 

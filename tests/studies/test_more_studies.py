@@ -121,3 +121,22 @@ def test_loops_flip_one_sign_on_single_vertices_and_every_branch_ends():
     assert columns(run, "loops")["followed"] == (2, 2)
     for loop in run.rows[0]["loops"]:
         assert 0 < loop["length"][0] < loop["length"][1]
+
+
+def test_what_the_figures_show():
+    run = run_study("figures")
+    rows = {row["figure"]: row for row in run.rows}
+    assert {row["status"] for row in rows.values()} == {"proved"}
+    ends = {(c["signs"], c["side"]): np.array(c["angles"][-1]) for c in rows[1]["curves"]}
+    for signs, _ in ends:  # mirror images
+        np.testing.assert_allclose(ends[signs, 1], -ends[signs, -1], atol=1e-5)
+    for ray in rows[3]["rays"]:
+        for form in rows[3]["forms"].values():
+            heights = np.array(ray["heights"])
+            assert abs(heights @ np.array(form) @ heights) < 1e-4
+        values = [np.array(row) @ ray["heights"] for row in rows[3]["functionals"].values()]
+        assert [value > 0 for value in values] == [sign == "+" for sign in ray["signs"]]
+    first, second = np.array(rows[4]["signs"])
+    assert (first != second).sum() == 1
+    assert rows[5]["signs"][0] == rows[5]["signs"][1]
+    assert len(run.figures) == 5
