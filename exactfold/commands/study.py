@@ -133,7 +133,7 @@ class Wanted:
             raise UsageError("the cluster has its workers: --workers goes with --dask local")
         self._check_files()
         numbers = study.chosen(self.sizes, self.number, extend=self.extend)
-        if not any(numbers.values()):
+        if not study.number(self.seed, numbers):
             raise UsageError("a study without rows says nothing")
         with Bar("starting") as bar, self._resumable(), self._pool() as pool:
             run = run_study(

@@ -21,7 +21,7 @@ def studies_report(studies: Mapping[str, Study]) -> Table:
     table.add_column("rows", justify="right")
     table.add_column("", overflow="fold")
     for name, study in studies.items():
-        table.add_row(name, str(sum(study.numbers.values())), study.about)
+        table.add_row(name, str(study.number(0, study.numbers)), study.about)
     return table
 
 

@@ -285,8 +285,8 @@ def figures(rows: Iterable[Row]) -> list[StudyFigure]:
         1: "Angles of three folds of the two-vertex pattern along the true motions of its four "
         "branches, until a fold has 45 degrees.",
         2: "To second order, in the heights of three vertices; the other three are held.",
-        3: "The branches of the two-vertex pattern to second order. Two axes are the functionals of "
-        "the vertex signs, whose zeros are the planes; the third is the height of a corner.",
+        3: "The branches of the two-vertex pattern to second order. On two axes are the "
+        "functionals of the vertex signs, which vanish on the planes; on the third the height of a corner.",
         4: _LEGEND,
         5: _LEGEND,
     }

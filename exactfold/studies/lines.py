@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import islice
 
 import numpy as np
 import numpy.typing as npt
@@ -43,6 +45,7 @@ class Lines:
     within `errors` of the true ones in the Euclidean norm. Interior vertices and folds in the order
     of the pattern. If `status` is PROVED these are all branches, each once, and
     `with_multiplicity` is the number of solutions with multiplicity; otherwise there are no rows.
+    `branch(row)` is the branch of a row, where branches were not asked for one by one.
     """
 
     pattern: CreasePattern
@@ -52,6 +55,7 @@ class Lines:
     directions: FloatArray
     errors: FloatArray
     with_multiplicity: int | None
+    branch: Callable[[int], Branch] | None = field(compare=False)
 
     @classmethod
     def of(cls, pattern: CreasePattern) -> Lines:
@@ -71,6 +75,15 @@ class Lines:
         except NotCountedError:
             return _one_by_one(count_branches(pattern))
         return _by_blocks(conveyor) or _one_by_one(count_branches(pattern))
+
+    def sharper(self, rows: Sequence[int]) -> tuple[FloatArray, FloatArray]:
+        """Directions of some branches, up to sign, with errors of the last bits, and their bounds.
+
+        Those of `directions` where there are none better.
+        """
+        if self.branch is None:
+            return self.directions[rows], self.errors[rows]
+        return _measured(self.pattern, [self.branch(row) for row in rows])
 
     @property
     def distinct(self) -> int | None:
@@ -117,7 +130,12 @@ def _by_blocks(conveyor: Conveyor) -> Lines | None:
         letters[rows, folds] = found
         signs[rows, vertices] = sign_vectors(index * count, count, conveyor.size)
     directions, errors = _directions(problem, points, radii)
-    return Lines(pattern, PROVED, signs, letters, directions, errors, 1 << pattern.Vi)
+
+    def branch(row: int) -> Branch:
+        block = conveyor.prove(row // count)
+        return next(islice(conveyor.branches(block), row % count, None))
+
+    return Lines(pattern, PROVED, signs, letters, directions, errors, 1 << pattern.Vi, branch)
 
 
 def _directions(
@@ -169,20 +187,8 @@ def _one_by_one(result: BranchCount) -> Lines:
     """The branches of a count, whose roots may be multiple."""
     pattern = result.pattern
     proved = result.status is PROVED and bool(result.branches)
-    branches = [_sharp(branch) for branch in result.branches] if proved else []
-    bends = np.empty((len(branches), len(pattern.folds)))
-    errors = np.zeros(len(branches))
-    for k, branch in enumerate(branches):
-        angles = branch.fold_angles
-        bends[k] = [float(angles.bends[fold]) for fold in pattern.folds]
-        for fold, bend in zip(pattern.folds, bends[k], strict=True):
-            low, high = angles.densities[fold]
-            middle = (low + high) / 2
-            reach = float((high - low) / 2) * abs(float(bend) / float(middle)) if middle else 0.0
-            if not middle and high > low:  # no bound of the bend follows from its middle
-                reach = float("inf")
-            errors[k] += reach * _UP + 4 * _U * abs(bend)
-    directions, spread = _units(bends, errors)
+    branches = list(result.branches) if proved else []
+    directions, errors = _measured(pattern, branches)
     return Lines(
         pattern,
         result.status,
@@ -193,10 +199,25 @@ def _one_by_one(result: BranchCount) -> Lines:
             [[_VALUES[b.assignment[f]] for f in pattern.folds] for b in branches], dtype=np.int8
         ).reshape(len(branches), len(pattern.folds)),
         directions,
-        spread,
-        result.with_multiplicity,
+        errors,
+        result.with_multiplicity if result.status is PROVED else None,
+        None,
     )
 
 
-def _sharp(branch: Branch) -> Branch:
-    return branch.sharpened(_BITS)
+def _measured(pattern: CreasePattern, branches: Sequence[Branch]) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors of the fold angles of branches, from sharp bounds, and error bounds."""
+    bends = np.empty((len(branches), len(pattern.folds)))
+    errors = np.zeros(len(branches))
+    for k, branch in enumerate(branches):
+        angles = branch.sharpened(_BITS).fold_angles
+        bends[k] = [float(angles.bends[fold]) for fold in pattern.folds]
+        for fold, bend in zip(pattern.folds, bends[k].tolist(), strict=True):
+            low, high = angles.densities[fold]
+            middle = (low + high) / 2
+            if middle:
+                errors[k] += float((high - low) / 2) * abs(bend / float(middle)) * _UP
+            elif high > low:  # no bound of the bend follows from its middle
+                errors[k] = np.inf
+            errors[k] += 4 * _U * abs(bend)
+    return _units(bends, errors)

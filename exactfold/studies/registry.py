@@ -9,6 +9,8 @@ from exactfold.studies.study import Study
 
 MODULES = {
     "table1": "exactfold.studies.table1",
+    "h1": "exactfold.studies.h1",
+    "angles": "exactfold.studies.angles",
     "mv": "exactfold.studies.mv",
     "perturbed": "exactfold.studies.perturbed",
     "selffold": "exactfold.studies.selffold",

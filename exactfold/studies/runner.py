@@ -43,7 +43,7 @@ class StudyRun:
     @property
     def total(self) -> int:
         """How many rows there are."""
-        return sum(self.numbers.values())
+        return self.study.number(self.seed, self.numbers)
 
     @property
     def undecided(self) -> int:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 LEVEL = 0.95
 """Of intervals."""
 
@@ -40,21 +43,63 @@ def same_probability(first: tuple[int, int], second: tuple[int, int]) -> float:
     return float(fisher_exact(table).pvalue)
 
 
+@dataclass(frozen=True)
+class Decay:
+    """Shares ratio^k fitted to samples by k, and the p-value of a likelihood-ratio test."""
+
+    ratio: float
+    p: float
+
+
+def decay(samples: Mapping[int, tuple[int, int]]) -> Decay | None:
+    """The most likely ratio where the share of sample k is ratio^k, for k >= 1.
+
+    `p` is the probability of samples that fit worse, by the chi-squared distribution of the
+    likelihood ratio with one degree of freedom less than there are samples. None for fewer than
+    two, or where a share is 0 or 1 throughout.
+
+    >>> fit = decay({1: (500, 1000), 2: (260, 1000), 3: (120, 1000)})
+    >>> round(fit.ratio, 3), round(fit.p, 2)
+    (0.501, 0.69)
+    """
+    from scipy.optimize import minimize_scalar
+    from scipy.special import xlogy
+    from scipy.stats import chi2
+
+    used = {k: sample for k, sample in samples.items() if k >= 1}
+    total = sum(found for found, _ in used.values())
+    if len(used) < 2 or not 0 < total < sum(number for _, number in used.values()):
+        return None
+
+    def surprise(share: float, found: int, number: int) -> float:
+        return -float(xlogy(found, share) + xlogy(number - found, 1 - share))
+
+    def misfit(ratio: float) -> float:
+        return sum(surprise(ratio**k, *sample) for k, sample in used.items())
+
+    best = minimize_scalar(
+        misfit, bounds=(1e-9, 1 - 1e-9), method="bounded", options={"xatol": 1e-9}
+    )
+    least = sum(surprise(found / number, found, number) for found, number in used.values())
+    twice = max(0.0, 2 * (float(best.fun) - least))
+    return Decay(float(best.x), float(chi2.sf(twice, len(used) - 1)))
+
+
 def percent(part: float) -> str:
-    """A share in per cent, with two digits that count.
+    """A share in per cent, with two digits that count, without a sign.
 
     >>> percent(0.0271), percent(0.885), percent(0.0), percent(0.00031), percent(1.0)
-    ('2.7 %', '88 %', '0 %', '0.031 %', '100 %')
+    ('2.7', '88', '0', '0.031', '100')
     """
     value = 100 * part
-    return f"{value:.0f} %" if value >= 9.95 or not value else f"{value:.2g} %"
+    return f"{value:.0f}" if value >= 9.95 or not value else f"{value:.2g}"
 
 
 def interval_text(found: int, number: int) -> str:
     """The interval of a share in per cent.
 
     >>> interval_text(17, 1000)
-    '0.99 % to 2.7 %'
+    '0.99 to 2.7'
     """
     low, high = interval(found, number)
     return f"{percent(low)} to {percent(high)}"

@@ -111,6 +111,10 @@ class Study:
         """
         return digest([self.name, self.version, recipe])[:16]
 
+    def number(self, seed: int, numbers: Mapping[int, int]) -> int:
+        """How many rows a run has."""
+        return sum(1 for _ in self.recipes(seed, numbers))
+
     def chosen(
         self,
         sizes: Iterable[int] | None = None,

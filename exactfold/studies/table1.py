@@ -217,7 +217,7 @@ def _comparison(tallies: dict[int, _Tally]) -> StudyTable:
     return StudyTable(
         "comparison",
         "The paper and this study: shares of squares, with exact 95 % intervals",
-        ("Vi", "", "paper", "interval", "here", "interval", "p", ""),
+        ("Vi", "", "paper", "interval, %", "here", "interval, %", "p", ""),
         tuple(lines),
         (
             "Intervals of Clopper and Pearson; p is that of Fisher's exact test, and samples "

@@ -1,0 +1,327 @@
+"""H1 triangulations: how many random squares are H1, and how many types of triangulations.
+
+A row is one random square, or all types of triangulations of a quadrilateral with so many interior
+vertices. All of it is combinatorial and exact; what is random is the sample.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any, Final
+
+from exactfold.studies.squares import square_of, square_recipes
+from exactfold.studies.statistics import (
+    agreement,
+    decay,
+    interval,
+    interval_text,
+    same_probability,
+)
+from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.triangulations import (
+    has_chord,
+    has_low_vertex,
+    low_corners,
+    reverse_moves,
+    triangulation,
+    types,
+)
+from exactfold.verdict import PROVED
+
+PAPER_NUMBER: Final = 20_000
+PAPER_IRREDUCIBLE: Final = {3: 0, 8: 17_700}
+"""Squares without a corner of degree 3: 0 % at Vi = 3, 88.5 % at Vi = 8 (Section IV)."""
+PAPER_H1: Final = {3: 20_000, 8: 154}
+"""H1 squares: all at Vi = 3, a fraction of 0.0077 at Vi = 8 (Section IV)."""
+
+LARGEST: Final = 7
+"""Interior vertices up to which all types are listed."""
+
+PLANTRI: Final = {
+    1: (2, 1),
+    2: (5, 2),
+    3: (18, 8),
+    4: (88, 38),
+    5: (489, 219),
+    6: (3071, 1404),
+    7: (20667, 9714),
+}
+"""Types with and without chords as plantri 5.8 counts them: `plantri -P4 -c2 -m2`, `plantri -P4`.
+
+G. Brinkmann and B. D. McKay, Fast generation of planar graphs, MATCH 58 (2007) 323-357.
+"""
+
+_SQUARE, _TYPES = "random square", "all types"
+
+
+def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
+    """All types for each size up to 7, and random squares.
+
+    >>> [recipe["kind"] for recipe in recipes(0, {3: 2})]
+    ['all types', 'random square', 'random square']
+    """
+    squares = square_recipes(seed, numbers)
+    kinds: Iterator[Recipe] = (
+        {"kind": _TYPES, "interior": size} for size in numbers if size <= LARGEST
+    )
+
+    def both() -> Iterator[Recipe]:
+        yield from kinds
+        yield from ({"kind": _SQUARE, **square} for square in squares)
+
+    return both()
+
+
+def row(recipe: Recipe) -> dict[str, Any]:
+    """What holds of one random square, or how many types there are.
+
+    `low_corners`: boundary vertices of degree 3. `moves`: the most reverse H1 moves in a row. Of
+    types: how many there are, and without chords; and of those without an interior vertex of degree
+    3 (`kept`) how many are H1, without chords and with them.
+    """
+    size = int(recipe["interior"])
+    if recipe["kind"] == _SQUARE:
+        triangles = triangulation(square_of(recipe).triangles)
+        moves = reverse_moves(triangles)
+        return {
+            "status": str(PROVED),
+            "low_corners": low_corners(triangles),
+            "moves": moves,
+            "h1": moves == size,
+        }
+    every = types(size)
+    kept = [triangles for triangles in every if not has_low_vertex(triangles)]
+    plain = [triangles for triangles in kept if not has_chord(triangles)]
+    return {
+        "status": str(PROVED),
+        "types": len(every),
+        "types_without_chords": sum(not has_chord(triangles) for triangles in every),
+        "kept": len(plain),
+        "kept_h1": sum(reverse_moves(triangles) == size for triangles in plain),
+        "kept_with_chords": len(kept),
+        "kept_with_chords_h1": sum(reverse_moves(triangles) == size for triangles in kept),
+    }
+
+
+@dataclass
+class _Tally:
+    """The random squares of one size."""
+
+    number: int = 0
+    irreducible: int = 0
+    h1: int = 0
+    moves: Counter[int] = field(default_factory=Counter)
+
+    def add(self, row: Row) -> None:
+        """One more square."""
+        self.number += 1
+        self.irreducible += row["low_corners"] == 0
+        self.h1 += row["h1"]
+        self.moves[row["moves"]] += 1
+
+    def at_least(self, moves: int) -> int:
+        """Squares with so many reverse moves."""
+        return sum(count for k, count in self.moves.items() if k >= moves)
+
+
+def _sorted(rows: Iterable[Row]) -> tuple[dict[int, _Tally], list[Row]]:
+    tallies: dict[int, _Tally] = defaultdict(_Tally)
+    every = []
+    for found in rows:
+        if found["kind"] == _SQUARE:
+            tallies[found["interior"]].add(found)
+        else:
+            every.append(found)
+    return dict(sorted(tallies.items())), every
+
+
+def tables(rows: Iterable[Row]) -> list[StudyTable]:
+    """Shares beside the paper's, how they fall off, and all types."""
+    tallies, every = _sorted(rows)
+    found = [_types(every)] if every else []
+    return [_shares(tallies), _moves(tallies), _decay(tallies), *found] if tallies else found
+
+
+def _shares(tallies: dict[int, _Tally]) -> StudyTable:
+    lines: list[tuple[Cell, ...]] = []
+    for name, key, paper in (
+        ("no corner of degree 3", "irreducible", PAPER_IRREDUCIBLE),
+        ("H1", "h1", PAPER_H1),
+    ):
+        for size, tally in tallies.items():
+            count = getattr(tally, key)
+            share = f"{100 * count / tally.number:.2f}"
+            line: tuple[Cell, ...] = (name, size, f"{count}/{tally.number}", share)
+            line += (interval_text(count, tally.number),)
+            if size in paper:
+                p = same_probability((paper[size], PAPER_NUMBER), (count, tally.number))
+                line += (f"{100 * paper[size] / PAPER_NUMBER:g}", f"{p:.2g}", agreement(p))
+            else:
+                line += (None, None, None)
+            lines.append(line)
+    return StudyTable(
+        "shares",
+        "Random squares that can be reduced, and those that are H1",
+        ("", "Vi", "here", "%", "interval, %", "paper, %", "p", ""),
+        tuple(lines),
+        (
+            "Exact 95 % intervals (Clopper and Pearson). The paper gives figures for Vi = 3 and 8 "
+            "only, of 20,000 triangulations each; p is that of Fisher's exact test, and samples "
+            "differ if it is below 0.01.",
+        ),
+    )
+
+
+def _moves(tallies: dict[int, _Tally]) -> StudyTable:
+    most = max(max(t.moves) for t in tallies.values())
+    return StudyTable(
+        "moves",
+        "Random squares by the number of reverse H1 moves that can be made in a row",
+        ("Vi", *(f">= {k}" for k in range(most + 1))),
+        tuple(
+            (size, *(t.at_least(k) if k <= size else None for k in range(most + 1)))
+            for size, t in tallies.items()
+        ),
+        ("The last number of each line is that of the H1 squares.",),
+    )
+
+
+def _decay(tallies: dict[int, _Tally]) -> StudyTable:
+    lines: list[tuple[Cell, ...]] = []
+    sizes = [size for size in tallies if size >= 3]
+    for size, after in pairwise(sizes):
+        first, second = tallies[size], tallies[after]
+        if after == size + 1 and first.h1:
+            ratio = (second.h1 / second.number) / (first.h1 / first.number)
+            lines.append((f"{size} to {after}", f"{ratio:.3f}"))
+    notes = ["What the share of H1 squares is multiplied by, with one vertex more."]
+    fit = decay({size - 3: (tallies[size].h1, tallies[size].number) for size in sizes})
+    if fit is not None:
+        said = "one factor does not fit" if fit.p < 0.01 else "one factor fits"
+        notes.append(
+            "Exactly exponential, with the share 1 at Vi = 3: the factor would be "
+            f"{fit.ratio:.3f}; a likelihood-ratio test gives p = {fit.p:.2g}: {said}. The "
+            "paper says that the share decreases roughly exponentially."
+        )
+    return StudyTable(
+        "decay",
+        "How the share of H1 squares falls off",
+        ("Vi", "factor"),
+        tuple(lines),
+        tuple(notes),
+    )
+
+
+def _types(every: list[Row]) -> StudyTable:
+    lines = []
+    for found in every:
+        size = found["interior"]
+        counts = (found["types"], found["types_without_chords"])
+        same = {None: None, True: "yes", False: "no"}[
+            counts == PLANTRI[size] if size in PLANTRI else None
+        ]
+        kept = ("kept", "kept_h1", "kept_with_chords", "kept_with_chords_h1")
+        lines.append((size, *counts, same, *(found[key] for key in kept)))
+    return StudyTable(
+        "types",
+        "All types of triangulations of a quadrilateral",
+        (
+            "Vi",
+            "types",
+            "no chord",
+            "plantri",
+            "kept, no chord",
+            "H1",
+            "kept, with chords",
+            "H1",
+        ),
+        tuple(lines),
+        (
+            "Up to renumbering and reflection. plantri: whether plantri 5.8 counts the same. Kept "
+            "are those without an interior vertex of degree 3, as in the paper, which says that "
+            "those with up to three interior vertices are H1.",
+        ),
+    )
+
+
+def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
+    """The shares against the number of vertices, on a logarithmic scale."""
+    tallies, _ = _sorted(rows)
+    if not tallies:
+        return []
+
+    def shares(axes: Any) -> None:
+        for k, (label, key, paper) in enumerate(
+            (
+                ("no corner of degree 3", "irreducible", PAPER_IRREDUCIBLE),
+                ("H1", "h1", PAPER_H1),
+            )
+        ):
+            counts = {size: getattr(t, key) for size, t in tallies.items()}
+            points = [
+                (size, count / tallies[size].number) for size, count in counts.items() if count
+            ]
+            if not points:
+                continue
+            ends = [interval(counts[size], tallies[size].number) for size, _ in points]
+            below = [share - low for (_, share), (low, _) in zip(points, ends, strict=True)]
+            above = [high - share for (_, share), (_, high) in zip(points, ends, strict=True)]
+            x, y = zip(*points, strict=True)
+            axes.errorbar(x, y, [below, above], fmt="o-", color=f"C{k}", label=label)
+            theirs = [(n, c / PAPER_NUMBER) for n, c in paper.items() if c and n in tallies]
+            if theirs:
+                axes.plot(
+                    *zip(*theirs, strict=True),
+                    "s",
+                    markersize=8,
+                    markerfacecolor="none",
+                    color="black",
+                    label="paper" if key == "h1" else None,
+                )
+        axes.set_yscale("log")
+        axes.set_xlabel("interior vertices $V_i$")
+        axes.set_ylabel("share of squares")
+        axes.set_xticks(sorted(tallies))
+        axes.legend(loc="lower left")
+
+    def moves(axes: Any) -> None:
+        for size, tally in tallies.items():
+            counts = [(k, tally.at_least(k) / tally.number) for k in range(size + 1)]
+            counts = [(k, share) for k, share in counts if share]
+            axes.plot(*zip(*counts, strict=True), "o-", label=f"$V_i = {size}$", **of_size(size))
+        axes.set_yscale("log")
+        axes.set_xlabel("reverse H1 moves, at least")
+        axes.set_ylabel("share of squares")
+        axes.legend()
+
+    return [
+        StudyFigure(
+            "shares",
+            "Squares that are H1, and squares without a corner of degree 3",
+            "Random squares, with exact 95 % intervals, and the figures of the paper.",
+            shares,
+        ),
+        StudyFigure(
+            "moves",
+            "Squares by the number of reverse H1 moves in a row",
+            "The share of squares with which so many moves can be made; the last point of each "
+            "line, at as many moves as interior vertices, is the share of H1 squares.",
+            moves,
+        ),
+    ]
+
+
+STUDY: Final = Study(
+    "h1",
+    "Section IV: H1 triangulations among random squares, and among all types",
+    1,
+    {1: 0, 2: 0} | dict.fromkeys(range(3, 9), PAPER_NUMBER),
+    {9: PAPER_NUMBER, 10: PAPER_NUMBER},
+    recipes,
+    row,
+    tables,
+    figures,
+)
