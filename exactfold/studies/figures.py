@@ -286,7 +286,8 @@ def figures(rows: Iterable[Row]) -> list[StudyFigure]:
         "branches, until a fold has 45 degrees.",
         2: "To second order, in the heights of three vertices; the other three are held.",
         3: "The branches of the two-vertex pattern to second order. On two axes are the "
-        "functionals of the vertex signs, which vanish on the planes; on the third the height of a corner.",
+        "functionals of the vertex signs, which vanish on the planes; on the third is the height "
+        "of a corner.",
         4: _LEGEND,
         5: _LEGEND,
     }
