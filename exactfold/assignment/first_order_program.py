@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from functools import cached_property
+from heapq import heapify, heappop, heappush
+from math import log2
 
 import numpy as np
 from flint import fmpq
@@ -14,12 +16,15 @@ from scipy.optimize import linprog
 from exactfold.arrays import FloatArray
 from exactfold.assignment.panel_refutation import PanelRefutation
 from exactfold.assignment.refutation import Letters
-from exactfold.modes.kernel import Entry, entry, increase, number
+from exactfold.exact.surds import Surd
+from exactfold.modes.kernel import Entry, Key, entry, increase, number
 from exactfold.modes.stars import Star
 from exactfold.pattern.panel_pattern import Edge, Point
 
 _TIGHT = 1e-7
 _PLACES = 40
+_SHORT = 1e-6
+_MOST_WORK = 2_000_000
 SIDES = {"V": 1, "M": -1}
 
 
@@ -56,6 +61,60 @@ class FirstOrderProgram:
                     columns.append(self._place[edge])
         shape = (2 * len(self.stars), len(self.folds))
         return sparse.csr_matrix((values, (rows, columns)), shape=shape)
+
+    def going_together(self) -> tuple[dict[Edge, float], list[Edge]]:
+        """A motion in which no fold goes against its letter and as many as may be go their way,
+        and those that do not.
+
+        Sums of such motions are such motions, so that it is a linear program: the sum over the
+        folds of the amount by which they go their way, at most 1 each, is the largest possible.
+        """
+        count, many = len(self.folds), len(self.lettered)
+        signs = [-SIDES[self.letters[edge]] for edge in self.lettered]
+        at = [self._place[edge] for edge in self.lettered]
+        rows = sparse.csr_matrix((signs, (range(many), at)), shape=(many, count))
+        nothing = sparse.csr_matrix((2 * len(self.stars), many))
+        found = linprog(
+            np.concatenate([np.zeros(count), -np.ones(many)]),
+            A_ub=sparse.hstack([rows, sparse.identity(many)], format="csr"),
+            b_ub=np.zeros(many),
+            A_eq=sparse.hstack([self.matrix, nothing], format="csr"),
+            b_eq=np.zeros(2 * len(self.stars)),
+            bounds=[(None, None)] * count + [(0, 1)] * many,
+            method="highs",
+        )
+        if found.status != 0:
+            return dict.fromkeys(self.folds, 0.0), list(self.lettered)
+        rest = [edge for edge, x in zip(self.lettered, found.x[count:], strict=True) if x < 0.5]
+        return dict(zip(self.folds, map(float, found.x[:count]), strict=True)), rest
+
+    def holding_flat(self, rest: Iterable[Edge]) -> dict[int, Point] | None:
+        """Vectors whose sums are against the letters of these folds, and 0 at all others.
+
+        As many as may be of the sums are not 0; exact where they must be 0. None if none are found.
+        """
+        strict = set(rest)
+        sums, size = self.matrix.T.tocsr(), 2 * len(self.stars)
+        at = [self._place[f] for f in self.folds if f in strict]
+        others = [self._place[f] for f in self.folds if f not in strict]
+        signs = sparse.diags([float(SIDES[self.letters[f]]) for f in self.folds if f in strict])
+        turned, many = signs @ sums[at], len(at)
+        equal = sparse.hstack(
+            [sums[others], -sums[others], sparse.csr_matrix((len(others), many))], format="csr"
+        )
+        found = linprog(
+            np.concatenate([np.full(2 * size, _SHORT), -np.ones(many)]),
+            A_ub=sparse.hstack([turned, -turned, sparse.identity(many)], format="csr"),
+            b_ub=np.zeros(many),
+            A_eq=equal if others else None,
+            b_eq=np.zeros(len(others)) if others else None,
+            bounds=[(0, None)] * (2 * size) + [(0, 1)] * many,
+            method="highs",
+        )
+        if found.status != 0:
+            return None
+        y = found.x[:size] - found.x[size : 2 * size]
+        return self._exact(y, sums @ y) if np.abs(y).max() > 0 else None
 
     def motion(self, wanted: Iterable[Edge] | None = None) -> dict[Edge, float] | None:
         """A motion in which the wanted folds, or all with letters, go their way by as much as may
@@ -142,14 +201,9 @@ class FirstOrderProgram:
                     if direction[axis]:
                         row[2 * self._row[v] + axis] = entry(direction[axis])
         columns = sorted({2 * self._row[v] + axis for v in active for axis in (0, 1)})
-        solved = eliminated(rows.values())
-        values: dict[int, Entry] = {k: _near(y[k] / largest) for k in columns if k not in solved}
-        for k, row in solved.items():
-            total: Entry = fmpq(0)
-            for j, x in row.items():
-                if values[j]:
-                    total = total + x * values[j]
-            values[k] = total
+        values = solved(rows.values(), {k: float(y[k]) / largest for k in columns})
+        if values is None:
+            return None
         points: dict[int, Point] = {}
         for v in sorted(active):
             a, b = (number(values[2 * self._row[v] + axis]) for axis in (0, 1))
@@ -158,33 +212,61 @@ class FirstOrderProgram:
         return points or None
 
 
-def eliminated(rows: Iterable[Mapping[int, Entry]]) -> dict[int, dict[int, Entry]]:
-    """Homogeneous linear equations solved: some unknowns as combinations of all others.
+def solved(
+    rows: Iterable[Mapping[Key, Entry]], near: Mapping[Key, float]
+) -> dict[Key, Entry] | None:
+    """An exact solution of homogeneous linear equations near one in floating point.
 
-    >>> eliminated([{0: fmpq(1), 1: fmpq(2)}, {0: fmpq(1), 1: fmpq(2)}])
-    {0: {1: -2}}
+    Unknowns that are not solved for are rounded to multiples of 2^-40 of those given. Each equation
+    is solved for the unknown with the largest coefficient, nearly. None if it takes too long.
+
+    >>> solved([{0: fmpq(1), 1: fmpq(2)}, {0: fmpq(1), 1: fmpq(2)}], {0: 0.5, 1: 0.0})
+    {0: 1/2, 1: -1/4}
     """
-    solved: dict[int, dict[int, Entry]] = {}
+    place: dict[Key, int] = {}
+    pivots: list[tuple[Key, dict[Key, Entry]]] = []
+    work = 0
     for given in rows:
-        row: dict[int, Entry] = {}
-        for k, x in given.items():
-            if k in solved:
-                for j, c in solved[k].items():
-                    increase(row, j, x * c)
-            else:
-                increase(row, k, x)
-        if not row:
-            continue
-        pivot = min(row)
-        scale = row.pop(pivot)
-        found: dict[int, Entry] = {k: -x / scale for k, x in row.items()}
-        for other in solved.values():
-            if pivot in other:
-                x = other.pop(pivot)
-                for j, c in found.items():
-                    increase(other, j, x * c)
-        solved[pivot] = found
-    return solved
+        row: dict[Key, Entry] = {k: x for k, x in given.items() if x}
+        waiting = [place[k] for k in row if k in place]
+        heapify(waiting)
+        while waiting:
+            pivot, weights = pivots[heappop(waiting)]
+            weight = row.pop(pivot, None)
+            if weight is None:
+                continue
+            work += len(weights) * (1 + _bits(weight) // 64)
+            if work > _MOST_WORK:
+                return None
+            for k, x in weights.items():
+                if k in place and k not in row:
+                    heappush(waiting, place[k])
+                increase(row, k, weight * x)
+        if row:
+            pivot = min(row, key=lambda k: -_size(row[k]))
+            scale = row.pop(pivot)
+            place[pivot] = len(pivots)
+            pivots.append((pivot, {k: -x / scale for k, x in row.items()}))
+    values: dict[Key, Entry] = {k: _near(x) for k, x in near.items() if k not in place}
+    for pivot, weights in reversed(pivots):
+        total: Entry = fmpq(0)
+        for k, x in weights.items():
+            if values[k]:
+                total = total + x * values[k]
+        values[pivot] = total
+    return {k: values[k] for k in near}
+
+
+def _size(value: Entry) -> float:
+    """The logarithm of the size of a number, nearly."""
+    if isinstance(value, Surd):
+        return log2(abs(float(value)))
+    return int(value.p).bit_length() - int(value.q).bit_length()
+
+
+def _bits(value: Entry) -> int:
+    parts = value.parts if isinstance(value, Surd) else (value,)
+    return sum(int(x.p).bit_length() + int(x.q).bit_length() for x in parts)
 
 
 def _near(value: float) -> fmpq:

@@ -48,6 +48,12 @@ def starting_certificate(found: PanelMatch) -> Document:
             }
     else:
         evidence, truly = _refuted(found, moving)
+    first = found.first_order
+    if first is not None:
+        moved = {"together": _pairs(first.together), "never": _pairs(first.never)}
+    else:
+        moved = {"together": [], "never": []}
+    evidence |= _first_order(found)
     return {
         "format": PANEL_LETTERS,
         "version": PANEL_LETTERS_VERSION,
@@ -56,6 +62,7 @@ def starting_certificate(found: PanelMatch) -> Document:
             "letters": "".join(found.letters[fold] for fold in found.pattern.folds),
             "starts": str(found.starts),
             "truly": str(truly),
+            **moved,
         },
         "evidence": evidence,
     }
@@ -144,6 +151,27 @@ def _tree(cases: Steps, cells: list[list[Any]]) -> list[list[Any]]:
         else:
             tree.append([kind, list(at) if kind == "loop" else at])
     return tree
+
+
+# --- to first order ------------------------------------------------------------------------------
+
+
+def _first_order(found: PanelMatch) -> Document:
+    """The vectors, one step after the other, and the motion of `found.first_order`."""
+    if found.first_order is None:
+        return {"flat": [], "densities": []}
+    field, scale = found.pattern.field, _scale(found.pattern)
+    steps = [
+        [[v, [number_document(x * scale, field) for x in y]] for v, y in sorted(step.items())]
+        for step in found.first_order.steps
+    ]
+    motion = sorted(found.first_order.motion.items())
+    densities = [[i, j, number_document(x, field)] for (i, j), x in motion]
+    return {"flat": steps, "densities": densities}
+
+
+def _pairs(folds: Iterable[Edge]) -> list[list[int]]:
+    return [[i, j] for i, j in folds]
 
 
 # --- motions -------------------------------------------------------------------------------------

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from exactfold.assignment.asked import by_fold
 from exactfold.assignment.panel_parts import PartAnswer, answered
 from exactfold.assignment.panel_refutation import PanelRefutation, held
 from exactfold.assignment.refutation import Letters
+from exactfold.assignment.together import Together, going_together
 from exactfold.count.ways import Sheet, open_sheet
 from exactfold.modes.decomposition import groups_of
 from exactfold.modes.stars import Star, stars
@@ -36,7 +37,9 @@ class PanelMatch:
     part), empty if there is none; `ways` the number of different sets of signs that motions with
     these letters have, None if it is not known. `refutations` are vectors that refute letters by
     themselves (`PanelRefutation.holds`). `vertices` are those named in a reason. `parts` are the
-    answers for the parts of the sheet that move apart from each other.
+    answers for the parts of the sheet that move apart from each other. `first_order` says which
+    folds can go their way together to first order, and which never; None if the sheet starts to
+    fold, or is too large.
     """
 
     pattern: PanelPattern
@@ -49,6 +52,7 @@ class PanelMatch:
     refutations: tuple[PanelRefutation, ...]
     vertices: tuple[int, ...]
     parts: tuple[PartAnswer, ...]
+    first_order: Together | None = None
     seconds: float = field(default=0.0, compare=False)
 
     @property
@@ -81,6 +85,7 @@ class PanelMatch:
             "assignment": {names[e]: letter for e, letter in self.assignment.items()},
             "densities": {names[e]: x for e, x in self.densities.items()},
         }
+        first = self.first_order
         return {
             **headed("starting"),
             "pattern": described_panels(self.pattern, name),
@@ -91,6 +96,8 @@ class PanelMatch:
             "matches": [match] if self.starts is PROVED else [],
             "ways": self.ways,
             "reasons": list(self.reasons),
+            "together": None if first is None else [names[e] for e in first.together],
+            "never": None if first is None else [names[e] for e in first.never],
             "vertices": list(self.vertices),
             "seconds": round(self.seconds, 3),
         }
@@ -142,7 +149,23 @@ def match_panels(
         if progress is not None:
             progress("parts of the sheet", number, len(groups))
         parts.append(answered(sheet, {v: moving[v] for v in group}, asked))
-    return _result(sheet, asked, dead, free, parts, time.perf_counter() - start)
+    found = _result(sheet, asked, dead, free, parts)
+    if found.starts is not PROVED:
+        if progress is not None:
+            progress("first order", 0, 1)
+        found = replace(found, first_order=_first_order(moving, asked, dead, free))
+    return replace(found, seconds=time.perf_counter() - start)
+
+
+def _first_order(
+    moving: Mapping[int, Star], asked: Letters, dead: Iterable[Edge], free: Iterable[Edge]
+) -> Together | None:
+    """With the folds that the flat closure holds flat, and those from border to border."""
+    found = going_together(moving, asked)
+    if found is None:
+        return None
+    together, never = sorted({*found.together, *free}), sorted({*found.never, *dead})
+    return replace(found, together=tuple(together), never=tuple(never))
 
 
 def flat_with_letters(
@@ -160,7 +183,6 @@ def _result(
     dead: list[Edge],
     free: dict[Edge, float],
     parts: list[PartAnswer],
-    seconds: float,
 ) -> PanelMatch:
     if dead:
         (i, j), more = dead[0], len(dead) - 1
@@ -169,7 +191,7 @@ def _result(
             f"fold {i}-{j} has a letter and stays flat in every motion: at one of its ends the "
             f"folds leave a sector of 180 degrees or more, or there are fewer than four{others}"
         )
-        return PanelMatch(sheet, letters, REFUTED, REFUTED, (reason,), {}, 0, (), (), (), seconds)
+        return PanelMatch(sheet, letters, REFUTED, REFUTED, (reason,), {}, 0, (), (), ())
     starts = _all(part.starts for part in parts)
     truly = _all(part.truly for part in parts)
     named = [part for part in parts if part.starts is starts and part.reason]
@@ -198,7 +220,6 @@ def _result(
         tuple(r for part in parts for r in part.refutations),
         tuple(v for part in named for v in part.named),
         tuple(parts),
-        seconds,
     )
 
 

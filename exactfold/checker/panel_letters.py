@@ -12,6 +12,7 @@ from typing import Any
 from .formats import PANEL_LETTERS, PANEL_LETTERS_VERSION
 from .panel_letters_motion import check_motion
 from .panel_letters_refuted import Cases
+from .panel_letters_together import check_never, check_together
 from .panel_sheet import read_panels
 from .reading import MALFORMED, CertificateError, counted, document, items, keys, require
 
@@ -32,8 +33,9 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     Returns the claims and the SHA-256 of the pattern. The claims are: whether there is a motion to
-    second order with these letters, by fold in lexicographic order, "U" for any; and whether true
-    motions begin like this, "undecided" if nothing is claimed.
+    second order with these letters, by fold in lexicographic order, "U" for any; whether true
+    motions begin like this, "undecided" if nothing is claimed; and folds that can go their way
+    together to first order where none goes against its letter, and that never do.
     """
     try:
         return _check(data)
@@ -43,11 +45,11 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
 def _check(data: dict[str, Any]) -> dict[str, Any]:
     claims, evidence = data["claims"], data["evidence"]
-    keys(claims, "letters starts truly", "claims")
+    keys(claims, "letters starts truly together never", "claims")
     starts, truly, text = claims["starts"], claims["truly"], claims["letters"]
     require(starts in ("proved", "refuted"), f"starts is {starts!a}")
     require(truly in _TRULY, f"truly is {truly!a}")
-    names = ["motion"] if starts == "proved" else []
+    names = ["flat", "densities", *(["motion"] if starts == "proved" else [])]
     if "refuted" in (starts, truly):
         names += ["refuted", "tree"]
     keys(evidence, " ".join(names), "evidence")
@@ -64,6 +66,9 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
         cases = Cases(sheet, near, wanted, true=starts == "proved")
         few = cases.cover(items(evidence["refuted"], "refuted"), items(evidence["tree"], "tree"))
         require(truly == "undecided" or few, "that says nothing of true motions")
+    check_never(sheet, near, wanted, claims["never"], items(evidence["flat"], "flat"))
+    densities = items(evidence["densities"], "densities")
+    check_together(sheet, near, wanted, claims["together"], densities)
     return {"sha256": digest, "interior": len(sheet.interior), **claims}
 
 
@@ -75,7 +80,11 @@ def summary(claims: dict[str, Any]) -> str:
     if not {"M", "V"} & set(text):
         return f"VALID: no fold of {folds} is asked to fold; sha256 {claims['sha256']}"
     answer = "starts" if claims["starts"] == "proved" else "does not start"
+    together, never = len(claims["together"]), len(claims["never"])
+    first = (
+        f"; to first order {together} can fold together, {never} never" if together + never else ""
+    )
     return (
         f"VALID: the sheet of rigid panels {answer} to fold with the {asked} asked for on {folds}, "
-        f"{_TRULY[claims['truly']]}; sha256 {claims['sha256']}"
+        f"{_TRULY[claims['truly']]}{first}; sha256 {claims['sha256']}"
     )

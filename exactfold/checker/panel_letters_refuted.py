@@ -140,11 +140,11 @@ class Cases:
             signs[v] = sign
         heights: dict[int, dict[int, Number]] = {}
         for v, values in items(entry["planes"], "planes"):
-            y = self._numbers(values, 2)
+            y = numbers(self.sheet, values, 2)
             heights[v] = {u: _product(y, self.sheet.vector(v, u)) for u in self.near[v]}
         for v, values in items(entry["heights"], "heights"):
             around = sorted(self.near[v])
-            heights[v] = dict(zip(around, self._numbers(values, len(around)), strict=True))
+            heights[v] = dict(zip(around, numbers(self.sheet, values, len(around)), strict=True))
             require(v in signs, f"{what}: the star of {v} has no sign")
             self._check_nappe(v, signs[v], heights[v], what)
         strict = False
@@ -157,13 +157,6 @@ class Cases:
             strict = strict or side != 0
         require(strict, f"{what}: no fold contradicts its letter")
         return signs, {*heights}
-
-    def _numbers(self, values: Any, length: int) -> list[Number]:
-        size = self.sheet.tower.size
-        return [
-            Number(self.sheet.tower, tuple(parse_rational(c) for c in items(x, "a number", size)))
-            for x in items(values, "numbers", length)
-        ]
 
     def _check_nappe(self, v: int, sign: int, star: Mapping[int, Number], what: str) -> None:
         """The form is not negative, and the star is on the side of its sign.
@@ -186,6 +179,14 @@ class Cases:
         for (_, height), weight in zip(spokes, _weights([d for d, _ in spokes]), strict=True):
             side = side + weight * height
         require(sign * side.sign() <= 0, f"{what}: the star of {v} is on the other side")
+
+
+def numbers(sheet: PanelSheet, values: Any, length: int) -> list[Number]:
+    """Numbers in the field of the sheet, from their coefficients."""
+    return [
+        Number(sheet.tower, tuple(map(parse_rational, items(x, "a number", sheet.tower.size))))
+        for x in items(values, "numbers", length)
+    ]
 
 
 def ways(lines: Sequence[Line], near: Iterable[int]) -> list[Way]:

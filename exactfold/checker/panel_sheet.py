@@ -218,6 +218,16 @@ def read_panels(data: Any) -> tuple[PanelSheet, str]:
     return PanelSheet(tower, points, edges), digest
 
 
+def read_edges(value: Any, what: str) -> list[Edge]:
+    """Folds, sorted, each once."""
+    found = []
+    for edge in items(value, what):
+        i, j = (natural(v, "a vertex") for v in items(edge, "an edge", 2))
+        found.append((i, j))
+    require(found == sorted(set(found)), f"{what} are not sorted")
+    return found
+
+
 def _text(value: Number) -> str:
     parts = []
     for c in value.parts:

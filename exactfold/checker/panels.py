@@ -17,7 +17,7 @@ from .panel_components import components, times
 from .panel_leaves import Verified, verified_part
 from .panel_loops import MOST_ORDER, Loops
 from .panel_modes import Modes, Support, corners_of, name, named
-from .panel_sheet import Edge, Near, PanelSheet, connected, pair, read_panels
+from .panel_sheet import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
 from .reading import (
     MALFORMED,
     CertificateError,
@@ -61,7 +61,7 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     given = claims.get("spaces", []) if isinstance(claims, dict) else []
     keys(claims, f"{FACTS} supports" + (" spaces" if given else ""), "claims")
     sheet, digest = read_panels(data["pattern"])
-    held = _edges(claims["held"], "held")
+    held = read_edges(claims["held"], "held")
     for i, j in held:
         require((i, j) in sheet.folds, f"{i}-{j} is held flat, and no fold")
     near = sheet.live(held)
@@ -153,7 +153,7 @@ def _paired(found: Sequence[Support], given: list[Any]) -> list[tuple[Support, d
     entries: dict[tuple[Edge, ...], dict[str, Any]] = {}
     for entry in given:
         keys(entry, "vertices folds count extending by modes", "a support")
-        folds = tuple(_edges(entry["folds"], "folds of a support"))
+        folds = tuple(read_edges(entry["folds"], "folds of a support"))
         require(folds in known, f"the folds {list(folds)[:20]} are no support")
         require(folds not in entries, f"a support with the folds {list(folds)[:20]} appears twice")
         entries[folds] = entry
@@ -270,15 +270,6 @@ def _extends(
         mode is None or said == verdict, f"a mode of {named(support)} is {verdict}, not {said!a}"
     )
     return good
-
-
-def _edges(value: Any, what: str) -> list[Edge]:
-    found = []
-    for edge in items(value, what):
-        i, j = (natural(v, "a vertex") for v in items(edge, "an edge", 2))
-        found.append((i, j))
-    require(found == sorted(set(found)), f"{what} are not sorted")
-    return found
 
 
 def summary(claims: dict[str, Any]) -> str:

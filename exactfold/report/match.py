@@ -56,13 +56,34 @@ def match_report(
     return Group(*parts)
 
 
+NAMED = 12
+"""Creases that are named unless all are asked for."""
+
+
 def panel_match_report(found: PanelMatch, *, everything: bool = False) -> Group:
     """Whether rigid panels start to fold with the letters, and why, in lines of words."""
     answer, *reasons = found.lines
     limit = len(reasons) if everything else SHOWN
     head = Text.assemble(f"{answer} - ", status_text(found.status), f" ({found.seconds:.2f} s)")
     rest = [Text(f"- {reason}") for reason in reasons[:limit]]
-    return Group(head, "", Text(_asked(found)), *rest, *more_text(len(reasons) - limit))
+    more = more_text(len(reasons) - limit)
+    return Group(head, "", Text(_asked(found)), *rest, *more, *_first_order(found, everything))
+
+
+def _first_order(found: PanelMatch, everything: bool) -> list[str | Text]:
+    """Which creases can fold their way together at the first instant, and which never."""
+    if found.first_order is None:
+        return []
+    first, asked = found.first_order, sum(x in "MV" for x in found.letters.values())
+    lines = [f"{len(first.together)} of {counted(asked, 'crease')} can fold together"]
+    for folds, said in ((first.never, "never fold"), (first.undecided, "are undecided")):
+        if folds:
+            limit = len(folds) if everything else NAMED
+            named = ", ".join(fold_text(fold) for fold in folds[:limit])
+            more = f" and {len(folds) - limit} more" if len(folds) > limit else ""
+            lines.append(f"{len(folds)} {said}: {named}{more}")
+    head = "To first order, where no crease goes against its letter"
+    return ["", Text(head, style="bold"), *(Text(f"- {line}") for line in lines)]
 
 
 def rim_match_report(found: RimMatch, *, everything: bool = False) -> Group:

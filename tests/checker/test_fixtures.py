@@ -25,8 +25,9 @@ def test_there_are_certificates_of_every_kind() -> None:
         "panels",
         "loops",
         "letters",
+        "starting",
     }
-    assert len(FILES) == 78
+    assert len(FILES) == 88
 
 
 @pytest.mark.parametrize("name", FILES)
