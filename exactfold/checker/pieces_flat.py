@@ -31,7 +31,7 @@ from .krawczyk import Krawczyk, inverse
 from .panel_reduction import BITS
 from .panel_sheet import Edge, dot, pair
 from .panel_spaces import Motion, Space, Spaces, folds_of
-from .reading import CertificateError, items, keys, natural, parse_rational
+from .reading import CertificateError, items, keys, natural, parse_rational, require
 
 PRIME = 2147483647
 MOST_MONOMIALS = 500
@@ -83,29 +83,43 @@ def _part(spaces: Spaces, part: Space, evidence: Sequence[Any]) -> Found:
             products.append(squares)
     if not curved:
         return _line(spaces, part)
-    rational = all(x.tower.size == 1 for motion in part for x in motion.values())
-    if rational:
+    joints: list[Signs] = []
+    if all(x.tower.size == 1 for motion in part for x in motion.values()):
         forms = [_values(spaces, part, v) for v in curved]
         if have_no_common_zero(forms):
             return Found([], True)
         for entry in evidence:
             with suppress(ArithmeticError, CertificateError):
-                return _boxes(_Part(spaces, part, curved, forms, entry))
-    if not products:
-        return Found([], False)
-    found = [
-        solutions(spaces, spaces.vanishing(part, [values]), evidence)
-        for values in spaces.factors(products, part)
-    ]
-    return Found([s for one in found for s in one.joints], all(one.closed for one in found))
+                found = _boxes(_Part(spaces, part, curved, forms, entry))
+                if found.closed:
+                    return found
+                joints += found.joints
+    closed = False
+    if products:
+        split = [
+            solutions(spaces, spaces.vanishing(part, [values]), evidence)
+            for values in spaces.factors(products, part)
+        ]
+        joints += [signs for found in split for signs in found.joints]
+        closed = all(found.closed for found in split)
+    return Found(joints, closed or _are_all(spaces, part, joints))
+
+
+def _are_all(spaces: Spaces, part: Space, joints: list[Signs]) -> bool:
+    """Whether all signs of the vertices that may bend occur, so that no other solution joins more.
+
+    Joints that are flat at one of them are left out.
+    """
+    touched = sorted({v for fold in folds_of(part) for v in fold if v in spaces.near})
+    known = [signs for signs in joints if sorted(signs) == touched]
+    seen = {tuple(turn * signs[v] for v in touched) for signs in known for turn in (1, -1)}
+    return len(seen) == 1 << len(touched)
 
 
 def _line(spaces: Spaces, part: Space) -> Found:
     """The one line on which all forms vanish: an isotropic space of each Lorentzian form."""
-    if len(part) != 1:
-        raise CertificateError("a connected space on which all forms vanish is no line")
     enclosed = {fold: value.enclosed(BITS) for fold, value in part[0].items()}
-    signs = signs_of(spaces, enclosed)
+    signs = signs_of(spaces, enclosed) if len(part) == 1 else None
     return Found([], False) if signs is None else Found([signs], True)
 
 
@@ -139,8 +153,6 @@ class _Part:
         self.spaces, self.entry, self.count, self.size = spaces, entry, len(curved), len(part)
         folds = [tuple(fold) for fold in items(entry["folds"], "folds", self.size)]
         known = folds_of(part)
-        if not set(folds) <= set(known):
-            raise CertificateError("the coordinates are folds of another part")
         basis = inverse([[_density(motion, fold) for motion in part] for fold in folds])
         self.rows = {
             fold: _times([[_density(motion, fold) for motion in part]], basis)[0] for fold in known
@@ -186,8 +198,8 @@ def _boxes(part: _Part) -> Found:
     entry, size = part.entry, part.size
     if "chart" in entry:
         keys(entry, "folds chart roots", "a part")
-        if part.count != size - 1 or size > MOST_UNKNOWNS:
-            raise CertificateError("the forms are not one less than the unknowns")
+        require(part.count == size - 1, "the forms are not one less than the unknowns")
+        require(size <= MOST_UNKNOWNS, f"more than {MOST_UNKNOWNS} unknowns")
         chart = [parse_rational(c) for c in items(entry["chart"], "chart", size - 1)]
         lifted = [[Fraction(int(i == j)) for j in range(size)] for i in range(size - 1)]
         lifted.append([-c for c in chart] + [Fraction(1)])
@@ -205,13 +217,8 @@ def _boxes(part: _Part) -> Found:
         box = read_box(point["root"], len(free))
         Krawczyk(part.system(lifted)).check(box.center, box.radius, box.bits)
         signs = part.signs(box, lifted)
-        if signs is None:
-            raise CertificateError("the sign of a vertex is open")
-        joints.append(signs)
-    # With all signs of the vertices that may bend, no other solution joins more.
-    touched = {v for fold in part.rows for v in fold if v in part.spaces.near}
-    seen = {tuple(turn * signs[v] for v in sorted(signs)) for signs in joints for turn in (1, -1)}
-    return Found(joints, len(seen) == 1 << len(touched))
+        joints.append(_known(signs))
+    return Found(joints, False)
 
 
 def _all_zeros(part: _Part, lifted: Matrix, entries: list[Any]) -> list[Signs]:
@@ -225,16 +232,19 @@ def _all_zeros(part: _Part, lifted: Matrix, entries: list[Any]) -> list[Signs]:
         box = read_box(entry, length)
         Krawczyk(system if length == system.size else both).check(box.center, box.radius, box.bits)
         (real if length == system.size else other).append(box)
-        if length != system.size and max(map(abs, box.center[system.size :])) <= box.radius:
-            raise CertificateError("a box may hold a real zero")
+        if length != system.size:
+            apart = max(map(abs, box.center[system.size :])) > box.radius
+            require(apart, "a box may hold a real zero")
     check_disjoint(real)
     check_disjoint(other)
-    if len(entries) != 1 << system.size:
-        raise CertificateError(f"{len(entries)} zeros, not 2^{system.size}")
-    signs = [part.signs(box, lifted) for box in real]
-    if None in signs:
+    require(len(entries) == 1 << system.size, f"{len(entries)} zeros, not 2^{system.size}")
+    return [_known(part.signs(box, lifted)) for box in real]
+
+
+def _known(signs: Signs | None) -> Signs:
+    if signs is None:
         raise CertificateError("the sign of a vertex is open")
-    return [each for each in signs if each is not None]
+    return signs
 
 
 def _doubled(system: System) -> System:

@@ -94,10 +94,10 @@ def _part(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
     else:
         reason = ""
     if not split:
-        sampled = _sampled(moving, part) if reason else FlatSolutions(())
+        sampled = _sampled(moving, part, part) if reason else FlatSolutions(())
         return replace(sampled, open=f"{reason}; {sampled.open}") if sampled.open else sampled
     return _together(
-        _decided(moving, small) or _sampled(moving, small) for small in _parts(moving, split)
+        _decided(moving, small) or _sampled(moving, small, part) for small in _parts(moving, split)
     )
 
 
@@ -224,8 +224,11 @@ def _sum(values: Sequence[arb], weights: Sequence[Any]) -> arb:
 # --- families of solutions -----------------------------------------------------------------------
 
 
-def _sampled(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
-    """Points of a family with as many different signs as are found, each proved."""
+def _sampled(moving: Mapping[int, Star], part: Leaf, whole: Leaf) -> FlatSolutions:
+    """Points of a family with as many different signs as are found, each proved.
+
+    `whole` is the rational part that `part` was split from; its coordinates go into proofs.
+    """
     if not part.vertices:
         return FlatSolutions((), "a vertex is too nearly flat in a solution to say its sign")
     forms = _forms(moving, part)
@@ -233,7 +236,7 @@ def _sampled(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
     wanted = 1 << len(names)
     prover = Forms(moving)
     found: dict[tuple[int, ...], Joint] = {}
-    folds = tuple(parameter_folds(part.rows, part.size))
+    folds, all_forms = tuple(parameter_folds(whole.rows, whole.size)), _forms(moving, whole)
     points: list[RegularPoint] = []
     tried: set[tuple[int, ...]] = set()
     lengths = {v: _lengths(moving[v]) for v in names}
@@ -250,7 +253,7 @@ def _sampled(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
         if joint is not None:
             signs = tuple(joint.signs[v] for v in names)
             found[signs] = joint
-            points.append(_regular(forms, [densities.get(fold, 0.0) for fold in folds]))
+            points.append(_regular(all_forms, [densities.get(fold, 0.0) for fold in folds]))
             found.setdefault(tuple(-sign for sign in signs), joint)
         if len(found) == wanted:
             return FlatSolutions(tuple(found.values()), proofs=(_witnesses(folds, points),))

@@ -98,7 +98,7 @@ def without(message: str) -> Iterator[None]:
         names += "motion_contacts motion_equations motion_loops motion_nodes motion_patches "
         names += "motion_paths motion_tubes reduced "
         names += "panel_components panel_cones panel_leaves panel_loops panel_modes "
-        names += "panel_reduction panel_sheet panel_spaces panels "
+        names += "panel_reduction panel_sheet panel_spaces panels pieces pieces_flat "
         for name in (names + "reading sheet stress towers").split():
             patch.setattr(import_module(f"exactfold.checker.{name}"), "require", weaker)
         yield
