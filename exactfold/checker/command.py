@@ -14,9 +14,19 @@ from os import PathLike
 from types import ModuleType
 from typing import Any
 
-from . import branch, compact, letters, listing, motion, motion_loops, panel_letters, panels
+from . import branch, compact, letters, listing, motion, motion_loops, panel_letters, panels, pieces
 from .compact_lines import lines
-from .formats import BRANCH, COMPACT, LETTERS, LISTING, LOOPS, MOST_LINE, MOTION, PANEL_LETTERS
+from .formats import (
+    BRANCH,
+    COMPACT,
+    LETTERS,
+    LISTING,
+    LOOPS,
+    MOST_LINE,
+    MOTION,
+    PANEL_LETTERS,
+    PIECES,
+)
 from .reading import CertificateError, FormatError, UnfinishedError, plain, read_json
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
@@ -67,6 +77,8 @@ def _reader(data: dict[str, Any]) -> ModuleType:
         return panel_letters
     if data.get("format") == MOTION:
         return motion
+    if data.get("format") == PIECES:
+        return pieces
     if data.get("format") == LISTING and "kind" in data:
         return panels
     return listing
@@ -148,6 +160,8 @@ def summary(claims: dict[str, Any]) -> str:
         return panel_letters.summary(claims)
     if "halves" in claims:
         return letters.summary(claims)
+    if "at_most" in claims:
+        return pieces.summary(claims)
     if "tubes" in claims:
         return motion.summary(claims)
     return branch.summary(claims) if "gauge" in claims else listing.summary(claims)

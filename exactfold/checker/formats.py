@@ -20,6 +20,9 @@ LETTERS, LETTERS_VERSION = "exactfold letters", 1
 PANEL_LETTERS, PANEL_LETTERS_VERSION = "exactfold letters on panels", 1
 """Whether rigid panels start to fold with given mountains and valleys (docs/assignment.md)."""
 
+PIECES, PIECES_VERSION = "exactfold pieces", 1
+"""Into how many pieces the solutions fall with more than four corners (docs/any_border.md)."""
+
 PANELS, PANELS_VERSION = "panels", 3
 """All motions of a sheet of rigid panels: a kind of the format `LISTING` (docs/certificate.md)."""
 

@@ -197,7 +197,7 @@ class Spaces:
         if not products:
             return [Leaf(space, tuple(left))]
         found = []
-        for values in self._factors(products, space):
+        for values in self.factors(products, space):
             found += self._leaves(self.vanishing(space, [values]))
             require(
                 len(found) <= MOST_LEAVES, f"there are more than {MOST_LEAVES} spaces of motions"
@@ -253,7 +253,7 @@ class Spaces:
             self._known[v, bits] = found
         return self._known[v, bits]
 
-    def _factors(self, products: Sequence[Squares], space: Space) -> Iterator[list[Number]]:
+    def factors(self, products: Sequence[Squares], space: Space) -> Iterator[list[Number]]:
         """d l^2 + e m^2, signs apart, is d (l - r m)(l + r m) with r^2 = -e / d.
 
         The root is adjoined to a field that holds the whole space, as numbers of the space and the

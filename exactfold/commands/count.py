@@ -134,11 +134,9 @@ class Asked:
             return None
         if not isinstance(result, BranchCount):
             return self._certified_panels(result, self.certificate)
+        if result.pieces is not None and result.proof is None:
+            return self._certified_pieces(result, self.certificate)
         if result.families is not None:
-            say(
-                "the graphs are proved by a theorem, and joints have no certificate: what is "
-                "certified is the list of irreducible components"
-            )
             return self._certified_panels(result.families, self.certificate)
         if result.status is not PROVED:
             say("no certificate was written: nothing is proved")
@@ -148,6 +146,22 @@ class Asked:
             write_certificate(certificate_of(result), self.certificate)
             return str(self.certificate)
         return None
+
+    def _certified_pieces(self, result: BranchCount, file: Path) -> str | None:
+        """The certificate of pieces, and beside it that of the irreducible components."""
+        written = None
+        try:
+            write_certificate(certificate_of(result), file)
+            written = str(file)
+        except NotApplicableError as error:
+            say(f"no certificate of the pieces was written: {error}")
+        if result.families is not None and result.families.status is PROVED:
+            more = file if written is None else file.with_suffix(f".components{file.suffix}")
+            found = self._certified_panels(result.families, more)
+            if found is not None:
+                say(f"the list of irreducible components has a certificate of its own: {more}")
+            written = written or found
+        return written
 
     def _certified_panels(self, ways: Decomposition, file: Path) -> str | None:
         from exactfold.evidence.panels import certificate_of_panels

@@ -19,6 +19,7 @@ from exactfold.evidence.entries import (
     flat_box_entry,
     triangle_evidence,
 )
+from exactfold.evidence.pieces import pieces_certificate
 from exactfold.exact.numbers import shown
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
@@ -26,8 +27,9 @@ from exactfold.verdict import PROVED, UNDECIDED, Verdict
 def certificate(result: BranchCount) -> Document:
     """The certificate of a proved count, as a JSON object for `exactfold.checker`.
 
-    Raises `NotApplicableError` if the count is not proved, or was proved in a stream, whose file
-    is the certificate.
+    With more than four corners it is that of the pieces (`pieces_certificate`). Raises
+    `NotApplicableError` if the count is not proved, or was proved in a stream, whose file is the
+    certificate.
 
     >>> from exactfold.count.collect import count_branches
     >>> from exactfold.pattern.families import two_vertex
@@ -37,10 +39,7 @@ def certificate(result: BranchCount) -> Document:
     if not isinstance(result, BranchCount):
         raise UsageError(f"{shown(result)} is not a count: give what `count_branches` returns")
     if result.pieces is not None and result.proof is None:
-        raise NotApplicableError(
-            "no certificate: that the solutions are graphs over the rim follows from a theorem, "
-            "and how they are joined has no certificate yet"
-        )
+        return pieces_certificate(result.pattern, result.pieces)
     if result.status is not PROVED or result.proof is None:
         raise NotApplicableError(f"no certificate: the count is {result.status} ({result.reason})")
     claims: dict[str, Any] = {

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 from flint import arb, ctx, fmpq
+from scipy.linalg import qr
 
 from exactfold.arrays import FloatArray
 from exactfold.certify.isolation import isolate
@@ -17,7 +18,14 @@ from exactfold.errors import TooManyModesError
 from exactfold.exact.linalg import from_fmpq
 from exactfold.exact.surds import Surd, ball
 from exactfold.modes.kernel import Entry, Rows, entry, first_order
-from exactfold.modes.regular import BITS, Balls, Forms, regular_point, truly_folds
+from exactfold.modes.regular import (
+    BITS,
+    Balls,
+    Forms,
+    parameter_folds,
+    regular_point,
+    truly_folds,
+)
 from exactfold.modes.stars import Star
 from exactfold.modes.subspaces import (
     Leaf,
@@ -29,7 +37,7 @@ from exactfold.modes.subspaces import (
 )
 from exactfold.pattern.panel_pattern import Edge
 from exactfold.pieces.no_zero import have_no_common_zero
-from exactfold.pieces.result import Joint
+from exactfold.pieces.result import Joint, PartProof, RegularPoint
 from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.solve.homotopy_ends import homotopy
 from exactfold.verdict import PROVED
@@ -52,6 +60,7 @@ class FlatSolutions:
 
     joints: tuple[Joint, ...]
     open: str = ""
+    proofs: tuple[PartProof, ...] = ()
 
 
 def flat_solutions(moving: Mapping[int, Star]) -> FlatSolutions:
@@ -85,21 +94,23 @@ def _part(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
     else:
         reason = ""
     if not split:
-        sampled = _sampled(moving, part) if reason else FlatSolutions(())
+        sampled = _sampled(moving, part, part) if reason else FlatSolutions(())
         return replace(sampled, open=f"{reason}; {sampled.open}") if sampled.open else sampled
     return _together(
-        _decided(moving, small) or _sampled(moving, small) for small in _parts(moving, split)
+        _decided(moving, small) or _sampled(moving, small, part) for small in _parts(moving, split)
     )
 
 
 def _together(found: Iterable[FlatSolutions]) -> FlatSolutions:
     joints: list[Joint] = []
+    proofs: list[PartProof] = []
     reasons: dict[str, None] = {}
     for solutions in found:
         joints += solutions.joints
+        proofs += solutions.proofs
         if solutions.open:
             reasons[solutions.open] = None
-    return FlatSolutions(tuple(joints), "; ".join(reasons))
+    return FlatSolutions(tuple(joints), "; ".join(reasons), tuple(proofs))
 
 
 def _parts(moving: Mapping[int, Star], found: Sequence[Leaf]) -> list[Leaf]:
@@ -167,7 +178,8 @@ def _isolated(
     size = part.size
     chart = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
     # The unknown m is 1 - sum of the others, with unequal weights, so that few lines are missed.
-    chart[-1] = [Fraction(-(3 * k + 2), 7 + k) for k in range(size - 1)] + [Fraction(1)]
+    weights = tuple(Fraction(3 * k + 2, 7 + k) for k in range(size - 1))
+    chart[-1] = [*(-weight for weight in weights), Fraction(1)]
     system = QuadraticSystem.from_rational([_transformed(form, chart) for form in forms])
     isolation = isolate(system, homotopy(system))
     if isolation.complete is not PROVED:
@@ -182,7 +194,8 @@ def _isolated(
             if joint is None:
                 return None
             joints.append(joint)
-    return FlatSolutions(tuple(joints))
+    folds = tuple(parameter_folds(part.rows, size))
+    return FlatSolutions(tuple(joints), proofs=(PartProof(folds, weights, tuple(isolation.boxes)),))
 
 
 def _transformed(
@@ -211,8 +224,11 @@ def _sum(values: Sequence[arb], weights: Sequence[Any]) -> arb:
 # --- families of solutions -----------------------------------------------------------------------
 
 
-def _sampled(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
-    """Points of a family with as many different signs as are found, each proved."""
+def _sampled(moving: Mapping[int, Star], part: Leaf, whole: Leaf) -> FlatSolutions:
+    """Points of a family with as many different signs as are found, each proved.
+
+    `whole` is the rational part that `part` was split from; its coordinates go into proofs.
+    """
     if not part.vertices:
         return FlatSolutions((), "a vertex is too nearly flat in a solution to say its sign")
     forms = _forms(moving, part)
@@ -220,6 +236,8 @@ def _sampled(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
     wanted = 1 << len(names)
     prover = Forms(moving)
     found: dict[tuple[int, ...], Joint] = {}
+    folds, all_forms = tuple(parameter_folds(whole.rows, whole.size)), _forms(moving, whole)
+    points: list[RegularPoint] = []
     tried: set[tuple[int, ...]] = set()
     lengths = {v: _lengths(moving[v]) for v in names}
     for densities in _points(part, forms, min(wanted, 1 << _MOST_SIGNS) * _STARTS_A_VECTOR):
@@ -235,15 +253,29 @@ def _sampled(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
         if joint is not None:
             signs = tuple(joint.signs[v] for v in names)
             found[signs] = joint
+            points.append(_regular(all_forms, [densities.get(fold, 0.0) for fold in folds]))
             found.setdefault(tuple(-sign for sign in signs), joint)
         if len(found) == wanted:
-            return FlatSolutions(tuple(found.values()))
+            return FlatSolutions(tuple(found.values()), proofs=(_witnesses(folds, points),))
     kind = "a family of solutions" if part.dimension > 0 else "a space of motions"
     return FlatSolutions(
         tuple(found.values()),
         f"in {kind} of dimension {max(part.dimension, part.size)} {len(found)} of {wanted} sign "
         "vectors were found",
+        (_witnesses(folds, points),) if points else (),
     )
+
+
+def _witnesses(folds: tuple[Edge, ...], points: Sequence[RegularPoint]) -> PartProof:
+    return PartProof(folds, points=tuple(points))
+
+
+def _regular(forms: Sequence[Sequence[Sequence[Entry]]], at: list[float]) -> RegularPoint:
+    """A point, with the coordinates in which the derivatives of the forms are independent."""
+    tensor = np.array([[[float(x) for x in row] for row in form] for form in forms])
+    tensor /= np.abs(tensor).max(axis=(1, 2), keepdims=True)
+    free = qr(tensor @ np.array(at), pivoting=True, mode="r")[1][: len(forms)]
+    return RegularPoint(tuple(at), tuple(sorted(int(k) for k in free)))
 
 
 def _lengths(star: Star) -> dict[Edge, float]:

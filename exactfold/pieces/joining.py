@@ -13,8 +13,8 @@ from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.pieces.cubes import Cube, components
-from exactfold.pieces.flat_stars import flat_solutions
-from exactfold.pieces.result import Joint, Pieces
+from exactfold.pieces.flat_stars import FlatSolutions, flat_solutions
+from exactfold.pieces.result import FlatStars, Joint, Pieces
 from exactfold.progress import Progress
 
 _MOST_WHOLE: Final = 16
@@ -75,6 +75,7 @@ class _Search:
         self.never: dict[int, str] = {}
         self.complete: list[int] = []
         self.open: dict[int, str] = {}
+        self.proofs: list[FlatStars] = []
 
     def found(self) -> Pieces:
         """The pieces, with bounds where joints are open."""
@@ -94,6 +95,8 @@ class _Search:
                 continue
             solutions = flat_solutions(moving)
             self._add(solutions.joints)
+            done = () if solutions.open else tuple(vertices)
+            self.proofs.append(FlatStars((vertices[0],), done, solutions.proofs))
             if solutions.open:
                 self.open |= dict.fromkeys(vertices, solutions.open)
             elif solutions.joints:
@@ -113,6 +116,7 @@ class _Search:
             dict(sorted(self.never.items())),
             tuple(sorted(self.complete)),
             dict(sorted(self.open.items())) if low < high else {},
+            proofs=tuple(self.proofs),
         )
 
     def _classes(self) -> list[tuple[Mapping[int, Star], list[int]]]:
@@ -126,6 +130,7 @@ class _Search:
             moving = stars(self.panels, around)
             if not moving:
                 self.never[v] = "with its star held flat no fold can bend"
+                self.proofs.append(FlatStars((v,), (v,), ()))
                 continue
             key = frozenset(edge for star in moving.values() for edge in star.folds)
             found.setdefault(key, (moving, []))[1].append(v)
@@ -140,8 +145,11 @@ class _Search:
                 if any(v in self.sheet.interior_set and v not in chosen for v in (i, j))
             ]
             moving = stars(self.panels, held)
-            if moving:
-                self._add(flat_solutions(moving).joints)
+            solutions = flat_solutions(moving) if moving else FlatSolutions(())
+            if solutions.joints:
+                self._add(solutions.joints)
+                flat = tuple(v for v in self.vertices if v not in chosen)
+                self.proofs.append(FlatStars(flat, (), solutions.proofs))
 
     def _groups(self) -> Iterator[frozenset[int]]:
         """Vertices and pairs of neighbours with enough folds of their own, and straight creases."""
@@ -249,4 +257,15 @@ def _labelled(pieces: Pieces, labels: Sequence[int]) -> Pieces:
         never_flat={labels[v]: why for v, why in (pieces.never_flat or {}).items()},
         complete=tuple(labels[v] for v in pieces.complete),
         open={labels[v]: why for v, why in (pieces.open or {}).items()},
+        proofs=tuple(
+            FlatStars(
+                tuple(labels[v] for v in proof.held),
+                tuple(labels[v] for v in proof.complete),
+                tuple(
+                    replace(part, folds=tuple(edge(fold) for fold in part.folds))
+                    for part in proof.parts
+                ),
+            )
+            for proof in pieces.proofs
+        ),
     )

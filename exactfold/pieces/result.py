@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
+from exactfold.certify.box import IsolatingBox
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
@@ -59,6 +60,37 @@ class Joint:
 
 
 @dataclass(frozen=True)
+class RegularPoint:
+    """A zero of the forms of a part: near these `coordinates`, those that are not `free` exact."""
+
+    coordinates: tuple[float, ...]
+    free: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class PartProof:
+    """What shows the solutions on a part of a sheet some of whose stars are flat.
+
+    The densities p of `folds` are coordinates. `boxes` hold all complex zeros of the forms in the
+    chart p_last + sum_k chart_k p_k = 1, in all coordinates but the last; or `points` are some.
+    """
+
+    folds: tuple[Edge, ...]
+    chart: tuple[Fraction, ...] = ()
+    boxes: tuple[IsolatingBox, ...] = ()
+    points: tuple[RegularPoint, ...] = ()
+
+
+@dataclass(frozen=True)
+class FlatStars:
+    """What is known with the stars of `held` flat: all joints at each vertex of `complete`."""
+
+    held: tuple[int, ...]
+    complete: tuple[int, ...]
+    parts: tuple[PartProof, ...]
+
+
+@dataclass(frozen=True)
 class Pieces:
     """The pieces of the solutions without the flat state (docs/any_border.md, Theorem 7).
 
@@ -68,7 +100,7 @@ class Pieces:
     up to reflection; of two with comparable signs the one that joins more. `never_flat` says of a
     vertex why its star is flat in no solution but the flat state. At the vertices of `complete` all
     joints are known. `open` says of each other vertex why its joints are UNDECIDED. `chord` is a
-    fold from border to border, which joins everything.
+    fold from border to border, which joins everything. `proofs` are what a certificate is made of.
     """
 
     vertices: tuple[int, ...]
@@ -81,6 +113,7 @@ class Pieces:
     complete: tuple[int, ...] = ()
     open: Mapping[int, str] | None = None
     chord: Edge | None = None
+    proofs: tuple[FlatStars, ...] = field(default=(), repr=False)
 
     @property
     def graphs(self) -> int:

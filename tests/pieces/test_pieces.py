@@ -291,8 +291,9 @@ def test_the_answer_in_plain_words(tmp_path):
         "irreducible components: 2 of dimension 2",
     ):
         assert words in text
-    assert "joints have no certificate" in result.stderr
-    assert checker.verify(tmp_path / "c.json")  # of the components
+    assert "irreducible components has a certificate of its own" in result.stderr
+    assert checker.verify(tmp_path / "c.components.json")["second_order"] == {"2": 2}
+    assert checker.verify(tmp_path / "c.json")["joints"] == ["0-"]
     data = json.loads(run("count", tmp_path / "p.fold", "--json").stdout)
     assert (data["by"], data["distinct"], data["theory"]) == ("theorem", None, "branches")
     assert (data["pieces"]["at_least"], data["pieces"]["at_most"]) == (2, 2)
