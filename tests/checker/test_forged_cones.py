@@ -17,12 +17,12 @@ from exactfold.checker.panel_leaves import complete
 from exactfold.checker.panel_reduction import BITS, enclosed, reduced, rest_of
 from exactfold.checker.panel_spaces import Leaf, Spaces
 from exactfold.checker.reading import CertificateError
-from exactfold.evidence.panels import _pattern
+from exactfold.evidence.panels import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 
 def spaces(pattern: PanelPattern) -> Spaces:
-    [found] = spaces_of(_pattern(pattern))
+    [found] = spaces_of(panels_document(pattern))
     return found
 
 

@@ -18,7 +18,7 @@ from exactfold.checker.panel_reduction import BITS, Joined, enclosed, inside, re
 from exactfold.checker.panel_spaces import Motion, Spaces
 from exactfold.checker.reading import CertificateError
 from exactfold.checker.towers import Number, Tower
-from exactfold.evidence.panels import _pattern, certificate_of_panels
+from exactfold.evidence.panels import certificate_of_panels, panels_document
 from exactfold.modes.decomposition import decompose
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -30,7 +30,7 @@ def number(value: int | Fraction) -> Number:
 
 
 def spaces(pattern: PanelPattern) -> Spaces:
-    [found] = spaces_of(_pattern(pattern))
+    [found] = spaces_of(panels_document(pattern))
     return found
 
 
