@@ -148,13 +148,13 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
                 "squares",
                 "proved",
                 "exceptions",
-                "95 % interval",
+                "interval, %",
                 "first seed",
             ),
             lines,
             (
                 "grid d: coordinates are multiples of 1/d; for almost all positions there are no "
-                "exceptions.",
+                "exceptions. Exact 95 % intervals.",
             ),
         ),
         StudyTable(

@@ -131,11 +131,11 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
         StudyTable(
             "real",
             "Zeros that stay real when the coefficients change",
-            ("Vi", "size", "systems", "proved", "zeros not real", "with some", "two for each pair"),
+            ("Vi", "size", "systems", "proved", "not real, %", "with some, %", "two for each, %"),
             lines,
             (
-                "size 0 is the sheet itself, where all zeros are real by Theorem 2; with some: "
-                "systems with zeros that are not real; two for each pair: systems with two real "
+                "size 0 is the sheet itself, where all zeros are real by Theorem 2; not real: of all "
+                "zeros; with some: systems with such zeros; two for each: systems with two real "
                 "zeros for each pair of opposite sign vectors, by the functionals of the sheet.",
             ),
         )
