@@ -134,9 +134,10 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
             ("Vi", "size", "systems", "proved", "not real, %", "with some, %", "two for each, %"),
             lines,
             (
-                "size 0 is the sheet itself, where all zeros are real by Theorem 2; not real: of all "
-                "zeros; with some: systems with such zeros; two for each: systems with two real "
-                "zeros for each pair of opposite sign vectors, by the functionals of the sheet.",
+                "size 0 is the sheet itself, where all zeros are real by Theorem 2; not real: of "
+                "all zeros; with some: systems with such zeros; two for each: systems with two "
+                "real zeros for each pair of opposite sign vectors, by the functionals of the "
+                "sheet.",
             ),
         )
     ]
