@@ -267,6 +267,17 @@ Proof.
   - apply (Rmult_eq_reg_l (re s)); [lra|assumption].
 Qed.
 
+(** There are at most 2^n branches, and all are real. *)
+Theorem at_most_2_to_the_n : exists l : list vec, length l = (2 ^ n)%nat /\
+  (forall h, In h l <-> representative h) /\
+  forall z, complex_solution z -> complex_affine z \/ exists s h, In h l /\ on_branch z s h.
+Proof.
+  destruct (list_of_solutions S (fun _ => 0) (unit b4)) as (l & Len & Sol & _); [intros; lra|].
+  exists l. split; [assumption|]. split; [exact Sol|]. intros z Hz.
+  destruct (every_solution_on_a_branch z Hz) as [|(s & h & Rh & Oh)]; [now left|right].
+  exists s, h. split; [now apply Sol|assumption].
+Qed.
+
 (** If no star is flat on any branch, there are exactly 2^n branches, all real, exactly one
     representative for each sign vector. *)
 Theorem branches : (forall h, representative h -> forall v, In v I -> ~ flat_star S v h) ->
@@ -279,7 +290,7 @@ Proof.
   intros NF.
   assert (Reg : forall h, has_rim S (unit b4) h -> solves S (fun _ => 0) h -> regular S h).
   { intros h Hr Hs v Hv. right. split; [now apply Hs|]. apply NF; [split; assumption|assumption]. }
-  destruct (list_of_solutions S (fun _ => 0) (unit b4)) as (l & Len & D & Sol); [intros; lra|exact Reg|].
+  destruct (list_of_solutions S (fun _ => 0) (unit b4)) as (l & Len & Sol & D); [intros; lra|]. specialize (D Reg).
   exists l. split; [assumption|]. split; [assumption|]. split; [exact Sol|]. split.
   - intros e. destruct (one_solution_per_sign_vector S (fun _ => 0) (unit b4) e) as (h & (Hr & Hs & Hn) & U); [intros; lra|].
     exists h. split.

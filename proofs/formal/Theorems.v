@@ -288,23 +288,35 @@ Proof.
     apply (sign_vectors_off l _ v He) in Nv. now rewrite Nat.eqb_refl in Nv.
 Qed.
 
-(** The solutions are one for each sign vector, and different if all are regular. *)
+(** The solutions, one for each sign vector; they are different if all are regular. *)
 Theorem list_of_solutions (k : nat -> R) (r : vec) : (forall v, In v I -> 0 <= k v) ->
-  (forall h, has_rim r h -> solves k h -> regular h) ->
-  exists l : list vec, length l = (2 ^ n)%nat /\ NoDup l /\
-    forall h, In h l <-> has_rim r h /\ solves k h.
+  exists l : list vec, length l = (2 ^ n)%nat /\
+    (forall h, In h l <-> has_rim r h /\ solves k h) /\
+    ((forall h, has_rim r h -> solves k h -> regular h) -> NoDup l).
 Proof.
-  intros Pk Reg.
+  intros Pk.
   assert (Ex : forall t, exists l : list vec,
     Forall2 (fun e h => has_rim r h /\ solves k h /\ in_nappes e h) t l).
   { induction t as [|e t (l & H)]; [exists []; constructor|].
     destruct (one_solution_per_sign_vector k r e Pk) as (h & Hh & _). exists (h :: l). now constructor. }
-  destruct (Ex (sign_vectors I)) as (l & H). exists l. split; [|split].
-  - rewrite <- sign_vectors_length. clear Ex. induction H; simpl; congruence.
-  - pose proof (sign_vectors_once I inner_once) as D.
+  destruct (Ex (sign_vectors I)) as (l & H). clear Ex. exists l. split; [|split].
+  - rewrite <- sign_vectors_length. induction H; simpl; congruence.
+  - intros h. split.
+    + intros Hin. clear - H Hin. induction H as [|e h' t l (A & B & _) H IH]; [easy|].
+      destruct Hin as [->|Hin]; auto.
+    + intros (Hr & Hs).
+      assert (Hn : in_nappes (signs_of h) h).
+      { apply signs_of_nappes. intros v Hv. rewrite (Hs v Hv). auto. }
+      assert (He : In (signs_of h) (sign_vectors I)).
+      { apply sign_vectors_all. intros u Hu. unfold signs_of. now destruct in_dec. }
+      induction H as [|e h' t l (A & B & C) H IH]; [easy|].
+      destruct He as [->|He]; [left|right; auto].
+      destruct (one_solution_per_sign_vector k r (signs_of h) Pk) as (x & _ & U).
+      rewrite <- (U h'), <- (U h); auto.
+  - intros Reg. pose proof (sign_vectors_once I inner_once) as D.
     assert (Off : forall e, In e (sign_vectors I) -> forall u, ~ In u I -> e u = false)
       by (intros; now apply (sign_vectors_off I)).
-    clear Ex. induction H as [|e h t l (Hr & Hs & Hn) H IH]; [constructor|].
+    induction H as [|e h t l (Hr & Hs & Hn) H IH]; [constructor|].
     inversion D as [|? ? Ne Dt]; subst. constructor; [|apply IH; [assumption|simpl in Off; auto]].
     intros Hin. apply Ne.
     assert (X : exists e', In e' t /\ in_nappes e' h).
@@ -318,18 +330,6 @@ Proof.
       destruct (Hn u Hu) as (_ & P), (Hn' u Hu) as (_ & P').
       destruct (e u), (e' u); simpl in *; try reflexivity; exfalso; apply N; lra.
     + rewrite (Off e), (Off e'); simpl; auto.
-  - intros h. split.
-    + intros Hin. clear - H Hin. induction H as [|e h' t l (A & B & _) H IH]; [easy|].
-      destruct Hin as [->|Hin]; auto.
-    + intros (Hr & Hs).
-      assert (Hn : in_nappes (signs_of h) h).
-      { apply signs_of_nappes. intros v Hv. rewrite (Hs v Hv). auto. }
-      assert (He : In (signs_of h) (sign_vectors I)).
-      { apply sign_vectors_all. intros u Hu. unfold signs_of. now destruct in_dec. }
-      clear Ex. induction H as [|e h' t l (A & B & C) H IH]; [easy|].
-      destruct He as [->|He]; [left|right; auto].
-      destruct (one_solution_per_sign_vector k r (signs_of h) Pk) as (x & _ & U).
-      rewrite <- (U h'), <- (U h); auto.
 Qed.
 
 (** (d) For k > 0 there are exactly 2^n complex solutions; they are real, and there is exactly one
@@ -344,7 +344,7 @@ Proof.
   intros Pk. assert (Pk' : forall v, In v I -> 0 <= k v) by (intros; apply Rlt_le; auto).
   assert (Reg : forall h, has_rim r h -> solves k h -> regular h).
   { intros h _ Hs v Hv. left. rewrite (Hs v Hv). auto. }
-  destruct (list_of_solutions k r Pk' Reg) as (l & Len & D & Sol). exists l.
+  destruct (list_of_solutions k r Pk') as (l & Len & Sol & D). specialize (D Reg). exists l.
   split; [assumption|]. split; [assumption|]. split; [|split].
   - intros z. split.
     + intros (Zr & E). pose proof (all_real k r z Pk' Zr E) as Im.

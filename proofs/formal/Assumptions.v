@@ -1,0 +1,18 @@
+(** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
+From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Drawing Example.
+
+Print Assumptions key_lemma.
+Print Assumptions one_solution_per_sign_vector.
+Print Assumptions all_real.
+Print Assumptions exactly_2_to_the_n.
+Print Assumptions distance.
+Print Assumptions branches.
+
+(** The others together. *)
+Definition others :=
+  (one_solution, weighted_curvatures, wirtinger, one_positive_direction, L, L_flat, flat_star_iff,
+   key_energy, no_zero_at_infinity, definite_stress, jacobian_nonsingular, jacobian_singular,
+   simple_iff_no_flat_star, different_sign_vectors, list_of_solutions, rigid,
+   every_solution_on_a_branch, branch_has_one_representative, at_most_2_to_the_n,
+   two_branches_per_pair, unique, cone_positive, sheet_of, square_has_two_domes, square_has_at_most_two_branches).
+Print Assumptions others.

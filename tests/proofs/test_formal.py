@@ -1,0 +1,95 @@
+"""The formal proof: nothing is left out of it, its page names what is there, and it builds."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent.parent
+FORMAL = ROOT / "proofs" / "formal"
+SOURCES = {path.name: path.read_text(encoding="utf-8") for path in sorted(FORMAL.glob("*.v"))}
+
+REALS = {
+    "ClassicalDedekindReals.sig_forall_dec",
+    "FunctionalExtensionality.functional_extensionality_dep",
+}
+CLASSICAL = REALS | {"ClassicalDedekindReals.sig_not_dec", "Classical_Prop.classic"}
+ASSUMED = {
+    "key_lemma": REALS,
+    "one_solution_per_sign_vector": CLASSICAL,
+    "all_real": REALS,
+    "exactly_2_to_the_n": CLASSICAL,
+    "distance": REALS | {"ClassicalDedekindReals.sig_not_dec"},
+    "branches": CLASSICAL,
+    "others": CLASSICAL,
+}
+"""What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""
+
+
+def without_comments(text: str) -> str:
+    """A source without its comments, which are not nested."""
+    return re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL)
+
+
+def declared(text: str) -> set[str]:
+    """The names that a source defines or proves."""
+    kinds = "Theorem|Lemma|Corollary|Definition|Fixpoint|Record"
+    return set(re.findall(rf"^(?:{kinds}) (\w+)", without_comments(text), flags=re.MULTILINE))
+
+
+def test_no_proof_is_left_open() -> None:
+    words = r"\b(Admitted|admit|Abort|Axiom|Parameter|Conjecture|give_up|Unset Guard Checking)\b"
+    open_ends = {
+        name: found
+        for name, text in SOURCES.items()
+        if (found := re.findall(words, without_comments(text)))
+    }
+    assert open_ends == {}
+
+
+def test_every_source_is_built() -> None:
+    listed = (FORMAL / "_CoqProject").read_text(encoding="utf-8").split()
+    assert sorted(name for name in listed if name.endswith(".v")) == list(SOURCES)
+
+
+def test_the_page_names_what_is_there() -> None:
+    page = (ROOT / "docs" / "formal.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| .* \| ([^|]*) \| ([^|]*) \|$", page, flags=re.MULTILINE)[1:]
+    assert len(rows) > 25
+    for names, files in rows:
+        there = set[str]().union(
+            *(declared(SOURCES[file]) for file in re.findall(r"`(.*?)`", files))
+        )
+        assert set(re.findall(r"`(\w+)`", names)) <= there
+    for axiom in CLASSICAL:
+        assert f"`{axiom.rpartition('.')[2]}`" in page
+
+
+def test_the_assumptions_of_every_theorem_are_printed() -> None:
+    text = SOURCES["Assumptions.v"]
+    assert re.findall(r"^Print Assumptions (\w+)\.", text, flags=re.MULTILINE) == list(ASSUMED)
+    theorems = {
+        name
+        for source in SOURCES.values()
+        for name in re.findall(r"^Theorem (\w+)", without_comments(source), flags=re.MULTILINE)
+    }
+    assert len(theorems) > 20
+    assert theorems - set(re.findall(r"\w+", without_comments(text))) == set()
+
+
+@pytest.mark.slow
+def test_it_builds_and_assumes_no_more_than_the_reals(tmp_path: Path) -> None:
+    if shutil.which("coqc") is None or shutil.which("make") is None:
+        pytest.skip("not built here: coqc and make are not installed")
+    for name in (*SOURCES, "_CoqProject", "Makefile"):
+        shutil.copy(FORMAL / name, tmp_path / name)
+    built = subprocess.run(
+        ["make", "-C", str(tmp_path)], capture_output=True, text=True, check=False
+    )
+    assert built.returncode == 0, built.stderr[-2000:]
+    printed = built.stdout.split("COQC Assumptions.v", 1)[1].split("make", 1)[0]
+    blocks = printed.split("Axioms:\n")[1:]
+    axioms = [set(re.findall(r"^([\w.]+)(?= :|$)", block, flags=re.MULTILINE)) for block in blocks]
+    assert dict(zip(ASSUMED, axioms, strict=True)) == ASSUMED
