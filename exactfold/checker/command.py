@@ -14,9 +14,9 @@ from os import PathLike
 from types import ModuleType
 from typing import Any
 
-from . import branch, compact, letters, listing, motion, motion_loops, panels
+from . import branch, compact, letters, listing, motion, motion_loops, panel_motion, panels
 from .compact_lines import lines
-from .formats import BRANCH, COMPACT, LETTERS, LISTING, LOOPS, MOST_LINE, MOTION
+from .formats import BRANCH, COMPACT, LETTERS, LISTING, LOOPS, MOST_LINE, MOTION, PANEL_MOTION
 from .reading import CertificateError, FormatError, UnfinishedError, plain, read_json
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
@@ -65,6 +65,8 @@ def _reader(data: dict[str, Any]) -> ModuleType:
         return letters
     if data.get("format") == MOTION:
         return motion
+    if data.get("format") == PANEL_MOTION:
+        return panel_motion
     if data.get("format") == LISTING and "kind" in data:
         return panels
     return listing
@@ -144,6 +146,8 @@ def summary(claims: dict[str, Any]) -> str:
         return motion_loops.summary(claims)
     if "halves" in claims:
         return letters.summary(claims)
+    if "drivers" in claims:
+        return panel_motion.summary(claims)
     if "tubes" in claims:
         return motion.summary(claims)
     return branch.summary(claims) if "gauge" in claims else listing.summary(claims)

@@ -53,7 +53,7 @@ def certificate_of_panels(result: Decomposition) -> Document:
         "format": LISTING,
         "version": PANELS_VERSION,
         "kind": PANELS,
-        "pattern": _pattern(pattern),
+        "pattern": panels_document(pattern),
         "claims": {
             "interior": len(pattern.interior),
             "border": len(pattern.border),
@@ -73,15 +73,18 @@ def certificate_of_panels(result: Decomposition) -> Document:
     }
 
 
-def _pattern(pattern: PanelPattern) -> Document:
-    def parts(value: Number) -> list[str]:
-        if isinstance(value, Surd):
-            return [format_rational(c) for c in value.coefficients]
-        return [format_rational(Fraction(value))]
+def number_parts(value: Number) -> list[str]:
+    """The coefficients of a number, as the checker reads them."""
+    if isinstance(value, Surd):
+        return [format_rational(c) for c in value.coefficients]
+    return [format_rational(Fraction(value))]
 
+
+def panels_document(pattern: PanelPattern) -> Document:
+    """Vertices and edges, exactly."""
     return {
         "radicands": [[format_rational(c) for c in r] for r in pattern.field.radicands],
-        "vertices": [[parts(x), parts(y)] for x, y in pattern.vertices],
+        "vertices": [[number_parts(x), number_parts(y)] for x, y in pattern.vertices],
         "edges": _pairs(pattern.edges),
     }
 

@@ -98,6 +98,7 @@ def without(message: str) -> Iterator[None]:
         names += "motion_contacts motion_equations motion_faces motion_loops motion_nodes "
         names += "motion_patches motion_paths motion_tubes reduced "
         names += "panel_components panel_cones panel_leaves panel_loops panel_modes "
+        names += "panel_cut panel_drive panel_motion panel_places "
         names += "panel_reduction panel_sheet panel_spaces panels "
         for name in (names + "reading sheet stress towers").split():
             patch.setattr(import_module(f"exactfold.checker.{name}"), "require", weaker)
