@@ -65,7 +65,7 @@ class PanelProof:
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     path = os.path.join(folder, "proof")
         ...     proof.write(path), summary(verify(path))[:44]
-        (True, 'VALID: the panels fold, driven by 0-4: 4 fol')
+        (True, 'VALID: the panels fold, 4 folds move of 4, d')
         """
         document = self.certificate()
         if document is None:
