@@ -14,7 +14,18 @@ from os import PathLike
 from types import ModuleType
 from typing import Any
 
-from . import branch, compact, letters, listing, motion, motion_loops, panel_letters, panels, pieces
+from . import (
+    branch,
+    compact,
+    letters,
+    listing,
+    motion,
+    motion_loops,
+    panel_letters,
+    panel_motion,
+    panels,
+    pieces,
+)
 from .compact_lines import lines
 from .formats import (
     BRANCH,
@@ -25,6 +36,7 @@ from .formats import (
     MOST_LINE,
     MOTION,
     PANEL_LETTERS,
+    PANEL_MOTION,
     PIECES,
 )
 from .reading import CertificateError, FormatError, UnfinishedError, plain, read_json
@@ -67,18 +79,22 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     return claims
 
 
+_READERS = {
+    BRANCH: branch,
+    LETTERS: letters,
+    MOTION: motion,
+    PANEL_LETTERS: panel_letters,
+    PANEL_MOTION: panel_motion,
+    PIECES: pieces,
+}
+"""The modules of formats that are a JSON object; `LISTING` has two more."""
+
+
 def _reader(data: dict[str, Any]) -> ModuleType:
     """The module that reads and checks a JSON object."""
-    if data.get("format") == BRANCH:
-        return branch
-    if data.get("format") == LETTERS:
-        return letters
-    if data.get("format") == PANEL_LETTERS:
-        return panel_letters
-    if data.get("format") == MOTION:
-        return motion
-    if data.get("format") == PIECES:
-        return pieces
+    found = _READERS.get(str(data.get("format")))
+    if found is not None:
+        return found
     if data.get("format") == LISTING and "kind" in data:
         return panels
     return listing
@@ -162,6 +178,8 @@ def summary(claims: dict[str, Any]) -> str:
         return letters.summary(claims)
     if "at_most" in claims:
         return pieces.summary(claims)
+    if "drivers" in claims:
+        return panel_motion.summary(claims)
     if "tubes" in claims:
         return motion.summary(claims)
     return branch.summary(claims) if "gauge" in claims else listing.summary(claims)

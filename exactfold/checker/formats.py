@@ -29,6 +29,9 @@ PANELS, PANELS_VERSION = "panels", 3
 MOTION, MOTION_VERSION = "exactfold motion", 1
 """The motion along a half-branch, as a chain of tubes (docs/motion.md)."""
 
+PANEL_MOTION, PANEL_MOTION_VERSION = "exactfold panel motion", 1
+"""A motion of rigid panels, and what touches first (docs/panel_motion.md)."""
+
 LOOPS, LOOPS_VERSION = "exactfold loops", 1
 """The loops of true motions through the flat state, line by line (docs/motions.md)."""
 

@@ -30,7 +30,8 @@ class Interval:
         return self + -other
 
     def __mul__(self, other: Interval) -> Interval:
-        ends = [a * b for a in (self.low, self.high) for b in (other.low, other.high)]
+        a, b, c, d = self.low, self.high, other.low, other.high
+        ends = (a * c, a * d, b * c, b * d)
         return Interval(min(ends) >> self.bits, -(-max(ends) >> self.bits), self.bits)
 
     def __truediv__(self, other: Interval) -> Interval:

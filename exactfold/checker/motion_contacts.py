@@ -39,7 +39,8 @@ class Faces(FacePairs):
             unit = Fraction(1 << 2 * GRID)
             folds[i, j] = left, right, ceil(closed * unit)
             self.means[i, j] = floor((closed + flat) / 2 * unit)
-        super().__init__(faces, faces, folds, flat_of(equations), equations.place, MOST_TESTS)
+        bodies, places = range(len(faces)), flat_of(equations)
+        super().__init__(faces, faces, bodies, folds, places, equations.place, MOST_TESTS)
 
     def closes(self, path: Path, first: Fraction, last: Fraction, fold: Edge) -> bool:
         """Whether a fold is closed between two parameters.

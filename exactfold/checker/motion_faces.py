@@ -38,14 +38,15 @@ rounded up, over 2^(2 GRID)."""
 class FacePairs:
     """All pairs of triangles of a sheet by what they share; those of one body are left out.
 
-    `names[k]` is what the face k is called, which faces of one body have in common. `flat` and
-    `place` as `boxes_on` takes them; `work` is how many tests may be made.
+    `bodies[k]` is the same for faces that move as one; `names[k]` is what the face k is called.
+    `flat` and `place` as `boxes_on` takes them; `work` is how many tests may be made.
     """
 
     def __init__(
         self,
         faces: Sequence[tuple[int, ...]],
         names: Sequence[tuple[int, ...]],
+        bodies: Sequence[int],
         folds: Mapping[Edge, Hinge],
         flat: dict[int, Vector],
         place: dict[int, int],
@@ -57,7 +58,7 @@ class FacePairs:
         self.corner: list[tuple[int, int]] = []
         for i, j in combinations(range(len(faces)), 2):
             shared = len(set(faces[i]) & set(faces[j]))
-            if shared < 2 and names[i] != names[j]:
+            if shared < 2 and bodies[i] != bodies[j]:
                 (self.corner if shared else self.apart).append((i, j))
         self.known: dict[tuple[int, int], Direction] = {}
 
@@ -68,6 +69,16 @@ class FacePairs:
 
     def clear(self, path: Curved, low: int, high: int, planar: bool = False) -> None:
         """Refuse unless no two faces touch for low <= x <= high beyond what they share."""
+        may = self.may_touch(path, low, high, _NARROWEST, planar)
+        require(not may, f"{may} may touch where the motion is claimed to be clear")
+
+    def may_touch(
+        self, path: Curved, low: int, high: int, narrowest: int, planar: bool = False
+    ) -> str:
+        """Two faces that are not shown to stay apart for low <= x <= high, in words; else nothing.
+
+        Where two are not parted the interval is halved, down to `narrowest`.
+        """
         boxes: dict[tuple[int, int], Boxes] = {}
 
         def on(a: int, b: int) -> Boxes:
@@ -91,12 +102,13 @@ class FacePairs:
                     self.spend(1)
                     if test(on(a, b), i, j, planar):
                         continue
-                    names = (i, j) if test == self._open else (self.names[i], self.names[j])
-                    what = "the faces at {}-{}" if test == self._open else "the faces {} and {}"
-                    may = what.format(*names) + " may touch where the motion is claimed to be clear"
-                    require(b - a > _NARROWEST, may)
+                    if b - a <= narrowest:
+                        names = (i, j) if test == self._open else (self.names[i], self.names[j])
+                        what = "the faces at {}-{}" if test == self._open else "the faces {} and {}"
+                        return what.format(*names)
                     middle = (a + b) >> 1
                     stack += [(middle, b), (a, middle)]
+        return ""
 
     def _apart(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
         """Whether a plane parts two faces: with the direction that did last, or a new one."""

@@ -27,6 +27,7 @@ from exactfold.wording import counted
 if TYPE_CHECKING:  # branches are followed without what panels need
     from exactfold.modes.result import Decomposition
     from exactfold.motion.panel_motion import PanelMotion
+    from exactfold.motion.panel_proving import PanelProof
     from exactfold.motion.proving import MotionProof
 
 
@@ -84,8 +85,7 @@ class Wanted:
             else:
                 motion = self._panels(opened, bar)
             proof = self._proof(motion, bar)
-            if proof is not None:
-                motion = proof.motion
+            motion = motion if proof is None else proof.motion
             bar("writing")
             written = self._written(motion, proof)
         if self.as_json:
@@ -162,11 +162,6 @@ class Wanted:
             "branches of triangulated sheets with four corners, and this sheet folds along modes "
             "of rigid panels: name them by --component or --modes",
         )
-        if self.certificate is not None:
-            raise UsageError(
-                "--certificate is for motions along branches of triangulated sheets with four "
-                "corners; `exactfold count --certificate` proves how panels fold"
-            )
         ways = decompose_opened(opened, progress=bar)
         if ways.warning is not None:
             say(f"warning: {ways.warning}")
@@ -185,9 +180,14 @@ class Wanted:
 
     # --- proof -----------------------------------------------------------------------------------
 
-    def _proof(self, motion: Motion | PanelMotion, bar: Bar) -> MotionProof | None:
-        if self.certificate is None or not isinstance(motion, Motion):
+    def _proof(self, motion: Motion | PanelMotion, bar: Bar) -> MotionProof | PanelProof | None:
+        if self.certificate is None:
             return None
+        if not isinstance(motion, Motion):
+            from exactfold.motion.panel_proving import prove_panels
+
+            bar("proving")
+            return prove_panels(motion)
         from exactfold.motion.proving import prove_persistently
 
         branch = motion.branch
@@ -195,7 +195,9 @@ class Wanted:
 
     # --- files -----------------------------------------------------------------------------------
 
-    def _written(self, motion: Motion | PanelMotion, proof: MotionProof | None) -> list[str]:
+    def _written(
+        self, motion: Motion | PanelMotion, proof: MotionProof | PanelProof | None
+    ) -> list[str]:
         from exactfold import report
 
         title, written = self._title or "", []

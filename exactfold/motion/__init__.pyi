@@ -25,6 +25,8 @@ from exactfold.motion.panel_clearance import PanelClearance as PanelClearance
 from exactfold.motion.panel_clearance import prove_contacts as prove_contacts
 from exactfold.motion.panel_following import follow_panels as follow_panels
 from exactfold.motion.panel_motion import PanelMotion as PanelMotion
+from exactfold.motion.panel_proving import PanelProof as PanelProof
+from exactfold.motion.panel_proving import prove_panels as prove_panels
 from exactfold.motion.piece import Ball as Ball
 from exactfold.motion.proving import MotionProof as MotionProof
 from exactfold.motion.proving import prove as prove

@@ -1,4 +1,4 @@
-"""The first contact of a motion of panels in proportion, enclosed in time."""
+"""The first contact of a motion of panels, enclosed in time."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ import numpy as np
 from flint import arb, ctx
 
 from exactfold.arrays import FloatArray, IndexArray
+from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import ball
 from exactfold.modes.stars import dot
 from exactfold.motion.events import CONTACT, FLAT_FOLD, Event
 from exactfold.motion.face_pairs import AnyPairs, Open
 from exactfold.motion.panel_contacts import PanelContacts
+from exactfold.motion.panel_curves import LinearCurve
 from exactfold.motion.panel_motion import PanelMotion
 from exactfold.motion.panel_pieces import PanelPieces
 from exactfold.motion.separation import Swept, clear_until, through
@@ -65,7 +67,7 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
     planes are found that stand between all panels (docs/contacts.md, Theorem 1). What touches is an
     edge that runs through a panel, or folds that close at time pi, where they all do.
 
-    Raises `NotApplicableError` for a motion that is followed in floats (`motion.closes`).
+    Raises `NotApplicableError` for a motion that is not proved to exist (`motion.exists`).
 
     >>> from exactfold.motion.panel_following import follow_panels
     >>> from exactfold.pattern.families import single_vertex
@@ -75,6 +77,8 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
     >>> found.status, found.event, found.clear >= motion.duration
     (<Verdict.PROVED: 'proved'>, None, True)
     """
+    if motion.exists is not PROVED:
+        raise NotApplicableError("the motion is not proved to exist, and so are no contacts")
     contacts = PanelContacts(motion.pattern)
     pieces = PanelPieces(motion)
     pairs = PanelPairs(contacts, pieces.unit)
@@ -111,6 +115,9 @@ def with_proved_contact(motion: PanelMotion) -> tuple[PanelMotion, PanelClearanc
     if found.status is not PROVED or event is None:
         return motion, found
     kept = [e for e in motion.events if e.kind != event.kind]
+    if event.kind == FLAT_FOLD:  # with the folds that close in floats
+        folds = next((e.folds for e in motion.events if e.kind == FLAT_FOLD), event.folds)
+        event = replace(event, folds=folds)
     events = tuple(sorted((event, *kept), key=lambda e: e.time))
     return replace(motion, events=events), found
 
@@ -198,6 +205,8 @@ def _crossing(
             break
         other = _crossed(contacts, pieces, middle)
         found, good, bad = (found, good, middle) if other is None else (other, middle, bad)
+    if not pieces.reach(clear, good):
+        return None
     faces = tuple(contacts.pattern.faces[panel] for panel in found)
     return Event(CONTACT, (clear, good), faces=faces, detail="an edge runs through a face")
 
@@ -218,14 +227,17 @@ def _crossed(contacts: PanelContacts, pieces: PanelPieces, time: float) -> tuple
 
 
 def _closing(motion: PanelMotion, clear: float) -> Event | None:
-    """That all folds of the modes and free folds of rate 1 are closed at time pi, exactly."""
+    """That all folds of linear modes and free folds of rate 1 are closed at time pi, exactly.
+
+    Of other modes some fold is closed by then, which is not named.
+    """
     if motion.duration < pi:
         return None
     folds: list[Iterable[tuple[int, int]]] = [
         curve.folds
         for curve, rate in zip(motion.curves, motion.rates, strict=True)
-        if abs(rate) == 1.0
+        if abs(rate) == 1.0 and isinstance(curve, LinearCurve)
     ]
     folds += [[fold] for fold, rate in motion.free_rates.items() if abs(rate) == 1.0]
     closed = tuple(sorted(fold for some in folds for fold in some))
-    return Event(FLAT_FOLD, (clear, nextafter(pi, inf)), folds=closed) if closed else None
+    return Event(FLAT_FOLD, (clear, nextafter(pi, inf)), folds=closed)

@@ -1,4 +1,4 @@
-"""A motion of panels in proportion as polynomials of its time, each with a proved error.
+"""A motion of panels as polynomials of its time, each with a proved error.
 
 At time t the half angle of a driver is t / 2 times its rate, and `tan(angle_e / 2) = g_e tan(...)`
 for every fold e of its mode, with the exact gain g_e. With S and C the sine and the cosine of the
@@ -7,9 +7,11 @@ driver's half angle the rotation at e has
     cos angle_e = (C^2 - g_e^2 S^2) / (C^2 + g_e^2 S^2),
     sin angle_e = 2 g_e S C / (C^2 + g_e^2 S^2),
 
-which are analytic for all t, also where the folds are closed. Arb computes the power series of all
-positions at the middle m of a stretch, and with a ball of all times of the stretch in the place of
-m the next coefficient, which by Taylor's theorem bounds what is left out.
+which are analytic for all t, also where the folds are closed. In modes that are not linear the
+tangents follow from each other by the transmissions at the vertices (`panel_passing`). Arb
+computes the power series of all positions at the middle m of a stretch, and with a ball of all
+times of the stretch in the place of m the next coefficient, which by Taylor's theorem bounds what
+is left out.
 """
 
 from __future__ import annotations
@@ -23,12 +25,13 @@ import numpy as np
 from flint import arb, arb_series, ctx
 
 from exactfold.arrays import FloatArray
-from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import ball
 from exactfold.modes.stars import dot
 from exactfold.motion.panel_curves import LinearCurve
 from exactfold.motion.panel_motion import PanelMotion
+from exactfold.motion.panel_passing import Passed, passes_of, spread
 from exactfold.motion.panel_places import Placing
+from exactfold.pattern.panel_pattern import Edge
 
 ORDER = 8
 _BITS = 128
@@ -60,7 +63,7 @@ class PanelPiece:
 
 @dataclass(frozen=True)
 class PanelPieces:
-    """The pieces of a motion of panels; for motions that close exactly (`PanelMotion.closes`)."""
+    """The pieces of a motion of panels that exists, by `PanelMotion.exists`."""
 
     motion: PanelMotion
 
@@ -85,23 +88,29 @@ class PanelPieces:
             ]
 
     @cached_property
-    def _gains(self) -> dict[int, tuple[arb | None, float]]:
-        """By fold: the gain, None for a free fold, and the rate of what drives it."""
-        motion, found = self.motion, dict[int, tuple[arb | None, float]]()
-        numbers = {fold: k for k, fold in enumerate(motion.pattern.folds)}
-        for curve, rate in zip(motion.curves, motion.rates, strict=True):
-            if not isinstance(curve, LinearCurve):
-                raise NotApplicableError(
-                    f"mode {curve.mode.number} is not linear in the half-angle tangents: its "
-                    "motion is followed in floats"
-                )
-            tangents = curve.exact_tangents(_BITS)
-            with ctx.workprec(_BITS):
-                unit = abs(tangents[curve.driver])
-                for fold, tangent in tangents.items():
-                    found[numbers[fold]] = tangent / unit, rate
-        found.update({numbers[fold]: (None, rate) for fold, rate in motion.free_rates.items()})
+    def _numbers(self) -> dict[Edge, int]:
+        return {fold: k for k, fold in enumerate(self.motion.pattern.folds)}
+
+    @cached_property
+    def _gains(self) -> list[dict[int, arb]]:
+        """Of each mode that is linear the gains by fold, from its driver; of others nothing."""
+        found: list[dict[int, arb]] = []
+        for curve in self.motion.curves:
+            found.append({})
+            if isinstance(curve, LinearCurve):
+                tangents = curve.exact_tangents(_BITS)
+                with ctx.workprec(_BITS):
+                    unit = abs(tangents[curve.driver])
+                    found[-1] = {self._numbers[e]: t / unit for e, t in tangents.items()}
         return found
+
+    @cached_property
+    def _passes(self) -> list[list[Passed]]:
+        """Of each mode that is not linear its transmissions, in the order of their use."""
+        return [
+            [] if isinstance(curve, LinearCurve) else passes_of(curve.mode, curve.driver, _BITS)
+            for curve in self.motion.curves
+        ]
 
     def between(self, low: float, high: float) -> Iterator[PanelPiece]:
         """Pieces from one time to another, of which each begins where the one before ends.
@@ -121,6 +130,18 @@ class PanelPieces:
             if low / (2 * width) % 1 == 0 and width < _WIDEST:
                 width *= 2
 
+    def reach(self, low: float, high: float) -> bool:
+        """Whether the motion is proved to go on from one time to another.
+
+        Modes that are not linear end where a fold is closed, and there are no pieces beyond.
+        """
+        if all(isinstance(curve, LinearCurve) for curve in self.motion.curves):
+            return True
+        last = low
+        for piece in self.between(low, high):
+            last = piece.middle + piece.half
+        return last >= high
+
     def around(self, time: float) -> PanelPiece | None:
         """A piece with exactly this time in its middle, that is narrow."""
         return self._about(time, _NARROWEST)
@@ -131,8 +152,11 @@ class PanelPieces:
 
     def _about(self, middle: float, half: float) -> PanelPiece | None:
         with ctx.workprec(_BITS), _capped():
-            here = self._positions(arb(middle))
-            there = self._positions(arb(middle, half))
+            try:
+                here = self._positions(arb(middle))
+                there = self._positions(arb(middle, half))
+            except ValueError:  # of python-flint, for a divisor that may be 0; or a closed fold
+                return None
             reach = arb(half)
             coefficients = np.zeros((ORDER + 1, len(here), 3))
             radius = np.zeros((len(here), 3))
@@ -156,7 +180,7 @@ class PanelPieces:
         placed: dict[int, tuple[Matrix, list[arb_series]]] = {
             self._placing.held: (still, [zero, zero, zero])
         }
-        rotations = {k: self._angle(time, *gain) for k, gain in self._gains.items()}
+        rotations = {k: _cosine_and_sine(c, s) for k, (c, s) in self._tangents(time).items()}
         for panel, before, fold, i, j in self._placing.steps:
             turned, moved = placed[before]
             if fold not in rotations:
@@ -182,17 +206,25 @@ class PanelPieces:
             raise ArithmeticError("a vertex without a place")
         return found
 
-    def _angle(self, time: arb, gain: arb | None, rate: float) -> tuple[arb_series, arb_series]:
-        """Cosine and sine of a fold angle."""
-        speed = arb(rate)
-        if gain is None:
-            whole = arb_series([time * speed, speed], _CAP)
-            return whole.cos(), whole.sin()
-        half = arb_series([time * speed / 2, speed / 2], _CAP)
-        c, s = half.cos(), half.sin() * gain
-        cc, ss = c * c, s * s
-        squared = cc + ss
-        return (cc - ss) / squared, 2 * s * c / squared
+    def _tangents(self, time: arb) -> dict[int, tuple[arb_series, arb_series]]:
+        """By fold (c, s) with s / c = tan(angle / 2)."""
+        motion, found = self.motion, dict[int, tuple[arb_series, arb_series]]()
+
+        def driven(rate: float) -> tuple[arb_series, arb_series]:
+            half = arb_series([time * arb(rate) / 2, arb(rate) / 2], _CAP)
+            return half.cos(), half.sin()
+
+        parts = zip(motion.curves, motion.rates, self._gains, self._passes, strict=True)
+        for curve, rate, gains, passes in parts:
+            c, s = driven(rate)
+            found.update({k: (c, s * gain) for k, gain in gains.items()})
+            if not gains:
+                s = s if curve.mode.letters[curve.driver] == "V" else -s
+                pairs = spread(passes, curve.driver, (c, s))
+                found.update({self._numbers[fold]: pair for fold, pair in pairs.items()})
+        for fold, rate in motion.free_rates.items():
+            found[self._numbers[fold]] = driven(rate)
+        return found
 
     def _spin(self, cosine: arb_series, sine: arb_series, i: int, j: int) -> Matrix:
         """The rotation about the fold from i to j (Rodrigues)."""
@@ -216,6 +248,13 @@ class _capped:  # noqa: N801
 
     def __exit__(self, *_: object) -> None:
         ctx.cap = self.before
+
+
+def _cosine_and_sine(c: arb_series, s: arb_series) -> tuple[arb_series, arb_series]:
+    """Of an angle, where s / c is the tangent of its half."""
+    cc, ss = c * c, s * s
+    squared = cc + ss
+    return (cc - ss) / squared, 2 * s * c / squared
 
 
 def _constant(value: arb) -> arb_series:

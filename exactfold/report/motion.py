@@ -29,6 +29,7 @@ from exactfold.wording import counted
 if TYPE_CHECKING:
     from exactfold.motion.in_motion import SheetInMotion
     from exactfold.motion.panel_motion import PanelMotion
+    from exactfold.motion.panel_proving import PanelProof
     from exactfold.motion.proving import MotionProof
     from exactfold.pattern.crease_pattern import Edge
 
@@ -39,7 +40,9 @@ _CORNERS: Final = 8
 
 
 def motion_report(
-    motion: Motion | PanelMotion, written: Sequence[str] = (), proof: MotionProof | None = None
+    motion: Motion | PanelMotion,
+    written: Sequence[str] = (),
+    proof: MotionProof | PanelProof | None = None,
 ) -> Group:
     """A motion: what it goes along, where it ends and why, its events, and what was written.
 
@@ -84,10 +87,12 @@ def _mode_rows(motion: PanelMotion) -> list[tuple[str, RenderableType]]:
     return [("component", cut(f"{motion.component} ({motion.name})"))]
 
 
-def _proof(proof: MotionProof) -> RenderableType:
+def _proof(proof: MotionProof | PanelProof) -> RenderableType:
     """What is proved of a motion, in a sentence or two."""
     if proof.status is not PROVED:
         return Text.assemble(status_text(proof.status), f": {proof.reason}")
+    if not isinstance(proof.motion, Motion):
+        return _proof_of_panels(proof)
     parts = [f": one curve without a gap, {counted(proof.tubes, 'tube')}"]
     for text in filter(None, (proof.through_text, proof.end_text)):
         parts[0] += f", {text}"
@@ -97,12 +102,26 @@ def _proof(proof: MotionProof) -> RenderableType:
     elif proof.clear_to_the_end:
         parts.append(f"no two faces touch {'before it, nor at it' if proof.end_text else 'on it'}")
     elif contact is not None and contact.event is not None:
-        low, high = contact.event.time
-        after = ", where the motion goes on" if proof.passed else ""
-        parts.append(f"the first contact is between the times {low:.8g} and {high:.8g}{after}")
+        parts.append(_enclosed(contact.event, passed=proof.passed))
     elif proof.loop is not None:
         parts.append(f"it comes back along {proof.loop.target}")
     return Text.assemble(status_text(proof.status), "; ".join(parts))
+
+
+def _proof_of_panels(proof: PanelProof) -> RenderableType:
+    """The same of panels."""
+    touching = "no two panels touch on it"
+    if proof.contacts is not None and proof.contacts.event is not None:
+        touching = _enclosed(proof.contacts.event, passed=proof.passed)
+    return Text.assemble(status_text(PROVED), f": {proof.motion.reason}; {touching}")
+
+
+def _enclosed(event: Event, *, passed: bool) -> str:
+    """Between which times a first contact is, with so many digits that they differ."""
+    low, high = event.time
+    digits = next((n for n in range(8, 17) if f"{low:.{n}g}" != f"{high:.{n}g}"), 17)
+    after = ", where the motion goes on" if passed else ""
+    return f"the first contact is between the times {low:.{digits}g} and {high:.{digits}g}{after}"
 
 
 def _proved(motion: Motion | PanelMotion) -> RenderableType:
@@ -113,7 +132,9 @@ def _proved(motion: Motion | PanelMotion) -> RenderableType:
     if motion.closes is not PROVED:
         said = ": it exists until a fold is at 180 degrees; its angles and contacts are floats"
         return Text.assemble(status_text(PROVED), said)
-    return Text.assemble(status_text(PROVED), f": {motion.reason}; contacts are not")
+    return Text.assemble(
+        status_text(PROVED), f": {motion.reason}; contacts are not (--certificate proves them)"
+    )
 
 
 def ending_text(motion: SheetInMotion) -> str:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
+from math import pi
 
 import pytest
 from drawings import SQUARE, as_cp
@@ -346,12 +348,24 @@ def test_a_certificate_proves_the_motion_and_its_contact(tmp_path):
     assert run("check", str(path)).stdout.startswith("VALID: the motion along the half-branch +-")
 
 
-def test_what_has_no_certificate_is_said(tmp_path):
+def test_a_certificate_of_panels_proves_their_first_contact(tmp_path):
     path = tmp_path / "proof.json"
-    panels = run("fold", "zigzags", "--certificate", str(path))
-    assert panels.exit_code == USAGE
-    assert "along branches" in panels.stderr
-    assert not path.exists()
+    how = ("fold", "zigzags", "--component", 3, "--frames", 2, "--certificate", str(path))
+    result = run(*how, "--json")
+    assert result.exit_code == 0
+    found = json.loads(result.stdout)
+    Draft202012Validator(schema("motion")).validate(found)
+    [event] = found["events"]
+    assert found["proof"]["contact"] == event
+    assert event["time"][0] == found["proof"]["clear"] < 2 * pi / 3 < event["time"][1]
+    assert found["written"] == [str(path)]
+    checked = run("check", str(path), "--json")
+    assert checked.exit_code == 0
+    claims = json.loads(checked.stdout)["claims"]
+    low, high = (Fraction(time) for time in claims["contact"]["time"])
+    assert low < Fraction(2 * pi / 3) < high < low + Fraction(1, 10**5)
+    said = " ".join(run(*how).stdout.split())
+    assert "PROVED: all vertices close exactly at all fold angles; the first contact is" in said
 
 
 def test_the_certificate_of_a_return_is_a_loop(tmp_path):

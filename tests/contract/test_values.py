@@ -70,6 +70,9 @@ PROVING = {
     "clearance of panels": exactfold.motion.prove_contacts(
         exactfold.motion.follow_panels(FLAT_FOLDABLE, until="20deg", frames=2)
     ),
+    "proof of panels": exactfold.motion.prove_panels(
+        exactfold.motion.follow_panels(FLAT_FOLDABLE, until="20deg", frames=2)
+    ),
     "component of panels": exactfold.motion.panel_components(FLAT_FOLDABLE)[0],
     "mode of panels": exactfold.motion.panel_modes(FLAT_FOLDABLE)[0],
     "track": TRACK,

@@ -10,7 +10,7 @@ from math import acos, atan, pi
 import numpy as np
 import pytest
 from flint import arb, ctx, fmpq
-from panel_sheets import grid, mesh, miura
+from panel_sheets import grid, mesh, miura, tiling
 
 from exactfold import count_ways
 from exactfold.errors import NotApplicableError
@@ -18,6 +18,7 @@ from exactfold.exact.surds import ball
 from exactfold.motion import follow_panels, prove_contacts
 from exactfold.motion.panel_clearance import PanelPairs, with_proved_contact
 from exactfold.motion.panel_contacts import PanelContacts
+from exactfold.motion.panel_curves import FollowedCurve
 from exactfold.motion.panel_pieces import PanelPieces
 from exactfold.verdict import PROVED, UNDECIDED
 
@@ -154,11 +155,37 @@ def test_the_event_of_a_motion_is_replaced_by_the_proved_one():
     assert with_proved_contact(clear)[0] is clear
 
 
-def test_a_motion_in_floats_is_refused():
-    motion = follow_panels(count_ways("zigzags"), component=1, frames=2)
-    with pytest.raises(NotApplicableError, match="followed in floats"):
-        prove_contacts(motion)
-    assert follow_panels(mesh(1, 1, seed=1), frames=2).closes is UNDECIDED
+def test_a_motion_that_is_not_proved_to_exist_is_refused():
+    motion = follow_panels(mesh(1, 1, seed=1), until="10deg", frames=2)
+    assert (motion.closes, motion.exists) == (UNDECIDED, PROVED)
+    [curve] = motion.curves
+    mode = replace(curve.mode, extends=replace(curve.mode.extends, verdict=UNDECIDED))
+    unknown = replace(motion, curves=(FollowedCurve(mode),))
+    with pytest.raises(NotApplicableError, match="not proved to exist"):
+        prove_contacts(unknown)
+
+
+@pytest.mark.parametrize("sheet", [mesh(1, 1, seed=1), tiling(2, 2)])
+def test_pieces_of_modes_that_are_not_linear_hold_the_positions_in_floats(sheet):
+    """These come from other formulas of the roots, and are placed as matrices of floats."""
+    motion = follow_panels(sheet, until="60deg", frames=7)
+    assert motion.closes is UNDECIDED
+    pieces = PanelPieces(motion)
+    corner = np.array([float(c) for c in sheet.vertices[motion.pinned[0]]] + [0.0])
+    for time, coords in zip(motion.times[1:].tolist(), motion.coords[1:], strict=True):
+        piece = pieces.around(time)
+        assert abs(piece.coefficients[0] * piece.unit + corner - coords).max() < 1e-12
+
+
+def test_a_mode_that_is_not_linear_is_clear_until_its_first_fold_closes():
+    motion = follow_panels(mesh(1, 1, seed=1), frames=2)
+    proved, found = with_proved_contact(motion)
+    assert (found.status, found.event.kind) == (PROVED, "flat-fold")
+    assert pi - 1e-3 < found.clear < pi
+    assert found.event.folds == ()  # some fold is closed by then; floats say which
+    [event] = [event for event in proved.events if event.kind == "flat-fold"]
+    assert (event.time, event.folds) == (found.event.time, motion.drivers)
+    assert not PanelPieces(motion).reach(3.0, 3.15)
 
 
 def test_strips_that_fold_up_together_meet_at_120_degrees():

@@ -1,0 +1,159 @@
+"""A motion of panels and its first contact in a certificate (docs/panel_motion.md, 6)."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil, cos, floor, sin
+
+from exactfold.checker.formats import PANEL_MOTION, PANEL_MOTION_VERSION
+from exactfold.checker.panel_motion import time_of
+from exactfold.errors import NotApplicableError
+from exactfold.evidence.entries import Document
+from exactfold.evidence.panels import number_document, panels_document
+from exactfold.exact.numbers import format_rational
+from exactfold.exact.surds import Number, Surd, SurdField, simple
+from exactfold.modes.densities import split
+from exactfold.modes.local import LocalMode
+from exactfold.motion.events import CONTACT
+from exactfold.motion.panel_clearance import PanelClearance
+from exactfold.motion.panel_motion import PanelMotion
+from exactfold.pattern.panel_pattern import Edge
+
+_PARAMETER_BITS = 40
+_PLACES = 44
+"""Binary places of times."""
+
+
+def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -> Document:
+    """The motion and what is proved of its contacts as a JSON object for `exactfold.checker`.
+
+    It claims that the panels fold so, and a time before which none touch; and by when some do, if
+    that is proved. Times are those of `contacts` with a little room.
+
+    Raises `NotApplicableError` where the rates of modes and free folds differ in size, or a vertex
+    needs more than one square root beside those of the coordinates.
+
+    >>> from exactfold import checker
+    >>> from exactfold.motion.panel_clearance import prove_contacts
+    >>> from exactfold.motion.panel_following import follow_panels
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> motion = follow_panels(panels(single_vertex(4)), until="90deg", frames=2)
+    >>> checker.check(certificate_of_panel_motion(motion, prove_contacts(motion)))["drivers"]
+    [[0, 4]]
+    """
+    if any(abs(rate) != 1.0 for rate in (*motion.rates, *motion.free_rates.values())):
+        raise NotApplicableError(
+            "a certificate is for modes and free folds that all have the same rate"
+        )
+    pattern = motion.pattern
+    letters = motion.assignment
+    drivers = [*motion.drivers, *motion.free_rates]
+    last = _at_most(contacts.clear)
+    if contacts.clear >= motion.duration:
+        last = _at_least(motion.duration)
+        clear = min(Fraction(motion.duration), time_of(last)[0])
+    else:
+        clear = _rounded(time_of(last)[0], -1)
+    document: Document = {
+        "format": PANEL_MOTION,
+        "version": PANEL_MOTION_VERSION,
+        "pattern": panels_document(pattern),
+        "claims": {
+            "assignment": "".join(letters[fold] for fold in pattern.folds),
+            "drivers": [list(fold) for fold in drivers],
+            "clear": format_rational(clear),
+        },
+        "evidence": {
+            "vertices": [
+                _vertex(pattern.field, mode, folds)
+                for curve in motion.curves
+                for mode, folds in zip(curve.mode.choice, curve.mode.vertices, strict=True)
+            ],
+            "clear": _in_places(last),
+        },
+    }
+    event = contacts.event
+    if event is None:
+        return document
+    end = Fraction(1)
+    if event.kind == CONTACT:
+        end = _at_least(event.time[1])
+        document["evidence"]["contact"] = _in_places(end)
+    document["claims"]["contact"] = {
+        "kind": event.kind,
+        "time": [format_rational(clear), format_rational(_rounded(time_of(end)[1], 1))],
+        "faces": [list(face) for face in event.faces],
+        "folds": [list(fold) for fold in event.folds],
+    }
+    return document
+
+
+def _vertex(field: SurdField, mode: LocalMode, v: int) -> Document:
+    """The densities of the active folds at a vertex, in the field of the sheet or one root more."""
+    radicand, values = _in_field(field, mode.values)
+    return {
+        "vertex": v,
+        "radicand": None if radicand is None else number_document(radicand, radicand.field),
+        "densities": [
+            [_other(fold, v), number_document(value, value.field)]
+            for fold, value in zip(mode.folds, values, strict=True)
+        ],
+    }
+
+
+def _in_field(field: SurdField, values: tuple[Number, ...]) -> tuple[Surd | None, list[Surd]]:
+    """Numbers in a field, or in it with the root of a number that is returned."""
+    found: list[Surd | tuple[Surd, Surd]] = []
+    radicand: Surd | None = None
+    for value in map(simple, values):
+        if not isinstance(value, Surd) or _extends(field, value.field):
+            found.append(field.number(value))
+            continue
+        square, low, high = split(value)
+        if not _extends(field, square.field) or radicand not in (None, field.number(square)):
+            raise NotApplicableError("a vertex needs more than one square root of its own")
+        radicand = field.number(square)
+        found.append((field.number(low), field.number(high)))
+    if radicand is None:
+        return None, [value for value in found if isinstance(value, Surd)]
+    root = field.square_root(radicand)
+    above = field if root is not None else field.adjoined(radicand)
+    root = above.square_root(radicand)
+    if root is None:
+        raise ArithmeticError("no root in the field made for it")
+    pairs = (value if isinstance(value, tuple) else (value, 0) for value in found)
+    numbers = [above.number(low + root * high) for low, high in pairs]
+    return None if above is field else radicand, numbers
+
+
+def _extends(field: SurdField, below: SurdField) -> bool:
+    return field.radicands[: len(below.radicands)] == below.radicands
+
+
+def _other(fold: Edge, v: int) -> int:
+    return sum(fold) - v
+
+
+def _at_most(time: float) -> Fraction:
+    """A parameter x / (1 - x) = tan(time / 2), not above it and with few digits."""
+    return Fraction(floor(_parameter(time) * 2.0**_PARAMETER_BITS) - 1, 1 << _PARAMETER_BITS)
+
+
+def _at_least(time: float) -> Fraction:
+    return Fraction(ceil(_parameter(time) * 2.0**_PARAMETER_BITS) + 1, 1 << _PARAMETER_BITS)
+
+
+def _parameter(time: float) -> float:
+    s, c = sin(time / 2), cos(time / 2)
+    return s / (s + c)
+
+
+def _in_places(x: Fraction) -> int:
+    return int(x * (1 << _PARAMETER_BITS))
+
+
+def _rounded(value: Fraction, direction: int) -> Fraction:
+    """A number near another with few digits, below (-1) or above it (1)."""
+    scaled = value * (1 << _PLACES)
+    return Fraction(floor(scaled) if direction < 0 else ceil(scaled), 1 << _PLACES)
