@@ -10,11 +10,14 @@ import pytest
 from jsonschema import Draft202012Validator
 from panel_sheets import tiling
 from running import run
+from scipy.optimize import linprog
 
 import exactfold
-from exactfold.assignment import PanelRefutation, match_panels
+from exactfold import checker
+from exactfold.assignment import PanelRefutation, match_certificate, match_panels
 from exactfold.assignment.first_order_program import FirstOrderProgram
 from exactfold.assignment.regular_motion import _System, regular_motion
+from exactfold.assignment.together import going_together
 from exactfold.assignment.vertex_reasons import vertex_reason
 from exactfold.errors import UsageError
 from exactfold.modes import decompose
@@ -201,6 +204,42 @@ def test_larger_stars_are_proved_near_a_candidate_and_not_elsewhere():
     assert regular_motion(moving, off) is None
 
 
+def test_certificates_of_random_letters_verify():
+    pattern, rng = tiling(2, 1), random.Random(2)
+    answers = set()
+    for number in range(10):
+        letters = "".join(rng.choice("MV" if number % 2 else "MVVU") for _ in pattern.folds)
+        found = match_panels(pattern, letters)
+        claims = checker.check(checker.load(json.dumps(match_certificate(found))))
+        assert (claims["starts"], claims["truly"]) == (str(found.starts), str(found.truly))
+        answers.add(claims["starts"])
+        if found.starts is REFUTED:
+            first = found.first_order
+            named = {*first.together, *first.never, *first.undecided}
+            assert named == {fold for fold, x in found.letters.items() if x in "MV"}
+            assert [list(fold) for fold in first.never] == claims["never"]
+    assert answers == {"proved", "refuted"}
+
+
+@pytest.mark.parametrize(("seed", "count"), [(0, 8), (1, 0), (6, 5)])
+def test_folds_that_never_fold_are_those_that_no_program_moves(seed, count):
+    """Against one linear program for each fold."""
+    pattern, rng = tiling(2, 2), random.Random(seed)
+    letters = {fold: rng.choice("MV") for fold in pattern.folds}
+    moving = stars(pattern)
+    found = going_together(moving, letters)
+    assert (len(found.together), found.undecided) == (count, ())
+    program = FirstOrderProgram(moving, letters)
+    sides = {"V": (0, 1), "M": (-1, 0)}
+    for k, fold in enumerate(program.folds):
+        goal = np.zeros(len(program.folds))
+        goal[k] = -1 if letters[fold] == "V" else 1
+        bounds = [sides[letters[e]] for e in program.folds]
+        zero = np.zeros(program.matrix.shape[0])
+        best = linprog(goal, A_eq=program.matrix, b_eq=zero, bounds=bounds, method="highs")
+        assert (-best.fun > 1e-9) == (fold in found.together)
+
+
 def test_what_the_programs_propose_for_some_of_the_folds():
     found = match_panels("square-twist")
     program = FirstOrderProgram(stars(found.pattern), found.letters)
@@ -219,7 +258,7 @@ def test_letters_that_do_not_fit_are_refused(letters):
         match_panels("square-twist", letters)
 
 
-def test_the_command_says_whether_panels_start_to_fold():
+def test_the_command_says_whether_panels_start_to_fold(tmp_path):
     schema = Draft202012Validator(exactfold.schema("starting"))
     for name, starts, code in (("bird-base", "proved", 0), ("square-twist", "refuted", 1)):
         done = run("match", name, "--json")
@@ -227,7 +266,11 @@ def test_the_command_says_whether_panels_start_to_fold():
         schema.validate(data)
         assert (data["starts"], data["status"], done.exit_code) == (starts, "proved", code)
         assert len(data["matches"]) == (starts == "proved")
-    words = run("match", "square-twist").stdout
+    assert (data["together"], len(data["never"])) == ([], 12)
+    proof = tmp_path / "proof.json"
+    words = run("match", "square-twist", "--certificate", proof).stdout
+    assert checker.verify(proof)["starts"] == "refuted"
+    assert "- 12 never fold: 4-5, 4-7" in words
     assert "does not start to fold" in words
     assert "4, 5, 6, 7" in words
     assert "even at the first instant" in words.replace("\n", " ")
