@@ -23,10 +23,11 @@ def test_there_are_certificates_of_every_kind() -> None:
         "compact",
         "branch",
         "panels",
+        "panelmotion",
         "loops",
         "letters",
     }
-    assert len(FILES) == 78
+    assert len(FILES) == 80
 
 
 @pytest.mark.parametrize("name", FILES)
