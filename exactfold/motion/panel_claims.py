@@ -20,6 +20,8 @@ from exactfold.motion.panel_motion import PanelMotion
 from exactfold.pattern.panel_pattern import Edge
 
 _PARAMETER_BITS = 40
+_SLACK = Fraction(1, 1 << 22)
+"""Of the parameter, before what is not proved: the checker has coarser directions of planes."""
 _PLACES = 44
 """Binary places of times."""
 
@@ -49,7 +51,7 @@ def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -
     pattern = motion.pattern
     letters = motion.assignment
     drivers = [*motion.drivers, *motion.free_rates]
-    last = _at_most(contacts.clear)
+    last = max(_at_most(contacts.clear) - _SLACK, Fraction(0))
     if contacts.clear >= motion.duration:
         last = _at_least(motion.duration)
         clear = min(Fraction(motion.duration), time_of(last)[0])

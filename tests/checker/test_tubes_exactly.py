@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import pytest
 from forge import given_lines
 
-from exactfold.checker import motion_boxes, motion_contacts, motion_tubes
+from exactfold.checker import motion_boxes, motion_contacts, motion_faces, motion_tubes
 from exactfold.checker.motion_bounds import Bounds
 from exactfold.checker.motion_contacts import Faces
 from exactfold.checker.motion_equations import LengthEquations, at
@@ -614,7 +614,8 @@ def test_when_a_fold_is_closed() -> None:
     sheet = equations()
     faces = Faces(sheet)
     assert sorted(faces.folds) == sorted(sheet.sheet.folds)
-    for fold, (left, right, closed, mean) in faces.folds.items():
+    for fold, (left, right, closed) in faces.folds.items():
+        mean = faces.means[fold]
         near, far = (x * 4**GRID for x in motion_contacts.folded_over(sheet, fold, left, right))
         assert 0 <= closed - near < 1
         assert 0 <= (near + far) / 2 - mean < 1
@@ -627,11 +628,12 @@ def faces_for(accepted: Any, pairs: str) -> tuple[Faces, dict[str, list[tuple[in
 
     class Told(Faces):
         def __init__(self) -> None:
-            self.faces, self.work, self.flat = [(0, 1, 2), (3, 4, 5)], 10**6, {}
+            self.faces = self.names = [(0, 1, 2), (3, 4, 5)]
+            self.work, self.flat = 10**6, {}
             self.place = {}
             self.apart = [(0, 1)] if "apart" in pairs else []
             self.corner = [(0, 1)] if "corner" in pairs else []
-            self.folds = {(7, 8): (0, 0, 0, 0)} if "open" in pairs else {}
+            self.folds = {(7, 8): (0, 0, 0)} if "open" in pairs else {}
 
         def told(self, key: str, boxes: Any, planar: bool) -> bool:
             a, b, plane = boxes
@@ -657,7 +659,7 @@ def faces_for(accepted: Any, pairs: str) -> tuple[Faces, dict[str, list[tuple[in
 def plain_boxes(monkeypatch: pytest.MonkeyPatch) -> None:
     """The boxes of a stretch are its ends."""
     monkeypatch.setattr(
-        motion_contacts,
+        motion_faces,
         "boxes_on",
         lambda path, flat, place, low, high, planar: (low, high, planar),
     )
@@ -670,7 +672,7 @@ def test_every_moment_of_a_stretch_is_looked_at(
     planar: bool, kept: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The stretches that are accepted follow each other from the first moment to the last."""
-    monkeypatch.setattr(motion_contacts, "_KEPT", kept)
+    monkeypatch.setattr(motion_faces, "_KEPT", kept)
     rng = random.Random(6)
     path: Any = None
     for _ in range(20):

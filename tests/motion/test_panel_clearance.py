@@ -12,10 +12,10 @@ import pytest
 from flint import arb, ctx, fmpq
 from panel_sheets import grid, mesh, miura, tiling
 
-from exactfold import count_ways
+from exactfold import checker, count_ways
 from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import ball
-from exactfold.motion import follow_panels, prove_contacts
+from exactfold.motion import follow_panels, prove_contacts, prove_panels
 from exactfold.motion.panel_clearance import PanelPairs, with_proved_contact
 from exactfold.motion.panel_contacts import PanelContacts
 from exactfold.motion.panel_curves import FollowedCurve
@@ -197,6 +197,15 @@ def test_strips_that_fold_up_together_meet_at_120_degrees():
     assert low < 2 * pi / 3 < high < low + 1e-6
     [contact] = [event for event in motion.events if event.kind == "contact"]
     assert low <= contact.time[1] <= high
+
+
+def test_one_fold_is_claimed_clear_as_far_as_the_checker_sees():
+    """Near pi its panels are parted by planes that the checker does not know so finely."""
+    proof = prove_panels(follow_panels(strip([2, 3]), frames=2))
+    assert (proof.status, proof.contacts.event.kind) == (PROVED, "flat-fold")
+    low, high = map(Fraction, checker.check(proof.certificate())["contact"]["time"])
+    assert pi - 1e-6 < low < pi < high < low + Fraction(1, 10**6)
+    assert low < proof.contacts.clear
 
 
 @pytest.mark.slow
