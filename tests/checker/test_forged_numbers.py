@@ -77,9 +77,13 @@ def test_what_is_no_integer_is_refused(other: Any) -> None:
         (("evidence", "pinned", 1), "pinned vertex"),
     ):
         refused(changed(place, other), f"{what} is not a natural number")
-    for place in ((*FIRST, "centre", 1), (*CENTRE, 0), ("evidence", "tubes", 0, "row", 3)):
+    for place in (
+        (*FIRST, "centre", 1),
+        (*CENTRE, 0),
+        ("evidence", "tubes", 0, "row", 3),
+        ("evidence", "tubes", 1, "exit"),
+    ):
         refused(changed(place, other), f"{other!a} is not an integer")
-    refused(changed(("evidence", "tubes", 1, "exit"), other), "exit is not a natural number")
     for key in ("tau", "halvings"):
         forged = given_lines(ONE)
         forged[1]["evidence"]["landing"][key] = other
@@ -95,9 +99,10 @@ def test_negative_numbers_are_refused() -> None:
         ((*FIRST, "halvings"), "halvings"),
         ((*FIRST, "reach"), "reach"),
         (("evidence", "tubes", 0, "reach"), "reach"),
-        (("evidence", "tubes", 1, "exit"), "exit"),
     ):
         refused(changed(place, -1), f"{what} is not a natural number")
+    backwards = changed(("evidence", "tubes", 1, "exit"), -1)
+    refused(backwards, "a motion leaves a tube before it enters")
 
 
 @pytest.mark.parametrize(
