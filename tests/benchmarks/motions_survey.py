@@ -6,8 +6,8 @@ Of `random_square(n, seed)` for the seeds of a range: all loops and the arcs on 
 `find_loops`, and the certificate, verified by the stand-alone checker. Columns: `sheets`; `proved`
 matchings and `graphs`; `loops`, those `open`, and those `through` nodes; `nodes` and `arcs` of the
 graphs, and `closed` curves that do not come to the flat state; `valid` certificates and those that
-are `complete`; processor seconds of the proofs and of the `checks`. What is not proved is listed
-above the table with its reason.
+are `complete`; processor seconds of the proofs and of the `checks`. Every sheet has a line above
+the table, and what is not proved one with its reason.
 """
 
 from __future__ import annotations
@@ -57,6 +57,8 @@ def surveyed(n: int, seed: int, folder: Path) -> Counter[str]:
     for reason, times in Counter(filter(None, reasons)).items():
         print(f"random_square({n}, seed={seed}): {reason} ({times})", flush=True)
     file.unlink()
+    facts = ", ".join(f"{name} {total[name]}" for name in (*COLUMNS[1:-2], "ms", "check ms"))
+    print(f"random_square({n}, seed={seed}): {facts}", flush=True)
     return total
 
 
