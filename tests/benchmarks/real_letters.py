@@ -2,20 +2,23 @@
 
 python tests/benchmarks/real_letters.py FOLDER [--only TEXT]
 
-Each file has 60 seconds of processor time. The last tables are those of docs/assignment.md.
+Each file has 60 seconds of processor time. The certificates of answers are written and verified by
+the stand-alone checker, in time of their own. The last tables are those of docs/assignment.md.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import signal
 import time
 from collections import Counter
 from pathlib import Path
 
-from exactfold.assignment import PanelMatch, match_panels
+from exactfold import checker
+from exactfold.assignment import PanelMatch, match_certificate, match_panels
 from exactfold.drawing.read import READERS
-from exactfold.errors import ExactfoldError
+from exactfold.errors import ExactfoldError, NotApplicableError
 from exactfold.pattern.opening import open_pattern
 from exactfold.verdict import PROVED, REFUTED
 
@@ -71,6 +74,18 @@ def answered(path: Path) -> tuple[str, PanelMatch | None]:
         signal.setitimer(signal.ITIMER_PROF, 0)
 
 
+def certified(found: PanelMatch) -> str:
+    """Whether the certificate of an answer is verified, with all that was found."""
+    try:
+        claims = checker.check(checker.load(json.dumps(match_certificate(found))))
+    except NotApplicableError:
+        return "none"
+    except checker.CertificateError as error:
+        return f"refused: {error}"
+    said = (claims["starts"], claims["truly"])
+    return "verified" if said == (str(found.starts), str(found.truly)) else "verified in part"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
@@ -83,6 +98,8 @@ def main() -> None:
     signal.signal(signal.SIGPROF, stop)
     kinds: Counter[str] = Counter()
     causes: Counter[str] = Counter()
+    proofs: Counter[str] = Counter()
+    split: Counter[str] = Counter()
     for path in sorted(arguments.folder.rglob("*")):
         ending = path.suffix.lower().removeprefix(".")
         if ending not in READERS or not path.is_file() or arguments.only not in str(path):
@@ -95,6 +112,14 @@ def main() -> None:
         said = ""
         if found is not None:
             causes.update(filter(None, [why(found)]))
+            proofs[certified(found)] += 1
+            first = found.first_order
+            if first is not None and first.undecided:
+                split["undecided in part"] += 1
+            elif first is not None:
+                split["all"] += not first.never
+                split["some"] += bool(first.never and first.together)
+                split["none"] += not first.together
             said = found.reasons[0] if found.reasons else ""
         print(f"{time.process_time() - began:5.1f} s  {kind}  {path.name}: {said}", flush=True)
     print(f"\n| answer | files ({sum(kinds.values())}) |\n|---|---:|")
@@ -103,6 +128,10 @@ def main() -> None:
     print("\n| refuted by | files |\n|---|---:|")
     for cause, number in causes.most_common():
         print(f"| {cause} | {number} |")
+    for title, table in (("certificate", proofs), ("together to first order", split)):
+        print(f"\n| {title} | files |\n|---|---:|")
+        for name, number in table.most_common():
+            print(f"| {name} | {number} |")
 
 
 if __name__ == "__main__":
