@@ -184,7 +184,7 @@ def _face(face: Sequence[int]) -> str:
 
 def _largest(motion: SheetInMotion) -> str:
     angles, folds = motion.largest_angles, motion.pattern.folds
-    order = np.argsort(-np.abs(angles), kind="stable")[:_LARGEST]
+    order = np.argsort(-np.round(np.abs(angles), 6), kind="stable")[:_LARGEST]  # ties by fold
     shown = ", ".join(f"{folds[k][0]}-{folds[k][1]} {angles[k]:.4g}" for k in order)
     more = "" if len(folds) <= _LARGEST else ", ..."
     return f"{shown}{more} degrees"
