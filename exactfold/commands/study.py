@@ -161,12 +161,12 @@ class Wanted:
             if path is not None:
                 checked_target(path, (ending,), "this output")
                 apart(path, self._journal, *(other for other in self._files if other is not path))
+        if self.figures is not None and self.figures.exists() and not self.figures.is_dir():
+            raise UsageError(f"{self.figures} is not a folder")
         if self.parquet is not None:
             check_parquet()
         if self.html is not None or self.figures is not None:
             report.check_figures()
-        if self.figures is not None and self.figures.exists() and not self.figures.is_dir():
-            raise UsageError(f"{self.figures} is not a folder")
 
     def _document(self, run: StudyRun, undecided: int) -> dict[str, Any]:
         if not self.as_json:

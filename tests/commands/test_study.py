@@ -68,6 +68,7 @@ def test_rows_are_written_as_csv(here, done):
     assert rows[0]["pairs_of_signs"] == "true"
 
 
+@pytest.mark.slow
 def test_rows_are_written_as_parquet(here, done):
     parquet = pytest.importorskip("pyarrow.parquet")
     assert run(*SMALL, "--journal", done, "--parquet", "a.parquet").exit_code == PROVED

@@ -16,7 +16,14 @@ from exactfold.studies.closest import closest_pair
 from exactfold.studies.lines import Lines
 from exactfold.studies.statistics import decay, interval, same_probability
 
-SQUARES = ((2, 0), (3, 1), (4, 2), (5, 80), (5, 534), (4, 1312), (3, 30000011))
+SQUARES = (
+    (2, 0),
+    (5, 534),
+    *(
+        pytest.param(*square, marks=pytest.mark.slow)
+        for square in ((3, 1), (4, 2), (5, 80), (4, 1312), (3, 30000011))
+    ),
+)
 """Sizes and seeds: with shared letters, shared signs, a triangle that stays flat, a flat vertex."""
 
 
@@ -62,7 +69,14 @@ def test_known_squares(size, seed, letters, signs, rigid, flat, pairs):
     assert (found["rigid"], found["flat"], found["pairs_of_signs"]) == (rigid, flat, pairs)
 
 
-@pytest.mark.parametrize("name", ["two-vertex", "flat-vertex", "flat-octahedron", "h1-4"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "two-vertex",
+        "flat-octahedron",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("flat-vertex", "h1-4")),
+    ],
+)
 def test_directions_are_those_of_the_fold_angles(name):
     lines = Lines.of(as_pattern(example_path(name)))
     count = count_branches(name)
@@ -149,6 +163,7 @@ def paper_rows(size, number, rigid, letters, signs):
     ]
 
 
+@pytest.mark.slow
 def test_the_table_adds_up_to_that_of_the_paper():
     rows = [row for size, counts in table1.PAPER.items() for row in paper_rows(size, *counts)]
     main, comparison, distances = table1.tables(rows)

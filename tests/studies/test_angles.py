@@ -1,0 +1,198 @@
+"""The study of angles between branches against angles computed in exact numbers."""
+
+from __future__ import annotations
+
+from math import acos, pi
+
+import mpmath
+import numpy as np
+import pytest
+
+from exactfold import PROVED, count_branches, random_square
+from exactfold.studies import angles
+from exactfold.studies.angles import distance, uniform
+from exactfold.studies.lines import Lines
+from exactfold.studies.pair_angles import BINS, pair_angles
+
+
+@pytest.fixture(autouse=True)
+def few(monkeypatch):
+    """Few samples are drawn again: a p-value of 1/151 is still below 0.01."""
+    monkeypatch.setattr(angles, "RESAMPLED", 150)
+
+
+def row(size, seed):
+    return angles.row({"interior": size, "seed": seed, "denominator": 1024})
+
+
+def exact_bins(pattern):
+    """The bin of each pair, from bounds of 200 bits of every branch, with mpmath."""
+    with mpmath.workdps(50):
+        vectors = []
+        for branch in count_branches(pattern):
+            sharp = branch.sharpened(200).fold_angles
+            bends = []
+            points, _ = pattern.integer_vertices
+            for fold, (low, high) in sharp.densities.items():
+                (ax, ay), (bx, by) = points[fold[0]], points[fold[1]]
+                squared = (bx - ax) ** 2 + (by - ay) ** 2
+                middle = (low + high) / 2
+                bends.append(
+                    mpmath.mpf(middle.numerator) / middle.denominator * mpmath.sqrt(squared)
+                )
+            length = mpmath.sqrt(sum(x * x for x in bends))
+            vectors.append([x / length for x in bends])
+        bins = [0] * BINS
+        squares = []
+        for k, u in enumerate(vectors):
+            for v in vectors[:k]:
+                cosine = abs(sum(x * y for x, y in zip(u, v, strict=True)))
+                bins[int(mpmath.acos(cosine) / (mpmath.pi / 2 / BINS))] += 1
+                squares.append(cosine**2)
+        return bins, float(sum(squares) / len(squares))
+
+
+@pytest.mark.parametrize(
+    ("size", "seed"),
+    [
+        (2, 0),
+        pytest.param(3, 30000011, marks=pytest.mark.slow),  # with a flat vertex
+        pytest.param(4, 1312, marks=pytest.mark.slow),  # with a triangle that stays flat
+        pytest.param(5, 80, marks=pytest.mark.slow),
+    ],
+)
+def test_angles_are_those_of_exact_numbers(size, seed):
+    found = row(size, seed)
+    bins, square = exact_bins(random_square(size, seed))
+    assert (found["status"], found["angles"], found["unclear"]) == ("proved", bins, 0)
+    assert found["mean_square"] == pytest.approx(square, rel=1e-5)
+    assert sum(bins) == found["lines"] * (found["lines"] - 1) // 2
+
+
+def lines_of(vectors, errors, branch=None):
+    vectors = np.array(vectors, dtype=float)
+    none = np.zeros((len(vectors), 0), dtype=np.int8)
+    pattern = random_square(2, 0)
+    return Lines(pattern, PROVED, none, none, vectors, np.array(errors), None, branch)
+
+
+def at(angle):
+    return [np.cos(angle), np.sin(angle)]
+
+
+def test_pairs_are_counted_in_their_bins():
+    width = pi / 2 / BINS
+    given = [0.5, 1.5, 20.5, 63.5, 64.5, 100.5]
+    for place in given:
+        found = pair_angles(lines_of([at(0), at(place * width)], [1e-10, 1e-10]))
+        folded = place if place < BINS else 2 * BINS - place
+        assert found.bins[int(folded)] == 1
+        assert (sum(found.bins), found.unclear) == (1, 0)
+
+
+@pytest.mark.parametrize("place", [1, 2, 33, 63])
+def test_a_pair_that_may_be_in_two_bins_is_unclear(place):
+    width = pi / 2 / BINS
+    for off in (-1e-12, 1e-12):
+        near = lines_of([at(0), at(place * width + off)], [1e-10, 1e-10])
+        assert (sum(pair_angles(near).bins), pair_angles(near).unclear) == (1, 1)
+    for off in (-1e-6, 1e-6):
+        clear = pair_angles(lines_of([at(0), at(place * width + off)], [1e-10, 1e-10]))
+        assert (clear.bins[place - (off < 0)], clear.unclear) == (1, 0)
+
+
+def test_equal_and_orthogonal_lines_are_never_unclear():
+    found = pair_angles(lines_of([at(0), at(pi), at(pi / 2)], [1e-10] * 3))
+    assert (found.bins[0], found.bins[-1], found.unclear) == (1, 2, 0)
+
+
+@pytest.mark.slow
+def test_doubtful_pairs_are_decided_by_sharper_roots():
+    """With bounds that are useless every pair is computed anew, and the result is the same."""
+    from dataclasses import replace
+
+    lines = Lines.of(random_square(3, 0))
+    blurred = replace(lines, errors=np.full(len(lines.errors), 0.1))
+    assert pair_angles(blurred).bins == pair_angles(lines).bins
+    assert pair_angles(blurred).unclear == 0
+    assert pair_angles(replace(blurred, branch=None)).unclear > 0
+
+
+def test_a_single_line_has_no_angles():
+    assert pair_angles(lines_of([at(0)], [0.0])).bins == (0,) * BINS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [1, 2, 6])
+def test_the_uniform_prediction_is_that_of_random_directions(size):
+    source = np.random.default_rng(size)
+    vectors = source.normal(size=(2, 200_000, size + 1))
+    vectors /= np.linalg.norm(vectors, axis=2)[:, :, None]
+    cosines = np.abs((vectors[0] * vectors[1]).sum(axis=1))
+    found = np.bincount((np.arccos(cosines) / (pi / 2 / BINS)).astype(int), minlength=BINS)
+    assert distance(found / found.sum(), uniform(size)) < 0.01
+
+
+def sample(size, number, power, seed):
+    """Rows with angles whose density is exp(-b x^power), x the distance from a right angle."""
+    source = np.random.default_rng(seed)
+    x = pi / 2 - (np.arange(BINS) + 0.5) * pi / 2 / BINS
+    shares = np.exp(-4 * x**power)
+    shares /= shares.sum()
+    return [
+        {
+            "interior": size,
+            "status": "proved",
+            "angles": source.multinomial(20_000, shares).tolist(),
+            "unclear": 0,
+            "mean_square": float((np.sin(x) ** 2 * shares).sum()),
+        }
+        for _ in range(number)
+    ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("power", "gaussian", "exponential"),
+    [(0.5, "agreed", "not agreed"), (1.0, "agreed", "agreed"), (2.0, "not agreed", "not agreed")],
+)
+def test_tails_are_told_apart(power, gaussian, exponential):
+    _, tails, _, sentences = angles.tables(sample(6, 30, power, 1))
+    assert float(tails.rows[0][1]) == pytest.approx(power, abs=0.11)
+    verdicts = {line[0]: line[-1] for line in sentences.rows}
+    assert verdicts["Vi = 6: tails decay exponentially"] == exponential
+    if power < 2:
+        assert verdicts["Vi = 6: tails do not decay as a Gaussian"] == gaussian
+
+
+@pytest.mark.slow
+def test_sizes_that_differ_are_told_from_those_that_do_not():
+    rows = sample(6, 20, 1.0, 1) + sample(7, 20, 1.0, 2) + sample(8, 20, 2.0, 3)
+    neighbours, sentences = angles.tables(rows)[3:]
+    assert [float(line[3]) < 0.01 for line in neighbours.rows] == [False, True]
+    verdicts = {line[0]: line[-1] for line in sentences.rows}
+    assert verdicts["Vi = 6 and 7 very nearly coincide"] == "agreed"
+    assert verdicts["Vi = 7 and 8 differ significantly"] == "agreed"
+    same = {line[0]: line[-1] for line in angles.tables(rows[:20] + sample(7, 20, 2.0, 4))[4].rows}
+    assert same["Vi = 6 and 7 very nearly coincide"] == "not agreed"
+
+
+@pytest.mark.slow
+def test_orthogonality_is_judged_by_the_mean_of_squares():
+    rows = sample(6, 20, 1.0, 1)
+    more = [{**row, "mean_square": 0.01} for row in rows]
+    less = [{**row, "interior": 7, "mean_square": 0.2} for row in rows]
+    verdicts = [angles.tables(x)[4].rows[0][-1] for x in (more, less, more + less)]
+    assert verdicts == ["not agreed", "agreed", "agreed in part"]
+
+
+def test_rows_that_are_not_proved_count_nowhere():
+    rows = sample(6, 3, 1.0, 1)
+    none = {**rows[0], "status": "undecided", "angles": None, "mean_square": None}
+    assert angles.tables([*rows, none]) == angles.tables(rows)
+    assert angles.tables([none]) == []
+    assert list(angles.figures([none])) == []
+
+
+def test_the_cosine_of_a_bin_is_that_of_its_edge():
+    assert acos(np.cos(3 * pi / 2 / BINS)) == pytest.approx(3 * pi / 2 / BINS)
