@@ -13,7 +13,7 @@ from exactfold.commands.shell import Bar, name_of, regular, said
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.schemas import headed
 
-LONG = ("branches", "vertex_signs", "assignment", "supports", "flat", "letters", "halves")
+LONG = ("branches", "vertex_signs", "assignment", "supports", "flat", "letters", "halves", "joints")
 """Claims that grow with the pattern, left out of `check --json`."""
 
 
