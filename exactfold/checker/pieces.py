@@ -47,8 +47,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
     Returns the claims and the SHA-256 of the pattern. The claims are: `vertices` can pop; the
     solutions, without the flat state, fall into `at_least` to `at_most` pieces; each of `joints` is
-    the signs of a solution, "0" at flat stars; of the vertices of `complete` all sign vectors are
-    known that solutions with a flat star there join.
+    the signs of a solution, "0" at flat stars, up to reflection; no others join sign vectors that
+    differ at one vertex of `complete` only.
     """
     try:
         return _check(data)

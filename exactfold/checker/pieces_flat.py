@@ -10,7 +10,8 @@ parts (docs/any_border.md, How joints are decided). On a part with m unknowns
 - m - 1 forms with 2^(m-1) disjoint boxes in a chart have no other zeros, by refined Bezout;
 - a form of inertia (1, 1) is a product, and both factors are parts of their own;
 - else boxes show that some solutions are there. If all signs of the vertices that may bend are
-  among theirs, no other solution joins more; if not, nothing is known of others.
+  among theirs, no other joins more by a flip at a vertex that is flat in all of them; if not,
+  nothing is known of others.
 
 Evidence that does not hold proves nothing, so that claims which need it fail.
 """
@@ -106,9 +107,10 @@ def _part(spaces: Spaces, part: Space, evidence: Sequence[Any]) -> Found:
 
 
 def _are_all(spaces: Spaces, part: Space, joints: list[Signs]) -> bool:
-    """Whether all signs of the vertices that may bend occur, so that no other solution joins more.
+    """Whether all signs of the vertices that may bend occur.
 
-    Joints that are flat at one of them are left out.
+    Then sign vectors that differ at a vertex of another star only are all joined. Joints that are
+    flat at one of them are left out.
     """
     touched = sorted({v for fold in folds_of(part) for v in fold if v in spaces.near})
     known = [signs for signs in joints if sorted(signs) == touched]

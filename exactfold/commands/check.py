@@ -13,7 +13,7 @@ from exactfold.commands.shell import Bar, name_of, regular, said
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.schemas import headed
 
-_LISTS = ("supports", "flat", "letters", "halves", "together", "never")
+_LISTS = ("supports", "flat", "letters", "halves", "joints", "together", "never")
 LONG = ("branches", "vertex_signs", "assignment", *_LISTS)
 """Claims that grow with the pattern, left out of `check --json`."""
 

@@ -51,6 +51,7 @@ class Asked:
         Raises the errors of `read_any`, `count_branches` and `Streaming`, and `UsageError`.
         """
         apart(self.certificate, self.pattern, self.stream)
+        apart(self._components, self.pattern, self.stream)
         if self.given:
             return self._shapes()
         streamed = None if self.stream is None else self._streamed(self.stream)
@@ -147,6 +148,12 @@ class Asked:
             return str(self.certificate)
         return None
 
+    @property
+    def _components(self) -> Path | None:
+        """Where the certificate of irreducible components goes beside that of pieces."""
+        file = self.certificate
+        return None if file is None else file.with_suffix(f".components{file.suffix}")
+
     def _certified_pieces(self, result: BranchCount, file: Path) -> str | None:
         """The certificate of pieces, and beside it that of the irreducible components."""
         written = None
@@ -156,7 +163,7 @@ class Asked:
         except NotApplicableError as error:
             say(f"no certificate of the pieces was written: {error}")
         if result.families is not None and result.families.status is PROVED:
-            more = file if written is None else file.with_suffix(f".components{file.suffix}")
+            more = file if written is None else self._components or file
             found = self._certified_panels(result.families, more)
             if found is not None:
                 say(f"the list of irreducible components has a certificate of its own: {more}")

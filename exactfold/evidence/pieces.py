@@ -13,14 +13,14 @@ from exactfold.checker.reading import CertificateError
 from exactfold.errors import NotApplicableError
 from exactfold.evidence.entries import Document, emptied_evidence, pattern_document
 from exactfold.exact.numbers import format_integer, format_rational
-from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.pieces.result import PartProof, Pieces, RegularPoint
 
 _BITS: Final = 60
 _RADIUS: Final = 1 << 28
 
 
-def pieces_certificate(pattern: CreasePattern, pieces: Pieces) -> Document:
+def pieces_certificate(pattern: PatternLike, pieces: Pieces) -> Document:
     """The proof of pieces that `find_pieces` found, as a JSON object (docs/any_border.md).
 
     Of each joint it has a box with one solution, and of each vertex all of whose joints are known
@@ -33,6 +33,7 @@ def pieces_certificate(pattern: CreasePattern, pieces: Pieces) -> Document:
     >>> checker.check(pieces_certificate(pattern, find_pieces(pattern)))["at_least"]
     2
     """
+    sheet = as_pattern(pattern)
     if not 0 < len(pieces.vertices) <= MOST_VERTICES:
         number = len(pieces.vertices)
         raise NotApplicableError(
@@ -43,7 +44,7 @@ def pieces_certificate(pattern: CreasePattern, pieces: Pieces) -> Document:
     document: Document = {
         "format": PIECES,
         "version": PIECES_VERSION,
-        "pattern": pattern_document(pattern),
+        "pattern": pattern_document(sheet),
         "claims": {
             "vertices": list(pieces.vertices),
             "at_least": pieces.low,
@@ -52,7 +53,7 @@ def pieces_certificate(pattern: CreasePattern, pieces: Pieces) -> Document:
             "complete": sorted(complete),
         },
         "evidence": {
-            "emptied": emptied_evidence(pattern),
+            "emptied": emptied_evidence(sheet),
             "chord": None if pieces.chord is None else sorted(pieces.chord),
             "flat": [
                 {

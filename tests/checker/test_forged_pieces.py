@@ -111,13 +111,17 @@ def test_what_is_said(name: str, text: str) -> None:
         "pentagon",
         "family",
         "chord",
-        "triangle",
         *(pytest.param(x, marks=pytest.mark.slow) for x in ("complex", "roots", "triangle")),
     ],
 )
 def test_certificates_are_written_alike(name: str) -> None:
     found = find_pieces(SHEETS[name])
     assert pieces_certificate(SHEETS[name], found)["claims"] == piece(name)["claims"]
+
+
+def test_a_pattern_by_name() -> None:
+    document = pieces_certificate("waterbomb", find_pieces("waterbomb"))
+    assert verified(document)["at_least"] == 2
 
 
 def test_bounds_are_said_as_such() -> None:

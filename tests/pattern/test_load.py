@@ -152,6 +152,7 @@ TAKES_PATTERN_ELSEWHERE = {
     "assignment.all_assignments",
     "assignment.match_panels",
     "assignment.match_rim",
+    "evidence.pieces_certificate",
     "count.BranchFinder",
     "count.find_branches",
     "branches.fold_angles",
