@@ -2,8 +2,9 @@
 
 Motions to second order lie at each vertex in one of the two closed nappes of its form, and at a
 vertex with at most four folds on one of its lines. Each case ends in one of these contradictions
-(docs/assignment.md, Theorem 4 and Theorem 5): heights of stars whose sums are on the wrong side, a star
-that is curved, a loop round which densities do not fit, or a fold with a letter that stays flat.
+(docs/assignment.md, Theorem 4 and Theorem 5): heights of stars whose sums are on the wrong side, a
+star that is curved, a loop round which densities do not fit, or a fold with a letter that stays
+flat.
 """
 
 from __future__ import annotations

@@ -84,6 +84,7 @@ class PanelProof:
             "length": None,
             "clear": None if contacts is None else contacts.clear,
             "contact": None if event is None else event.to_dict(),
+            "through": [],
             "node": None,
             "to": None,
         }
