@@ -377,6 +377,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         axes.plot(middles, density(one.mean), color="black", label="random squares")
         axes.plot(middles, density(uniform(one.size)), color="0.6", label="uniform")
         _angle_axis(axes)
+        axes.set_ylim(bottom=1e-3)
         axes.legend()
 
     return [

@@ -157,7 +157,7 @@ def sample(size, number, power, seed):
     [(0.5, "agreed", "not agreed"), (1.0, "agreed", "agreed"), (2.0, "not agreed", "not agreed")],
 )
 def test_tails_are_told_apart(power, gaussian, exponential):
-    _, tails, _, sentences = angles.tables(sample(6, 30, power, 1))
+    _, _, tails, _, sentences = angles.tables(sample(6, 30, power, 1))
     assert float(tails.rows[0][1]) == pytest.approx(power, abs=0.11)
     verdicts = {line[0]: line[-1] for line in sentences.rows}
     assert verdicts["Vi = 6: tails decay exponentially"] == exponential
