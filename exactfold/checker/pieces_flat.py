@@ -22,8 +22,7 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations_with_replacement
-from math import comb, lcm
+from math import lcm
 from typing import Any, NamedTuple
 
 from .boxes import Box, check_disjoint, read_box
@@ -32,10 +31,9 @@ from .krawczyk import Krawczyk, inverse
 from .panel_reduction import BITS
 from .panel_sheet import Edge, dot, pair
 from .panel_spaces import Motion, Space, Spaces, folds_of
+from .pieces_rank import have_no_common_zero
 from .reading import CertificateError, items, keys, natural, parse_rational, require
 
-PRIME = 2147483647
-MOST_MONOMIALS = 500
 MOST_UNKNOWNS = 9
 
 Signs = dict[int, int]
@@ -271,57 +269,6 @@ def _doubled(system: System) -> System:
 def _at(k: int, n: int) -> int:
     """The place of a real part, or of the constant."""
     return 2 * n if k == n else k
-
-
-def have_no_common_zero(forms: list[Matrix]) -> bool:
-    """Whether rational forms are shown to have no complex common zero but 0 (Macaulay)."""
-    size = len(forms[0])
-    if len(forms) < size:
-        return False
-    whole = []
-    for form in forms:
-        unit = lcm(*(x.denominator for row in form for x in row))
-        whole.append(
-            {
-                (i, j): int(form[i][j] * unit) * (1 if i == j else 2) % PRIME
-                for i in range(size)
-                for j in range(i, size)
-            }
-        )
-    for degree in range(2, size + 2):
-        columns = comb(size + degree - 1, degree)
-        if columns > MOST_MONOMIALS:
-            return False
-        products = comb(size + degree - 3, degree - 2) * len(forms)
-        if products >= columns and _spans(whole, size, degree, columns):
-            return True
-    return False
-
-
-def _spans(forms: list[dict[tuple[int, int], int]], size: int, degree: int, columns: int) -> bool:
-    """Whether the products with all monomials have the full rank modulo the prime."""
-    place = {m: k for k, m in enumerate(combinations_with_replacement(range(size), degree))}
-    pivots: dict[int, dict[int, int]] = {}
-    for form in forms:
-        for factor in combinations_with_replacement(range(size), degree - 2):
-            row: dict[int, int] = {}
-            for both, x in form.items():
-                if x:
-                    row[place[tuple(sorted((*factor, *both)))]] = x
-            while row:
-                lead = min(row)
-                if lead not in pivots:
-                    scale = pow(row[lead], -1, PRIME)
-                    pivots[lead] = {k: x * scale % PRIME for k, x in row.items()}
-                    break
-                weight = row[lead]
-                for k, x in pivots[lead].items():
-                    value = (row.get(k, 0) - weight * x) % PRIME
-                    if value:
-                        row[k] = value
-                    else:
-                        row.pop(k, None)
-    return len(pivots) == columns
 
 
 def _density(motion: Motion, fold: Any) -> Fraction:

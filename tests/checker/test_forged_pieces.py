@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import pytest
@@ -12,6 +13,7 @@ from sheets import HEXAGON, scrambled, wheel, with_point
 
 from exactfold import CreasePattern, checker, random_square
 from exactfold.checker import pieces, pieces_flat
+from exactfold.checker.pieces_rank import have_no_common_zero
 from exactfold.checker.reading import CertificateError
 from exactfold.checker.sheet import read_sheet
 from exactfold.errors import NotApplicableError
@@ -379,13 +381,13 @@ def test_points_are_zeros() -> None:
 
 
 def test_forms_without_a_common_zero() -> None:
-    one = [[pieces_flat.Fraction(int(i == j == 0)) for j in range(2)] for i in range(2)]
-    two = [[pieces_flat.Fraction(int(i == j == 1)) for j in range(2)] for i in range(2)]
-    product = [[pieces_flat.Fraction(int(i != j)) for j in range(2)] for i in range(2)]
-    assert pieces_flat.have_no_common_zero([one, two])
-    assert not pieces_flat.have_no_common_zero([one])
-    assert not pieces_flat.have_no_common_zero([one, product])
-    assert not pieces_flat.have_no_common_zero([one, one])
+    one = [[Fraction(int(i == j == 0)) for j in range(2)] for i in range(2)]
+    two = [[Fraction(int(i == j == 1)) for j in range(2)] for i in range(2)]
+    product = [[Fraction(int(i != j)) for j in range(2)] for i in range(2)]
+    assert have_no_common_zero([one, two])
+    assert not have_no_common_zero([one])
+    assert not have_no_common_zero([one, product])
+    assert not have_no_common_zero([one, one])
 
 
 def test_components_are_those_of_the_package() -> None:
