@@ -208,7 +208,7 @@ def _vanishing(script: Script) -> None:
         "Appendix C, end of the proof of Theorem KM",
         r"\sum_{n=1}^{N-1}\alpha_{n,n+1}=2\pi-\alpha_{N,1}",
         r"\sum_{n=1}^{N-1}\alpha_{n,n+1}=2\pi w-\alpha_{N,1}",
-        over=[_regular_star(5, 1), _regular_star(5, 2), _regular_star(7, 3)],
+        over=[_winding_star(5, 1), _winding_star(5, 2), _winding_star(7, 3)],
         note="the theorem is about any winding w; the sine of the sum is the same",
         severity=Severity.TYPO,
     )
@@ -334,10 +334,16 @@ def _changes(script: Script) -> None:
     )
 
 
-def _regular_star(n: int, winding: int) -> dict[str, Any]:
-    """The names of a star of n equal angles that goes round `winding` times."""
-    angle = 2 * sympy.pi * winding / n
-    return {"N": n, "w": winding, "pi": sympy.pi, "alpha": lambda i, j: angle}
+def _winding_star(n: int, winding: int) -> dict[str, Any]:
+    """The names of a star of n different angles that goes round `winding` times."""
+    weights = [2 * n + k for k in range(n)]
+
+    def alpha(i: int, j: int) -> Any:
+        if (j - i) % n != 1:
+            raise LookupError(f"no sector from {i} to {j}")
+        return 2 * sympy.pi * winding * weights[i % n] / sum(weights)
+
+    return {"N": n, "w": winding, "pi": sympy.pi, "alpha": alpha}
 
 
 if __name__ == "__main__":
