@@ -122,20 +122,51 @@ def definitions() -> dict[str, str]:
 
 
 def entry(statement: Statement, proof: Proof) -> str:
-    """One statement with its ruling, correction, note and proof."""
-    lines = [
-        f"**{statement.key}** ({statement.place}). *{statement.ruling.value.capitalize()}.*",
-        "",
-    ]
+    """One statement with its ruling, correction, note and what it rests on."""
+    ruling = statement.ruling.value.capitalize()
+    lines = [f"**{statement.key}** ({where(statement)}). *{ruling}.*", ""]
     lines.append(f"- printed: {mathematics(statement.printed)}")
     if statement.corrected:
         lines.append(f"- correct: {mathematics(statement.corrected)}")
     if statement.note:
         lines.append(f"- {' '.join(statement.note.split())}")
-    where = f"[`python -m proofs {proof.name}`](../proofs/{proof.name}.py)"
+    lines.append(f"- rests on: {proof.basis(statement)}")
+    script = f"[`python -m proofs {statement.key}`](../proofs/{proof.name}.py)"
     code = f"; code: {code_links(statement.code)}" if statement.code else ""
-    lines.append(f"- proof: {where}{code}")
+    lines.append(f"- steps: {script}{code}")
     return "\n".join(wrapped(line) for line in lines) + "\n\n"
+
+
+def where(statement: Statement) -> str:
+    """The place in the paper, with the number of the equation."""
+    number = f", Eq. ({statement.equation})" if statement.equation else ""
+    return f"{statement.place}{number}"
+
+
+def erratum(statement: Statement, proof: Proof) -> str:
+    """One erratum: place, severity, what is printed, what to print instead, why, and the proof."""
+    severity = statement.severity.value if statement.severity else ""
+    lines = [f"**{statement.key}** ({where(statement)}). *{severity.capitalize()}.*", ""]
+    lines.append(f"- printed: {mathematics(statement.printed)}")
+    if statement.corrected:
+        lines.append(f"- correct: {mathematics(statement.corrected)}")
+    else:
+        lines.append("- false, and not to be mended by a condition")
+    lines.append(f"- why: {' '.join(statement.note.split())}")
+    script = f"[`python -m proofs {statement.key}`](../proofs/{proof.name}.py)"
+    lines.append(f"- shown by: {script} ({proof.basis(statement)})")
+    text = "\n".join(wrapped(line) for line in lines) + "\n"
+    if statement.corrected:
+        text += f"\n```latex\n{pasted(statement.corrected)}\n```\n"
+    return f"{text}\n"
+
+
+def pasted(latex: str) -> str:
+    """The correction as LaTeX to paste: prose as it is, formulas between dollar signs."""
+    words = ""
+    for is_prose, content in pieces(" ".join(latex.split())):
+        words += content if is_prose or not content.strip() else f"${content.strip()}$"
+    return "\n".join(textwrap.wrap(words, 98, break_long_words=False, break_on_hyphens=False))
 
 
 def wrapped(line: str) -> str:
@@ -162,7 +193,8 @@ def pages() -> dict[str, str]:
     stated = sorted(
         ((s, p) for p in proofs for s in p.statements), key=lambda pair: order(pair[0].key)
     )
-    counts = {ruling: sum(s.ruling is ruling for s, _ in stated) for ruling in Ruling}
+    papers = [s for s, _ in stated if not s.is_own]
+    counts = {ruling: sum(s.ruling is ruling for s in papers) for ruling in Ruling}
     names = {
         Ruling.AS_PRINTED: "hold as printed",
         Ruling.CORRECTED: "hold when corrected",
@@ -171,14 +203,17 @@ def pages() -> dict[str, str]:
     summary = ", ".join(f"{number} {names[ruling]}" for ruling, number in counts.items())
     steps = [step for proof in proofs for step in proof.steps]
     tested = sum(step.how is How.CASES for step in steps)
+    formulas = sum(len(proof.claims) for proof in proofs)
     mistakes = sum(len(proof.changes) for proof in proofs)
     head = (
         "# The paper, statement by statement\n\n"
         'Chen & Santangelo, "Branches of triangulated origami near the unfolded state". '
-        f"{len(stated)} statements: {summary}. Each is settled by a script that a machine runs "
+        f"{len(papers)} statements of the paper: {summary}. {len(stated) - len(papers)} statements "
+        "of exactfold come last. Each says what it rests on, and its steps are run by a machine "
         f"(`python -m proofs`, {len(steps)} steps; {tested} of them test exact cases rather than "
-        f"prove, and say so). Each step refuses at least one of {mistakes} deliberate mistakes "
-        "(`tests/proofs`). Written by `python docs/make_statements.py`."
+        f"prove, and say so). {formulas} statements are expressions that a step evaluates. All "
+        f"other steps refuse at least one of {mistakes} deliberate mistakes each. Written "
+        f"by `python docs/make_statements.py`.\n\n{STANDARD}"
     )
     head = "\n".join(textwrap.fill(part, 100) for part in head.split("\n")) + "\n"
     body, errata, section = head, ERRATA, ""
@@ -188,8 +223,8 @@ def pages() -> dict[str, str]:
             section = title
             body += f"\n## {section}\n\n"
         body += entry(statement, proof)
-        if statement.ruling is not Ruling.AS_PRINTED and not statement.key.startswith("T"):
-            errata += entry(statement, proof)
+        if statement.ruling is not Ruling.AS_PRINTED:
+            errata += erratum(statement, proof)
     return {"statements.md": body.rstrip() + "\n", "errata.md": errata.rstrip() + "\n"}
 
 

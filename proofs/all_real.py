@@ -30,7 +30,7 @@ from exactfold.rigidity.definite_stresses import disk_multipliers
 from exactfold.solve import homotopy
 from exactfold.verdict import PROVED
 from proofs.chambers import corner_sign, counted, solve
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, run
 from proofs.patterns import DART, SPIKY, darts, hostile_patterns, quadrilaterals
 
 NAME = "all_real"
@@ -65,23 +65,22 @@ def prove(change: str | None = None) -> Proof:
 def _state(script: Script) -> None:
     script.state(
         "T.1",
-        "Section III A, 'amazingly, all 2^{Vi+1} of them are real' (numerical)",
-        r"\text{all solutions are real, } B = 2^{V_i}",
-        Ruling.CORRECTED,
+        "docs/theorem.md, Theorem 2 and section 4",
         r"2^{V_i}\text{ branches with multiplicity, all real, for every convex or reflex boundary "
         r"quadrilateral; distinct exactly when no vertex star is flat on any of them}",
-        "a theorem, not only generic: docs/theorem.md, Theorem 2 (a), (b), (e) and section 4",
-        "decide_all_branches_real, count_branches",
+        note="not only generic; the paper found B = 2^Vi, all real, by computing (Section III A)",
+        code="decide_all_branches_real, count_branches",
+        words="docs/theorem.md, Theorem 2 (a), (b), (e) and section 4",
     )
     script.state(
         "T.2",
-        "Section III B, 'exactly two branches with each such pair of sign patterns' (numerical)",
-        r"\text{exactly two branches for each pair of opposite vertex sign patterns}",
-        Ruling.CORRECTED,
-        r"\text{exactly two if no vertex star is flat on any branch, told apart by the sign of the "
-        r"boundary saddle (convex) or of the reflex corner in the closed sheet}",
-        "docs/theorem.md, Theorem 2 (e) and section 4; the paper: 'proving ... remains elusive'",
-        "BranchCount.sign_vectors",
+        "docs/theorem.md, Theorem 2 (e) and section 4",
+        r"\text{exactly two branches for each pair of opposite vertex sign patterns if no vertex "
+        r"star is flat on any branch, told apart by the sign of the boundary saddle (convex) or of "
+        r"the reflex corner in the closed sheet}",
+        note="found by computing in the paper (Section III B): 'proving ... remains elusive'",
+        code="BranchCount.sign_vectors",
+        words="docs/theorem.md, Theorem 2 (e)",
     )
 
 
@@ -115,6 +114,7 @@ def _corner_identity(script: Script) -> None:
     script.identity(
         "(1): k = (1/2) [(g.d)(g.Jd)/|d|^2 - (g.d')(g.Jd')/|d'|^2] is the corner's part of K_v",
         _corner(d, e, g) - sign * (end(d) - end(e)) / 2,
+        of="T.1",
     )
     r, angle = sympy.Function("r"), sympy.Symbol("theta")
     slope = sympy.Symbol("g1") * sympy.cos(angle) + sympy.Symbol("g2") * sympy.sin(angle)
@@ -123,6 +123,7 @@ def _corner_identity(script: Script) -> None:
     script.identity(
         "rho^2 - rho'^2 = (-rho rho')' for rho = g . e(theta)",
         sympy.simplify(sympy.expand(difference)),
+        of="T.1",
     )
     picone = (sympy.diff(r(angle), angle) - r(angle) * sympy.cot(angle)) ** 2
     boundary = sympy.diff(r(angle) ** 2 * sympy.cot(angle), angle)
@@ -130,6 +131,7 @@ def _corner_identity(script: Script) -> None:
     script.identity(
         "Picone: rho'^2 - rho^2 = (rho' - rho cot)^2 + (rho^2 cot)'",
         sympy.expand(sympy.diff(r(angle), angle) ** 2 - sign * r(angle) ** 2 - picone - boundary),
+        of="T.1",
     )
 
 
@@ -157,17 +159,20 @@ def _face_identities(script: Script) -> None:
     sign = script.alter("sign of the edge term", 1, -1)
     parts, moment, area, edges = _face_sums()
     count = script.alter("a corner left out", 3, 2)
-    script.identity("(2): the three corners of a face add up to 0", sum(parts[:count]))
+    script.identity("(2): the three corners of a face add up to 0", sum(parts[:count]), of="T.1")
     script.identity(
         "(3): sum |U_v - c|^2 k + |T| |g|^2 + sum (g.d)^2 ((M - c).Jd)/|d|^2 = 0",
         moment + area / halves + sign * edges,
+        of="T.1",
     )
     _, *x = field("d1 d2 m1 m2 g1 g2", QQ)
     d, m, g = (x[0], x[1]), (x[2], x[3]), (x[4], x[5])
     power = script.alter("slope along the edge not squared", 2, 1)
     there = _dot(g, d) ** power * _dot(m, _turned(d))
     back = _dot(g, (-d[0], -d[1])) ** power * _dot(m, _turned((-d[0], -d[1])))
-    script.identity("the edge term changes sign with the direction of the edge", there + back)
+    script.identity(
+        "the edge term changes sign with the direction of the edge", there + back, of="T.1"
+    )
 
 
 def _one_positive_direction(script: Script) -> None:
@@ -179,6 +184,7 @@ def _one_positive_direction(script: Script) -> None:
         script.identity(
             f"the integral of rho^2 - rho'^2 for rho = {name} m theta is pi (1 - m^2)",
             sympy.simplify(integral - sympy.pi * (shift - m**2)),
+            of="T.1",
         )
 
 
@@ -203,12 +209,14 @@ def _wirtinger(script: Script) -> None:
     script.identity(
         "D_j = (cot a_j + cot a_{j+1}) D_{j-1} - csc^2 a_j D_{j-2}",
         recurrence - two_more / (sa * sb),
+        of="T.1",
     )
     script.identity(
         "D_1 = cot a_1 + cot a_2 = sin(a_1 + a_2) csc a_1 csc a_2",
         ca / sa
         + cb / sb
         - (sa * cb + script.alter("sine of the difference", 1, -1) * ca * sb) / (sa * sb),
+        of="T.1",
     )
 
 
@@ -234,6 +242,7 @@ def _theorem_1_on_patterns(script: Script) -> None:
     script.cases(
         "Theorem 1: sum m_v K_v(w) = int |grad w|^2 - sum m_b A_b(w)",
         (holds(pattern, seed) for seed, pattern in enumerate(hostile_patterns(24))),
+        of="T.1",
     )
     script.cases(
         "Key lemma: the disk multipliers give a definite stress (exact elimination)",
@@ -241,6 +250,7 @@ def _theorem_1_on_patterns(script: Script) -> None:
             definite_stress(pattern) is not None
             for pattern in [*hostile_patterns(24), *script.alter("a reflex sheet", (), (SPIKY,))]
         ),
+        of="T.1",
     )
     hub = {v: Fraction(int(v == 4)) for v in range(5)}
     convex = CreasePattern([(4, -4), (5, 0), *SPIKY.vertices[2:]], SPIKY.triangles)
@@ -248,6 +258,7 @@ def _theorem_1_on_patterns(script: Script) -> None:
     script.counterexample(
         "convexity is needed: hub (0,0) in (4,-4), (1/10,0), (4,4), (-4,0) has K(hub) < 0",
         curvature_form(sheet, 4)(hub) < 0 and definite_stress(sheet) is None,
+        of="T.1",
     )
 
 
@@ -267,6 +278,7 @@ def _five_corners(script: Script) -> None:
         "1)/96 in its own height x, and no real solution",
         [96 * form(hub), 96 * 2 * form.polar(rim, hub), 96 * form(rim)] == [-38, -8, -1]
         and form.polar(rim, hub) ** 2 < form(hub) * form(rim),
+        of="T.1",
     )
 
 
@@ -314,6 +326,7 @@ def _conclusions_on_patterns(script: Script) -> None:
     script.cases(
         "section 4: 2^Vi branches with multiplicity, all real, convex and reflex quadrilaterals",
         (all_real(pattern) for pattern in [*squares, *quadrilaterals(12)]),
+        of="T.1",
     )
     saddle_only = script.alter("the saddle as the label of a reflex sheet", False, True)
     by_vertex = script.alter("ends told apart by the first vertex", False, True)
@@ -336,16 +349,19 @@ def _conclusions_on_patterns(script: Script) -> None:
         "(e): no vertex is flat and each sign vector occurs exactly once with saddle +1: convex "
         "sheets",
         (one_each(r) for r in generic if r.pattern.is_convex),
+        of="T.2",
     )
     script.cases(
         "(e): no vertex is flat and each sign vector occurs exactly once with the reflex corner up "
         "in the closed sheet",
         (one_each(r) for r in reflex),
+        of="T.2",
     )
     chart = script.alter("the chart of the saddle", notch_chart, lambda p: BranchSystem(p).chart)
     script.cases(
         "the same in the chart K_r(t, h) = 1 of the closed sheet: 2^Vi boxes, all sign vectors",
         (_one_each(chart, r.pattern) for r in reflex),
+        of="T.2",
     )
     both = counted(DART).branches
     other = script.alter("the hub up on the other branch", "-", "+")
@@ -353,17 +369,20 @@ def _conclusions_on_patterns(script: Script) -> None:
         "the saddle is no label of a reflex sheet: hub (0,0) in (4,-4), (1,0), (4,4), (-4,0) has "
         "two branches, both with saddle + and the hub down",
         [(b.representative, b.sign_text) for b in both] == [("saddle", "-"), ("saddle", other)],
+        of="T.2",
     )
     result = counted(flat_vertex_square())
     script.counterexample(
         "a flat vertex star: three branches, of multiplicities 1, 1, 2, instead of four",
         sorted(b.multiplicity or 0 for b in result.branches)
         == script.alter("four simple branches", [1, 1, 2], [1, 1, 1, 1]),
+        of="T.1 T.2",
     )
     sign = script.alter("negative curvatures", 1, -1)
     script.cases(
         "(d): for positive curvatures one real solution for each sign vector, any boundary",
         (solve(p, seed, sign).is_one_each for seed, p in enumerate(hostile_patterns(8, 4))),
+        of="T.2",
     )
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exactfold import count_branches, random_square
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 
 NAME = "branch_angles"
 TITLE = "The angles between branches, measured"
@@ -65,13 +65,13 @@ def _orthogonality(script: Script) -> None:
         + ", ".join(f"{m:.3f}" for m in means.values())
         + "; for random points on the Vi-dimensional sphere 1/(Vi + 1)",
         (mean * (n + 1) > least for n, mean in means.items()),
+        of="V.9",
     )
     script.state(
         "V.9",
         "Section V and Appendix D",
         r"\text{``branches tend to be less orthogonal in fold-angle space than a uniformly random "
         r"set of vectors''}",
-        Ruling.AS_PRINTED,
         note="data of the paper; on our samples in the mean of cos^2, for Vi = 4, 5, 6: "
         + ", ".join(f"{m:.3f} against {1 / (n + 1):.3f}" for n, m in means.items()),
     )
@@ -92,13 +92,13 @@ def _tails(script: Script) -> None:
         f"Vi = 5: within pi/32 of pi/2 {near:.2f} times as many angles as for random points, "
         f"within pi/4 of 0 or pi {far:.1f} times as many",
         (near > 1, most * (far - near) > 0),
+        of="D.9",
     )
     script.state(
         "D.9",
         f"{PLACE} and Fig. (v6)",
         r"\text{``a slight enhancement in the number of orthogonal branches but a more prominent "
         r"enhancement at the two tails''}",
-        Ruling.AS_PRINTED,
         note=f"data of the paper; on our {SQUARES[5]} squares with Vi = 5 the factors are "
         f"{near:.2f} and {far:.1f}; they vary much from square to square (D.11)",
     )
@@ -113,13 +113,13 @@ def _tails(script: Script) -> None:
         f"{shares[4:].sum() / shares[:4].sum():.1f}, for random points by more than "
         f"{pieces[4:].sum() / pieces[:4].sum():.0f}",
         (steep * q < p for q, p in zip(quotients, pieces[4:] / pieces[:4], strict=True)),
+        of="D.10",
     )
     script.state(
         "D.10",
         PLACE,
         r"\text{``the tails of the distributions of angles between branches \dots\ appear to decay "
         r"exponentially, rather than as a Gaussian''}",
-        Ruling.AS_PRINTED,
         note="data of the paper. On our samples the tails are much heavier than those of random "
         "points, which is what can be said of them; the law of decay is not settled",
     )
@@ -136,6 +136,7 @@ def _samples(script: Script) -> None:
         f"Vi = 6: the mean of cos^2 of one square varies by {spread:.3f} from square to square; "
         f"if the {len(cosines(6)[0])} pairs of a square were independent it would by {one:.3f}",
         (spread > factor * one,),
+        against="D.11",
     )
     script.state(
         "D.11",
@@ -143,10 +144,10 @@ def _samples(script: Script) -> None:
         r"\text{the distributions for }V_i=6,7\text{ ``very nearly coincide, they differ "
         r"significantly from that of }V_i=8\text{. We do not believe that this is due to a lack of "
         r"data'', as the numbers of pairs are comparable}",
-        Ruling.CORRECTED,
         r"\text{the number of squares counts, not that of pairs: 1000, 300 and 50}",
         "the pairs of one square are far from independent: on our samples the mean of cos^2 varies "
         f"from square to square by {spread / one:.0f} times what independent pairs would give",
+        severity=Severity.CLAIM,
     )
 
 

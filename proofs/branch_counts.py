@@ -16,12 +16,10 @@ from exactfold.exact.linalg import inertia
 from exactfold.problem import BranchSystem
 from exactfold.rigidity import curvature_form, definite_stress
 from exactfold.rigidity.functionals import fold_functional
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 
 NAME = "branch_counts"
 TITLE = "Single vertices, triangulated triangles, components"
-
-AS_PRINTED, CORRECTED = Ruling.AS_PRINTED, Ruling.CORRECTED
 
 Point = tuple[Fraction | int, Fraction | int]
 SQUARE: list[Point] = [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -57,6 +55,8 @@ def _single_vertex(script: Script) -> None:
     script.example(
         "branches of a vertex with N = 3, 4, 5, 6, 7, 8 folds: 0, 2, 1, 1, 1, 1",
         found == [0, script.alter("one branch for N = 4", 2, 1), 1, 1, 1, 1],
+        of="IIC.5 IIIA.10",
+        against="IIC.5",
     )
     positive = script.alter("two positive directions", 1, 2)
     script.example(
@@ -66,45 +66,44 @@ def _single_vertex(script: Script) -> None:
             curvature_form(families.single_vertex(n), n).inertia == (positive, n - 2 - positive, 3)
             for n in range(3, 10)
         ),
+        of="IIC.5 IIC.6",
     )
     conical = families.single_vertex(5)
     script.example(
         "five folds: Vi = 1, D = 2, three free heights",
         (conical.Vi, conical.D, len(BranchSystem(conical).variables))
         == (1, 2, 5 + 1 - script.alter("two pinned heights", 3, 2)),
+        of="IIC.6",
     )
     script.state(
         "IIC.5",
         "Section II C, last paragraph",
         r"\text{``single-vertex origami structures have a single branch''}",
-        CORRECTED,
         r"\text{with five or more folds; there is no branch for }N=3,\text{ and there are two for }"
         r"N=4",
         "Section III B says itself that a 4-fold vertex has two branches",
         "count_branches",
+        severity=Severity.CONSTANT,
     )
     script.state(
         "IIC.6",
         "Section II C and Fig. (conical)",
         r"V_i=1,\ D=2:\text{ a double cone over a closed curve in }\mathbb{RP}^2\text{; axes "
         r"}4\text{--}6",
-        AS_PRINTED,
     )
     script.state(
         "IIIA.10",
         "Section III A",
         r"\text{``3-fold vertices \dots\ are always rigid''}",
-        AS_PRINTED,
         note="the form of a vertex with N = 3 is definite modulo planes",
     )
     schematic = count_branches(families.two_vertex())
     halved = script.alter("one branch for each pair of sign patterns", 0, 1)
-    script.example("two vertices: 2^2 branches", schematic.distinct == 2 ** (2 - halved))
+    script.example("two vertices: 2^2 branches", schematic.distinct == 2 ** (2 - halved), of="I.2")
     script.state(
         "I.2",
         "Introduction, Fig. (schematic)",
         r"\text{two-vertex example: }D=1,\ B=4",
-        AS_PRINTED,
         note="for our coordinates; the paper gives none",
         code="families.two_vertex",
     )
@@ -122,6 +121,7 @@ def _rigid_triangles(script: Script) -> None:
         "docs/mathematics.md, 6): D = 0 and no folding to second order, hence rigid",
         all(p.D == p.Ve - freedom == 0 and definite_stress(p) is not None for p in triangles)
         and all(count_branches(p).distinct == 0 for p in triangles),
+        of="IIC.7",
     )
     bends: dict[int, int] = {}
     sign = script.alter("a diagonal bent the other way", 1, -1)
@@ -132,14 +132,15 @@ def _rigid_triangles(script: Script) -> None:
         "twisted triangle: the bends of the three diagonals add up to 0 identically, so no lifting "
         "makes all folds valleys: it is no Schlegel diagram",
         not any(bends.values()),
+        against="IIC.8",
     )
     script.state(
         "IIC.7",
         "Section II C, Ve = 3",
         r"D=0:\text{ rigid; the configuration space is a point, with multiplicity}",
-        AS_PRINTED,
         note="multiplicity 2^Vi",
         code="definite_stress",
+        words="docs/mathematics.md, 6 and 7",
     )
     script.state(
         "IIC.8",
@@ -147,12 +148,13 @@ def _rigid_triangles(script: Script) -> None:
         r"\text{triangulated triangles are equivalent to ``planar projections (Schlegel diagrams) "
         r"of "
         r"triangulations of spheres''}",
-        CORRECTED,
         r"\text{to planar projections of triangulated spheres; they are Schlegel diagrams iff they "
         r"have a convex lifting}",
         note="no convex lifting: corners (0,0), (4,0), (0,4), inner (1,1), (2,1), (1,2), diagonals "
         "04, 15, 23. Up to combinatorial type the printed words hold (Steinitz), and nothing else "
         "is used",
+        severity=Severity.CLAIM,
+        cited="Steinitz (combinatorial type)",
     )
     chord = CreasePattern(
         [*SQUARE, *inner_points((0, 0), (1, 1), (0, 1))],
@@ -167,6 +169,7 @@ def _rigid_triangles(script: Script) -> None:
         == (1, script.alter("multiplicities added", 2**3, 2 * 3), 3)
         and {chord.degree(v) for v in chord.interior} == {4}
         and set(count.branches[0].vertex_signs.values()) == {0},
+        of="IIC.9",
     )
     script.state(
         "IIC.9",
@@ -174,8 +177,8 @@ def _rigid_triangles(script: Script) -> None:
         r"\text{the three vertices interior to the triangle are rigid; the diagonal gives two "
         r"rigid "
         r"triangulated triangles}",
-        AS_PRINTED,
         code="CreasePattern.triangulated_triangles",
+        rests="IIC.7",
     )
     minimal = script.alter("two vertices suffice", 3, 2)
     enough = [m for m in range(1, 6) if 3 * m + m * (m - 1) // 2 >= 4 * m and m >= 1]
@@ -184,12 +187,12 @@ def _rigid_triangles(script: Script) -> None:
         ">= 4m "
         "with at most m(m-1)/2 inner folds: m >= 3, and m = 3 is the flat octahedron",
         min(enough) == minimal,
+        of="IIIA.11",
     )
     script.state(
         "IIIA.11",
         "Table (summary), caption",
         r"\text{systems with }V_t>0\text{: ``in all cases these were flat octahedra''}",
-        AS_PRINTED,
         note="the smallest case; consistent with none for Vi = 2, 3",
         code="families.flat_octahedron_in_square",
     )
@@ -214,6 +217,7 @@ def _components(script: Script) -> None:
         "quadric in a real conic (inertia (1, 2)), and the conics meet in two real points: one "
         "connected component, two irreducible ones",
         root > 0 and conics == [(1, 2, 0)] * 2 and line == expected and not _crosses(p),
+        against="IIC.10",
     )
     script.state(
         "IIC.10",
@@ -221,12 +225,12 @@ def _components(script: Script) -> None:
         r"\text{``Let }B\text{ be the number of connected components of the solution set (counted "
         r"with "
         r"multiplicity) in }\mathbb{RP}^{V_i+D-1}\text{''}",
-        CORRECTED,
         r"\text{irreducible components, as in Section II A}",
         "two definitions of a branch that agree for D = 1. For D >= 2 components may meet away "
         "from the unfolded state: boundary (6,0), (5,-5), (-4,-4), (-6,4), (-6,6), inner (0,0) of "
         "degree 4 and (1,2) of degree 5 have two cones that share two lines, in which the vertex "
         "of degree 4 is flat",
+        severity=Severity.CONDITION,
     )
 
 
@@ -261,16 +265,18 @@ def _linear_branches(script: Script) -> None:
             for form in forms
             for h, k in ((first, second),)
         ),
+        against="IIC.15",
     )
     script.state(
         "IIC.15",
         "Section II C, branches as cones",
         r"\text{``the origins of these cones (singular when }D>1\text{)''}",
-        CORRECTED,
         r"\text{singular iff the cone is not a linear space}",
         "a cone is its own tangent cone at the origin. Singular for a single vertex with D > 1 "
         "(IIB.23); with two straight crease paths that do not cross one branch is a plane: corners "
         "(0,0), (6,1), (4,4), (0,6), (-2,3), inner (2,2), (0,3)",
+        severity=Severity.CONDITION,
+        words="a cone is its own tangent cone",
     )
 
 

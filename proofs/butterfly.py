@@ -32,7 +32,7 @@ import sympy
 
 from exactfold import CreasePattern, count_branches, families
 from exactfold.rigidity import curvature_form, definite_stress
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 from proofs.mountain_valley import sector
 
 NAME = "butterfly"
@@ -78,6 +78,7 @@ def _butterfly(script: Script) -> None:
     script.identity(
         "d^2 = (a - b)^2 + p^2 + q^2 - 2 p q cos theta, with heights p, q over the shared fold",
         square - (a - b) ** 2 - p**2 - q**2 - sign * 2 * p * q * cosine,
+        of="IV.2 IV.1",
     )
     slope = sympy.factor(sympy.diff(square, tau))
     expected = script.alter("derivative with the wrong sign", 1, -1)
@@ -85,6 +86,7 @@ def _butterfly(script: Script) -> None:
         "d(d^2)/d tau = 8 p q tau / (1 + tau^2)^2 > 0 for tau > 0; even in theta, hence decreasing "
         "from pi to 2 pi",
         sympy.simplify(slope - expected * 8 * p * q * tau / (1 + tau**2) ** 2) == 0,
+        of="IV.2",
     )
     ends = script.alter("theta measured from the unfolded state", (0, sympy.oo), (sympy.oo, 0))
     limits = [sympy.limit(square, tau, end) for end in ends]
@@ -93,6 +95,7 @@ def _butterfly(script: Script) -> None:
         "unfolded",
         limits[0] - (a - b) ** 2 - (p - q) ** 2,
         limits[1] - (a - b) ** 2 - (p + q) ** 2,
+        of="IV.2",
     )
     mirrored = other.subs(tau, script.alter("theta and theta + pi", -tau, -1 / tau))
     script.identity(
@@ -102,26 +105,24 @@ def _butterfly(script: Script) -> None:
         mirrored[0] - other[0],
         mirrored[1] - other[1],
         mirrored[2] + other[2],
+        of="IV.3",
     )
     script.state(
         "IV.1",
         "Section IV, definition of a butterfly",
         r"\text{the configuration space is a circle, parametrized by the dihedral angle}",
-        Ruling.AS_PRINTED,
         note="modulo rigid motions; self-intersection (theta = 0) allowed",
     )
     script.state(
         "IV.2",
         "Section IV",
         r"d\text{ increases from }d_{min}\ (0)\text{ to }d_{max}\ (\pi)\text{, then decreases}",
-        Ruling.AS_PRINTED,
         note="strictly: d^2 = const - 2 p q cos(theta)",
     )
     script.state(
         "IV.3",
         "Section IV",
         r"d_{min}<d<d_{max}:\text{ two configurations related by reflection}",
-        Ruling.AS_PRINTED,
     )
 
 
@@ -138,10 +139,12 @@ def _doubling(script: Script) -> None:
         "sector(rho_3, rho_w) + sector(rho_w, rho_1) = sector(rho_3, rho_1) - (1/2) (cot beta_1 + "
         "cot beta_2) delta^2",
         sector(r, m, t) + sector(m, s, u) - sector(r, s, whole) + weight * delta**2,
+        of="IV.4 IV.5",
     )
     script.identity(
         "cot beta_1 + cot beta_2 = sin(beta_1 + beta_2) / (sin beta_1 sin beta_2)",
         cot1 + script.alter("difference of cotangents", 1, -1) * cot2 - sine / (sin1 * sin2),
+        of="IV.4",
     )
     turned = script.alter("closing sector not reversed", -1, 1)
     script.identity(
@@ -150,11 +153,13 @@ def _doubling(script: Script) -> None:
         "first "
         "identity, cot x + cot y > 0 for x + y < pi) leaves minus a sum of squares of bends",
         sector(r, s, -t) - turned * sector(r, s, t),
+        of="IV.4",
     )
     script.identity(
         "over the single fold of a seed Kc = -(1/2) (cot a_1 + cot a_2) bend^2, so that "
         "delta^2 = -(cot a_1 + cot a_2) / (cot beta_1 + cot beta_2) bend^2",
         sector(r, m, t) + sector(m, s, u) + sector(r, s, -whole) + weight * delta**2,
+        of="IV.4",
     )
     h1 = families.sample_h1_sequence(3, seed=1)
     v1, v2, v3, w = h1.moves[script.alter("first move for last", -1, 0)]
@@ -164,6 +169,7 @@ def _doubling(script: Script) -> None:
         "so "
         "the Jacobian is block triangular: simple branches of T with delta != 0 stay simple",
         only == [v2] and {v1, v3} <= set(h1.pattern.boundary),
+        of="IV.4",
     )
 
 
@@ -176,6 +182,7 @@ def _reflex(script: Script) -> None:
         "five boundary vertices: the fan folded to heights 0, 1, -1, 0 admits no height of w "
         "(discriminant < 0), and it is folded at v2",
         b * b - 4 * a * c < 0 and bool(heights[1] * bend),
+        against="IV.4",
     )
     closed = script.alter("the notch left open", DART.with_notch_closed(), DART)
     script.example(
@@ -184,25 +191,27 @@ def _reflex(script: Script) -> None:
         "stress makes m Kc = sum_v m_v K_v > 0 on every branch (docs/mathematics.md, 6; here: the "
         "dart)",
         closed.Ve == 3 and definite_stress(closed) is not None and DART.reflex_corner == 1,
+        of="IV.4",
     )
     before, after = count_branches(DART), count_branches(KITE)
     factor = script.alter("no doubling at a reflex corner", 2, 1)
     script.example(
         "dart of degree 4 at its reflex corner: 4 branches; with w attached: 8, all real",
         before.distinct == 4 and after.real == factor * before.distinct,
+        of="IV.4",
     )
     heights = script.alter("T unfolded", {0: 1, 2: 1, 3: 0}, {0: 1, 2: -1, 3: 0})
     script.counterexample(
         "angle pi and degree 3: v1, v4, v3 = (1,0), (0,-1), (-1,0) at heights 1, 0, 1, hub 0, and "
         "w = (0,1): K = 2 h_w, so that there is one height of w and not two",
         list(quadratic(STRAIGHT, 4, 1, heights)) == [0, 2, 0],
+        of="IV.4",
     )
     script.state(
         "IV.4",
         "Section IV, key property of H1 moves",
         r"\text{faces around }v_2\text{ folded: ``always two distinct folded configurations of }T'"
         r"\text{''}",
-        Ruling.CORRECTED,
         r"\text{near the unfolded state: two if the angle of }T\text{ at }v_2\text{ is less than "
         r"}\pi\text{; if it is larger, two if }v_2\text{ has degree 3 in }T\text{ or (to second "
         r"order) if }V_e=4\text{; only one can be sure if it is }\pi",
@@ -215,6 +224,8 @@ def _reflex(script: Script) -> None:
         "an angle of pi K is linear in the height of w: (1,0), (0,-1), (-1,0) at heights 1, 0, 1, "
         "hub 0, with w = (0,1) have h_w = 0 only (the other attachment is folded over)",
         "families.sample_h1_sequence",
+        severity=Severity.CONDITION,
+        words="docstring of proofs/butterfly.py",
     )
     half = script.alter("half of the flat-folded angle", sympy.Integer(1), sympy.Integer(0))
     p, q, tau = sympy.symbols("p q tau", positive=True)
@@ -224,17 +235,20 @@ def _reflex(script: Script) -> None:
         "the angle 0 (tau = 0) is d_min",
         sympy.limit(square, tau, sympy.oo) == 2 * p * q * half
         and square.subs(tau, 0) == -2 * p * q * half,
+        of="IV.19",
+        against="IV.19",
     )
     script.state(
         "IV.19",
         "Section IV, the first H1 move",
         r"\text{``a small enough interval around the unfolded state \dots\ where the dihedral "
         r"angle of the new butterfly never reaches }\pi\text{''}",
-        Ruling.CORRECTED,
         r"\text{never reaches }0\text{; it is }\pi\text{ in the unfolded state, and nowhere else "
         r"if }v_1,v_2,v_3\text{ are not collinear}",
         "the angle is pi iff d = d_max (IV.2). What a small interval excludes is d = d_min, the "
         "angle 0, where the two attachments meet again",
+        severity=Severity.TYPO,
+        rests="IV.2",
     )
     script.state(
         "IV.5",
@@ -242,7 +256,6 @@ def _reflex(script: Script) -> None:
         r"\text{``when the faces around }v_2\text{ are unfolded \dots\ we can only attach the "
         r"butterfly "
         r"in its unfolded state''}",
-        Ruling.AS_PRINTED,
         note="delta = 0 is then a double root; if v1, v2, v3 are collinear the unfolded butterfly "
         "can "
         "still turn about that line",

@@ -18,7 +18,7 @@ from exactfold.certify import krawczyk
 from exactfold.certify.box import IsolatingBox
 from exactfold.problem import QuadraticSystem
 from proofs.dual_space import dual_space
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, run
 
 NAME = "certification"
 TITLE = "Krawczyk's test, completeness, and multiplicities"
@@ -36,20 +36,20 @@ def prove(change: str | None = None) -> Proof:
         "T.41",
         "docs/mathematics.md, 3",
         r"k_0+rM<1,\ \eta+(k_0+rM)r<r \Rightarrow \text{exactly one zero, regular and real}",
-        Ruling.AS_PRINTED,
         note="G(x) = x - Y F(x) contracts the box into its interior (Banach); I - Y F' has norm "
         "below 1 on it, so Y and F' are regular there",
         code="krawczyk",
+        cited="Banach's fixed point theorem",
     )
     script.state(
         "T.42",
         "docs/mathematics.md, 4 and 8",
         r"\text{disjoint boxes, or dual spaces at isolated zeros, that add up to } 2^n "
         r"\text{ are all zeros}",
-        Ruling.AS_PRINTED,
         note="refined Bezout is cited, not proved; without isolation dual spaces prove nothing, as "
         "the example shows",
         code="isolate, check_complete",
+        cited="refined Bezout (Fulton)",
     )
     _contraction(script)
     _numbers(script)
@@ -97,6 +97,7 @@ def _contraction(script: Script) -> None:
         script.identity(
             f"row {row + 1}: G(x) - G(y) = (I - Y F'(m))(x - y) - Y H((x + y)/2 - m, x - y)",
             2 * left - 2 * linear + half * curved,
+            of="T.41",
         )
 
 
@@ -120,6 +121,7 @@ def _numbers(script: Script) -> None:
     script.cases(
         "boxes around products of known roots hold them",
         (isolates([(a, b), (a + 1, b + Fraction(1, 9))]) for a in values for b in values),
+        of="T.41",
     )
 
 
@@ -131,6 +133,7 @@ def _lines_of_zeros(script: Script) -> None:
     script.counterexample(
         "xy = x(y + 1) = 0 has a line of zeros: points on it, however many, prove no count",
         groebner(QuadraticSystem.from_rational([xy, shifted])).dimension == wanted,
+        of="T.42",
     )
     parabola = [[2, 0, 0], [0, 0, -1], [0, -1, 0]]
     axis = [[0, 0, 0], [0, 1, 0], [0, 0, 0]]
@@ -140,6 +143,7 @@ def _lines_of_zeros(script: Script) -> None:
     script.example(
         "x^2 = y, y^2 = 0: the dual space at 0 has dimension 4 = 2^2 and is complete",
         dual.dimension == 4 and dual.is_complete,
+        of="T.42",
     )
 
 

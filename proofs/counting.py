@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
@@ -14,13 +15,11 @@ import sympy
 from exactfold import CreasePattern, count_branches, families
 from exactfold.problem import BranchSystem
 from exactfold.rigidity.functionals import fold_functional
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 from proofs.mountain_valley import half_bend, sector
 
 NAME = "counting"
 TITLE = "Degrees of freedom, folds, assignments and chambers"
-
-AS_PRINTED, CORRECTED = Ruling.AS_PRINTED, Ruling.CORRECTED
 
 
 def prove(change: str | None = None) -> Proof:
@@ -44,11 +43,13 @@ def _freedom(script: Script) -> None:
         "Vi + Ve heights, less 3 for planes and Vi equations: D = Ve - 3; less 3 only: D + Vi",
         Vi + Ve - pins - Vi - D,
         Vi + Ve - 3 - (D + Vi),
+        of="IIC.1 IIC.2",
     )
-    script.identity("Euler: 3 Vi + Ve - 3 folds", folds - (3 * Vi + Ve - 3))
+    script.identity("Euler: 3 Vi + Ve - 3 folds", folds - (3 * Vi + Ve - 3), of="IIC.11")
     script.identity(
         "folded sheets: 3 V - 6 coordinates modulo motions less E lengths is Ve - 3 as well",
         3 * (Vi + Ve) - script.alter("planar motions only", 6, 3) - euler[E] - D,
+        of="IIC.11",
     )
     a, b = sympy.symbols("a b")
     script.identity(
@@ -56,6 +57,7 @@ def _freedom(script: Script) -> None:
         "one "
         "edge and turn about it: (a - 3) + (b - 3) + 1 = Ve - 3, the same D",
         (a - 3) + (b - 3) + script.alter("the chord does not turn", 1, 0) - (a + b - 2 - 3),
+        of="IIC.3",
     )
     systems = [BranchSystem(p) for p in (families.waterbomb(), families.hypar(2))]
     scaled = script.alter("the scale of the heights fixed", 0, 1)
@@ -66,30 +68,31 @@ def _freedom(script: Script) -> None:
             and len(s.variables) == s.pattern.Vi + s.pattern.D - scaled
             for s in systems
         ),
+        of="IIC.1 IIC.2 IIIA.1",
     )
     state = script.state
     state(
         "IIC.1",
         "Section II C, Eq. (Dcount)",
         r"D=V_e-3",
-        AS_PRINTED,
         note="holds also with chords. With a convex boundary the dimension of the complex solution "
         "set is exactly Ve - 3: for fixed boundary heights there are finitely many solutions "
         "(definite stress, docs/mathematics.md, 6); transversality is not needed",
         code="CreasePattern.degrees_of_freedom",
+        equation="9",
+        words="docs/mathematics.md, 6 (dimension)",
     )
     state(
         "IIC.2",
         "Section II C, after Eq. (Dcount)",
         r"V_i+V_e-3=D+V_i\text{ nontrivial linear motions}",
-        AS_PRINTED,
         code="BranchSystem.variables",
+        rests="IIC.1",
     )
     state(
         "IIC.11",
         "Section II C, after Eq. (Dcount)",
         r"\text{Eq. (Dcount) ``recovers the count \dots\ derived from a linear analysis''}",
-        AS_PRINTED,
         note="3V - 6 - E = Ve - 3 with E = 3Vi + 2Ve - 3",
     )
     state(
@@ -97,7 +100,6 @@ def _freedom(script: Script) -> None:
         "Section II C, before Eq. (Dcount) and Fig. (triangle)",
         r"\text{all folds are incident to an internal vertex; other folds ``do not couple to any "
         r"others''}",
-        AS_PRINTED,
         note="a convenience: Eq. (Dcount) does not need it",
         code="CreasePattern.chords",
     )
@@ -106,7 +108,6 @@ def _freedom(script: Script) -> None:
         "Section II C",
         r"\lambda\mathbf h\text{ solves Eqs. (compat) if }\mathbf h\text{ does; lines in }\mathbb "
         r"R^{V_i+D}\text{ are points of }\mathbb{RP}^{V_i+D-1}",
-        AS_PRINTED,
         code="Chart",
     )
     rho, sigma, t, lam = sympy.symbols("rho sigma t lambda")
@@ -114,12 +115,14 @@ def _freedom(script: Script) -> None:
     script.identity(
         "K_v(lambda h) = lambda^2 K_v(h), sector by sector",
         sector(lam * rho, lam * sigma, t) - lam**degree * sector(rho, sigma, t),
+        of="IIC.4",
     )
     lines = script.alter("points, not lines, of R^(Vi + D)", 1, 0)
     script.identity(
         "Vi equations for the lines in the Vi + Ve - 3 heights, the points of RP^(Vi + D - 1), "
         "leave D - 1 dimensions",
         (Vi + Ve - 3 - lines) - Vi - (D - 1),
+        of="IIC.12",
     )
     script.identity(
         "an H1 move adds one vertex and three edges: 3 V - 6 - E does not change",
@@ -127,12 +130,12 @@ def _freedom(script: Script) -> None:
         - (euler[E] + script.alter("four new edges", 3, 4))
         - 3 * (Vi + Ve)
         + euler[E],
+        of="IV.18",
     )
     state(
         "IV.18",
         "Section IV, Henneberg moves",
         r"\text{adding a vertex with three new edges preserves rigidity; }D\text{ does not change}",
-        AS_PRINTED,
         note="as a count of freedoms, in space; in the unfolded state see IV.4 and IV.7",
     )
     state(
@@ -140,14 +143,13 @@ def _freedom(script: Script) -> None:
         "Section II C",
         r"\text{the components are generically }(D-1)\text{-dimensional, the branches cones over "
         r"them}",
-        AS_PRINTED,
         note="with a convex boundary every component has that dimension over C",
+        rests="IIC.1",
     )
     state(
         "IIIA.1",
         "Section III A",
         r"V_i+1\text{ quadratic polynomials in }V_i+1\text{ heights, with }\sum_jh_j^2=1",
-        AS_PRINTED,
         note="Vi + D = Vi + 1 for D = 1",
     )
     n = script.alter("one quadric too many", 1, 2)
@@ -158,15 +160,17 @@ def _freedom(script: Script) -> None:
             2 ** (p.Vi + n) // 2 == BranchSystem(p).chart.system.bezout_number
             for p in (families.two_vertex(), families.hypar(1), families.h1_sequence(5))
         ),
+        of="IIIA.2",
     )
     state(
         "IIIA.2",
         "Section III A, Bezout's theorem",
         r"2^{V_i+1}\text{ roots; }B\text{ is half the number of real solutions; }B=2^{V_i}",
-        AS_PRINTED,
         note="finite and all real for convex boundaries: proved elsewhere; counted with "
         "multiplicity",
         code="QuadraticSystem.bezout_number",
+        rests="T.1",
+        cited="Bezout's theorem",
     )
 
 
@@ -177,11 +181,13 @@ def _folds(script: Script) -> None:
     script.example(
         "a triangulated square without rigid parts has 3n + 1 folds, n = Vi - Vt (Euler, Ve = 4)",
         all(len(p.folds) == 3 * p.Vi + more for p in square),
+        of="IIIA.3",
     )
     reduced, _ = families.flat_octahedron_in_square().without_rigid_parts()
     script.example(
         "the same for the square around a flat octahedron without it (n = 3)",
         len(reduced.folds) == 3 * script.alter("vertices of the octahedron counted", 3, 6) + 1,
+        of="IIIA.3",
     )
     exponent = script.alter("printed exponent n - 1", n, n - 1)
     script.identity(
@@ -189,31 +195,35 @@ def _folds(script: Script) -> None:
         "number of folds it would be (1/4)^(n + 1), not (1/4)^(n - 1)",
         sympy.powsimp(2**n / (2 ** (3 * n + 1) / 2) * 4**exponent, force=True) - 1,
         sympy.powsimp(2**n / (2 ** (3 * (n + 1)) / 2) * 4 ** (n + 1), force=True) - 1,
+        of="IIIA.5",
     )
-    script.state(
+    script.formula(
         "IIIA.3",
         "Section III A, mountain and valley folds",
-        r"\text{the number of folds for a triangulated square is }3(V_i-V_t+1)",
-        CORRECTED,
-        r"3(V_i-V_t)+1",
-        "one vertex has 4 folds, not 6; agrees with Appendix D, 3Vi + 1; folds inside triangulated "
+        r"N_F=3(V_i-V_t+1)",
+        r"N_F=3(V_i-V_t)+1",
+        over=_squares(),
+        note="one vertex has 4 folds, not 6; agrees with Appendix D, 3Vi + 1; folds inside "
+        "triangulated "
         "triangles not counted",
-        "CreasePattern.folds",
+        code="CreasePattern.folds",
+        severity=Severity.CONSTANT,
     )
-    script.state(
+    script.formula(
         "IIIA.4",
         "Section III A, mountain and valley folds",
-        r"2^{3(V_i-V_t+1)}/2\text{ mountain-valley assignments up to a global sign change}",
-        CORRECTED,
-        r"2^{3(V_i-V_t)+1}/2=2^{3(V_i-V_t)}",
-        "follows from IIIA.3; one vertex of degree four: 8",
+        r"2^{N_F}/2=2^{3(V_i-V_t+1)}/2",
+        r"2^{N_F}/2=2^{3(V_i-V_t)+1}/2=2^{3(V_i-V_t)}",
+        over=_squares(),
+        note="follows from IIIA.3; one vertex of degree four: 8",
+        severity=Severity.CONSTANT,
+        rests="IIIA.3",
     )
     script.state(
         "IIIA.5",
         "Section III A, mountain and valley folds",
         r"\text{the fraction ``is at most }(1/4)^{V_i-V_t-1}\text{''; consistency constraints on "
         r"the assignments make this ``certainly an overestimate''}",
-        CORRECTED,
         r"\text{at most }(1/4)^{V_i-V_t}\text{, with equality whenever the }2^{V_i-V_t}\text{ "
         r"branches have different assignments}",
         "2^n branches over the 2^(3n) assignments of IIIA.4, n = Vi - Vt; the printed count of "
@@ -221,6 +231,8 @@ def _folds(script: Script) -> None:
         "not because of the constraints: these do not lower the number of branches. Equality: the "
         "two-vertex square, 4 of 64",
         "BranchCount.repeated_assignments",
+        severity=Severity.CONSTANT,
+        rests="IIIA.4",
     )
     two = count_branches(families.two_vertex())
     shares = Fraction(4, 2**7 // 2)
@@ -230,6 +242,7 @@ def _folds(script: Script) -> None:
         two.distinct == 4
         and two.repeated_assignments == 0
         and shares == Fraction(1, 4) ** script.alter("exponent of the share", 2, 1),
+        against="IIIA.5",
     )
     outcomes = [
         (next(iter(b.vertex_signs.values())), b.assignment_text.count("M"))
@@ -242,12 +255,12 @@ def _folds(script: Script) -> None:
         "both wings raised is a valley, dihedral angle below pi on the upper side; a branch of a "
         "vertex of degree 4 has three folds of one sign and pops to their side",
         sign * lifted[2] > 0 < lifted[3] and all(o in ((1, 3), (-1, 1)) for o in outcomes),
+        of="I.1",
     )
     script.state(
         "I.1",
         "Introduction",
         r"\text{mountain and valley: dihedral angle larger or smaller than }\pi",
-        AS_PRINTED,
         note="measured on the upper side of the sheet",
         code="fold_functional",
     )
@@ -262,6 +275,7 @@ def _chambers(script: Script) -> None:
         "functionals "
         "are independent on the interior heights",
         half_bend(r, s, t) + half_bend(s, r, t) - script.alter("wrong weight", 1, -1) * t * (r + s),
+        of="IIIB.3",
     )
     per = script.alter("one ray a chamber", 2, 1)
     script.example(
@@ -269,15 +283,16 @@ def _chambers(script: Script) -> None:
         "branches each (n = 1 to 30; two vertices counted)",
         all(2 ** (n + 1) == per * 2**n and 2**n == per * 2 ** (n - 1) for n in range(1, 31))
         and sorted(count_branches(families.two_vertex()).sign_vectors.values()) == [2, 2],
+        of="IIIB.1 IIIB.3",
     )
     script.state(
         "IIIA.7",
         "Section III A, after Eq. (B distinct)",
         r"\text{the branches lie in a lower-dimensional }\mathbb R^{V_i-V_t+1}",
-        AS_PRINTED,
         note="each of the Vt inner heights is the value of the plane through the triangle's "
         "corners",
         code="CreasePattern.without_rigid_parts",
+        rests="IIC.7",
     )
     script.state(
         "IIIB.1",
@@ -285,15 +300,22 @@ def _chambers(script: Script) -> None:
         r"2^{V_i-V_t}\text{ sign patterns, }2^{V_i-V_t-1}\text{ up to sign; a 4-fold vertex has "
         r"one "
         r"and two branches}",
-        AS_PRINTED,
         code="BranchCount.sign_vectors",
     )
     script.state(
         "IIIB.3",
         "Section III B, chambers; Fig. (chambers)",
         r"2^{V_i-V_t+1}\text{ rays, two in each chamber; four wedges for }V_i=2",
-        AS_PRINTED,
     )
+
+
+def _squares() -> list[dict[str, Any]]:
+    """Numbers of squares: folds outside triangulated triangles, and vertices."""
+    sheets = [families.single_vertex(4), families.two_vertex(), families.hypar(2)]
+    sheets += [families.flat_octahedron_in_square()]
+    return [
+        {"N_F": len(p.without_rigid_parts()[0].folds), "V_i": p.Vi, "V_t": p.Vt} for p in sheets
+    ]
 
 
 if __name__ == "__main__":

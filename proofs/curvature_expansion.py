@@ -14,7 +14,8 @@ from sympy.polys.fields import field
 from sympy.polys.rings import ring
 
 from exactfold.rigidity import curvature_form, stress_form, wheel_stress
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, run
+from proofs.spokes import equation, wheel
 from proofs.wheel_stress import Angle, free_wheel
 
 NAME = "curvature_expansion"
@@ -50,13 +51,14 @@ def _law_of_cosines(script: Script) -> None:
     script.identity(
         "e_i . e_{i+1} = cos psi_i cos psi_{i+1} + sin psi_i sin psi_{i+1} cos beta",
         cos_alpha - (sign * psi.cos * psi1.cos + psi.sin * psi1.sin * beta.cos),
+        of="A.2",
     )
     script.state(
         "A.2",
         "Appendix A, spherical law of cosines",
         r"\cos\alpha_{i,i+1}=\cos\psi_i\cos\psi_{i+1}+\sin\psi_i\sin\psi_{i+1}\cos\beta_{i,i+1}",
-        Ruling.AS_PRINTED,
         note="alpha is a side of the spherical triangle, beta its angle at the z axis",
+        equation="A2",
     )
 
 
@@ -77,14 +79,15 @@ def _expansion(script: Script) -> None:
     script.identity(
         "cos(pi/2 - t x) = t x up to and including t^2, so psi = pi/2 - (h_i - h_0)/L_i + O(t^3)",
         *up_to_second(sine(t * x) - slope * t * x),
+        of="A.1",
     )
     script.state(
         "A.1",
         "Appendix A, the angle psi_i",
         r"\psi_i=\frac{\pi}{2}-\frac{h_i-h_0}{L_i}",
-        Ruling.AS_PRINTED,
         note="to second order in the heights; exactly, cos psi_i = (h_i - h_0)/L_i, because L_i is "
         "the length of the fold in space as well",
+        equation="A1",
     )
     delta = t * b1 + t**2 * b2
     turn = script.alter("cos(alpha + delta) expanded with the wrong sign", -1, 1)
@@ -92,21 +95,22 @@ def _expansion(script: Script) -> None:
     law += cosine(t * p) * cosine(t * q) * (C * cosine(delta) + turn * S * sine(delta)) - C
     order0, order1, order2 = up_to_second(law)
     cosines = script.alter("cos alpha on the other side", 0, 2)
-    script.identity("order t^0 vanishes", order0 + cosines * C)
-    script.identity("order t: -sin(alpha) b1 = 0, so that b1 = 0", order1 + S * b1)
+    script.identity("order t^0 vanishes", order0 + cosines * C, of="A.3")
+    script.identity("order t: -sin(alpha) b1 = 0, so that b1 = 0", order1 + S * b1, of="A.3")
     mixed = script.alter("sign of delta psi_i delta psi_{i+1}", 2, -2)
     printed = mixed * p * q - p**2 * C - q**2 * C  # over 2 sin(alpha)
     script.identity(
         "order t^2 with b1 = 0: 2 sin(alpha) b2 is the printed numerator",
         (2 * order2 + 2 * S * b2).subs(b1, 0) - printed,
+        of="A.3",
     )
     script.state(
         "A.3",
         "Appendix A, expansion of the law of cosines",
         r"\delta\beta_{i,i+1}=\frac{2\,\delta\psi_i\,\delta\psi_{i+1}-\delta\psi_i^2"
         r"\cos\alpha_{i,i+1}-\delta\psi_{i+1}^2\cos\alpha_{i,i+1}}{2\sin\alpha_{i,i+1}}",
-        Ruling.AS_PRINTED,
         note="no term of first order, since sin alpha is not 0",
+        equation="A3",
     )
 
 
@@ -128,12 +132,12 @@ def _deficit(script: Script) -> None:
         "the product around the hub is positive and sum beta is a multiple of 2 pi",
         left[0] - norm * right[0],
         left[1] - norm * right[1],
+        of="A.4 IIB.31",
     )
     script.state(
         "A.4",
         "Appendix A, 'no matter K', and Fig. (singlevertex)",
         r"\sum_i\beta_{i,i+1}=2\pi",
-        Ruling.AS_PRINTED,
         note="a multiple of 2 pi for every star without a fold along the z axis; near the unfolded "
         "state it is 2 pi by continuity",
     )
@@ -142,20 +146,20 @@ def _deficit(script: Script) -> None:
         "Section II B, definition of the trace",
         r"\text{``it is non-self-intersecting for a vertex sufficiently close to being unfolded "
         r"and thus cuts the sphere into two pieces''}",
-        Ruling.AS_PRINTED,
         note="there every beta is close to its alpha in (0, pi), and they add up to 2 pi (A.4), so "
         "that the trace is a graph over the equator",
+        rests="A.4",
     )
     _, turn_, K = ring("P K", QQ)  # P stands for 2 pi
     sum_alpha = turn_ + script.alter("excess in place of deficit", -1, 1) * K
-    script.identity("sum delta beta = sum beta - sum alpha = K", (turn_ - sum_alpha) - K)
+    script.identity("sum delta beta = sum beta - sum alpha = K", (turn_ - sum_alpha) - K, of="A.5")
     script.state(
         "A.5",
         "Appendix A, sum of the delta beta",
         r"\sum_i\alpha_{i,i+1}=2\pi-K,\qquad\sum_i\delta\beta_{i,i+1}=K",
-        Ruling.AS_PRINTED,
         note="an exact identity; K small is needed for the expansion of delta beta only. For a "
         "sheet cut from the plane K = 0, and the sum of the delta beta must vanish",
+        equation="A4",
     )
 
 
@@ -176,7 +180,9 @@ def _heights(script: Script) -> None:
     printed = rim * a.csc / (L * L1) * (x - x1) ** 2 / 2
     printed += (a.csc / other - a.cot / L) * x**2 / (2 * L)
     printed += (a.csc / L - a.cot / L1) * x1**2 / (2 * L1)
-    script.identity("delta beta in the heights, as printed (Delta L cancels)", delta - printed)
+    script.identity(
+        "delta beta in the heights, as printed (Delta L cancels)", delta - printed, of="A.6"
+    )
     script.state(
         "A.6",
         "Appendix A, delta beta in terms of the heights",
@@ -185,44 +191,49 @@ def _heights(script: Script) -> None:
         r"-\frac{\cot\alpha_{i,i+1}}{L_i}\right)\frac{(h_i-h_0)^2}{2L_i}+\left("
         r"\frac{\csc\alpha_{i,i+1}}{L_i}-\frac{\cot\alpha_{i,i+1}}{L_{i+1}}\right)"
         r"\frac{(h_{i+1}-h_0)^2}{2L_{i+1}}",
-        Ruling.AS_PRINTED,
+        equation="A5",
     )
     half = script.alter("summand without its one half", 2, 1)
     main = x / L * (x1 / L1) / a.sin - a.cot / half * ((x / L) ** 2 + (x1 / L1) ** 2)
-    script.identity("the summand of Section II B, with psi = +x/L from the xy-plane", delta - main)
+    script.identity(
+        "the summand of Section II B, with psi = +x/L from the xy-plane",
+        delta - main,
+        of="IIB.1 IIB.2",
+    )
     script.state(
         "IIB.1",
         "Section II B, curvature constraint (before Eq. wheelstress)",
         r"0=\sum_I\left\{\frac{\psi_I\psi_{I+1}}{\sin\alpha_{I,I+1}}-\frac12\cot\alpha_{I,I+1}"
         r"\left[\psi_I^2+\psi_{I+1}^2\right]\right\}",
-        Ruling.AS_PRINTED,
         note="psi_I is measured from the xy-plane here and from the z axis in Appendix A; "
         "psi_I = -delta psi_I, and the form is even. The sum is K up to third order",
         code="curvature_form",
+        equation="6",
     )
     script.state(
         "IIB.2",
         "Section II B, psi to lowest order",
         r"\psi_{(n,m)}=(h_n-h_m)/|\mathbf U_n-\mathbf U_m|",
-        Ruling.AS_PRINTED,
         note="n the far end, m the hub; exactly sin psi = (h_n - h_m)/L",
     )
     sign = script.alter("scalar product with the wrong sign", 1, -1)
     rational = x * x1 / c - sign * s / (2 * c) * (x**2 / L**2 + x1**2 / L1**2)
-    script.identity("delta beta = x x'/c - (s/2c)(x^2/L^2 + x'^2/L'^2)", delta - rational)
+    script.identity("delta beta = x x'/c - (s/2c)(x^2/L^2 + x'^2/L'^2)", delta - rational, of="A.8")
     tent = _sector(a, L, L1, -L, script.alter("a cone that is not round", -L1, L1))
-    script.identity("round cone x = -L: delta beta = tan(alpha/2) > 0, K > 0 on a tent", tent - p)
+    script.identity(
+        "round cone x = -L: delta beta = tan(alpha/2) > 0, K > 0 on a tent", tent - p, of="A.9"
+    )
     chord = (L - L1 * a.cos) ** 2 + (L1 * a.sin) ** 2
     sign = script.alter("law of cosines for Delta L with a plus", -2, 2)
     script.identity(
         "|U_{i+1} - U_i|^2 by the planar law of cosines",
         chord - (L**2 + L1**2 + sign * L * L1 * a.cos),
+        of="A.7",
     )
     script.state(
         "A.7",
         "Appendix A and Section II B, Delta L",
         r"\Delta L_{i,i+1}^2=L_i^2+L_{i+1}^2-2L_iL_{i+1}\cos\alpha_{i,i+1}",
-        Ruling.AS_PRINTED,
     )
 
 
@@ -240,17 +251,19 @@ def _constraint(script: Script) -> None:
         "spoke i collects its printed coefficient from the sectors (i-1, i) and (i, i+1); every "
         "(sector, spoke) pair occurs once, so the sum over i is Eq. (constraint) for every N",
         both - rims - far - spoke * x1**2 / (2 * L1),
+        of="A.8",
     )
-    script.state(
+    script.formula(
         "A.8",
         "Appendix A, Eq. (constraint)",
         r"0=\sum_i\left[-\csc\alpha_{i,i+1}\frac{\Delta L_{i,i+1}}{L_iL_{i+1}}"
-        r"\frac{(h_i-h_{i+1})^2}{2\Delta L_{i,i+1}}+\left(\frac{\csc\alpha_{i,i+1}}{L_{i+1}}+"
-        r"\frac{\csc\alpha_{i-1,i}}{L_{i-1}}-\frac{\cot\alpha_{i,i+1}}{L_i}-"
-        r"\frac{\cot\alpha_{i-1,i}}{L_i}\right)\frac{(h_i-h_0)^2}{2L_i}\right]",
-        Ruling.AS_PRINTED,
+        r"\frac{(h_i-h_{i+1})^2}{2\Delta L_{i,i+1}}+(\frac{\csc\alpha_{i,i+1}}{L"
+        r"_{i+1}}+\frac{\csc\alpha_{i-1,i}}{L_{i-1}}-\frac{\cot\alpha_{i,i+1}}{L"
+        r"_i}-\frac{\cot\alpha_{i-1,i}}{L_i})\frac{(h_i-h_0)^2}{2L_i}\right]",
+        over=[equation(wheel(3), 1)],
         note="the sum extends over all lines of the display; its right-hand side is K_v(h)",
         code="curvature_form",
+        equation="A6",
     )
 
 
@@ -266,6 +279,7 @@ def _curvature_form(script: Script) -> None:
         "edges d + t x z, d' + t x' z of a graph: L L' cos(angle) = s + c kappa t^2 + O(t^4), so "
         "angle = alpha - kappa t^2 and the deficit 2 pi - sum of angles is K_v(h) t^2",
         order2,
+        of="A.5 A.9",
     )
     differences: list[Any] = []
     factor = script.alter("Eq. (compat) equals the constraint without the factor 2", 2, 1)
@@ -286,15 +300,16 @@ def _curvature_form(script: Script) -> None:
         "curvature_form over the field of all spokes, N = 3, 4, 5: mixed entries 1/(2c), and twice "
         "the form is sum_e w_e (h_i - h_j)^2 of Eq. (compat) with the wheel stress",
         *differences,
+        of="A.9",
     )
     script.state(
         "A.9",
         "Appendix A, 'precisely the form ... from the self stresses in Eq. (compat)'",
         r"\sum_{(n,m)}\frac{\sigma_{(n,m)}}{|\mathbf U_n-\mathbf U_m|}(h_n-h_m)^2=2\,K_v(h)",
-        Ruling.AS_PRINTED,
         note="the same equation: Eq. (constraint) is one half of Eq. (compat) with the stress of "
         "Eq. (wheelstress). K_v > 0 on a cone over a convex polygon",
         code="curvature_form, stress_form, wheel_stress",
+        equation="A6",
     )
 
 

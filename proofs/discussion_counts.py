@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import cache
 from math import factorial
 from pathlib import Path
+from typing import Any
 
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
@@ -20,13 +21,11 @@ from exactfold.exact import QuadraticForm
 from exactfold.exact.linalg import from_fmpq, inertia, nullspace, rank, to_flint
 from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 from proofs.vertex_forms import star
 
 NAME = "discussion_counts"
 TITLE = "Counts of the table, the Discussion and Appendix D"
-
-AS_PRINTED, CORRECTED, FALSE = Ruling.AS_PRINTED, Ruling.CORRECTED, Ruling.FALSE
 
 WIDE = star((1, 0), (0, 1), (-2, -1), (-1, -2), (1, -1))
 TABLE = {2: (100, 0, 0), 3: (5000, 0, 0), 4: (1000, 2, 0), 5: (1000, 1, 17)}
@@ -51,26 +50,28 @@ def _table(script: Script) -> None:
     script.counterexample(
         "MV duplicates for Vi = 5 to 8: 17, 28, 17, 8 do not increase, their fractions do",
         sorted(checked) == checked and sorted(duplicates) != duplicates,
+        of="IIIA.8",
+        against="IIIA.8",
     )
     column = script.alter("column of the duplicates", 1, 2)
     total, special = (sum(row[k] for row in TABLE.values()) for k in (0, column))
     script.certificate(
         "4 of 8450 patterns have triangulated triangles, 4 of the 3350 with Vi >= 4",
         (total, special) == (8450, 4) and sum(TABLE[v][0] for v in range(4, 9)) == 3350,
+        of="IIIA.9",
     )
     script.state(
         "IIIA.8",
         "Section III A, last paragraph",
         r"\text{``with }V_i=5,6,7,8\text{ we found an increasing number of crease patterns''}",
-        CORRECTED,
         r"\text{an increasing fraction: }1.7\%,\ 2.8\%,\ 5.7\%,\ 16\%",
         "the numbers in Table (summary) are 17, 28, 17, 8; the Discussion says fraction",
+        severity=Severity.TYPO,
     )
     script.state(
         "IIIA.9",
         "Section III A and Introduction",
         r"\text{exceptions: 2, 1, 1 systems with }V_i=4,5,6\text{, frequency }\sim 1/1000",
-        AS_PRINTED,
         note="4 of 3350 with Vi >= 4, where exceptions are possible; 4 of 8450 in all",
     )
 
@@ -84,6 +85,7 @@ def _rigid_folds(script: Script) -> None:
         "a vertex of degree 5 with one fold made rigid: inertia (1, 1, 3), two lines, D = 1 = 5 - "
         "3 - 1",
         inertia(gram) == (1, 1, 3) and wheel.Ve - rigid - 1 == 1,
+        against="V.1",
     )
     wide = curvature_form(WIDE, 5), fold_functional(WIDE, (1, 5))
     script.counterexample(
@@ -91,6 +93,7 @@ def _rigid_folds(script: Script) -> None:
         "made rigid: inertia (0, 2, 3), so D = 0 and not 1",
         inertia(_restricted(*wide))
         == script.alter("a wide rigid face folds", (0, 2, 3), (1, 1, 3)),
+        of="V.1",
     )
     side = 4
     points = [(x, y) for y in range(side + 1) for x in range(side + 1)]
@@ -110,6 +113,7 @@ def _rigid_folds(script: Script) -> None:
         all(curvature_form(grid, v)(heights) == 0 for v in grid.interior)
         and flat
         and grid.Ve - 3 - len(diagonals) < script.alter("the formula is not negative", 0, -3),
+        against="V.2",
     )
     extra = script.alter("a third triangle closes the notch", [(6, 3), (3, 6)], [(6, 3), (6, 6)])
     number = {p: v for v, p in enumerate(points)}
@@ -132,37 +136,40 @@ def _rigid_folds(script: Script) -> None:
         form is not None
         and inertia([[form.polar(a, b) for b in raised] for a in raised]) == (1, 1, 0)
         and flap.Ve - 3 - len(diagonals) == -2,
+        against="V.2",
     )
     state = script.state
-    state(
+    script.formula(
         "V.1",
         "Section V, non-triangulated origami",
         r"D=V_e-4-E",
-        CORRECTED,
         r"D=V_e-3-E",
-        "E = 0 must give Eq. (Dcount); a vertex of degree 5 with one rigid fold has D = 1. Like "
+        over=_rigidified(),
+        note="E = 0 must give Eq. (Dcount); a vertex of degree 5 with one rigid fold has D = "
+        "1. Like "
         "Eq. (Dcount) a count of equations: D can be larger (V.2), and smaller, if a rigid fold "
         "lies between angles of sum > pi: spokes (1,0), (0,1), (-2,-1), (-1,-2), (1,-1), fold "
         "(0,1), D = 0",
+        severity=Severity.CONSTANT,
+        rests="IIC.1",
     )
     state(
         "V.2",
         "Section V, non-triangulated origami",
         r"\text{``When this formula becomes negative \dots\ we instead take }D=0\text{''}",
-        FALSE,
-        r"D\text{ can be positive when the formula is negative, for generic patterns, too}",
-        "the formula adds up a part with too many constraints and one with too few. 4 x 4 unit "
-        "squares with (6,3) and (3,6) joined to the corner (4,4), to each other and to the ends "
-        "of its sides: Ve - 3 - E = -2 (as printed: -3), but the corner has four folds and moves "
-        "while all squares stay flat, also after small changes of all vertices. The 4 x 4 squares "
-        "alone (-3) fold along a straight line",
+        note="D can be positive when the formula is negative, for generic patterns, "
+        "too: the formula adds up a part with too many constraints and one with too few. 4 x 4 "
+        "unit squares with (6,3) and (3,6) joined to the corner (4,4), to each other and to the "
+        "ends of its sides: Ve - 3 - E = -2 (as printed: -3), but the corner has four folds and "
+        "moves while all squares stay flat, also after small changes of all vertices. The 4 x 4 "
+        "squares alone (-3) fold along a straight line",
+        severity=Severity.CLAIM,
     )
     state(
         "V.8",
         "Section V, non-triangulated origami",
         r"\text{``triangulate the origami, then add additional quadratic constraints to rigidify "
         r"certain folds''}",
-        AS_PRINTED,
         note="a bar across the fold: with it the two faces carry one self stress, whose equation "
         "(compat) is the square of the bend. The linear equation, bend = 0, says the same and "
         "counts no solution twice",
@@ -196,6 +203,7 @@ def _rigid_folds(script: Script) -> None:
         ),
         sum(s * (lift[i] - lift[j]) ** 2 for (i, j), s in stress.items())
         + sum(x * h for x, h in zip(w, lift, strict=True)) ** 2,
+        of="V.8",
     )
 
 
@@ -216,29 +224,32 @@ def _orthogonality(script: Script) -> None:
         "two vertices: any three of the four branches span R^3 (determinants of enclosures), so a "
         "gradient orthogonal to three undesired branches is orthogonal to the fourth",
         all(len(t[0]) == 3 and _independent(t) for t in triples),
+        of="V.5",
     )
     spans = script.alter("no two spanning sets", 2, 3)
     script.cases(
         "random squares with Vi = 3, 4, 5: two disjoint sets of Vi + 1 branches are independent, "
         "so all branches but any one span the space of foldings",
         (_spanning_sets(n, seed) >= spans for n in (3, 4, 5) for seed in range(4)),
+        of="V.5",
     )
     least = script.alter("an obstruction already for one vertex", 2, 1)
     script.example(
         "2^V - 1 >= V + 1 exactly for V >= 2 (2^(V+1) - 2^V = 2^V >= 1: by induction)",
         2**least - 1 >= least + 1 and 2 ** (least - 1) - 1 < least,
+        of="V.5",
     )
     special = count_branches(families.flat_vertex_square(), method="groebner")
     script.counterexample(
         "the square with a flat vertex: two undesired branches do not span R^3",
         special.distinct == script.alter("four branches there", 3, 4),
+        against="V.5",
     )
     state = script.state
     state(
         "V.3",
         "Section V",
         r"N_F=3V_i+\mathrm{const}",
-        AS_PRINTED,
         note="const = Ve - 3 = 1 for four boundary vertices",
     )
     state(
@@ -246,44 +257,46 @@ def _orthogonality(script: Script) -> None:
         "Section V",
         r"\sum_i\frac{\partial E}{\partial\theta_i}\Delta\theta_i\ge0\text{ on both rays: "
         r"perpendicular}",
-        AS_PRINTED,
         note="x >= 0 and -x >= 0 give x = 0",
+        equation="12",
+        words="x >= 0 and -x >= 0",
     )
     state(
         "V.5",
         "Section V",
         r"N_F=3V_i+\mathrm{const}\text{ and }2^{V_i}\text{ branches: orthogonality ``impossible''}",
-        CORRECTED,
         r"\text{impossible wherever the }2^{V_i}-1\text{ undesired branches span the }(V_i+1)"
         r"\text{-dimensional space of foldings}",
         note="the two numbers alone do not show it, as many vectors can lie in a hyperplane. That "
         "generic patterns with Vi >= 2 have such branches is tested, not proved. The square with a "
         "flat vertex has two undesired branches in R^3, and there it is possible",
+        severity=Severity.CLAIM,
     )
     theta, target, k = sympy.symbols("theta target k")
     pull = script.alter("gradient with the wrong sign", -1, 1)
     script.identity(
         "the gradient of (1/2) k (theta - target)^2 at the unfolded state is -k target",
         sympy.diff(k * (theta - target) ** 2 / 2, theta).subs(theta, 0) - pull * k * target,
+        of="V.6",
     )
     octahedron = families.flat_octahedron_in_square()
     script.counterexample(
         "Vi = 6 with a flat octahedron: 8 branches, an open set of geometries; without: 64",
         count_branches(octahedron).distinct == 2 ** (6 - octahedron.Vt) == 8
         and octahedron.Vi == script.alter("six interior vertices", 6, 3),
+        of="V.7",
     )
     state(
         "V.6",
         "Section V, first displayed formula",
         r"E[x]=\frac12\sum_{(n,m)}k_{(n,m)}(\theta_{(n,m)}-\bar\theta_{(n,m)})^2",
-        AS_PRINTED,
         note="a definition: a weighted squared distance, with gradient -k theta-bar when unfolded",
+        equation="11",
     )
     state(
         "V.7",
         "Section V",
         r"\text{in generic patterns with }D=1\text{ the number of branches depends only on }V_i",
-        AS_PRINTED,
         note="with multiplicity, as in the definition of B. The number of distinct branches "
         "depends on Vi - Vt, and triangulated triangles persist under small changes of the "
         "vertices",
@@ -296,6 +309,7 @@ def _appendix(script: Script) -> None:
     script.identity(
         "2^(V+1) vectors, (2^(V+1))^2 = 4^(V+1) ordered pairs, each with itself included",
         sympy.powsimp((2 ** (V + 1)) ** square / 4 ** (V + 1), force=True) - 1,
+        of="D.3",
     )
     square = script.alter("vectors instead of pairs", 2, 1)
     pairs = {v: TABLE[v][0] * 2 ** (square * (v + 1)) for v in TABLE}
@@ -303,6 +317,7 @@ def _appendix(script: Script) -> None:
         "angle pairs for Vi = 8: 2/3 of those for Vi = 7 and 4/5 of those for Vi = 6",
         Fraction(pairs[8], pairs[7]) == Fraction(2, 3)
         and Fraction(pairs[8], pairs[6]) == Fraction(4, 5),
+        of="D.7",
     )
     folds = script.alter("printed number of folds", 1, 3)
     outcomes = []
@@ -311,34 +326,47 @@ def _appendix(script: Script) -> None:
         size = len(pattern.vertices)
         bends = rank([[row.get(v, 0) for v in range(size)] for row in rows])
         outcomes.append((len(rows), bends) == (3 * pattern.Vi + folds, pattern.Vi + 1))
-    script.cases("3 Vi + 1 folds; the bends span a (Vi + 1)-dimensional space", outcomes)
+    script.cases(
+        "3 Vi + 1 folds; the bends span a (Vi + 1)-dimensional space", outcomes, of="D.1 D.2 V.3"
+    )
     state = script.state
     place = "Appendix D"
-    state("D.1", place, r"3V_i+1\text{-dimensional space of dihedral angles}", AS_PRINTED)
+    state(
+        "D.1",
+        place,
+        r"3V_i+1\text{-dimensional space of dihedral angles}",
+    )
     state(
         "D.2",
         place,
         r"\text{the branches lie in a }V_i+1\text{-dimensional linear subspace}",
-        AS_PRINTED,
         note="heights modulo planes embed into the bends (IIA.13)",
     )
     state(
-        "D.3", place, r"2^{V_i+1}\text{ vectors},\ (2^{V_i+1})^2\text{ ordered pairs}", AS_PRINTED
+        "D.3",
+        place,
+        r"2^{V_i+1}\text{ vectors},\ (2^{V_i+1})^2\text{ ordered pairs}",
     )
     state(
         "D.4",
         place + " and Fig. (v6)",
         r"\text{points on the }V_i\text{-dimensional sphere; 6-dimensional for }V_i=6",
-        AS_PRINTED,
         note="the unit sphere of R^(Vi+1)",
+        rests="D.2",
+    )
+    width = script.alter("the width of the captions in the text", 128, 32)
+    script.counterexample(
+        "bins of pi/32 and of pi/128 are not the same: 32 and 128 bins up to pi",
+        Fraction(1, 32) != Fraction(1, width),
+        against="D.5",
     )
     state(
         "D.5",
         "Appendix D, Figs. (v6) and (distribution) against the text",
         r"\text{bins of size }\pi/32\text{ (both captions), }\pi/128\text{ (text, twice)}",
-        CORRECTED,
         r"\text{one of the two; the source does not say which}",
         "nothing depends on it. V=6 in the text and V=2 -- 8 in a caption are values of Vi",
+        severity=Severity.TYPO,
     )
     a, b = sympy.Matrix(sympy.symbols("a1:3")), sympy.Matrix(sympy.symbols("b1:3"))
     other = script.alter("angle with the other end not turned", -a, a)
@@ -346,13 +374,13 @@ def _appendix(script: Script) -> None:
         "cos of the angle with the other end of a branch is minus the cosine: theta and pi - theta",
         other.dot(b) / sympy.sqrt(other.dot(other) * b.dot(b))
         + a.dot(b) / sympy.sqrt(a.dot(a) * b.dot(b)),
+        of="D.6",
     )
     state(
         "D.6",
         place,
         r"\text{``for each angle }\theta\text{, we also include the angle }\pi-\theta\text{''; }"
         r"0\text{ and }\pi\text{ of each branch with itself}",
-        AS_PRINTED,
         note="all four pairs of ends; a share 2^(-Vi) of the ordered pairs is of a branch with "
         "itself",
     )
@@ -366,20 +394,20 @@ def _appendix(script: Script) -> None:
             sympy.diff(sympy.sin(angle) ** power * sympy.cos(angle), angle) / density
             - (n * sympy.cos(angle) ** 2 - sympy.sin(angle) ** 2)
         ),
+        of="D.8",
     )
     state(
         "D.8",
         place,
         r"\text{``for random points on a sphere, the angle distribution approaches a Gaussian with "
         r"variance going to zero''}",
-        AS_PRINTED,
         note="the variance is proved here, the Gaussian is cited (Ref. caifanjiang)",
+        cited="Ref. caifanjiang (the Gaussian)",
     )
     state(
         "D.7",
         place,
         r"\text{``the number of data points going into the histograms is comparable''}",
-        AS_PRINTED,
         note="2/3 of the pairs for Vi = 7",
     )
 
@@ -409,6 +437,18 @@ def _spanning_sets(interior: int, seed: int) -> int:
         if _independent(rows[:size]) and _independent(rows[size : 2 * size]):
             return 2
     return 0
+
+
+def _rigidified() -> list[dict[str, Any]]:
+    """Freedoms of single vertices whose first fold is rigid (E = 1) or not, by their null cones."""
+    found = []
+    for n in (5, 6, 7):
+        wheel = families.single_vertex(n)
+        form, fold = curvature_form(wheel, n), fold_functional(wheel, (0, n))
+        for rigid in (0, 1):
+            positive, negative, _ = inertia(_restricted(form, fold if rigid else {}))
+            found.append({"D": positive + negative - 1, "V_e": n, "E": rigid})
+    return found
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ from exactfold.exact.linalg import inertia, nullspace
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity import curvature_form, wheel_stress
 from exactfold.rigidity.timelike import round_cone
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 from proofs.vertex_forms import cot, cross, csc, star, symbols, unit
 
 NAME = "eigenvector"
@@ -74,12 +74,14 @@ def _round_cone(script: Script) -> None:
         "round cone t_0 = 0, t_j = -L_j: each sector contributes csc a - cot a = tan(a/2) to K",
         sector - half,
         csc(u, v) - cot(u, v) - half,
+        of="T.21",
     )
     plus = script.alter("a square for the product", 1, -1)
     script.identity(
         "(csc a - cot a)(csc a + cot a) = 1, and the two add up to 2 csc a: both are positive if "
         "sin a > 0",
         (csc(u, v) - cot(u, v)) * (csc(u, v) + plus * cot(u, v)) - 1,
+        of="T.21",
     )
     form = curvature_form(star(*SPIKY), 4)
     raised = {v: Fraction(v == 4) for v in range(5)}
@@ -87,12 +89,12 @@ def _round_cone(script: Script) -> None:
     script.example(
         "the library's round cone has K > 0 where raising the hub has K < 0",
         form(cone) > 0 and form(raised) == Fraction(-49, 48),
+        of="T.21",
     )
     script.state(
         "T.21",
         "docs/conventions.md, vertex signs",
         r"K_v(t)=\sum_j\tan(\alpha_{j,j+1}/2)>0\text{ for the round cone }t_j-t_v=-L_j",
-        Ruling.AS_PRINTED,
         note="for every star with angles in (0, pi). Raising the hub alone has K = (1/2) sum_n "
         "A_n, negative for some stars: -49/48 for spokes (1,0), (3,4), (-2,-1), (8,-2)",
         code="round_cone",
@@ -104,6 +106,7 @@ def _nappes(script: Script) -> None:
     script.identity(
         "K(T h - P t) = T (T H - P^2) with T = K(t), P = K(t, h), H = K(h)",
         T**2 * H - 2 * T * P * P + P**2 * T - T * (T * H - script.alter("P not squared", P**2, P)),
+        of="IIB.24 IIIB.4",
     )
     # If T > 0, K is negative semidefinite on the complement of t and zero only on affine functions,
     # by the inertia (1, N-3, 3). So H = 0 = P only for affine h, and P does not vanish on a nappe.
@@ -115,6 +118,7 @@ def _nappes(script: Script) -> None:
             curvature_form(single_vertex(n), n).inertia == (1, n - 3 + extra, 3 - extra)
             for n in range(3, 9)
         ),
+        of="IIB.24 IIIB.4",
     )
     matrix = curvature_form(star(*SPIKY), 4).matrix
     value = script.alter("another eigenvalue", Fraction(4, 5), Fraction(5, 4))
@@ -124,13 +128,13 @@ def _nappes(script: Script) -> None:
         "(1,0), (3,4), (-2,-1), (8,-2) have lambda = 4/5 and h_- = (25; 15, -9, -26, -5)",
         all(_dot(row, EIGENVECTOR) == value * e for row, e in zip(matrix, EIGENVECTOR, strict=True))
         and all(_dot(function, EIGENVECTOR) == 0 for function in affine),
+        of="IIB.24 IIB.26",
     )
     script.state(
         "IIB.24",
         "Section II B, on the eigenvector",
         r"\text{points on the two nappes are distinguished by the sign of their dot product with }"
         r"\mathbf h_-\text{; the plane normal to it separates them}",
-        Ruling.AS_PRINTED,
         note="h_- . h = K(h_-, h)/lambda with K(h_-) > 0. Any t with K(t) > 0 serves as well, "
         "with K(t, h) in place of the dot product; the dot product does not change when an affine "
         "function is added to h",
@@ -141,7 +145,6 @@ def _nappes(script: Script) -> None:
         "Section III B, vertex sign pattern",
         r"\sigma_n=\mathrm{sgn}[\mathbf e_n\cdot\mathbf h]\text{; each }\mathbf e_n\text{ defines "
         r"a hyperplane separating popped-up from popped-down configurations at }n",
-        Ruling.AS_PRINTED,
         note="by IIB.24; sigma_n = 0 iff the star of n is flat. On branches every other timelike "
         "vector that points up gives the same sign. e_n belongs to the negative eigenvalue in the "
         "sign of Appendix C (positive in that of Eq. (wheelstress), see IIB.21)",
@@ -161,6 +164,7 @@ def _curvature(script: Script) -> None:
         "on unit vectors h = a h_- + y, K(h) = lambda a^2 + K(y) <= lambda: lambda I - K is "
         "positive semidefinite, here of inertia (4, 0, 1)",
         inertia(rest) == (4, 0, 1),
+        of="IIB.25",
     )
     sign = script.alter("sign of Appendix C", 1, -1)
     matrices = [form.matrix, curvature_form(star(*CONVEX), 4).matrix]
@@ -171,13 +175,13 @@ def _curvature(script: Script) -> None:
         [sum(m[i][i] for i in range(5)) for m in matrices]
         == [sign * Fraction(-123, 40), sign * Fraction(-5, 108)]
         and all(inertia(m) == (1, 1, 3) for m in matrices),
+        of="IIB.25",
     )
     script.state(
         "IIB.25",
         "Section II B, on the eigenvector",
         r"\mathbf h_-\text{ gives a set of displacements that maximizes the change in the "
         r"Gaussian curvature}",
-        Ruling.AS_PRINTED,
         note="K among displacements of norm 1. Not always |K|: the eigenvalue of largest magnitude "
         "can be negative, as for spokes (0,-3), (2,1), (1,1), (-3,1)",
         code="curvature_form",
@@ -187,7 +191,6 @@ def _curvature(script: Script) -> None:
         "Section II B, Fig. (conical)(b)",
         r"\text{the eigendeformation of the negative eigenvalue gives the vertex positive "
         r"Gaussian curvature}",
-        Ruling.AS_PRINTED,
         note="negative in the sign of Appendix C, -2 K: K(h_-) = lambda |h_-|^2 > 0",
     )
 
@@ -202,6 +205,7 @@ def _components(script: Script) -> None:
         "replacing h by (|h_0|, -|h_1|, ..., -|h_N|) does not lower K and keeps |h|",
         rim - (sign * x * y / c - (x**2 + y**2) / (2 * c)),
         spoke - (-A * h0 * x + A * (h0**2 + x**2) / 2),
+        of="IIB.27",
     )
     square = curvature_form(star((1, 0), (0, 1), (-1, 0), (0, -1)), 4)
     ones = (script.alter("the hub moves with its neighbours", -4, 4), 1, 1, 1, 1)
@@ -211,6 +215,7 @@ def _components(script: Script) -> None:
         "h_- is orthogonal to constants: |hub| = sum of the neighbours' magnitudes, all of the "
         "other sign, so each is smaller (N >= 3); e.g. four equal spokes: (-4, 1, 1, 1, 1)",
         [_dot(row, ones) for row in square.matrix] == [5 * e for e in ones] and sum(ones) == 0,
+        of="IIB.27",
     )
     _largest(script)
     stress = wheel_stress(star(*SPIKY), 4)
@@ -221,13 +226,13 @@ def _components(script: Script) -> None:
         abs(EIGENVECTOR[3]) > abs(EIGENVECTOR[0])
         and EIGENVECTOR[j] * EIGENVECTOR[0] > 0
         and [stress[j, 4] < 0 for j in range(4)] == [True, False, False, False],
+        against="IIB.27",
     )
     script.state(
         "IIB.27",
         "Section II B, on the eigenvector",
         r"\text{the component of largest magnitude is the displacement at the vertex itself; the "
         r"neighbouring vertices are moved by smaller amounts in the opposite direction}",
-        Ruling.CORRECTED,
         r"h_0>h_n\text{ for all }n\text{, where }\mathbf h_-\text{ pops up; if the link polygon "
         r"has no reflex corner, also }h_n<0\text{ for all }n\text{, so that }|h_n|<h_0",
         note="the first part for every vertex (proof: LARGEST in proofs/eigenvector.py). With a "
@@ -235,6 +240,8 @@ def _components(script: Script) -> None:
         "eigenvalue 4/5, h_- = (25; 15, -9, -26, -5): a neighbour moves more than the vertex, "
         "another one in the same direction. They can hold, too: (-3,-1), (6,0), (4,1), (2,3)",
         code="curvature_form, round_cone",
+        severity=Severity.CLAIM,
+        words="LARGEST in proofs/eigenvector.py",
     )
 
 
@@ -248,6 +255,7 @@ def _largest(script: Script) -> None:
         "(1): with g = sin x a sector from x to y gives K(h, g) the part (rho(x) cos x - rho(y) "
         "cos y)/2, over a half circle (rho(0) + rho(pi))/2",
         polar - (r * u[0] - end * q * v[0]) / 2,
+        of="IIB.27",
     )
     q, p = symbols("q p")
     larger = script.alter("clipped from below", 1, -1)
@@ -259,12 +267,14 @@ def _largest(script: Script) -> None:
             for difference in ((p + q) ** 2 - q**2, larger * ((p + q) ** 2 - p**2))
             for c in difference.numer.coeffs()
         ),
+        of="IIB.27",
     )
     stars = [SPIKY, LOYAL, *_random_stars(20)]
     order = script.alter("the hub smallest", 1, -1)
     script.cases(
         "h_0 > h_n for all n, by exact enclosures of h_-, on stars with reflex links",
         (_hub_is_largest(spokes, order) for spokes in stars),
+        of="IIB.27",
     )
     matrix = curvature_form(star(*LOYAL), 4).matrix
     value = script.alter("another eigenvalue of the loyal star", Fraction(163, 180), Fraction(1))
@@ -275,6 +285,7 @@ def _largest(script: Script) -> None:
         "hub moves most and all others against it",
         wheel_stress(star(*LOYAL), 4)[2, 4] < 0
         and all(x * loyal[0] < 0 and abs(x) < abs(loyal[0]) for x in loyal[1:]),
+        of="IIB.27",
     )
 
 

@@ -15,12 +15,12 @@ from sympy.polys.fields import field
 
 from exactfold import CreasePattern, families
 from exactfold.rigidity import wheel_stress
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
+from proofs.spokes import wheel
 from proofs.wheel_stress import Angle, cross, dot, with_vertices
 
 NAME = "force_balance"
 TITLE = "Force balance of the wheel stress"
-PRINTED, CORRECTED = Ruling.AS_PRINTED, Ruling.CORRECTED
 
 
 def spoke(L0: Any, L1: Any, L2: Any, before: Angle, after: Angle) -> Any:
@@ -63,11 +63,10 @@ def _stresses(script: Script) -> None:
         rim = sign * alpha[j].csc / (L[j] * L[k])
         differences.append(stress[(min(j, k), max(j, k))] - rim)
         differences.append(stress[(j, 3)] - spoke(L[i], L[j], L[k], alpha[i], alpha[j]) / L[j])
-    script.identity("wheel_stress is Eqs. (outer), (spokes) over the edge lengths", *differences)
-    outer = r"\sigma_{i,i+1}=-\csc\alpha_{i,i+1}\frac{\Delta L_{i,i+1}}{L_iL_{i+1}}"
-    spokes = (
-        r"\sigma_i=\frac{\csc\alpha_{i,i+1}}{L_{i+1}}+\frac{\csc\alpha_{i-1,i}}{L_{i-1}}"
-        r"-\frac{\cot\alpha_{i,i+1}}{L_i}-\frac{\cot\alpha_{i-1,i}}{L_i}"
+    script.identity(
+        "wheel_stress is Eqs. (outer), (spokes) over the edge lengths",
+        *differences,
+        of="IIB.4 B.1 B.2",
     )
     both = (
         r"\tilde\sigma_{I,I+1}=-\csc\alpha_{I,I+1}\frac{\Delta L_{I,I+1}}{L_IL_{I+1}},\quad "
@@ -75,15 +74,32 @@ def _stresses(script: Script) -> None:
         r"-L_I^{-1}(\cot\alpha_{I,I+1}+\cot\alpha_{I-1,I})"
     )
     code, read = "wheel_stress", "read off A.8: coefficient of (h_i - h_j)^2 / (2 length)"
-    script.state("IIB.4", "Section II B, Eq. (wheelstress)", both, PRINTED, code=code)
-    script.state("B.1", "Appendix B, Eq. (outer)", outer, PRINTED, note=read, code=code)
-    script.state("B.2", "Appendix B, Eq. (spokes)", spokes, PRINTED, note=read, code=code)
+    script.state("IIB.4", "Section II B, Eq. (wheelstress)", both, code=code, equation="7")
+    script.formula(
+        "B.1",
+        "Appendix B, Eq. (outer)",
+        r"\sigma_{i,i+1}=-\csc\alpha_{i,i+1}\frac{\Delta L_{i,i+1}}{L_iL_{i+1}}",
+        over=[wheel(4), wheel(5)],
+        note=read,
+        code=code,
+        equation="B1",
+    )
+    script.formula(
+        "B.2",
+        "Appendix B, Eq. (spokes)",
+        r"\sigma_i=\frac{\csc\alpha_{i,i+1}}{L_{i+1}}+\frac{\csc\alpha_{i-1,i}}{"
+        r"L_{i-1}}-\frac{\cot\alpha_{i,i+1}}{L_i}-\frac{\cot\alpha_{i-1,i}}{L_i}",
+        over=[wheel(4), wheel(5)],
+        note=read,
+        code=code,
+        equation="B2",
+    )
     script.state(
         "B.3",
         "Appendix B, second paragraph",
         r"\boldsymbol\sigma^T\cdot\mathbf C=\mathbf 0^T\iff\text{ force balance at each vertex}",
-        PRINTED,
         note="the columns of vertex n give the sum over its edges of sigma times the unit vector",
+        rests="IIA.14",
     )
 
 
@@ -97,33 +113,37 @@ def _rim(script: Script) -> None:
     sin_last, cos_last = cross(to_hub, to_last) / (L * E), dot(to_hub, to_last) / (L * E)
     rim_next, rim_last = -a.csc * D / (L * M), -b.csc * E / (L * N)
     over = script.alter("outer2 with L_{i+1}", L, M)
-    script.identity("Eq. (outer2)", rim_next + 1 / (sin_next * over))
+    script.identity("Eq. (outer2)", rim_next + 1 / (sin_next * over), of="B.4")
     over = script.alter("outer3 with L_{i-1}", L, N)
-    script.identity("Eq. (outer3)", rim_last + 1 / (sin_last * over))
-    script.state(
+    script.identity("Eq. (outer3)", rim_last + 1 / (sin_last * over), of="B.5")
+    script.formula(
         "B.4",
         "Appendix B, Eq. (outer2)",
-        r"\sigma_{i,i+1}=-\csc\eta_{i,i+1}/L_i,\ \eta_{i,i+1}\text{ opposite }L_{i+1}",
-        PRINTED,
+        r"\sigma_{i,i+1}=-\csc\eta_{i,i+1}/L_i",
+        over=[wheel(4), wheel(5)],
+        equation="B3",
     )
-    script.state(
+    script.formula(
         "B.5",
         "Appendix B, Eq. (outer3)",
-        r"\sigma_{i-1,i}=-\csc\eta_{i-1,i}/L_i,\ \eta_{i-1,i}\text{ opposite }L_{i-1}",
-        PRINTED,
+        r"\sigma_{i-1,i}=-\csc\eta_{i-1,i}/L_i",
+        over=[wheel(4), wheel(5)],
         note="notation: both eta are angles at vertex i, so Eq. (outer3) is not Eq. (outer2) with "
         "i - 1 for i, whose eta_{i-1,i} would be the other angle, at vertex i - 1",
+        equation="B4",
     )
     sign = script.alter("perpendicular balance as printed", 1, -1)
     script.identity(
         "sigma_{i,i+1} sin eta_{i,i+1} = sigma_{i-1,i} sin eta_{i-1,i} = -1/L_i",
         rim_next * sin_next - sign * rim_last * sin_last,
         rim_next * sin_next + 1 / L,
+        of="B.6",
     )
     sign = script.alter("both rim edges on one side of the spoke", 1, -1)
     script.identity(
         "perpendicular components of the two rim forces add up to zero",
         rim_next * to_next[1] / D + sign * rim_last * to_last[1] / E,
+        of="B.6",
     )
     value = script.alter("rim of the cross positive", Fraction(-1), Fraction(1))
     # alpha = pi/2 and L = 1 throughout: sigma sin eta = -1/L on both sides
@@ -132,44 +152,57 @@ def _rim(script: Script) -> None:
         "cross of unit spokes: rim density times height over the spoke is -1 on both sides, so the "
         "printed equation reads -1 = +1",
         square[(0, 1)] == square[(0, 3)] == value and value != -value,
+        against="B.6",
     )
-    script.state(
+    script.formula(
         "B.6",
         "Appendix B, forces perpendicular to the spoke",
-        r"\sigma_{i,i+1}\sin\eta_{i,i+1}=-\sigma_{i-1,i}\sin\eta{i-1,i}",
-        CORRECTED,
+        r"\sigma_{i,i+1}\sin\eta_{i,i+1}=-\sigma_{i-1,i}\sin\eta_{i-1,i}",
         r"\sigma_{i,i+1}\sin\eta_{i,i+1}=\sigma_{i-1,i}\sin\eta_{i-1,i}=-1/L_i",
-        "the edges leave on opposite sides of the spoke, so equal magnitudes balance; also the "
+        over=[wheel(4), wheel(5)],
+        note="the edges leave on opposite sides of the spoke, so equal magnitudes balance; "
+        "also the "
         "subscript of the second eta has slipped to the line. Example: cross of unit spokes",
+        severity=Severity.TYPO,
     )
     total = script.alter("one cotangent lost", 1, 0)
     cot_next, cot_last = cos_next / sin_next, cos_last / sin_last
     along = -(rim_next * to_next[0] / D + rim_last * to_last[0] / E)
-    script.identity("F_rim parallel to the spoke", along + (cot_last + total * cot_next) / L)
+    script.identity(
+        "F_rim parallel to the spoke", along + (cot_last + total * cot_next) / L, of="B.7"
+    )
     script.state(
         "B.7",
         "Appendix B, F_rim parallel, in two parts, Eq. (spokepar)",
         r"F_{rim,\parallel}=-(\cot\eta_{i-1,i}+\cot\eta_{i,i+1})/L_i,\quad "
         r"F_{rim,\parallel,-}=-\cot\eta_{i-1,i}/L_i,\quad "
         r"F_{rim,\parallel,+}=-\cot\eta_{i,i+1}/L_i",
-        PRINTED,
+        equation="B5 to B7",
     )
     sign = script.alter("first piece with the cotangent added", 1, -1)
     over = script.alter("second piece with L_i for L_{i+1}", M, L)
     first, second = b.csc / N - sign * b.cot / L, a.csc / over - a.cot / L
-    script.identity("first piece cancels F_{rim,-}, second F_{rim,+}", first - cot_last / L)
-    script.identity("the two pieces make up the spoke", first + second - spoke(N, L, M, b, a))
-    script.identity("second piece cancels F_{rim,+}", second - cot_next / L)
-    script.state(
+    script.identity(
+        "first piece cancels F_{rim,-}, second F_{rim,+}", first - cot_last / L, of="B.8"
+    )
+    script.identity(
+        "the two pieces make up the spoke", first + second - spoke(N, L, M, b, a), of="B.8"
+    )
+    script.identity("second piece cancels F_{rim,+}", second - cot_next / L, of="B.8")
+    script.formula(
         "B.8",
         "Appendix B, Eq. (firstpiece) and the cancellation of both pieces",
-        r"\csc\alpha_{i-1,i}/L_{i-1}-\cot\alpha_{i-1,i}/L_i=-F_{rim,\parallel,-}",
-        PRINTED,
-        note="for acute, right and obtuse angles; the second piece is its mirror image",
+        r"\csc\alpha_{i-1,i}/L_{i-1}-\cot\alpha_{i-1,i}/L_i=\cot\eta_{i-1,i}/L_i",
+        over=[wheel(4), wheel(5)],
+        note="Eq. (firstpiece) is minus F_{rim,-} = -cot(eta_{i-1,i})/L_i; for acute, right "
+        "and obtuse angles. The second piece is its mirror image",
+        equation="B8",
     )
     sign = script.alter("foot of the height beyond the hub", 1, -1)
     script.identity(
-        "cot eta_{i-1,i} = (L_i - h cot alpha)/h", cot_last - (L - sign * N * b.cos) / (N * b.sin)
+        "cot eta_{i-1,i} = (L_i - h cot alpha)/h",
+        cot_last - (L - sign * N * b.cos) / (N * b.sin),
+        of="B.9",
     )
 
 
@@ -178,32 +211,32 @@ def _crossed_ladders(script: Script) -> None:
     _, A, B, L, p, e = field("A B L p e", QQ)
     h = script.alter("harmonic sum replaced by the mean", A * B / (A + B), (A + B) / 2)
     x = L * h / B
-    script.identity("1/A + 1/B = 1/h", 1 / A + 1 / B - 1 / h, A * (1 - x / L) - h)
+    script.identity("1/A + 1/B = 1/h", 1 / A + 1 / B - 1 / h, A * (1 - x / L) - h, of="B.9")
     alpha, eta = Angle.twice_arctan(p), Angle.twice_arctan(e)
     opposite = script.alter("law of sines with the other angle", eta, alpha)
     length = L * opposite.sin / (alpha + eta).sin  # L_{i-1} by the law of sines
     script.identity(
         "A = L tan eta, B = L tan alpha, h = L_{i-1} sin alpha, for all angles",
         eta.cot / L + alpha.cot / L - 1 / (length * alpha.sin),
+        of="B.10",
     )
     script.state(
         "B.9",
         "Appendix B, crossed ladders, Fig. (crossedladder)",
         r"1/A+1/B=1/h",
-        PRINTED,
         note="for signed lengths, hence also for an obtuse angle; at a right angle 1/A or 1/B is 0",
     )
     obtuse = Angle(Fraction(script.alter("obtuse angle taken acute", -3, 3), 5), Fraction(4, 5))
     script.example(
         "alpha with cosine -3/5, L_i = 1: B = L_i tan alpha = -4/3 is no side length",
         1 / obtuse.cot == Fraction(-4, 3),
+        of="B.10",
     )
     script.state(
         "B.10",
         "Appendix B, A and B as sides of right triangles",
         r"A=L_i\tan\eta_{i-1,i},\ B=L_i\tan\alpha_{i-1,i}\text{ are side lengths of right "
         r"triangles with leg }L_i",
-        PRINTED,
         note="as in the figure, for acute angles; A and B are signed, negative for an obtuse angle "
         "and infinite for a right one. With these signs the cancellation B.8 holds always",
     )
@@ -226,13 +259,14 @@ def _telescope(script: Script) -> None:
         "(d_j - (s_j/L_{j+1}^2) d_{j+1})/c_j = -J d_{j+1}/L_{j+1}^2",
         *(part(d, e, k) - sign * turned(d, k) / dot(d, d) for k in (0, 1)),
         *(part(e, d, k) + sign * turned(e, k) / dot(e, e) for k in (0, 1)),
+        of="B.24",
     )
     w = 1 / cross(e, f) + 1 / cross(d, e)
     w -= (dot(e, f) / cross(e, f) + dot(d, e) / cross(d, e)) / dot(e, e)
     half = script.alter("rim force doubled", 1, 2)
     rim = [-half * (e[k] - f[k]) / cross(e, f) - (e[k] - d[k]) / cross(d, e) for k in (0, 1)]
     script.identity(
-        "rim vertex: the three forces add up to 0", *(rim[k] + w * e[k] for k in (0, 1))
+        "rim vertex: the three forces add up to 0", *(rim[k] + w * e[k] for k in (0, 1)), of="B.24"
     )
     sign = script.alter("sector that does not telescope", 1, -1)
     step = [
@@ -245,12 +279,12 @@ def _telescope(script: Script) -> None:
         "hub: sum_j w_j d_j, collected by sectors, is a telescoping sum of "
         "J d_j/L_j^2 - J d_{j+1}/L_{j+1}^2 around the hub, hence 0",
         *step,
+        of="B.24",
     )
     script.state(
         "B.24",
         "Appendix B, conclusion",
         r"\text{Eqs. (outer), (spokes) define a self stress on the wheel graph}",
-        PRINTED,
         note="short proof for every closed star with c_j != 0, back-tracks and any winding too: "
         "d_{j+1} - (s_j/L_j^2) d_j = (c_j/L_j^2) J d_j telescopes at the hub, cancels at the rim",
         code="wheel_stress",

@@ -4,21 +4,34 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any, TypeVar
 
-from exactfold.verdict import PROVED, REFUTED, Verdict
+from proofs.formulas import Formula, Names, latex, parse
 
 T = TypeVar("T")
 
 
 class Ruling(Enum):
-    """What became of a statement of the paper."""
+    """What became of a statement; it follows from the steps that speak against it."""
 
     AS_PRINTED = "holds as printed"
     CORRECTED = "holds when corrected"
     FALSE = "false"
+
+
+class Severity(Enum):
+    """How much is wrong with a statement that does not hold as printed."""
+
+    TYPO = "typo"
+    """A sign, an index or a word that the rest of the paper shows to be a slip."""
+    CONSTANT = "wrong constant"
+    """A number, a range or a label that is wrong and changes what is computed."""
+    CONDITION = "missing condition"
+    """True under a condition that is not stated."""
+    CLAIM = "wrong claim"
+    """Not true in the sense in which it is used."""
 
 
 class How(Enum):
@@ -39,16 +52,29 @@ class Statement:
     """One formula or claim: where it stands, as printed (LaTeX), the ruling, and the correction.
 
     `key` numbers it within the paper, as in "C.4" for the fourth statement of Appendix C;
-    `corrected` is empty if it holds as printed; `code` names what in exactfold implements it.
+    `corrected` is empty if it holds as printed, or cannot be mended; `code` names what in exactfold
+    implements it, `equation` is its number in the paper. What it rests on besides the steps that
+    name it: `rests` (keys of other statements), `cited` (a theorem of others) and `words` (where a
+    proof is written out that is not run). The ruling is set when a proof is finished.
     """
 
     key: str
     place: str
     printed: str
-    ruling: Ruling
     corrected: str = ""
     note: str = ""
     code: str = ""
+    equation: str = ""
+    severity: Severity | None = None
+    rests: str = ""
+    cited: str = ""
+    words: str = ""
+    ruling: Ruling = Ruling.AS_PRINTED
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it is a statement of exactfold and not of the paper."""
+        return self.key.startswith("T.")
 
 
 @dataclass(frozen=True)
@@ -59,6 +85,36 @@ class Step:
     how: How
     holds: bool
     cases: int = 0
+    of: tuple[str, ...] = ()
+    """Keys of the statements that it establishes, in part or in whole."""
+    against: tuple[str, ...] = ()
+    """Keys of the statements whose printed form it refutes."""
+    formula: bool = False
+    """Whether it evaluates the expressions of a statement (`Claim`)."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """The expressions of a statement and where they are evaluated.
+
+    `right` (as printed, or as corrected) vanishes identically in each of `over`; if it is a
+    correction, `printed` does not hold in one of `at`.
+    """
+
+    key: str
+    printed: Formula
+    right: Formula
+    over: tuple[Names, ...]
+    at: tuple[Names, ...]
+
+    def holds(self, formula: Formula) -> bool:
+        """Whether all sides are equal in every environment of `over`."""
+        return all(is_true(formula, names) for names in self.over)
+
+    @property
+    def is_refuted(self) -> bool:
+        """Whether the printed form fails in some environment of `at`."""
+        return not all(is_true(self.printed, names) for names in self.at)
 
 
 @dataclass(frozen=True)
@@ -72,11 +128,42 @@ class Proof:
     steps: tuple[Step, ...]
     changes: tuple[str, ...] = ()
     """Names of the deliberate mistakes that `prove(change)` can make; each must be refused."""
+    claims: tuple[Claim, ...] = field(default=(), compare=False)
+    """Statements that are expressions, with what evaluates them."""
 
     @property
-    def verdict(self) -> Verdict:
-        """PROVED if every step holds, else REFUTED."""
-        return PROVED if self.steps and all(step.holds for step in self.steps) else REFUTED
+    def holds(self) -> bool:
+        """Whether every step was established."""
+        return bool(self.steps) and all(step.holds for step in self.steps)
+
+    @property
+    def verdict(self) -> str:
+        """`proved`; `tested` if at least half of the steps are; `refuted` if a step fails."""
+        if not self.holds:
+            return "refuted"
+        return "tested" if 2 * self.tested_only >= len(self.steps) else "proved"
+
+    def steps_of(self, key: str) -> list[Step]:
+        """The steps that name a statement, for it or against its printed form."""
+        return [step for step in self.steps if key in (*step.of, *step.against)]
+
+    def basis(self, statement: Statement) -> str:
+        """What a statement rests on, from the strongest to the weakest, in words."""
+        steps = [step for step in self.steps if statement.key in step.of]
+        kinds = {how: [s for s in steps if s.how is how] for how in How}
+        general = len(kinds[How.IDENTITY]) + len(kinds[How.CERTIFICATE])
+        tested = sum(step.cases for step in kinds[How.CASES])
+        parts = [
+            f"proved for all ({general} step{'s' * (general > 1)})" if general else "",
+            "shown by an example" if kinds[How.COUNTEREXAMPLE] else "",
+            f"tested on {tested} case{'s' * (tested > 1)}" if tested else "",
+            f"from {', '.join(statement.rests.split())}" if statement.rests else "",
+            f"cited: {statement.cited}" if statement.cited else "",
+            f"in words: {statement.words}" if statement.words else "",
+        ]
+        if statement.ruling is not Ruling.AS_PRINTED:
+            parts.append("the printed form refuted by an example")
+        return "; ".join(part for part in parts if part)
 
     @property
     def tested_only(self) -> int:
@@ -88,7 +175,7 @@ class Proof:
         return {
             "name": self.name,
             "title": self.title,
-            "verdict": str(self.verdict),
+            "verdict": self.verdict,
             "hypotheses": list(self.hypotheses),
             "statements": [
                 {
@@ -99,11 +186,21 @@ class Proof:
                     "corrected": s.corrected,
                     "note": s.note,
                     "code": s.code,
+                    "equation": s.equation,
+                    "severity": s.severity.value if s.severity else None,
+                    "basis": self.basis(s),
                 }
                 for s in self.statements
             ],
             "steps": [
-                {"text": s.text, "how": s.how.value, "holds": s.holds, "cases": s.cases}
+                {
+                    "text": s.text,
+                    "how": s.how.value,
+                    "holds": s.holds,
+                    "cases": s.cases,
+                    "of": list(s.of),
+                    "against": list(s.against),
+                }
                 for s in self.steps
             ],
         }
@@ -116,8 +213,12 @@ class Script:
     >>> script = Script("demo", "Squares", ())
     >>> sign = script.alter("wrong sign", 1, -1)
     >>> script.identity("2 + 2 is 4", 2 + sign * 2 - 4)
-    >>> str(script.proof().verdict), script.proof().changes
+    >>> script.proof().verdict, script.proof().changes
     ('proved', ('wrong sign',))
+    >>> script.state("D.1", "Demo", "0 = 1 is proved here")
+    >>> script.proof()
+    Traceback (most recent call last):
+    ValueError: D.1 rests on nothing
     """
 
     name: str
@@ -127,6 +228,7 @@ class Script:
     statements: list[Statement] = field(default_factory=list)
     steps: list[Step] = field(default_factory=list)
     changes: list[str] = field(default_factory=list)
+    claims: list[Claim] = field(default_factory=list)
 
     def alter(self, name: str, right: T, wrong: T) -> T:
         """`right`, or `wrong` if this change was asked for; registers the change."""
@@ -137,26 +239,81 @@ class Script:
         """Add a `Statement`."""
         self.statements.append(Statement(*args, **kwargs))
 
-    def identity(self, text: str, *differences: Any) -> None:
+    def identity(self, text: str, *differences: Any, of: str = "", against: str = "") -> None:
         """Every difference (number, polynomial, rational function) is identically zero."""
-        self.steps.append(Step(text, How.IDENTITY, all(is_zero(d) for d in differences)))
+        self._step(text, How.IDENTITY, all(is_zero(d) for d in differences), of, against)
 
-    def certificate(self, text: str, holds: bool) -> None:
+    def certificate(self, text: str, holds: bool, *, of: str = "", against: str = "") -> None:
         """An inequality or finite claim with an explicit certificate that was just checked."""
-        self.steps.append(Step(text, How.CERTIFICATE, bool(holds)))
+        self._step(text, How.CERTIFICATE, holds, of, against)
 
-    def counterexample(self, text: str, holds: bool) -> None:
+    def counterexample(self, text: str, holds: bool, *, of: str = "", against: str = "") -> None:
         """An exact counterexample was just evaluated and does what it should."""
-        self.steps.append(Step(text, How.COUNTEREXAMPLE, bool(holds)))
+        self._step(text, How.COUNTEREXAMPLE, holds, of, against)
 
-    def cases(self, text: str, outcomes: Iterable[bool]) -> None:
+    def cases(
+        self, text: str, outcomes: Iterable[bool], *, of: str = "", against: str = ""
+    ) -> None:
         """Exact cases, counted: tested, not proved."""
         results = [bool(outcome) for outcome in outcomes]
-        self.steps.append(Step(text, How.CASES, bool(results) and all(results), len(results)))
+        holds = bool(results) and all(results)
+        self._step(text, How.CASES, holds, of, against, cases=len(results))
 
-    def example(self, text: str, holds: bool) -> None:
+    def example(self, text: str, holds: bool, *, of: str = "", against: str = "") -> None:
         """One exact example of a general claim that is argued in words: tested, not proved."""
-        self.steps.append(Step(text, How.CASES, bool(holds), 1))
+        self._step(text, How.CASES, holds, of, against, cases=1)
+
+    def _step(
+        self, text: str, how: How, holds: bool, of: str, against: str, cases: int = 0
+    ) -> None:
+        named = tuple(of.split()), tuple(against.split())
+        self.steps.append(Step(text, how, bool(holds), cases, *named))
+
+    def formula(
+        self,
+        key: str,
+        place: str,
+        printed: str,
+        corrected: str = "",
+        *,
+        over: Iterable[Names],
+        at: Iterable[Names] = (),
+        functions: Iterable[str] = (),
+        **fields: Any,
+    ) -> None:
+        """State a formula, and evaluate it: as it stands, or as corrected, and then as printed.
+
+        `over` and `at` say what the names mean: free geometries, in which it has to hold
+        identically, and one in which the printed form fails (`over` if none is given).
+        """
+        names = tuple(functions)
+        first = parse(printed, names)
+        right = parse(corrected, names) if corrected else first
+        free = tuple(over)
+        claim = Claim(key, first, right, free, tuple(at) or free)
+        self.claims.append(claim)
+        which = "corrected" if corrected else "printed"
+        self.steps.append(
+            Step(
+                f"{key} as {which}, evaluated in {len(claim.over)} free geometries or systems",
+                How.IDENTITY,
+                bool(claim.over) and claim.holds(right),
+                of=(key,),
+                formula=True,
+            )
+        )
+        if corrected:
+            self.steps.append(
+                Step(
+                    f"{key} as printed does not hold",
+                    How.COUNTEREXAMPLE,
+                    claim.is_refuted,
+                    against=(key,),
+                    formula=True,
+                )
+            )
+        shown = latex(right) if corrected else ""
+        self.state(key, place, latex(first), shown, **fields)
 
     def proof(self) -> Proof:
         """The finished proof. Raises `ValueError` if the change asked for does not exist."""
@@ -166,10 +323,36 @@ class Script:
             self.name,
             self.title,
             tuple(self.hypotheses),
-            tuple(self.statements),
+            tuple(map(self._ruled, self.statements)),
             tuple(self.steps),
             tuple(self.changes),
+            tuple(self.claims),
         )
+
+    def _ruled(self, statement: Statement) -> Statement:
+        """The statement with its ruling. Raises `ValueError` if nothing carries it."""
+        key = statement.key
+        refuted = any(key in step.against for step in self.steps)
+        named = any(key in step.of for step in self.steps)
+        if not (named or refuted or statement.rests or statement.cited or statement.words):
+            raise ValueError(f"{key} rests on nothing")
+        if refuted != bool(statement.severity) or (statement.corrected and not refuted):
+            raise ValueError(f"{key}: a correction, its severity and a refutation go together")
+        if not refuted:
+            return statement
+        return replace(statement, ruling=Ruling.CORRECTED if statement.corrected else Ruling.FALSE)
+
+
+def is_true(formula: Formula, names: Names) -> bool:
+    """Whether all sides of a formula are equal; False also where a name or an index has no value.
+
+    `names["zero"]`, if there is one, decides whether a difference is zero.
+    """
+    zero = names.get("zero", is_zero)
+    try:
+        return all(zero(difference) for difference in formula.differences(names))
+    except (LookupError, ZeroDivisionError, TypeError):
+        return False
 
 
 def is_zero(value: Any) -> bool:
@@ -194,19 +377,36 @@ def report(proof: Proof) -> str:
     lines += [f"  - {h}" for h in proof.hypotheses] or ["  none"]
     lines += ["", "Statements"]
     for s in proof.statements:
-        lines.append(f"  {s.key}  {s.ruling.value}: {s.place}")
-        lines.append(f"      printed:   {s.printed}")
-        lines += [f"      corrected: {s.corrected}"] if s.corrected else []
-        lines += [f"      note:      {s.note}"] if s.note else []
-    lines += ["", "Steps"]
-    for step in proof.steps:
-        count = f" ({step.cases})" if step.how is How.CASES else ""
-        lines.append(f"  [{'ok' if step.holds else 'FAILS'}] {step.how.value}{count}: {step.text}")
-    lines += ["", f"Verdict: {proof.verdict}"]
+        lines += stated(proof, s)
+    lines += ["", "Steps", *map(shown, proof.steps), "", f"Verdict: {proof.verdict}"]
     return "\n".join(lines)
+
+
+def stated(proof: Proof, s: Statement) -> list[str]:
+    """The lines on one statement: where, printed, corrected, why, and what it rests on."""
+    where = f"{s.place}, Eq. ({s.equation})" if s.equation else s.place
+    lines = [f"  {s.key}  {s.ruling.value}: {where}", f"      printed:   {s.printed}"]
+    lines += [f"      corrected: {s.corrected}"] if s.corrected else []
+    lines += [f"      severity:  {s.severity.value}"] if s.severity else []
+    lines += [f"      note:      {s.note}"] if s.note else []
+    return [*lines, f"      rests on:  {proof.basis(s)}"]
+
+
+def shown(step: Step) -> str:
+    """The line on one step."""
+    count = f" ({step.cases})" if step.how is How.CASES else ""
+    names = [*step.of, *(f"against {key}" for key in step.against)]
+    ends = f"  [{', '.join(names)}]" if names else ""
+    return f"  [{'ok' if step.holds else 'FAILS'}] {step.how.value}{count}: {step.text}{ends}"
+
+
+def report_statement(proof: Proof, statement: Statement) -> str:
+    """What `python -m proofs KEY` prints: one statement and the steps that name it."""
+    steps = [shown(step) for step in proof.steps_of(statement.key)]
+    return "\n".join([*stated(proof, statement), "", "Steps", *(steps or ["  none is run"])])
 
 
 def run(proof: Proof) -> int:
     """Print a proof; the exit code: 0 only if every step was established."""
     sys.stdout.write(report(proof) + "\n")
-    return 0 if proof.verdict is PROVED else 1
+    return 0 if proof.holds else 1

@@ -19,7 +19,7 @@ from exactfold import CreasePattern, count_branches, random_square
 from exactfold.pattern.crease_pattern import Triangle
 from exactfold.pattern.families import flat_octahedron_in_square, flat_vertex_square
 from exactfold.verdict import PROVED
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, run
 
 NAME = "generic"
 TITLE = "Almost every sheet: projective invariance and distinct branches"
@@ -37,15 +37,22 @@ def prove(change: str | None = None) -> Proof:
         change,
     )
     script.state(
+        "T.10",
+        "docs/generic.md, Theorem 10",
+        r"\omega'_{vw}=\mu_v\mu_w\,\omega_{vw}/\det L,\quad K'_v=\mu_vK_v/\det L",
+        note="projective maps carry curvature forms and branches over",
+        code="project",
+        words="docs/generic.md, Theorem 10",
+    )
+    script.state(
         "T.11",
-        "Sections II C and III A, 'generically', 'distinct roots 2^(Vi - Vt)' (numerical)",
-        r"B_{distinct}=2^{V_i-V_t}\text{ for generic patterns}",
-        Ruling.CORRECTED,
+        "docs/generic.md, Theorem 11",
         r"B_{distinct}=2^{V_i-V_t}\text{ unless the interior vertices lie in the zeros of a "
         r"nonzero polynomial; then all folds outside triangulated triangles are bent on "
         r"all branches}",
-        "a theorem: docs/generic.md, Theorem 11; not for every pattern: IIIA.12",
-        "BranchCount.exceptional_vertices",
+        note="the paper found the number by computing (Section III A); for exceptions see IIIA.12",
+        code="BranchCount.exceptional_vertices",
+        words="docs/generic.md, Theorem 11",
     )
     _projective(script)
     _thin_faces(script)
@@ -61,6 +68,7 @@ def _projective(script: Script) -> None:
     script.cases(
         "the stress of a fold obeys omega'_ac = omega_ac mu_a mu_c / det L",
         (_stress_is_carried_over(rng, power) for _ in range(20)),
+        of="T.10",
     )
     w, mu, nu, h, k = sympy.symbols("omega mu nu h k")
     script.identity(
@@ -69,6 +77,7 @@ def _projective(script: Script) -> None:
         mu * nu * w * (k / nu - h / mu)
         - mu * w * (k - h)
         + script.alter("sign of the moment", 1, -1) * h * w * (nu - mu),
+        of="T.10",
     )
 
 
@@ -113,6 +122,7 @@ def _thin_faces(script: Script) -> None:
             - (s**2 + r**2) * sympy.cot(a) / 2
             + sign * s * r / sympy.sin(a)
         ),
+        of="T.11",
     )
     total = script.alter("difference of the angles", a + b, a - b)
     script.identity(
@@ -120,6 +130,7 @@ def _thin_faces(script: Script) -> None:
         sympy.simplify(
             (sympy.cot(a) + sympy.cot(b)) * sympy.sin(a) * sympy.sin(b) - sympy.sin(total)
         ),
+        of="T.11",
     )
 
 
@@ -143,6 +154,7 @@ def _straight_corner(script: Script) -> None:
         "at a corner x on a side pq, whose height at x is L: eps K_thin tends to "
         "-(1/|xp| + 1/|xq|)(h_u - h_x)(L - (h_u + h_x)/2); so h_u tends to h_x or to 2 L - h_x",
         limit + (1 / P + 1 / Q) * (hu - hx) * (line - mean),
+        of="T.11",
     )
 
 
@@ -216,6 +228,7 @@ def _paths_and_contractions(script: Script) -> None:
             for fold in sheet.folds
             for corners in [{*fold, *sheet.opposite(fold)}]
         ),
+        of="T.11",
     )
     ends = script.alter("contraction of the first edge of a path", 2, 99)
     script.cases(
@@ -226,6 +239,7 @@ def _paths_and_contractions(script: Script) -> None:
             for sheet in sheets
             for holds in _contractions(sheet.without_rigid_parts()[0], ends)
         ),
+        of="T.11",
     )
 
 
@@ -247,11 +261,13 @@ def _sheets(script: Script) -> None:
             r.status is PROVED and r.distinct == 1 << (r.pattern.Vi - (1 - lost) * r.pattern.Vt)
             for r in results
         ),
+        of="T.11",
     )
     exception = count_branches(flat_vertex_square())
     script.counterexample(
         "flat-vertex has 3 branches and no triangulated triangle: the polynomial has zeros",
         exception.distinct == script.alter("four branches", 3, 4) and exception.pattern.Vt == 0,
+        of="T.11",
     )
 
 

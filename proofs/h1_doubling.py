@@ -44,7 +44,7 @@ import sympy
 from exactfold import CreasePattern, count_branches, families, random_square
 from exactfold.branches.result import BranchCount
 from proofs.butterfly import DART, FAN, KITE, quadratic
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 from proofs.mountain_valley import sector
 
 NAME = "h1_doubling"
@@ -90,6 +90,7 @@ def _sector(script: Script) -> None:
         "docs/theorem.md, 2",
         sector(0, r, t) + sector(r, 0, u) - sign * (first + second) * r**2 / 2,
         first + second - sine,
+        of="IV.7",
     )
 
 
@@ -115,6 +116,7 @@ def _flat_corners(script: Script) -> None:
             for p in patterns
             for count in (count_branches(p),)
         ),
+        of="IV.7",
     )
     seed, both = (count_branches(p, method="groebner") for p in (FOLDED, BEYOND))
     doubled = script.alter("doubling in spite of a flat corner", 3, 4)
@@ -124,6 +126,7 @@ def _flat_corners(script: Script) -> None:
         sorted(_is_flat(seed, 1)) == [False, True]
         and both.distinct == doubled
         and sorted(b.multiplicity or 0 for b in both.branches) == [1, 1, 2],
+        of="IV.7 IV.6",
     )
 
 
@@ -136,6 +139,7 @@ def _straight(script: Script) -> None:
         "beta_1 + beta_2 = pi: K_{v2} is linear in rho_w with coefficient (rho_1 + rho_3)/sin "
         "beta_1",
         sympy.diff(both, m) - (r + script.alter("wrong sign of rho_1", 1, -1) * s) / sine,
+        of="IV.7",
     )
     count = count_branches(families.flat_vertex_square(), method="groebner")
     lost = script.alter("doubling through a straight corner", 3, 4)
@@ -143,12 +147,12 @@ def _straight(script: Script) -> None:
         "the square with a straight crease path: T (one vertex) has 2 branches, T' has 2 + 1 = 3, "
         "of multiplicities 1, 1 and 2",
         count.distinct == lost and sorted(b.multiplicity or 0 for b in count.branches) == [1, 1, 2],
+        of="IV.6",
     )
     script.state(
         "IV.6",
         "Section IV, assumption of no crosses",
         r"\text{``these nongeneric collinearities can rigidify folds in a flat state''}",
-        Ruling.AS_PRINTED,
         note="on one of the three branches of the flat-vertex square a whole vertex star stays "
         "flat",
         code="families.collinear_folds",
@@ -168,6 +172,7 @@ def _doubling(script: Script) -> None:
     script.cases(
         "random H1 sequences without collinear folds double at each of three moves",
         (c.distinct == c.real == factor**c.pattern.Vi for c in counts),
+        of="IV.7 IV.14",
     )
     seeds = [families.hypar(1), random_square(3, 1), random_square(4, 2)]
     script.cases(
@@ -179,6 +184,7 @@ def _doubling(script: Script) -> None:
             for larger in (attached(seed),)
             for after in (count_branches(larger),)
         ),
+        of="IV.20",
     )
     c, b, a = quadratic(FAN, 5, 4, dict(zip(range(4), (0, 1, -1, 0), strict=True)))
     flat = quadratic(FAN, 5, 4, dict.fromkeys(range(4), 0))
@@ -186,25 +192,26 @@ def _doubling(script: Script) -> None:
     script.counterexample(
         "a seed with five boundary vertices, folded at its reflex corner: no height of w (IV.4)",
         b * b - 4 * a * c < 0,
+        against="IV.20",
     )
     script.state(
         "IV.20",
         "Section IV, last paragraph",
         r"\text{``one can generalize the arguments in this section to H1-like triangulations where "
         r"the seed is \dots\ e.g. a single-vertex origami''}",
-        Ruling.CORRECTED,
         r"\text{for seeds with four boundary vertices: each move doubles the branches. With five "
         r"or more there are two attachments if the angle of }T\text{ at }v_2\text{ is less than }"
         r"\pi\text{, which may belong to one branch, and there may be none if it is larger}",
         "four boundary vertices: the arguments of the section (IV.7) do not use the seed. Five or "
         "more: IV.4; the two attachments meet where T is flat at v2",
         "count_branches",
+        severity=Severity.CONDITION,
+        rests="IV.7",
     )
     script.state(
         "IV.14",
         "Section IV, last argument",
         r"\text{the seed and the first butterfly: two intersecting lines, ``a letter X''}",
-        Ruling.AS_PRINTED,
         note="v2 has degree 3 in the seed, so the doubling needs only that its fold is bent",
         code="families.single_vertex",
     )
@@ -213,7 +220,6 @@ def _doubling(script: Script) -> None:
         "Section IV, last argument; Introduction",
         r"\text{``for each H1 move, the number of 1D branches doubles \dots\ }2^{V_i}\text{ "
         r"branches''}",
-        Ruling.AS_PRINTED,
         note="under the hypotheses of the section; all branches are then simple, hence true ones "
         "(IIA.11). The argument needs more than the paper says: where the angle of T at v2 is "
         "below pi, no branch of T may be flat at v2, which follows from the absence of collinear "
@@ -222,6 +228,8 @@ def _doubling(script: Script) -> None:
         "are collinear, B branches become B + 1; hub (1/4,0) in the square (-1,0), (0,1), (1,0), "
         "(0,-1) with w = (0,3): 2 become 3",
         code="count_branches",
+        rests="IV.4",
+        words="lemma in proofs/h1_doubling.py",
     )
 
 

@@ -21,7 +21,7 @@ if not __package__:  # run as a file
 import networkx as nx
 
 from exactfold import families
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 
 NAME = "h1_triangulations"
 TITLE = "H1 triangulations: counts, and all of them with few vertices"
@@ -138,6 +138,7 @@ def _enumeration(script: Script) -> list[set[Triangulation]]:
             for level in levels
             for t in level
         ),
+        of="IV.10",
     )
     script.certificate(
         "the numbers 2, 5, 20, 100, 570 of rooted triangulations with n = 0 to 4 agree with "
@@ -145,6 +146,7 @@ def _enumeration(script: Script) -> list[set[Triangulation]]:
         "formula 40 (4n+3)! / (n! (3n+5)!)",
         [len(level) for level in levels]
         == [40 * factorial(4 * n + 3) // (factorial(n) * factorial(3 * n + 5)) for n in range(5)],
+        of="IV.10",
     )
     return levels
 
@@ -169,6 +171,7 @@ def _small(script: Script, levels: list[set[Triangulation]]) -> None:
     script.certificate(
         f"H1 among the rooted triangulations with Vi = 1, 2, 3, 4: {shares}",
         all(h1 == every > 0 for h1, every in shares[:last]) and shares[3][0] < shares[3][1],
+        of="IV.10 IV.11",
     )
     hypar = families.hypar(1)
     script.counterexample(
@@ -177,12 +180,12 @@ def _small(script: Script, levels: list[set[Triangulation]]) -> None:
         and min(hypar.degree(v) for v in hypar.boundary)
         > script.alter("a boundary vertex of degree 3", 3, 4)
         and not is_h1(frozenset(hypar.triangles)),
+        of="IV.10",
     )
     script.state(
         "IV.10",
         "Section IV",
         r"\text{``all }V_i=1,2,3\text{ triangulations are H1''}",
-        Ruling.AS_PRINTED,
         note="of a 4-gon, without interior vertices of degree 3 and without chords; by "
         "enumeration. "
         f"Rooted: (H1, all) = {shares} for Vi = 1 to 4. It fails first at Vi = 4",
@@ -193,8 +196,8 @@ def _small(script: Script, levels: list[set[Triangulation]]) -> None:
         "Section IV, fractions",
         r"\text{at }V_i=3\text{: 0\% ``had no degree-3 vertices at the boundary'', and the "
         r"fraction of H1 triangulations is 1}",
-        Ruling.AS_PRINTED,
         note="follows from IV.10; the other percentages are IV.15 and IV.16",
+        rests="IV.10",
     )
 
 
@@ -215,12 +218,14 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         "in its place, so Ve = 4 throughout; 2 Vi + 2 triangles (in general: w leaves the boundary "
         "cycle v1 w v3, and v2, which was not on it, takes its place)",
         outcomes,
+        of="IV.9 IV.13 IV.12",
     )
     extra = script.alter("the seed is not counted", 1, 0)
     script.example(
         "each move adds two triangles and one interior vertex to the two triangles of the seed: "
         "Vi + 1 butterflies",
         all(2 + 2 * n == 2 * (n + extra) for n in range(20)),
+        against="IV.12",
     )
     script.example(
         "no H1 triangulation contains a triangulated triangle (here Vi <= 4). In general: the "
@@ -230,6 +235,7 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         "inside; then the opposite side becomes a chord, which only the seed has, and there v2 has "
         "degree 2",
         not any(flat) and bool(flat),
+        of="IV.8",
     )
     sample = families.sample_h1_sequence(5, seed=2)
     middle = script.alter("the vertex attached, not v2", 1, 3)
@@ -240,12 +246,12 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         and all(sample.pattern.degree(move[middle]) >= 4 for move in sample.moves)
         and is_h1(frozenset(sample.pattern.triangles))
         and sample.pattern.Vt == 0,
+        of="IV.8 IV.13",
     )
     script.state(
         "IV.8",
         "Section IV, definition of H1 moves",
         r"\text{``We will require that }v_2\text{ has degree at least 3''}",
-        Ruling.AS_PRINTED,
         note="v2 gains one edge and becomes interior; at degree 2 it would become a degree-3 "
         "vertex. "
         "Consequence: H1 triangulations have no triangulated triangles at all",
@@ -254,23 +260,21 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         "IV.9",
         "Section IV",
         r"\text{a reverse H1 move deletes one boundary vertex and converts one internal vertex}",
-        Ruling.AS_PRINTED,
         note="when the middle neighbour is interior, that is, without chords",
     )
     script.state(
         "IV.12",
         "Section IV",
         r"\text{``can be decomposed into a sequence of }V_i\text{ butterflies''}",
-        Ruling.CORRECTED,
         r"\text{of }V_i+1\text{ butterflies, the seed included}",
         note="2 Vi + 2 triangles, two a butterfly. The figure counts so: (1) to (4) and the seed "
         "(5) for Vi = 4",
+        severity=Severity.CONSTANT,
     )
     script.state(
         "IV.13",
         "Section IV",
         r"\text{``every H1 triangulation also has four boundary vertices''}",
-        Ruling.AS_PRINTED,
         code="H1Triangulation",
     )
 

@@ -17,12 +17,12 @@ from sympy.polys.rings import ring
 
 from exactfold.rigidity import wheel_stress
 from proofs.force_balance import spoke, star
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
+from proofs.spokes import wheel, without
 from proofs.wheel_stress import Angle, cross
 
 NAME = "hub_balance"
 TITLE = "Force balance of the wheel stress at the hub"
-PRINTED, CORRECTED = Ruling.AS_PRINTED, Ruling.CORRECTED
 
 
 def prove(change: str | None = None) -> Proof:
@@ -47,22 +47,25 @@ def _base_case(script: Script) -> None:
     c = -(a + b)
     sign = script.alter("simpletrig with a difference of cotangents", 1, -1)
     script.identity(
-        "csc a csc b = csc(a + b)(cot a + cot b)", a.csc * b.csc + c.csc * (a.cot + sign * b.cot)
+        "csc a csc b = csc(a + b)(cot a + cot b)",
+        a.csc * b.csc + c.csc * (a.cot + sign * b.cot),
+        of="B.11",
     )
     sign = script.alter("csc alpha_31 without its sign", 1, -1)
-    script.identity("-csc alpha_31 = csc(alpha_12 + alpha_23)", sign * c.csc + (a + b).csc)
+    script.identity(
+        "-csc alpha_31 = csc(alpha_12 + alpha_23)", sign * c.csc + (a + b).csc, of="B.12"
+    )
     script.state(
         "B.11",
         "Appendix B, Eq. (simpletrig)",
         r"\csc a\csc b=\csc(a+b)(\cot a+\cot b)",
-        PRINTED,
         note="wherever sin a, sin b, sin(a + b) are not 0",
+        equation="B13",
     )
     script.state(
         "B.12",
         "Appendix B, after Eq. (simpletrig)",
         r"-\csc\alpha_{3,1}=\csc(\alpha_{1,2}+\alpha_{2,3})",
-        PRINTED,
     )
     stress = [spoke(L3, L1, L2, c, a), spoke(L1, L2, L3, a, b), spoke(L2, L3, L1, b, c)]
     ratio = stress[0] / b.sin
@@ -73,23 +76,27 @@ def _base_case(script: Script) -> None:
         - c.csc * (b.cot + a.cot) / L2
     )
     script.identity(
-        "first display: sigma_1/sin alpha_23 = line 1 = line 2", ratio - line1, ratio - line2
+        "first display: sigma_1/sin alpha_23 = line 1 = line 2",
+        ratio - line1,
+        ratio - line2,
+        of="B.13",
     )
-    script.state(
+    script.formula(
         "B.13",
         "Appendix B, base case, first display",
-        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\csc\alpha_{2,3}\Big(\frac{\csc\alpha_{1,2}}{L_2}+"
-        r"\frac{\csc\alpha_{3,1}}{L_3}-\frac{\cot\alpha_{1,2}}{L_1}-\frac{\cot\alpha_{3,1}}{L_1}"
-        r"\Big)=\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{L_3}+"
-        r"\frac{\csc\alpha_{3,1}\csc\alpha_{1,2}}{L_1}-"
-        r"\frac{\csc\alpha_{3,1}(\cot\alpha_{2,3}+\cot\alpha_{1,2})}{L_2}",
-        PRINTED,
+        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\csc\alpha_{2,3}(\frac{\csc\alpha_{1"
+        r",2}}{L_2}+\frac{\csc\alpha_{3,1}}{L_3}-\frac{\cot\alpha_{1,2}}{L_1}-"
+        r"\frac{\cot\alpha_{3,1}}{L_1})=\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{"
+        r"L_3}+\frac{\csc\alpha_{3,1}\csc\alpha_{1,2}}{L_1}+\frac{-\csc\alpha_{3"
+        r",1}(\cot\alpha_{2,3}+\cot\alpha_{1,2})}{L_2}",
+        over=[wheel(3)],
         note="its second line needs Eq. (simpletrig) twice and is sigma_2/sin(alpha_31) already; "
         "display B.14 is the first line multiplied out and belongs between the two",
+        equation="B11 and B12",
     )
     right = script.alter("the cotangents as printed", c, b)
     line3 = c.csc * b.csc / L3 - b.csc * (a.cot + right.cot) / L1 + b.csc * a.csc / L2
-    script.identity("second display corrected", ratio - line3)
+    script.identity("second display corrected", ratio - line3, of="B.14")
     third = Angle(Fraction(-3, 5), Fraction(4, 5))  # a = alpha_12; b below; c closes up
     other = Angle(Fraction(-4, 5), Fraction(3, 5))
     last = -(third + other)
@@ -98,19 +105,22 @@ def _base_case(script: Script) -> None:
     script.counterexample(
         "cos a = -3/5, cos b = -4/5, alpha_31 = pi/2: the cotangent sums over L_1 differ by 4/3",
         last.sin == 1 and gap == Fraction(4, 3),
+        against="B.14",
     )
-    script.state(
+    script.formula(
         "B.14",
         "Appendix B, base case, after 'applying Eq. (simpletrig) twice'",
-        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{L_3}+"
-        r"\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{2,3})}{L_1}+"
-        r"\frac{\csc\alpha_{2,3}\csc\alpha_{1,2}}{L_2}",
-        CORRECTED,
-        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{L_3}+"
-        r"\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{3,1})}{L_1}+"
-        r"\frac{\csc\alpha_{2,3}\csc\alpha_{1,2}}{L_2}",
-        "index: cot alpha_31, not cot alpha_23. Example: cosines -3/5, -4/5, 0 of alpha_12, "
+        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\frac{\csc\alpha_{3,1}\csc\alpha_{2,"
+        r"3}}{L_3}+\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{2,3})}{L"
+        r"_1}+\frac{\csc\alpha_{2,3}\csc\alpha_{1,2}}{L_2}",
+        r"\frac{\sigma_1}{\sin\alpha_{2,3}}=\frac{\csc\alpha_{3,1}\csc\alpha_{2,"
+        r"3}}{L_3}+\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{3,1})}{L"
+        r"_1}+\frac{\csc\alpha_{2,3}\csc\alpha_{1,2}}{L_2}",
+        over=[wheel(3)],
+        note="index: cot alpha_31, not cot alpha_23. Example: cosines -3/5, -4/5, 0 of alpha_12, "
         "alpha_23, alpha_31, where the coefficients of 1/L_1 differ by csc(alpha_23) 4/3",
+        equation="B14",
+        severity=Severity.TYPO,
     )
     sign = script.alter("one of the positive terms negative", 1, -1)
     common = b.csc * c.csc / L3 + c.csc * a.csc / L1 + sign * a.csc * b.csc / L2
@@ -118,27 +128,31 @@ def _base_case(script: Script) -> None:
         "all three ratios are csc_23 csc_31/L_3 + csc_31 csc_12/L_1 + csc_12 csc_23/L_2, a sum of "
         "positive terms",
         *(s / angle.sin - common for s, angle in zip(stress, (b, c, a), strict=True)),
+        of="B.15",
     )
-    script.state(
+    script.formula(
         "B.15",
         "Appendix B, base case, law of sines",
-        r"\sigma_1/\sin\alpha_{2,3}=\sigma_2/\sin\alpha_{3,1}=\sigma_3/\sin\alpha_{1,2}",
-        PRINTED,
+        r"\sigma_1/\sin\alpha_{2,3}=\sigma_2/\sin\alpha_{3,1}=\sigma_3/\sin" r"\alpha_{1,2}",
+        over=[wheel(3)],
+        equation="B10",
     )
     u = [(K(1), K(0)), (a.cos, a.sin), ((a + b).cos, (a + b).sin)]
     sines = (b.sin, c.sin, a.sin)
     shift = script.alter("sines of the wrong angles", 0, 1)
     closed = [sum(sines[(j + shift) % 3] * u[j][k] for j in range(3)) for k in (0, 1)]
-    script.identity("sin alpha_23 u_1 + sin alpha_31 u_2 + sin alpha_12 u_3 = 0", *closed)
+    script.identity(
+        "sin alpha_23 u_1 + sin alpha_31 u_2 + sin alpha_12 u_3 = 0", *closed, of="B.16"
+    )
     script.state(
         "B.16",
         "Appendix B, base case",
         r"\sum_{j=1}^3\sigma_j\mathbf u_j=\mathbf 0\text{; turning angles }\alpha\text{, the angle "
         r"opposite }\sigma_1\text{ is }\pi-\alpha_{2,3}",
-        PRINTED,
         note="with three spokes all sigma_j are positive, so the sides have lengths sigma_j. With "
         "four or more a sigma_j can be negative, and its side is traversed backwards",
         code="wheel_stress",
+        equation="B9",
     )
 
 
@@ -152,38 +166,43 @@ def _induction_formulas(script: Script) -> None:
     long += -(a + b).csc / L3 - z.csc / L0 + ((a + b).cot + z.cot) / L1
     sign = script.alter("Delta sigma_{i-1} with a sum of cotangents", 1, -1)
     short = a.csc / L2 - (a + b).csc / L3 - (a.cot - sign * (a + b).cot) / L1
-    script.identity("Delta sigma_{i-1} = sigma_{i-1} - sigma^0_{i-1}, unsimplified", change - long)
-    script.identity("its terms with alpha_{i-2,i-1} cancel", long - short)
+    script.identity(
+        "Delta sigma_{i-1} = sigma_{i-1} - sigma^0_{i-1}, unsimplified", change - long, of="B.25"
+    )
+    script.identity("its terms with alpha_{i-2,i-1} cancel", long - short, of="B.25 B.17")
     mirrored = spoke(L2, L3, L0, b, z) - spoke(L1, L3, L0, a + b, z)  # z: angle i+1, i+2; L0: i+2
     far = script.alter("Delta sigma_{i+1} with L_{i+1} for L_{i-1}", L1, L3)
     after = b.csc / L2 - (a + b).csc / far - (b.cot - (a + b).cot) / L3
-    script.identity("Delta sigma_{i+1}", mirrored - after)
-    gone = r"\frac{\csc\alpha_{i-2,i-1}}{L_{i-2}}"
-    script.state(
+    script.identity("Delta sigma_{i+1}", mirrored - after, of="B.17")
+    script.formula(
         "B.25",
         "Appendix B, induction, Delta sigma_{i-1} before simplification",
-        r"\Delta\sigma_{i-1}=\frac{\csc\alpha_{i-1,i}}{L_i}+" + gone + r"-\frac{\cot"
-        r"\alpha_{i-1,i}+\cot\alpha_{i-2,i-1}}{L_{i-1}}-\frac{\csc(\alpha_{i-1,i}+"
-        r"\alpha_{i,i+1})}{L_{i+1}}-" + gone + r"+\frac{\cot(\alpha_{i-1,i}+\alpha_{i,i+1})+"
+        r"\Delta\sigma_{i-1}=\frac{\csc\alpha_{i-1,i}}{L_i}+\frac{\csc\alpha_{i-"
+        r"2,i-1}}{L_{i-2}}-\frac{\cot\alpha_{i-1,i}+\cot\alpha_{i-2,i-1}}{L_{i-1"
+        r"}}-\frac{\csc(\alpha_{i-1,i}+\alpha_{i,i+1})}{L_{i+1}}-\frac{\csc"
+        r"\alpha_{i-2,i-1}}{L_{i-2}}+\frac{\cot(\alpha_{i-1,i}+\alpha_{i,i+1})+"
         r"\cot\alpha_{i-2,i-1}}{L_{i-1}}",
-        PRINTED,
+        over=[without(5)],
         note="with Delta sigma_{i-1} = sigma_{i-1} - sigma^0_{i-1} and Eq. (spokes) for sigma_i",
+        equation="B17",
     )
-    script.state(
+    script.formula(
         "B.17",
         "Appendix B, induction, formulas for the lengths",
-        r"\Delta\sigma_{i-1}=\frac{\csc\alpha_{i-1,i}}{L_i}-\frac{\csc(\alpha_{i-1,i}+"
-        r"\alpha_{i,i+1})}{L_{i+1}}-\frac{\cot\alpha_{i-1,i}-\cot(\alpha_{i-1,i}+"
-        r"\alpha_{i,i+1})}{L_{i-1}}\text{, and }\Delta\sigma_{i+1}",
-        PRINTED,
-        note="defined unless alpha_{i-1,i} + alpha_{i,i+1} = pi",
+        r"\Delta\sigma_{i-1}=\frac{\csc\alpha_{i-1,i}}{L_i}-\frac{\csc(\alpha_{i"
+        r"-1,i}+\alpha_{i,i+1})}{L_{i+1}}-\frac{\cot\alpha_{i-1,i}-\cot(\alpha_{"
+        r"i-1,i}+\alpha_{i,i+1})}{L_{i-1}}",
+        over=[without(5)],
+        note="and its mirror image Delta sigma_{i+1}; defined unless alpha_{i-1,i} + "
+        "alpha_{i,i+1} = pi",
+        equation="B18 and B19",
     )
     script.state(
         "B.18",
         "Appendix B, induction",
         r"\text{stresses of }G_{n+1},G_{n,i}\text{ differ only at the spokes }i-1,i,i+1",
-        PRINTED,
         note="Eq. (spokes) for spoke j contains L_{j-1}, L_j, L_{j+1} and its two angles only",
+        rests="B.2",
     )
 
 
@@ -197,20 +216,25 @@ def _induction_step(script: Script) -> None:
     after = b.csc / L2 - total.csc / L1 - (b.cot - total.cot) / L3
     beta = Angle(K(-1), K(0)) + (-total)
     sign = script.alter("sin beta_i negative", 1, -1)
-    script.identity("sin beta_i = +sin(alpha_{i-1,i} + alpha_{i,i+1})", beta.sin - sign * total.sin)
+    script.identity(
+        "sin beta_i = +sin(alpha_{i-1,i} + alpha_{i,i+1})", beta.sin - sign * total.sin, of="B.19"
+    )
     sign = script.alter("the law of sines as printed", -1, 1)
     script.identity(
         "sigma_i/sin beta_i = -Delta sigma_{i-1}/sin alpha_{i,i+1} = "
         "-Delta sigma_{i+1}/sin alpha_{i-1,i}",
         sigma / beta.sin - sign * before / b.sin,
         sigma / beta.sin - sign * after / a.sin,
+        of="B.20",
     )
     # Vectors, with u_{i-1} = (1, 0): no law of sines and no lengths are needed.
     sign = script.alter("Delta sigma_{i+1} reversed", 1, -1)
     last = sign * after
     closed = (before + sigma * a.cos + last * total.cos, sigma * a.sin + last * total.sin)
     script.identity(
-        "sigma_i u_i + Delta sigma_{i-1} u_{i-1} + Delta sigma_{i+1} u_{i+1} = 0", *closed
+        "sigma_i u_i + Delta sigma_{i-1} u_{i-1} + Delta sigma_{i+1} u_{i+1} = 0",
+        *closed,
+        of="B.20 B.23",
     )
     five: list[tuple[Any, Any]] = [(1, 0), ("4/5", "3/5"), ("7/25", "24/25"), (-1, 0), (0, -1)]
     i = script.alter("another spoke taken out", 1, 2)
@@ -221,26 +245,29 @@ def _induction_step(script: Script) -> None:
         "Delta sigma_{i-1}/sin alpha_{i,i+1} = -25/36",
         full[(1, 5)] / Fraction(24, 25) == Fraction(25, 36)
         and rise / Fraction(3, 5) == Fraction(-25, 36),
+        against="B.20",
     )
     script.state(
         "B.19",
         "Appendix B, induction, angle of the small triangle",
         r"\beta_i=\pi-\alpha_{i-1,i}-\alpha_{i,i+1}",
-        PRINTED,
         note="a triangle if this is positive; for its sides and the law of sines see B.20",
     )
-    script.state(
+    script.formula(
         "B.20",
         "Appendix B, induction, law of sines, and first line of the last display",
         r"\sigma_i/\sin\beta_i=\Delta\sigma_{i-1}/\sin\alpha_{i,i+1}",
-        CORRECTED,
-        r"\sigma_i/\sin\beta_i=-\Delta\sigma_{i-1}/\sin\alpha_{i,i+1}="
-        r"-\Delta\sigma_{i+1}/\sin\alpha_{i-1,i}",
-        "sin(beta_i) is +sin(alpha_{i-1,i} + alpha_{i,i+1}); in the last display only the leftmost "
+        r"\sigma_i/\sin\beta_i=-\Delta\sigma_{i-1}/\sin\alpha_{i,i+1}=-\Delta"
+        r"\sigma_{i+1}/\sin\alpha_{i-1,i}",
+        over=[without(5)],
+        note="sin(beta_i) is +sin(alpha_{i-1,i} + alpha_{i,i+1}); in the last display only the "
+        "leftmost "
         "side needs the sign. (Or beta_i = alpha_{i-1,i} + alpha_{i,i+1} - pi, which mends both.) "
         "The sides are sigma_i and sigma^0 - sigma = -Delta sigma, of the sign of sigma_i if "
         "alpha_{i-1,i} + alpha_{i,i+1} < pi. Example: five unit spokes (1,0), (4/5,3/5), "
         "(7/25,24/25), (-1,0), (0,-1), the second taken out: 25/36 against -25/36",
+        equation="B20",
+        severity=Severity.TYPO,
     )
 
 
@@ -257,17 +284,21 @@ def _last_display(script: Script) -> None:
         (a.csc / L2 - total.csc / L3 - (a.cot - total.cot) / L1) / b.sin,
     ]
     sign = script.alter("first line with the printed sign", -1, 1)
-    script.identity("-sigma_i/sin beta_i = first line", sign * sigma / total.sin - lines[0])
-    script.identity("each further line equals the next", *(x - y for x, y in pairwise(lines)))
+    script.identity(
+        "-sigma_i/sin beta_i = first line", sign * sigma / total.sin - lines[0], of="B.21"
+    )
+    script.identity(
+        "each further line equals the next", *(x - y for x, y in pairwise(lines)), of="B.21"
+    )
     script.state(
         "B.21",
         "Appendix B, last display",
         r"-\csc(\alpha_{i-1,i}+\alpha_{i,i+1})\left(\frac{\csc\alpha_{i,i+1}}{L_{i+1}}+"
         r"\frac{\csc\alpha_{i-1,i}}{L_{i-1}}-\frac{\cot\alpha_{i,i+1}+\cot\alpha_{i-1,i}}{L_i}"
         r"\right)=\dots=\frac{\Delta\sigma_{i-1}}{\sin\alpha_{i,i+1}}",
-        PRINTED,
         note="as far as the four right-hand sides go, which are equal; the left-hand side needs "
         "the sign of B.20",
+        equation="B20 to B23",
     )
 
 
@@ -278,6 +309,7 @@ def _choice_of_spoke(script: Script) -> None:
     script.counterexample(
         "cross: alpha_{i-1,i} + alpha_{i,i+1} = pi for every i, so no spoke can be taken out",
         all(cross(straight[i - 1], straight[(i + step) % 4]) == 0 for i in range(4)),
+        against="B.22",
     )
     _, w, x, y, z = ring("w x y z", QQ)  # angles of four spokes
     script.identity(
@@ -285,37 +317,41 @@ def _choice_of_spoke(script: Script) -> None:
         (w + x) + (y + z) - ((x + y) + (z + script.alter("sums that share an angle", w, y))),
         (w + x) - (x + y) - (w - y),
         (x + y) - (y + z) - (x - z),
+        of="B.22",
     )
     _, p, *L = field("p L1 L2 L3 L4", QQ)
     a = Angle.twice_arctan(p)
     flip = Angle(-a.cos, a.sin)  # pi - a
     angles = (a, flip, a, script.alter("lines that do not cross straight", flip, a))
     s = [spoke(L[j - 1], L[j], L[(j + 1) % 4], angles[j - 1], angles[j]) for j in range(4)]
-    script.identity("all sums pi: sigma_1 = sigma_3, sigma_2 = sigma_4", s[0] - s[2], s[1] - s[3])
+    script.identity(
+        "all sums pi: sigma_1 = sigma_3, sigma_2 = sigma_4", s[0] - s[2], s[1] - s[3], of="B.22"
+    )
     _, n = ring("N", QQ)
     script.identity(
         "N >= 5 spokes: N pi - 4 pi = pi ((N - 5) + 1) > 0, so the mean 4 pi/N of the sums is < pi",
         n - script.alter("sums of three angles", 4, 6) - ((n - 5) + 1),
+        of="B.22",
     )
     script.state(
         "B.22",
         "Appendix B, induction: G_{n,i} by removing 'an arbitrary' spoke vertex i",
         r"\text{for every spoke }i",
-        CORRECTED,
         r"\text{for a spoke }i\text{ with }\alpha_{i-1,i}+\alpha_{i,i+1}<\pi",
         "equal to pi: Eq. (spokes) has no meaning in G_{n,i}; larger: G_{n,i} has a reflex "
         "sector, where the formulas hold, but neither the figure nor 'angles in (0, pi)'. Such a "
         "spoke exists unless N = 4 and the spokes form two straight lines, as in the cross (1,0), "
         "(0,1), (-1,0), (0,-1), where the induction fails for every i; there sigma_1 = sigma_3 "
         "and sigma_2 = sigma_4 directly",
+        severity=Severity.CONDITION,
     )
     script.state(
         "B.23",
         "Appendix B, force balance at the hub",
         r"\sum_{j=1}^N\sigma_j\mathbf u_j=\mathbf 0",
-        PRINTED,
         note="by the corrected induction, and by B.24 without induction",
         code="wheel_stress",
+        rests="B.24",
     )
 
 

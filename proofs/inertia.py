@@ -19,7 +19,7 @@ from sympy.polys.rings import ring
 from exactfold import CreasePattern, random_square
 from exactfold.exact.linalg import inertia_by_elimination
 from proofs.chambers import jacobian, vertex_signs
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, run
 from proofs.level_pairs import alternating, partners
 from proofs.patterns import flipped, hostile_patterns
 from proofs.potential import corner_polar
@@ -57,10 +57,10 @@ def _state(script: Script) -> None:
         "docs/theorem.md, Theorem 4",
         r"\text{inertia of }J(h)=(K_v(h,e_u))_{u,v\in I}:\ "
         r"(\#\text{ popped up},\ \#\text{ popped down},\ \#\text{ flat})",
-        Ruling.AS_PRINTED,
         note="flat vertices: h + eps h' with h' in a chamber that agrees with h off F has the "
         "inertia of that chamber; its signs on F are free, and J(h) has rank n - |F| (Theorem 3)",
         code="curvature_form",
+        words="docs/theorem.md, Theorem 4",
     )
 
 
@@ -90,22 +90,27 @@ def _laplace_matrix(script: Script) -> None:
     sign = script.alter("fold with the wrong sign", 1, -1)
     weight = -at(origin, hv, 1)
     same = script.alter("J antisymmetric", 1, -1)
-    script.identity("K_v(h, e_w) = K_w(h, e_v): J is symmetric", weight + same * at(w, hw, 0))
+    script.identity(
+        "K_v(h, e_w) = K_w(h, e_v): J is symmetric", weight + same * at(w, hw, 0), of="T.4"
+    )
     script.identity(
         "the jump of the gradient across the edge d is -2 weight Jd, weight = -K_v(h, e_w): "
         "|weight| = fold/(2 length)",
         jump[0] - sign * 2 * weight * w[1],
         jump[1] + 2 * weight * w[0],
+        of="T.4",
     )
     (_, p, q, r) = ring("p q r", QQ)
     relative = script.alter("sum of squares of sums", 1, -1)
     script.identity(
         "an edge with weight r adds r (p - q)^2 to w^T J(h) w, as constants are in the kernel",
         p * r * (p - q) + q * r * (q - p) - r * (p - relative * q) ** 2,
+        of="T.4",
     )
     script.cases(
         "w^T J(h) w = sum weight (w_i - w_j)^2 for the package's forms, w = 0 on the boundary",
         (_is_laplacian(p, seed, relative) for seed, p in enumerate(hostile_patterns(14))),
+        of="T.4",
     )
 
 
@@ -153,6 +158,7 @@ def _all_up(script: Script) -> None:
         "own weights are positive; the drawings on the way to Tutte's are triangulations; that has "
         "heights with all fold weights 1: all vertices up, J positive definite",
         (lifted(pattern) for pattern in sheets),
+        of="T.4",
     )
 
 
@@ -182,10 +188,12 @@ def _tensor(script: Script) -> None:
             f"n = {n}: sum_u w_u d/ds K_u(h, w) = T(z, w, w) + sum_u w'_u K_u(h, w) along h' = z; "
             "so where J w = 0 and K_u(h, w) = 0 stays for u != v, w_v x' = T(z, w, w)",
             moved - form(z, w, w) - sign * rest,
+            of="T.4",
         )
         script.identity(
             f"n = {n}: T(z, w, w) = w^T J(z) w = sum_u z_u K_u(w)",
             form(z, w, w) - count * sum(z[u] * form(units[u], w, w) for u in range(n)),
+            of="T.4",
         )
 
 
@@ -204,6 +212,7 @@ def _midpoints(script: Script) -> None:
         "K(q) - K(p) = 2 K((p + q)/2, q - p), K any quadratic form: a chord between points of "
         "equal K_u is in the kernel of the row of u at its midpoint",
         polar(two, two) - polar(one, one) - factor * polar(total, chord),
+        of="T.4",
     )
     _, p0, q0, *x = ring("p0 q0 p1 p2 p3 q1 q2 q3", QQ)
     p, q = x[:3], x[3:]
@@ -215,6 +224,7 @@ def _midpoints(script: Script) -> None:
         "(p0 q0)^2 - (p.q)^2 = K(p) q0^2 + |p|^2 K(q) + sum of squares, for K = x0^2 - |x|^2: on "
         "one nappe K(p, q) = p0 q0 - p.q > 0 and K((p + q)/2) > 0",
         (p0 * q0) ** 2 - dot**2 - (kp * q0**2 + sum(a**2 for a in p) * kq + sign * squares),
+        of="T.4",
     )
 
 
@@ -238,6 +248,7 @@ def _level_pairs(script: Script) -> None:
         "each curve joins a minimum to a maximum, but one that joins a minimum to infinity (in "
         "general: docs/theorem.md, 6, step 4)",
         checked,
+        of="T.4",
     )
 
 

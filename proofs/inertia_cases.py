@@ -25,7 +25,7 @@ from proofs.chambers import (
     solve,
     vertex_signs,
 )
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, run
 from proofs.patterns import (
     DART,
     darts,
@@ -52,9 +52,9 @@ def prove(change: str | None = None) -> Proof:
         "Statement of exactfold on two solutions whose signs differ at v alone",
         r"\text{same boundary heights and }k\ge0:\ "
         r"h_v\text{ is larger where }v\text{ is popped up}",
-        Ruling.AS_PRINTED,
         note="convex boundary, no flat vertex: the sign of the chord in the proof of Theorem 4",
         code="Branch.heights",
+        words="docs/theorem.md, after Theorem 4",
     )
     _chambers(script)
     _branches(script)
@@ -107,6 +107,7 @@ def _chambers(script: Script) -> None:
         "the inertia of J(h), by exact elimination, is (up, down, 0) at points of all chambers of "
         "hostile patterns",
         (agree(pattern, heights) for pattern, heights in points()),
+        of="T.5",
     )
 
 
@@ -136,6 +137,7 @@ def _branches(script: Script) -> None:
         script.cases(
             f"inertia of J on the boxes of all branches; {title}: (up, down, flat)",
             (ok for p in patterns for ok in agree(counted(p))),
+            of="T.5",
         )
     found = {inertia_at(DART, b.heights, set()) for b in counted(DART).branches}
     script.counterexample(
@@ -143,6 +145,7 @@ def _branches(script: Script) -> None:
         "both branches, J is positive on one and negative on the other",
         found == script.alter("the signs of the open sheet", {(1, 0, 0), (0, 1, 0)}, {(0, 1, 0)})
         and {b.sign_text for b in counted(DART).branches} == {"-"},
+        of="T.5",
     )
 
 
@@ -172,10 +175,12 @@ def _popping_raises(script: Script) -> None:
     script.cases(
         "popping one vertex up raises it: solutions for positive curvatures, hostile patterns",
         (ok for seed, p in enumerate(_hostile()) for ok in of_solutions(solve(p, seed))),
+        of="T.5",
     )
     script.cases(
         "popping one vertex up raises it: branches of convex sheets with saddle 1",
         (ok for pattern in _squares() for ok in of_branches(counted(pattern))),
+        of="T.5",
     )
 
 

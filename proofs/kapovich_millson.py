@@ -14,13 +14,17 @@ import sys
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
+import sympy
+
 from exactfold.exact.linalg import rank
 from exactfold.rigidity.kapovich_millson import kapovich_millson
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
+from proofs.spokes import wheel
 from proofs.vertex_forms import cross, csc, dot, symbols, unit
 
 NAME = "kapovich_millson"
@@ -56,6 +60,7 @@ def _minors(script: Script) -> None:
         "chi(j+1)/chi(j) = csc a_{j,j+1} / L_j^2 . sin(a_12 + ... + a_{j,j+1}) / sin(a_12 + ... + "
         "a_{j-1,j})",
         chi_next / chi - csc(p, q) / length ** script.alter("L_j not squared", 2, 1) * ratio,
+        of="C.14 C.13",
     )
     d: Spokes = [(5, 0), (4, 3), (-3, 4), (0, -5)]  # all of length 5
     matrix = kapovich_millson(d).form.matrix
@@ -66,29 +71,35 @@ def _minors(script: Script) -> None:
         "spokes (5,0), (4,3), (-3,4), (0,-5), j = 3: chi(4)/chi(3) = sines csc a_34 / 25, and not "
         "sines csc a_23 / 25",
         true_ratio == sines / cross(d[i], d[i + 1]) != sines / cross(d[1], d[2]),
+        against="C.14",
     )
-    script.state(
+    script.formula(
         "C.13",
         "Appendix C, proof of Theorem KM",
-        r"\chi(j)\text{ is also an expression for }\Delta_j\text{, the }j\text{-th principal "
-        r"minor}",
-        Ruling.CORRECTED,
+        r"\Delta_j=\chi(j)",
         r"\Delta_j=\chi(j+2)",
+        over=[{**wheel(5), "j": j} for j in (1, 2, 3)],
+        functions=["chi"],
         note="chi(n) is the determinant on h_2, ..., h_{n-1}: Delta_0 = chi(2) = 1, and the last "
         "minor is Delta_{N-2} = chi(N)",
         code="kapovich_millson",
+        severity=Severity.TYPO,
     )
-    script.state(
+    script.formula(
         "C.14",
         "Appendix C, Eq. (ratio)",
-        r"\frac{\Delta_{j+1}}{\Delta_j}=\frac{\csc\alpha_{j-1,j}}{L_j^2}"
-        r"\frac{\sin(\sum_{n=1}^j\alpha_{n,n+1})}{\sin(\sum_{n=1}^{j-1}\alpha_{n,n+1})}",
-        Ruling.CORRECTED,
-        r"\frac{\chi(j+1)}{\chi(j)}=\frac{\Delta_{j-1}}{\Delta_{j-2}}=\frac{\csc"
-        r"\alpha_{j,j+1}}{L_j^2}\frac{\sin(\sum_{n=1}^j\alpha_{n,n+1})}{\sin(\sum_{n=1}^{j-1}"
-        r"\alpha_{n,n+1})},\quad j=2,\dots,N-1",
+        r"\frac{\Delta_{j+1}}{\Delta_j}=\frac{\csc\alpha_{j-1,j}}{L_j^2}\frac{"
+        r"\sin(\sum_{n=1}^{j}\alpha_{n,n+1})}{\sin(\sum_{n=1}^{j-1}\alpha_{n,n+1"
+        r"})},\quad j=2,\dots,N-1",
+        r"\frac{\Delta_{j-1}}{\Delta_{j-2}}=\frac{\csc\alpha_{j,j+1}}{L_j^2}"
+        r"\frac{\sin(\sum_{n=1}^{j}\alpha_{n,n+1})}{\sin(\sum_{n=1}^{j-1}\alpha_"
+        r"{n,n+1})},\quad j=2,\dots,N-1",
+        over=[wheel(4), wheel(5)],
+        functions=["chi"],
         note="the cosecant is that of the last angle of the numerator, also in 'negative iff "
         "alpha_{j-1,j} < 0'; the ratios use the angles 23 to N-1,N only, not 12 and N1",
+        equation="C9",
+        severity=Severity.TYPO,
     )
 
 
@@ -110,6 +121,7 @@ def _squares(script: Script) -> None:
         "p_n/(p_{n+1} c_n) x_{n+1}^2: summed over n = 2, ..., N-1 with x_N = 0 it is the form, "
         "with pivots chi(n+1)/chi(n) = p_{n+1}/(p_n c_n)",
         square - p_after / (p * after) * x**2 + 2 / after * x * y - p / (p_after * after) * y**2,
+        of="C.17",
     )
 
 
@@ -125,6 +137,7 @@ def _crossings(script: Script) -> None:
             and back + step in (0, 1)
             for back, step in table
         ),
+        of="C.15 C.17",
     )
     b, w, first, last = symbols("b w first last")
     start = -script.alter("first angle taken for a forward-track", first, 0 * first)
@@ -134,6 +147,7 @@ def _crossings(script: Script) -> None:
         "[a_12 < 0] - [a_N1 < 0] back-tracks are among the angles 23 to N-1,N: b + 2w - 1 "
         "negative pivots",
         end - start + (b - first - last) - (b + 2 * w - 1),
+        of="C.15",
     )
     found = kapovich_millson(BACK_FIRST)
     net = script.alter("net crossings as printed", 2, 1)
@@ -142,19 +156,20 @@ def _crossings(script: Script) -> None:
         "- a_41 there are 2 = 2w net crossings, not 2w - 1",
         (found.forward, found.back, found.winding) == (3, 1, 1)
         and net_crossings(BACK_FIRST) == net,
+        against="C.15",
     )
     script.state(
         "C.15",
         "Appendix C, proof of Theorem KM",
         r"C_f-C_b=2w-1\text{ is the net number of crossings; }b-C_b\text{ back-tracks do not "
         r"cross}",
-        Ruling.CORRECTED,
         r"\text{from }\alpha_{12}\text{ to }2\pi w-\alpha_{N1}:\ "
         r"C_f-C_b=2w-1+[\alpha_{12}<0]+[\alpha_{N1}<0],\text{ and "
         r"}b-[\alpha_{12}<0]-[\alpha_{N1}<0]-C_b\text{ back-tracks do not cross}",
         note="the two gaps cancel, and the sum b + 2w - 1 is right. As printed both counts fail "
         "when the first or the last angle is a back-track: spokes (1,0), (2,-1), (0,1), (-1,-1)",
         code="kapovich_millson",
+        severity=Severity.CONSTANT,
     )
 
 
@@ -176,6 +191,7 @@ def _vanishing(script: Script) -> None:
         "opposite signs, as with either sign for chi(n)",
         cross(e, c) / (cross(e, a) * before * after)
         + script.alter("sign at a vanishing minor", 1, -1) / before**2,
+        of="C.21 C.17",
     )
     turn = script.alter("turned the other way", eps, -eps)
     turned = (b[0] - turn * b[1], b[1] + turn * b[0])
@@ -185,21 +201,22 @@ def _vanishing(script: Script) -> None:
         "not change",
         cross(e, turned) - eps * dot(e, b),
         dot(e, b) ** 2 - dot(e, e) * dot(b, b),
+        of="C.21",
     )
-    script.state(
+    script.formula(
         "C.16",
         "Appendix C, end of the proof of Theorem KM",
-        r"\text{``the angle sum in }\chi(N)\text{ is equal to }2\pi-\alpha_{N,1}\text{''}",
-        Ruling.CORRECTED,
-        r"2\pi w-\alpha_{N,1}",
+        r"\sum_{n=1}^{N-1}\alpha_{n,n+1}=2\pi-\alpha_{N,1}",
+        r"\sum_{n=1}^{N-1}\alpha_{n,n+1}=2\pi w-\alpha_{N,1}",
+        over=[_winding_star(5, 1), _winding_star(5, 2), _winding_star(7, 3)],
         note="the theorem is about any winding w; the sine of the sum is the same",
+        severity=Severity.TYPO,
     )
     script.state(
         "C.21",
         "Appendix C, end of the proof of Theorem KM",
         r"\text{where a }\Delta_j\text{ vanishes, ``we can perturb the angles'' without changing }"
         r"f,b,w\text{ and the signature}",
-        Ruling.AS_PRINTED,
         note="turn the spokes d_n, 2 < n < N, that are parallel to d_1. It can be avoided: two "
         "minors in sequence never vanish, and C.7 gives opposite signs around one that does",
     )
@@ -222,25 +239,28 @@ def _germ(script: Script) -> None:
         "inertia of the library's form is (f - 2w - 1, b + 2w - 1, 3); in many of these stars "
         "spokes are parallel to the first, so that minors vanish",
         (r.inertia == (r.predicted[0] - shift, r.predicted[1] + shift, 3) for r in results),
+        of="C.17",
     )
     stresses = script.alter("lengths without a self stress", 1, 0)
     script.example(
         "a spoke adds two unknowns and two lengths, independent since consecutive spokes are not "
         "parallel: the 2N lengths have rank 2N - 1, and one equation remains (pentagram: rank 9)",
         rank(_lengths(PENTAGRAM)) == 2 * len(PENTAGRAM) - stresses,
+        of="C.17",
     )
     script.state(
         "C.17",
         "Appendix C, Theorem 1 (Kapovich and Millson)",
         r"\text{germ of the configuration space }\cong\text{ germ of the null cone of a form with "
         r"nullity 3 and signature }(f-2w-1,b+2w-1)",
-        Ruling.AS_PRINTED,
         note="in the sign of Appendix C, -2 K_v. Nullity 3 by C.4 and chi(N) = "
         "-c_N/(c_1...c_{N-1}), which hold for any tracks. The germ: the lengths have rank 2N - 1 "
         "in the plane, so they leave one analytic equation in the heights modulo rigid motions, "
         "whose second-order part is the form (its one self stress); that is nondegenerate, and "
         "the Morse lemma gives the isomorphism",
         code="kapovich_millson",
+        rests="C.4",
+        cited="the Morse lemma",
     )
 
 
@@ -262,13 +282,13 @@ def _changes(script: Script) -> None:
     script.identity(
         "(f - 2w - 1) + (b + 2w - 1) + 3 = N + 1 with f + b = N; f = N, b = 0, w = 1: (N - 3, 1)",
         (f - 2 * w - 1) + (b + 2 * w - 1) + 3 - size,
+        of="C.20",
     )
     script.state(
         "C.20",
         "Appendix C, after Theorem 1 and in its proof",
         r"\text{the matrix is }(n+1)\times(n+1),\ f+b=n;\text{ we showed the case "
         r"}f=N,b=0,w=1\text{, and our sign convention agrees}",
-        Ruling.AS_PRINTED,
         note="with the sign of Appendix C: (N - 3, 1); Eq. (compat) has the other sign (IIB.21)",
     )
     second = script.alter("stars of different signature", TWICE_BACK, BACK_FIRST)
@@ -278,6 +298,7 @@ def _changes(script: Script) -> None:
         "(3, 2, 1): both have inertia (0, 3, 3)",
         [(s.forward, s.back, s.winding, s.inertia) for s in stars]
         == [(5, 0, 2, (0, 3, 3)), (3, 2, 1, (0, 3, 3))],
+        against="C.19",
     )
     jump = script.alter("winding kept at pi", 1, 0)
     kept = script.alter("winding changed at 0", 0, 1)
@@ -287,28 +308,42 @@ def _changes(script: Script) -> None:
             f"by ({expected:+}, {-expected:+})",
             (f - 1 - 2 * (w - change) - 1) - (f - 2 * w - 1) - expected,
             (b + 1 + 2 * (w - change) - 1) - (b + 2 * w - 1) + expected,
+            of="C.19",
         )
     script.state(
         "C.18",
         "Appendix C, after Theorem 1",
         r"\text{Eq. (determinant) only vanishes when one of the }\alpha\text{ is an integer "
         r"multiple of }\pi",
-        Ruling.AS_PRINTED,
         note="by C.6 it vanishes iff alpha_{N,1} is; where another angle tends to such a multiple "
         "it is unbounded",
+        equation="C5",
+        rests="C.6",
     )
     script.state(
         "C.19",
         "Appendix C, after Theorem 1",
         r"\text{the signature changes when any of }f,b,w\text{ change}",
-        Ruling.CORRECTED,
         r"\text{the signature changes each time one angle passes a multiple of }\pi,\text{ by "
         r"}(-1,1)\text{ or }(1,-1)",
         note="two such changes can cancel: (f, b, w) and (f - 2, b + 2, w - 1) have the same "
         "signature, as the pentagram (5, 0, 2) and spokes (1,0), (-5,1), (-1,5), (0,-1), (-5,-2) "
         "with (3, 2, 1), both (0, 3)",
         code="kapovich_millson",
+        severity=Severity.CLAIM,
     )
+
+
+def _winding_star(n: int, winding: int) -> dict[str, Any]:
+    """The names of a star of n different angles that goes round `winding` times."""
+    weights = [2 * n + k for k in range(n)]
+
+    def alpha(i: int, j: int) -> Any:
+        if (j - i) % n != 1:
+            raise LookupError(f"no sector from {i} to {j}")
+        return 2 * sympy.pi * winding * weights[i % n] / sum(weights)
+
+    return {"N": n, "w": winding, "pi": sympy.pi, "alpha": alpha}
 
 
 if __name__ == "__main__":

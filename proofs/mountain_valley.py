@@ -32,7 +32,7 @@ import sympy
 from exactfold import CreasePattern, count_branches, families
 from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 from proofs.vertex_forms import star
 
 NAME = "mountain_valley"
@@ -90,6 +90,7 @@ def _bends(script: Script) -> None:
         "each sector's polar form is (1/2) (rho' b + sigma' c) with its parts b, c of the bends; "
         "summed over the sectors: K(g, h) = (1/2) sum_j rho_j(g) b_j(h), for every degree",
         polar - half * (p * half_bend(r, s, t) + q * half_bend(s, r, t)),
+        of="IIIC.1",
     )
     gx, gy = sympy.symbols("g_x g_y")
     value = gx * cosine + gy * sine
@@ -99,6 +100,7 @@ def _bends(script: Script) -> None:
         "e_j^perp: b_j e_j^perp is the jump of the gradient, so sum_j b_j e_j = 0 by telescoping",
         half_bend(gx, value, t) - turn * gy,
         half_bend(gx, gx * cosine - gy * sine, t) + turn * gy,
+        of="IIIC.1",
     )
     u = sympy.Symbol("u")
     whole = (t + u) / (1 - t * u)  # tangent of half the sum of the angles
@@ -109,11 +111,13 @@ def _bends(script: Script) -> None:
         "a spoke drawn into a sector, with the slope of the plane there, changes no K and bends 0",
         sector(r, s, whole) - sector(r, inside, t) - sector(inside, s, u),
         half_bend(inside, r, t) + half_bend(inside, s, u),
+        of="IIIC.1",
     )
     script.identity(
         "the round cone rho_j = -1 has K(t, h) = -(1/2) sum_j b_j(h), and "
         "K(t) = sum_j tan(a_j / 2) > 0",
         sector(-1, -1, t) - script.alter("cotangent for tangent", t, 1 / t),
+        of="IIIC.1",
     )
 
 
@@ -126,6 +130,7 @@ def _inequality(script: Script) -> None:
         "(1, x), (1, y) with |x|, |y| <= 1: 2 (1 - x.y) = |x - y|^2 + (1 - |x|^2) + "
         "(1 - |y|^2), so B > 0 unless they are proportional",
         2 * (1 + s * x.dot(y)) - (x - y).dot(x - y) - (1 - x.dot(x)) - (1 - y.dot(y)),
+        of="IIIC.1",
     )
     t = sympy.Symbol("t")
     slope = script.alter("the sheet bent down", 1, -1) * 2 * t / (1 + t**2)  # at the angle of t
@@ -134,6 +139,7 @@ def _inequality(script: Script) -> None:
         "each half contributes the bend 1 > 0: a valley, popped down",
         sector(0, slope, t) + sector(slope, 0, 1 / t),
         half_bend(0, slope, t) - 1,
+        of="IIIC.1",
     )
     # b |y| = b y for y >= 0, and b |y| = b y + 2 b |y| for y < 0, where b <= 0
     b, w = sympy.symbols("b w", positive=True)
@@ -142,6 +148,7 @@ def _inequality(script: Script) -> None:
         "sum b|y| = sum b y + 2 sum_(y < 0) b |y| and sum b y = 0: with all valleys in y >= 0, "
         "2 K(g, h) = sum b |y| <= 0, while K(g, h) >= 0 if h is popped down; so h = c g",
         bool(((up * b) * w - (up * b) * (-w)).is_negative),
+        of="IIIC.1",
     )
 
 
@@ -160,6 +167,7 @@ def _directions(script: Script) -> None:
         "most 6 of 12 directions (minimal ones have at most 4, and every order of 4 directions "
         "and their opposites occurs among 8)",
         fails == 0,
+        of="IIIC.2",
     )
     a, b, c, d = sympy.symbols("a b c d")
     side = script.alter("half-plane bounded by another line", 1, -1)
@@ -169,6 +177,7 @@ def _directions(script: Script) -> None:
         "are at least 3 + 3 folds",
         -b * a + side * a * b,
         (-b * c + a * d) - sympy.Matrix([[a, b], [c, d]]).det(),
+        of="IIIC.1",
     )
 
 
@@ -190,6 +199,7 @@ def _examples(script: Script) -> None:
     script.counterexample(
         "the waterbomb base pops up and down with the same folds MVMVMV, and has both bird's feet",
         all(outcome) and feet,
+        of="IIIC.1 IIIC.3 IIIA.20",
     )
     wheel = CreasePattern([*CROSS_SPOKES, (0, 0)], [(k, (k + 1) % 7, 7) for k in range(7)])
     valleys = [s for s, f in zip(CROSS_SPOKES, CROSS_FOLDS, strict=True) if f == "V"]
@@ -206,25 +216,27 @@ def _examples(script: Script) -> None:
         "a vertex of degree 7 pops both ways with the same folds VMVMVVM; its valleys are a cross "
         "and contain no bird's foot",
         all(outcome) and foot is script.alter("a bird's foot in the cross", False, True),
+        against="IIIC.2",
     )
     script.state(
         "IIIC.1",
         "Section III C, after Fig. (mvexample1)",
         r"\text{``a vertex which can both pop up and pop down must have degree at least 6''}",
-        Ruling.AS_PRINTED,
         note="with one and the same assignment, as the context says; proved here to second order, "
         "collinear folds included; attained by the waterbomb",
+        words="theorem in proofs/mountain_valley.py",
     )
     script.state(
         "IIIC.2",
         "Section III C, after Fig. (mvexample1)",
         r"\text{``must contain both a mountain bird's foot and a valley bird's foot''}",
-        Ruling.CORRECTED,
         r"\text{for each of the two signs a bird's foot of that sign or, if folds are collinear, a "
         r"cross of four folds of that sign}",
         "hub (0,0), spokes (1,0), (1,1), (0,1), (-1,1), (-1,0), (0,-1), (1,-2), folds VMVMVVM: "
         "heights (1,3,1,3,1,0,3) pop down, (-9,-9,-6,-1,-9,-6,-1) up. Holds as printed without "
         "collinear folds",
+        severity=Severity.CONDITION,
+        words="theorem in proofs/mountain_valley.py",
     )
     narrow = star((1, 0), (1, 1), (0, 1), (-1, -2))
     letters = {b.assignment_text for b in count_branches(narrow).branches}
@@ -233,6 +245,7 @@ def _examples(script: Script) -> None:
         "spokes (1,0), (1,1), (0,1), (-1,-2): no branch is VVVM or MMMV, although the angles from "
         "the first to the second and from the second to the third are below pi",
         letters.isdisjoint({odd, odd.translate(str.maketrans("MV", "VM"))}) and len(letters) == 2,
+        of="IIIC.6",
     )
     script.state(
         "IIIC.6",
@@ -240,7 +253,6 @@ def _examples(script: Script) -> None:
         r"\text{``four \dots\ folds }c_1,c_2,c_3,c_4\text{ in counter-clockwise order \dots\ such "
         r"that the angles between }c_1,c_2,c_3\text{ are between 0 and }\pi\text{'', with }c_1,c_2,"
         r"c_3\text{ of one sign and }c_4\text{ of the other}",
-        Ruling.AS_PRINTED,
         note="all three angles, also that from c_3 to c_1, which holds c_4: the directions of one "
         "sign lie in no closed half-plane. With two angles only three folds within a right angle "
         "would do",
@@ -250,14 +262,12 @@ def _examples(script: Script) -> None:
         "Section III C",
         r"\text{``the waterbomb vertex contains both a mountain bird's foot and a valley bird's "
         r"foot''}",
-        Ruling.AS_PRINTED,
         code="families.waterbomb",
     )
     script.state(
         "IIIA.20",
         "Section III A, last paragraph",
         r"\text{the 6-fold vertex MVMVMV: distributions of folds do not distinguish foldings}",
-        Ruling.AS_PRINTED,
         note="heights (-3,-3,1,-2,-2,-3) and (3,3,3,2,2,-1) at the ends of its folds in "
         "ccw order: same folds, one popped up, one popped down. As D = 3 both lie on one branch",
     )

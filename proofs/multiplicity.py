@@ -38,14 +38,12 @@ from exactfold.rigidity.definite_stresses import disk_multipliers
 from proofs.branch_counts import OCTAHEDRON, SQUARE, TWISTED, gram, inner_points, restricted
 from proofs.chambers import jacobian
 from proofs.dual_space import dual_space, taylor_expansions, unit_rank
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 from proofs.patterns import degenerate_patterns, grid_quadrilaterals
 from proofs.potential import corner_polar
 
 NAME = "multiplicity"
 TITLE = "Multiplicities and the number of distinct branches"
-
-CORRECTED = Ruling.CORRECTED
 
 HUB = (Fraction(3, 7), Fraction(5, 9))
 
@@ -81,6 +79,7 @@ def _multiplicity(script: Script) -> None:
             f"{m} inner forms: complete intersection, one zero of multiplicity 2^{m}",
             [c.multiplicity for c in solution.classes]
             == [2 ** script.alter(f"length of the inner ring, {pattern.sha256[:6]}", m, m + 1)],
+            of="T.3",
         )
     octahedron = [tuple((0, 1, 4, 5, 6, 7)[k] for k in t) for t in OCTAHEDRON]
     wheel = [(1, 2, 4), (2, 3, 4), (3, 0, 4)]
@@ -94,6 +93,7 @@ def _multiplicity(script: Script) -> None:
         "whole systems: hub and octahedron 2 roots of multiplicity 8, hub and degree-3 vertex 2 "
         "of 2",
         _multiplicities(rigid) == [factor**3] * 2 and _multiplicities(third) == [factor] * 2,
+        of="T.3 IIIA.13",
     )
     flat = families.flat_vertex_square()
     extra = CreasePattern(
@@ -107,24 +107,27 @@ def _multiplicity(script: Script) -> None:
         _multiplicities(flat) == [1, 1, 2]
         and _multiplicities(extra) == [factor * k for k in (1, 1, 2)]
         and (flat.Vi, flat.Vt, extra.Vt) == (2, 0, 1),
+        of="IIIA.13",
+        against="IIIA.12",
     )
     script.state(
         "IIIA.12",
         "Section III A, Eq. (B distinct)",
         r"B_{distinct}=2^{V_i-V_t}",
-        CORRECTED,
         r"\sum_{branches}2^{|F|}=2^{V_i},\ F\text{ the vertices that are flat on the branch; "
         r"}B_{distinct}\le2^{V_i-V_t},\text{ equality iff }|F|=V_t\text{ on every branch}",
         "called conjectural in the paper, and not restricted to generic patterns. Square with "
         "inner vertices (1/2,1/2), (7/10,1/5), triangles 015, 125, 245, 405, 234, 304: Vt = 0 "
         "and 3 branches. A straight crease path is the usual cause",
         "BranchCount.distinct",
+        equation="10",
+        severity=Severity.CONDITION,
+        rests="T.3",
     )
     script.state(
         "IIIA.13",
         "Section III A, before Eq. (B distinct)",
         r"\text{``the distinct roots of the quadratic equations had multiplicity }2^{V_t}\text{''}",
-        Ruling.AS_PRINTED,
         note="reports the systems found; in general 2^|F|, F the vertices that are flat on the "
         "branch (docs/theorem.md, Theorem 3), that is 2^Vt times the multiplicity in the pattern "
         "without rigid parts. The square of IIIA.12 with a degree-3 vertex (17/30, 1/15) in 015 "
@@ -154,6 +157,7 @@ def _flat_star(script: Script) -> None:
         "on a face where h has the gradient g the corner of K_v(h, w) is [(g.Jd) x/|d|^2 - "
         "(g.Jd') x'/|d'|^2]/2; with one g for the whole star the sum is 0: K_v(h, .) = 0",
         corner_polar(d, e, at_d, at_e, x, y) - end(d, x) + sign * end(e, y),
+        of="T.3 IIC.13",
     )
 
 
@@ -179,13 +183,13 @@ def _transversality(script: Script) -> None:
         "flat octahedron in a square: wherever its triangle is flat, as on all branches, the "
         "differentials of the forms of its three inner vertices are 0",
         all(outcomes) and sheet.interior[3:] == (7, 8, 9),
+        against="IIC.13",
     )
     script.state(
         "IIC.13",
         "Section II C, after Eq. (Dcount)",
         r"\text{the hypersurfaces of Eq. (compat) ``intersect transversely. This should be true "
         r"generically, and in all of the numerical examples''}",
-        CORRECTED,
         r"\text{transversely along a branch iff no vertex star is flat on it; so nowhere where "
         r"}V_t>0",
         "triangulated triangles persist under small changes, and the paper's samples hold four. "
@@ -193,6 +197,8 @@ def _transversality(script: Script) -> None:
         "is flat: docs/theorem.md, Theorem 2 (c); that generic patterns without triangulated "
         "triangles have no flat stars is not used here",
         "BranchSystem",
+        severity=Severity.CONDITION,
+        words="docs/theorem.md, Theorem 2 (c)",
     )
 
 
@@ -211,10 +217,10 @@ def _theorem_3(script: Script) -> None:
         "T.3",
         "docs/theorem.md, Theorem 3",
         r"\mu(h)=2^{|F|},\ F=\{v:\text{the star of }v\text{ is flat in }h\}",
-        Ruling.AS_PRINTED,
         note="convex boundary, right-hand sides k_v >= 0; quadrilaterals with a reflex corner in "
         "the closed sheet. So the sum of 2^|F| over all branches is 2^Vi",
         code="Branch.multiplicity",
+        words="docs/theorem.md, Theorem 3",
     )
     more = script.alter("one flat vertex too many", 0, 1)
     fewer = script.alter("only vertices in triangulated triangles counted", False, True)
@@ -239,14 +245,21 @@ def _theorem_3(script: Script) -> None:
             independent = rank == pattern.Vi - len(flat) * (linear - 1)
             outcomes["initial"].append(order_two == flat and independent)
         outcomes["sum"].append(total == 2**pattern.Vi)
-    script.cases("the sum of 2^|F| over all branches is 2^Vi (exact zero tests)", outcomes["sum"])
     script.cases(
-        "the multiplicity from a Groebner basis is 2^|F|, by class of roots", outcomes["groebner"]
+        "the sum of 2^|F| over all branches is 2^Vi (exact zero tests)",
+        outcomes["sum"],
+        of="T.3 IIIA.12",
     )
-    script.cases("the dual space is complete, of dimension 2^|F|", outcomes["dual"])
+    script.cases(
+        "the multiplicity from a Groebner basis is 2^|F|, by class of roots",
+        outcomes["groebner"],
+        of="T.3",
+    )
+    script.cases("the dual space is complete, of dimension 2^|F|", outcomes["dual"], of="T.3")
     script.cases(
         "the equations of F are of order 2, the linear parts of the others independent",
         outcomes["initial"],
+        of="T.3",
     )
     sign = script.alter("multipliers with the wrong sign", 1, -1)
     script.cases(
@@ -258,6 +271,7 @@ def _theorem_3(script: Script) -> None:
             for root_class in solution.classes
             if pattern.is_convex and root_class.degree == 1 and root_class.multiplicity > 1
         ),
+        of="T.3",
     )
 
 

@@ -22,7 +22,7 @@ from sympy import QQ
 from sympy.polys.rings import ring
 
 from exactfold.exact.linalg import Inertia, inertia_by_elimination
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, run
 
 NAME = "panels"
 TITLE = "Rigid panels: the modes and the transmissions of a vertex with four folds"
@@ -44,7 +44,6 @@ def prove(change: str | None = None) -> Proof:
         "docs/panels.md, 3 (the first transmission)",
         r"c_{41}c_{13}x^2+2c_{23}c_{41}xy-c_{23}c_{24}y^2=Qx^2y^2,\ "
         r"Q=c_{12}(c_{34}s_{12}+c_{12}s_{34})",
-        Ruling.AS_PRINTED,
         note="on all configurations near the flat one; Q = 0 iff opposite sectors add up to pi",
         code="Transmission",
     )
@@ -52,7 +51,6 @@ def prove(change: str | None = None) -> Proof:
         "T.52",
         "docs/panels.md, 3 (the second transmission)",
         r"c_{12}c_{41}x^2(1+|d_3|^2z^2)=c_{23}c_{34}z^2(1+|d_1|^2x^2)",
-        Ruling.AS_PRINTED,
         note="linear iff the vertex can be folded flat or the two folds are in one line",
         code="Transmission",
     )
@@ -60,16 +58,15 @@ def prove(change: str | None = None) -> Proof:
         "T.53",
         "docs/panels.md, 2 (the local modes)",
         r"w_3/w_1=\pm\sqrt P/(c_{23}c_{34}),\ P=c_{12}c_{23}c_{34}c_{41}",
-        Ruling.AS_PRINTED,
         code="local_modes",
     )
     script.state(
         "T.54",
         "docs/panels.md, 1 (inertia)",
         r"\text{on the local motions: }(1,N-3,0),\ (0,N-3,1)\text{ or }(0,N-2,0)",
-        Ruling.AS_PRINTED,
         note="all sectors below pi, one of pi, one above; proved for triangles in C.1 and C.8",
         code="Star.foldable",
+        rests="C.11",
     )
     _closing(script)
     _neighbours(script)
@@ -149,6 +146,7 @@ def _closing(script: Script) -> None:
             part(whole[axis], 1)
             - script.alter(f"axis {axis} reversed", 1, -1)
             * sum(t * d[axis - 1] for t, d in zip(taus, _directions(), strict=True)),
+            of="T.54",
         )
     form = c(1, 2) * x * y + factor * sum(
         taus[i - 1] * taus[j - 1] * c(i, j) for i, j in combinations(range(1, 5), 2) if j > 2
@@ -157,12 +155,14 @@ def _closing(script: Script) -> None:
         "its third component has no linear part, and to second order it is K_v",
         part(whole[3], 1),
         part(whole[3], 2) - form,
+        of="T.54",
     )
     other = b if script.alter("the second half not reversed", False, True) else conjugate(b)
     norm = sum(entry * entry for entry in b)
     script.identity(
         "A B is real iff A is a multiple of the conjugate of B: A |B|^2 = (A B) B*",
         *(p * norm - q for p, q in zip(a, times(whole, other), strict=True)),
+        of="T.51",
     )
 
 
@@ -189,6 +189,7 @@ def _neighbours(script: Script) -> None:
         e2
         - (l * w * c(3, 4) - script.alter("wrong sign of c_13", 1, -1) * x * c(1, 3))
         - -y * c(2, 3),
+        of="T.51",
     )
     e3, e4 = gap[3], gap[0]
     area = x * y * c(1, 2)
@@ -209,6 +210,7 @@ def _neighbours(script: Script) -> None:
     script.identity(
         "the first transmission is a combination of the four components of A - l B*",
         combination - transmission,
+        of="T.51",
     )
 
 
@@ -226,6 +228,7 @@ def _opposite(script: Script) -> None:
         - (c(2, 4) * y + c(3, 4) * z - c(4, 1) * x)
         - script.alter("the cubic term reversed", -1, 1) * inner * x * y * z,
         third - y * (c(1, 2) * x + c(2, 3) * z) - x * z * c(1, 3),
+        of="T.52",
     )
     near, far = c(1, 2) * c(4, 1), c(2, 3) * c(3, 4)
     if script.alter("d_1 and d_3 exchanged", False, True):
@@ -234,11 +237,13 @@ def _opposite(script: Script) -> None:
     script.identity(
         "the second transmission is a combination of these two",
         (c(2, 4) - inner * x * z) * third - (c(1, 2) * x + c(2, 3) * z) * beside - transmission,
+        of="T.52",
     )
     script.identity(
         "between opposite folds the cubic coefficient is c_13 Q / c_12: it is linear iff Q = 0 or "
         "the folds are in one line",
         far * s(1, 1) - near * s(3, 3) - c(1, 3) * inner,
+        of="T.51 T.52",
     )
 
 
@@ -261,8 +266,11 @@ def _flat_foldable(script: Script) -> None:
         "Q = c_12 |d_1| |d_2| |d_3| |d_4| sin(sector 12 + sector 34), so that Q = 0 iff these two "
         "add up to pi (Kawasaki)",
         q_factor() - c(1, 2) * opposite[1],
+        of="T.51",
     )
-    script.identity("the four sectors add up to a full turn", around[0] - lengths, around[1])
+    script.identity(
+        "the four sectors add up to a full turn", around[0] - lengths, around[1], of="T.51"
+    )
 
 
 def _modes(script: Script) -> None:
@@ -292,6 +300,7 @@ def _modes(script: Script) -> None:
             reduced(sum(v * d[axis] for v, d in zip(values, _directions(), strict=True)))
             for axis in (0, 1)
         ),
+        of="T.53",
     )
     pairs = list(combinations(range(1, 5), 2))
     sign = script.alter("[d_2, d_3] reversed in K_v", 1, -1)
@@ -303,6 +312,7 @@ def _modes(script: Script) -> None:
                 for i, j in pairs
             )
         ),
+        of="T.53",
     )
     first = (0 * e, c(3, 4), -c(2, 4), c(2, 3))
     second = (c(3, 4), 0 * e, c(4, 1), c(1, 3))
@@ -314,6 +324,7 @@ def _modes(script: Script) -> None:
     script.identity(
         "the discriminant of K_v on the plane of motions is 4 c_34^2 P > 0: two real lines",
         form - script.alter("discriminant without 4", 4, 1) * c(3, 4) ** 2 * product,
+        of="T.53",
     )
 
 
@@ -376,7 +387,7 @@ def _inertia(script: Script) -> None:
             yield found(star) == ((down, up, zero) if swapped else (up, down, zero))
 
     for case, text in texts.items():
-        script.cases(f"the inertia of K_v on the local motions, {text}", agree(case))
+        script.cases(f"the inertia of K_v on the local motions, {text}", agree(case), of="T.54")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from exactfold import random_square
 from exactfold.exact.linalg import inertia
 from exactfold.rigidity import curvature_form
 from exactfold.rigidity.timelike import round_cone
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, run
 
 NAME = "potential"
 TITLE = "The cubic potential and the popping homotopy"
@@ -32,7 +32,6 @@ def prove(change: str | None = None) -> Proof:
         "T.31",
         "Statement of exactfold on the branch system",
         r"\partial K_v/\partial h_w = \partial K_w/\partial h_v \text{ for interior } v, w",
-        Ruling.AS_PRINTED,
         note="so the forms are the gradient of a cubic in the interior heights",
         code="curvature_form",
     )
@@ -41,9 +40,9 @@ def prove(change: str | None = None) -> Proof:
         "Statement of exactfold on the popping homotopy",
         r"\text{convex boundary: } (1-T)(l_v^2-k)+TK_v=0,\ e_vl_v>0 "
         r"\text{ is real, regular and unique for } 0\le T<1",
-        Ruling.AS_PRINTED,
         note="docs/theorem.md, section 7; with a reflex corner, in the sheet with its notch closed",
         code="popping",
+        words="docs/theorem.md, 7",
     )
     _symmetry(script)
     _lorentzian_along_the_path(script)
@@ -78,7 +77,9 @@ def _symmetry(script: Script) -> None:
     sign = script.alter("polar form antisymmetric", 1, -1)
     for x in "vwab":
         script.identity(
-            f"K_v(e_{x}, e_w) = K_w(e_{x}, e_v)", polar("v", x, "w") - sign * polar("w", x, "v")
+            f"K_v(e_{x}, e_w) = K_w(e_{x}, e_v)",
+            polar("v", x, "w") - sign * polar("w", x, "v"),
+            of="T.31",
         )
     script.cases(
         "the same for the package's forms on random squares",
@@ -90,6 +91,7 @@ def _symmetry(script: Script) -> None:
             if v in p.interior and w in p.interior
             for x in {v, w, *p.opposite((v, w))}
         ),
+        of="T.31",
     )
 
 
@@ -107,17 +109,20 @@ def _lorentzian_along_the_path(script: Script) -> None:
     script.identity(
         "(1 - T) l^2 + T K = l^2 - T N with N = l^2 - K",
         (1 - T) * square + T * kh - (square - sign * T * n_of_h),
+        of="T.33",
     )
     twice = script.alter("mixed term counted once", 2, 1)
     residual = kh - twice * (kth / kt) * kth + (kth / kt) ** 2 * kt  # K(h - (K(t,h)/K(t,t)) t)
     script.identity(
         "N(h) = -K(h - K(t,h)/K(t,t) t): minus K on the complement of t, where K <= 0",
         n_of_h + residual,
+        of="T.33",
     )
     sign = script.alter("l^2 subtracted twice", 1, -1)
     script.identity(
         "T K = K^T - (1 - T) l^2: where K^T <= 0 and 0 < T <= 1, also K <= 0 (key lemma)",
         T * kh - ((1 - T) * square + T * kh) + sign * (1 - T) * square,
+        of="T.33",
     )
     nullity = script.alter("nullity 3", 4, 3)
     script.cases(
@@ -127,6 +132,7 @@ def _lorentzian_along_the_path(script: Script) -> None:
             for p in (random_square(5, s) for s in range(5))
             for v in p.interior
         ),
+        of="T.33",
     )
 
 

@@ -29,7 +29,7 @@ from exactfold.problem import BranchSystem, QuadraticSystem
 from exactfold.problem.perturbation import perturbed
 from exactfold.rigidity.functionals import vertex_sign_functional
 from exactfold.verdict import PROVED
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 from proofs.h1_triangulations import is_h1, reverse_moves
 
 NAME = "random_squares"
@@ -86,13 +86,13 @@ def _ensemble(script: Script) -> None:
         power(1, 0) - side * 2 * s,
         power(0, 1) - 2 * s,
         power(x, y).subs(s, 0) + x * (1 - x) + y * (1 - y),
+        of="IIIA.15",
     )
     script.state(
         "IIIA.15",
         "Section III A",
         r"\text{``We also found no triangulations with edges connecting opposite corners of the "
         r"square''}",
-        Ruling.AS_PRINTED,
         note="there are none: a theorem on Delaunay triangulations",
         code="delaunay",
     )
@@ -108,13 +108,13 @@ def _branches(script: Script) -> None:
             and list(count.sign_vectors.values()) == [per] * 2 ** (count.pattern.Vi - 1)
             for count in _counted()
         ),
+        of="IIIA.14",
     )
     script.state(
         "IIIA.14",
         "Table (summary), caption",
         r"2^{V_i}\text{ branches with multiplicity, }2^{V_i-V_t}\text{ distinct ones, 2 to 1 with "
         r"the vertex sign patterns, in all cases}",
-        Ruling.AS_PRINTED,
         note="data of the paper, and of these samples; what holds in general is T.1 and T.2",
         code="count_branches",
     )
@@ -164,12 +164,14 @@ def _coincidences(script: Script) -> None:
             len(differ) <= 1 and all(random_square(*key).degree(v) >= least for v in differ)
             for key, differ in pairs
         ),
+        of="IIIC.5",
     )
     same = script.alter("another seed", SAME_SIGNS, (5, 80))
     script.counterexample(
         "the random square with Vi = 5 and seed 534 has two branches with the same assignment and "
         "the same vertex signs, the one with seed 80 two that differ at one vertex",
         found[same] == [set()] and [len(differ) for differ in found[5, 80]] == [1],
+        of="IIIC.4 IIIC.5",
     )
     script.state(
         "IIIC.4",
@@ -177,7 +179,6 @@ def _coincidences(script: Script) -> None:
         r"\text{``a few examples (1 configuration with }V_i=5\text{, 2 with }V_i=6\text{ and 1 "
         r"with }V_i=7\text{) where MV-coincident branches also had the same vertex sign "
         r"patterns''}",
-        Ruling.AS_PRINTED,
         note="data of the paper. That such patterns exist is proved by an example; by T.2 the "
         "boundary saddles of the two branches have opposite signs",
         code="random_square, BranchCount.repeated_assignments",
@@ -187,7 +188,6 @@ def _coincidences(script: Script) -> None:
         "Section III C, last paragraph",
         r"\text{branches with coincident assignments ``either had exactly one high-degree vertex "
         r"whose popping state distinguished the branches, or none''}",
-        Ruling.AS_PRINTED,
         note="data of the paper; tested on the pairs of six random squares",
     )
 
@@ -228,19 +228,20 @@ def _perturbations(script: Script) -> None:
     script.cases(
         "12 random squares, Vi = 3: 8 real branches, two in each pair of chambers",
         (chambers == even for chambers in before),
+        of="IIIB.5",
     )
     script.example(
         "after multiplying their coefficients by random numbers between 1/2 and 3/2 most of them "
         "have complex-conjugate pairs, and most of those with real solutions have them unevenly "
         "distributed over the chambers",
         2 * share > 12 and 2 * sum(uneven) > len(uneven) > 0,
+        of="IIIB.5",
     )
     script.state(
         "IIIB.5",
         "Section III B, last paragraph",
         r"\text{``after perturbing, the solutions of most systems have many complex-conjugate "
         r"pairs and real solutions are not equidistributed''}",
-        Ruling.AS_PRINTED,
         note=f"tested on 12 systems with Vi = 3, of which {complex_pairs} have such pairs; larger "
         "samples: docs/control.md. Simple real solutions survive very small perturbations",
         code="perturbed",
@@ -278,6 +279,7 @@ def _shares(script: Script) -> None:
             _agrees(none[8], Fraction(stuck)),
             *(none[n] < none[n + 1] for n in range(3, 8)),
         ],
+        of="IV.15",
     )
     script.cases(
         f"the same squares, H1 triangulations: {list(h1.values())}; all of them at Vi = 3, within "
@@ -288,19 +290,20 @@ def _shares(script: Script) -> None:
             _agrees(h1[8], Fraction(rare)),
             *(4 * h1[n + 1] <= 3 * h1[n] for n in range(3, 8)),
         ],
+        of="IV.16",
     )
     without = [Fraction(0), Fraction("0.885")]
     most = script.alter("complement forgotten", [1 - share for share in without], without)
     script.certificate(
         "H1 triangulations have a boundary vertex of degree 3: 1 <= 1 - 0 and 0.0077 <= 1 - 0.885",
         all(share <= m for share, m in zip((Fraction(1), Fraction("0.0077")), most, strict=True)),
+        of="IV.15 IV.16",
     )
     script.state(
         "IV.15",
         "Section IV, fractions",
         r"\text{``an increasing fraction of triangulations had no degree-3 vertices at the "
         r"boundary (starting from 0\% at }V_i=3\text{ to 88.5\% at }V_i=8\text{)''}",
-        Ruling.AS_PRINTED,
         note=f"data of the paper; in our samples of {SAMPLES} for Vi = 3 to 8: "
         + ", ".join(f"{100 * k / SAMPLES:.1f} %" for k in none.values()),
         code="random_square",
@@ -310,7 +313,6 @@ def _shares(script: Script) -> None:
         "Section IV, fractions",
         r"\text{``the fraction of H1 triangulations decreased roughly exponentially from 1 at "
         r"}V_i=3\text{ to 0.0077 at }V_i=8\text{''}",
-        Ruling.AS_PRINTED,
         note=f"data of the paper; in our samples of {SAMPLES} for Vi = 3 to 8: "
         + ", ".join(f"{k / SAMPLES:.4f}" for k in h1.values()),
         code="random_square, families.sample_h1_sequence",
@@ -340,13 +342,13 @@ def _reductions(script: Script) -> None:
         f"{SAMPLES} random squares with Vi = 8, those with at least 0, 1, 2, ... reverse H1 moves: "
         f"{list(counts)}: each time at most 3/4 of the number before, down to the seed",
         (after <= share * before for before, after in pairwise(counts[:6])),
+        of="IV.17",
     )
     script.state(
         "IV.17",
         "Section IV, fractions",
         r"\text{``the number of triangulations in this data set that can be reduced further with "
         r"more reverse H1 moves appears to decay exponentially''}",
-        Ruling.AS_PRINTED,
         note=f"data of the paper; in our samples of {SAMPLES} with Vi = 8, those with at least 0, "
         f"1, 2, ... moves: {', '.join(map(str, counts))}. A triangulation that can be reduced to "
         "Vi = 3 can be reduced to the seed (IV.10)",
@@ -367,17 +369,18 @@ def _precision(script: Script) -> None:
         "random square with Vi = 8, seed 0: 256 branches from double precision, all proved; "
         "where the boundary saddle is 1 any two are more than 10^-6 apart",
         count.status is PROVED and count.distinct == 256 and apart * digits > 1,
+        against="IIIA.16",
     )
     script.state(
         "IIIA.16",
         "Section III A, after Table (summary)",
         r"\text{``Accurate solutions seem to require very high precision arithmetic \dots\ up to "
         r"}690\text{ digits''}",
-        Ruling.CORRECTED,
         r"\text{double precision finds them, and a test in integers proves them}",
         "a remark on the method. The branches of random squares are far apart for double precision "
         "where all are simple; with starts at all sign vectors none is missed (docs/theorem.md, 7)",
         "count_branches",
+        severity=Severity.CLAIM,
     )
 
 

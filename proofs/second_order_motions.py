@@ -17,7 +17,7 @@ from exactfold.pattern import PanelPattern
 from exactfold.rigidity import curvature_form, rigidity_matrix
 from exactfold.rigidity.functionals import fold_functional
 from exactfold.verdict import REFUTED
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, run
 from proofs.length_equations import CROSS, Heights, is_solution
 
 NAME = "second_order_motions"
@@ -45,6 +45,7 @@ def _extension(script: Script) -> None:
     script.identity(
         "(|X|^2 - L^2) / t^2 = 2 U.u + h^2 + t^2 |u|^2, analytic in (t, u, h)",
         (X.dot(X) + t**2 * h**2 - U.dot(U)) / t**2 - 2 * U.dot(u) - h**2 - t**power * u.dot(u),
+        of="IIA.11",
     )
     s = sympy.Symbol("s")
     bound = script.alter("in-plane displacements of first order", 2, 1)
@@ -54,13 +55,15 @@ def _extension(script: Script) -> None:
         "and u' bounded, so that a limit point is a folded second-order solution",
         ((U + s**2 * u).dot(U + s**2 * u) + (s * h) ** 2 - U.dot(U)) / s**bound
         - (2 * U.dot(u) + h**2 + s**2 * u.dot(u)),
+        of="IIA.15",
     )
     script.state(
         "IIA.15",
         "Section II A, last paragraph",
         r"\text{``second-order rigidity implies rigidity''}",
-        Ruling.AS_PRINTED,
         note="for the unfolded state; rigid: no other configurations, modulo motions, nearby",
+        rests="IIA.4",
+        words="the limit of scaled configurations",
     )
     w, hi, hj = sympy.symbols("w h_i h_j")
     two = script.alter("derivative without its factor", 2, 1)
@@ -68,6 +71,7 @@ def _extension(script: Script) -> None:
         "a left null vector of (2C | d(h_n - h_m)^2) is a self stress sum_v m_v w_v with "
         "sum_v m_v dK_v = 0: rows of the length equations are independent iff the dK_v are",
         sympy.diff(w * (hi - hj) ** 2 / 2, hi) * 2 - two * w * (hi - hj),
+        of="IIA.11",
     )
     root: Heights = {0: Fraction(1), 1: Fraction(2), 2: Fraction(-1), 3: Fraction(1), 4: Fraction()}
     flat = dict.fromkeys(root, Fraction(0))
@@ -81,16 +85,18 @@ def _extension(script: Script) -> None:
             == (regular == right)
             for point, regular in ((root, True), (flat, False))
         ),
+        of="IIA.11",
     )
     script.state(
         "IIA.11",
         "Section II A, last paragraph",
         r"\text{``a second-order solution may not be a solution at all orders''}",
-        Ruling.AS_PRINTED,
         note="but a regular solution always is: the length equations divided by t^2 are analytic "
         "with independent rows at t = 0, so the implicit function theorem gives an analytic curve "
         "of true configurations (docs/mathematics.md, 5)",
         code="BranchCount.true_branches",
+        cited="the implicit function theorem",
+        words="docs/mathematics.md, 5",
     )
 
 
@@ -114,13 +120,13 @@ def _not_true(script: Script) -> None:
         and found.true == {1: 2, 2: 1}
         and [m.extends.order for m in found.modes if m.extends.verdict is REFUTED] == [3]
         and len(verdicts) == 5,
+        of="IIA.16 IIA.11",
     )
     script.state(
         "IIA.16",
         "Section II A, last paragraph",
         r"\text{``there are (non-triangulated) origami examples where second-order solutions do "
         r"not correspond to points lying in the true configuration space''}",
-        Ruling.AS_PRINTED,
         note="cited in the paper; an exact example is two zigzags of one shape, the second "
         "sheared, crossed by straight rows",
         code="decompose",
@@ -135,18 +141,19 @@ def _not_true(script: Script) -> None:
             > p.D
             for p in patterns
         ),
+        of="IIC.14",
     )
     script.state(
         "IIC.14",
         "Section II C, after Eq. (Dcount)",
         r"\text{the unfolded configuration is a singular point, ``where the dimension of the "
         r"tangent space exceeds the dimension at other nearby points''}",
-        Ruling.AS_PRINTED,
         note="Vi >= 1: by IIA.5 the lengths have rank 2 V - 3 there, so that D + Vi first-order "
         "motions are left. Nearby the dimension is at most D where the second-order solutions have "
         "dimension D (convex boundary: IIC.1). Where all of the sheet is a triangulated triangle "
         "there are no other points nearby",
         code="BranchSystem",
+        rests="IIA.5 IIC.1",
     )
 
 
@@ -167,24 +174,26 @@ def _energy(script: Script) -> None:
     script.certificate(
         "squared length errors t^4 |u|^2: |X| - L = t^4 |u|^2 / (2L) + ..., energy of order 8",
         order(t**2 * u, t * h) == expected,
+        of="IIA.12",
     )
     script.certificate(
         "without the in-plane displacement: order 4; with arbitrary terms of third order "
         "(and second-order heights): order 6",
         order(script.alter("in-plane displacement kept", 0, 1) * t**2 * u, t * h) == 4
         and order(t**2 * u + t**3 * u3, t * h + t**2 * h2) == 6,
+        of="IIA.12",
     )
     sign = script.alter("u_4 with the wrong sign", -1, 1)
     fourth = sympy.Matrix([sign * u.dot(u) / (2 * L), 0])
     script.certificate(
         "when the terms t^4 u_4, t^3 h_3 of the true configuration are added: order 12",
         order(t**2 * u + t**4 * fourth, t * h) == 12,
+        of="IIA.12",
     )
     script.state(
         "IIA.12",
         "Section II A, last paragraph",
         r"\text{``can only change the stretching energy to at most sixth-order''}",
-        Ruling.AS_PRINTED,
         note="as a bound O(t^6), which is attained only if arbitrary terms of third order are "
         "added. Along X = U + t^2 u + t h z the energy is of eighth order, t^8 sum |u_n - u_m|^4 / "
         "(4 L^2); heights without in-plane displacements give order 4",
@@ -201,11 +210,13 @@ def _fold_angles(script: Script) -> None:
     script.identity(
         "the normals of two faces at the fold e satisfy (e x f) x (g x e) = -det(e, f, g) e",
         *(normals + sign * triple * e),
+        of="IIA.13",
     )
     free = script.alter("a position in the plane free too", 2, 0)
     script.certificate(
         "over fixed plane positions det(e, f, g) is linear in the four heights",
         sympy.Poly(triple, a[free], b[2], c[2], d[2]).total_degree() == 1,
+        of="IIA.13",
     )
     motions = script.alter("six rigid motions of the heights", 3, 6)
     injective = []
@@ -215,12 +226,13 @@ def _fold_angles(script: Script) -> None:
             functional = fold_functional(pattern, fold)
             rows.append([functional.get(v, 0) for v in range(len(pattern.vertices))])
         injective.append(rank(rows) == len(pattern.vertices) - motions)
-    script.cases("the bends of all folds vanish only on affine heights (rank V - 3)", injective)
+    script.cases(
+        "the bends of all folds vanish only on affine heights (rank V - 3)", injective, of="IIA.13"
+    )
     script.state(
         "IIA.13",
         "Section II A, second paragraph",
         r"\text{``one can linearize the fold angles as functions of the displacements''}",
-        Ruling.AS_PRINTED,
         note="the linear map is injective modulo rigid motions: a piecewise linear function on a "
         "disk without bends is affine, so branches look alike in both coordinates",
         code="fold_functional",

@@ -18,7 +18,8 @@ from exactfold.exact.linalg import inertia, rank
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity import curvature_form, rigidity_matrix, wheel_stress
 from exactfold.rigidity.kapovich_millson import kapovich_millson
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
+from proofs.spokes import equal_angles
 from proofs.vertex_forms import cross, dot, symbols, unit
 from proofs.wheel_stress import free_wheel
 
@@ -48,6 +49,7 @@ def _equal_angles(script: Script) -> None:
     script.identity(
         "v_n = sin(n theta) satisfies g v_{n-1} + f v_n + g v_{n+1} = (f + 2 g cos theta) v_n",
         g * (sn * c1 - cn * s1) + f * sn + g * (sn * c1 + cn * s1) - (f + 2 * sign * g * c1) * sn,
+        of="C.8 C.9",
     )
     last = script.alter("range of m as printed", 0, 1)
     cosines = [Fraction(1, 2), Fraction(-1, 2), Fraction(-1)]  # of m pi/3, m = 1, 2, 3
@@ -59,25 +61,30 @@ def _equal_angles(script: Script) -> None:
         "matrix is [[0, -1], [-1, 0]], and lambda_1 = -1, lambda_2 = 1 (numbered with minus signs)",
         [list(row[2:4]) for row in rows] == [[0, -1], [-1, 0]]
         and [sign * 2 * c for c in cosines[: 2 + last]] == [-1, 1],
+        of="C.8",
     )
-    script.state(
+    script.formula(
         "C.8",
         "Appendix C, eigenvalues of the Toeplitz matrix",
-        r"\lambda_m=f+2|g|\cos\frac{m\pi}{N-1},\quad m=1,\dots,N-1",
-        Ruling.CORRECTED,
-        r"\lambda_m=f-2|g|\cos\frac{m\pi}{N-1},\quad m=1,\dots,N-2",
+        r"\lambda_m=f+2|g|\cos(\frac{m\pi}{N-1}),\quad m=1,\dots,N-1",
+        r"\lambda_m=f-2|g|\cos(\frac{m\pi}{N-1}),\quad m=1,\dots,N-2",
+        over=map(equal_angles, (3, 4, 5, 6)),
         note="range: the matrix has N-2 rows; m = N-1 is no eigenvalue (N = 4, L = 1: -2 or 2 "
         "besides 1 and -1). Label: with the plus sign lambda_m is the lambda_{N-1-m} of Eq. "
         "(equalangleeigs), which does not follow then, nor that lambda_1 is the negative one "
         "(C.10); the set of eigenvalues is the same",
+        equation="C7",
+        severity=Severity.CONSTANT,
     )
-    script.state(
+    script.formula(
         "C.9",
         "Appendix C, Eq. (equalangleeigs)",
-        r"\lambda_m=2\frac{\csc(2\pi/N)}{L^2}\Big[\cos\frac{2\pi}{N}-\cos\frac{m\pi}{N-1}\Big]",
-        Ruling.AS_PRINTED,
+        r"\lambda_m=2\frac{\csc(2\pi/N)}{L^2}\left[\cos(\frac{2\pi}{N})-\cos("
+        r"\frac{m\pi}{N-1})\right],\quad m=1,\dots,N-2",
+        over=map(equal_angles, (3, 4, 5, 6)),
         note="for m = 1, ..., N-2, and from C.8 as corrected: the printed line before it would "
         "give cos(2 pi/N) + cos(m pi/(N-1))",
+        equation="C8",
     )
     k, j = symbols("k j")  # N = 3 + k, m = 2 + j with k, j >= 0
     N, m = k + 3, 2 + script.alter("m from 1", j, j - 1)
@@ -85,14 +92,16 @@ def _equal_angles(script: Script) -> None:
         "1/(N-1) < 2/N and m/(N-1) > 2/N for m >= 2: both differences, cleared of denominators, "
         "have positive coefficients in N - 3 >= 0 and m - 2 >= 0; cosine decreases on [0, pi]",
         _positive_coefficients(2 * (N - 1) - N) and _positive_coefficients(m * N - 2 * (N - 1)),
+        of="C.10",
     )
     script.state(
         "C.10",
         "Appendix C, after Eq. (equalangleeigs)",
         r"\lambda_1<0\text{ and the other eigenvalues are positive}",
-        Ruling.AS_PRINTED,
         note="with Eq. (equalangleeigs), m = 1, ..., N-2; with the line before it, it would be "
         "lambda_{N-2}",
+        equation="C8",
+        rests="C.9",
     )
 
 
@@ -110,6 +119,7 @@ def _all_angles(script: Script) -> None:
             curvature_form(single_vertex(n), n).inertia == (positive, n - 2 - positive, 3)
             for n in range(3, 10)
         ),
+        of="C.11",
     )
     script.state(
         "C.11",
@@ -117,10 +127,11 @@ def _all_angles(script: Script) -> None:
         r"\text{always one negative eigenvalue so long as the angles between adjacent folds "
         r"remain in }(0,\pi);\ N\ge4:\text{ eigenvalues of both signs; }N-3\text{ stabilized "
         r"motions}",
-        Ruling.AS_PRINTED,
         note="in the sign of Appendix C: inertia (N-3, 1, 3), also by C.17. That the N-3 others "
         "'primarily increase' the rim is heuristic",
         code="curvature_form, QuadraticForm.inertia",
+        equation="C8",
+        rests="C.17",
     )
     _matrix(script)
     wheel = single_vertex(5)
@@ -129,17 +140,21 @@ def _all_angles(script: Script) -> None:
         "with Eqs. (compat), (wheelstress) as printed the matrix Q of a five-fold star has inertia "
         "(1, 2, 3): two negative eigenvalues",
         inertia([[sign * q for q in row] for row in _stress_matrix(wheel, 5)]) == (1, 2, 3),
+        of="IIB.21",
+        against="IIB.21",
     )
     script.state(
         "IIB.21",
         "Section II B, after Eq. (stressmatrix)",
         r"Q_{nm}\text{ has }N-2\text{ nonzero eigenvalues, exactly one of which is negative}",
-        Ruling.CORRECTED,
         r"\text{exactly one of which is positive}",
         note="with the signs of Eqs. (compat), (wheelstress): Q = 2 K_v; five equal angles: "
         "inertia (1, 2, 3). As printed if Q belongs to the negative of that stress, as in "
         "Appendix C (-2 K_v) and in all that follows. The number N-2 and the size N+1 hold",
         code="curvature_form",
+        equation="8",
+        severity=Severity.CONSTANT,
+        rests="C.11",
     )
 
 
@@ -164,6 +179,7 @@ def _matrix(script: Script) -> None:
     script.identity(
         "each edge adds w to Q_nn and Q_mm and -w to Q_nm and Q_mn: w (h_n - h_m)^2",
         w * (h - k) ** 2 - (w * h**2 + w * k**2 + 2 * sign * w * h * k),
+        of="IIB.20",
     )
     factor = script.alter("factor two dropped", 2, 1)
     differences = []
@@ -174,14 +190,15 @@ def _matrix(script: Script) -> None:
     script.identity(
         "over the field of all spokes, N = 3, 4: with the wheel stress this Q is 2 K_v",
         *differences,
+        of="IIB.20 IIB.21",
     )
     script.state(
         "IIB.20",
         "Section II B, Eq. (stressmatrix)",
         r"\sum_{n,m}Q_{nm}h_nh_m=0,\ Q\text{ symmetric, the quadratic form of Eq. (compat)}",
-        Ruling.AS_PRINTED,
         note="Q_nm = -sigma_(n,m)/|U_n - U_m| for n != m, and the rows add up to 0",
         code="stress_form",
+        equation="8",
     )
 
 
@@ -193,19 +210,20 @@ def _signature(script: Script) -> None:
     script.identity(
         "p x^2 + 2 g x y + f y^2 = p (x + g y/p)^2 + (f - g^2/p) y^2: the new pivot is f - g^2/p",
         p * x**2 + 2 * g * x * y + f * y**2 - square - (f + sign * g**2 / p) * y**2,
+        of="C.22",
     )
     sign = script.alter("sign in the continuant", -1, 1)
     # Delta_{j-1} = p Delta_{j-2}; the continuant Delta_j = f Delta_{j-1} - g^2 Delta_{j-2}
     script.identity(
         "and the next minor is the product of the pivots: Delta_j / Delta_{j-1} = f - g^2/p",
         (f * p * before + sign * g**2 * before) / (p * before) - (f - g**2 / p),
+        of="C.22",
     )
     script.state(
         "C.22",
         "Appendix C, proof of Theorem KM",
         r"\text{if no }\Delta_j\text{ vanishes, }N_-\text{ is the number of sign changes of "
         r"}\Delta_0=1,\Delta_1,\dots,\Delta_k",
-        Ruling.AS_PRINTED,
         note="proved for tridiagonal matrices, all that is needed: the form is a sum of squares "
         "with the factors Delta_j / Delta_{j-1}",
         code="QuadraticForm.inertia",
@@ -229,6 +247,7 @@ def _three_folds(script: Script) -> None:
         "N = 3: 2 K_v = (w_1 x_1 + w_2 x_2 + w_3 x_3)^2 / (w_1 w_2 w_3) with w_1 = d_2 x d_3 > 0 "
         "and so on: K_v vanishes only where hub and ring are coplanar",
         2 * curvature - lift**2 / product * script.alter("factor of the rank one form", 1, 2),
+        of="C.12",
     )
     pattern = single_vertex(3)
     # first-order changes do not see the heights; the wheel stress makes one length dependent
@@ -239,13 +258,13 @@ def _three_folds(script: Script) -> None:
         "N = 3: the star has one height motion that is no rigid motion, and its lengths are kept "
         "to first order, so it is not infinitesimally rigid in the usual (first-order) sense",
         3 * len(pattern.vertices) - lengths - 6 == 1,
+        of="C.12",
     )
     script.state(
         "C.12",
         "Appendix C, after Eq. (equalangleeigs)",
         r"\text{the vertex is infinitesimally rigid when all eigenvalues have the same sign "
         r"(as happens when }N=3)",
-        Ruling.AS_PRINTED,
         note="infinitesimally rigid to second order, hence rigid; with angles in (0, pi) exactly "
         "for N = 3. In the usual sense (no first-order motions) no vertex is: it has N - 2 of them",
         code="count_branches",
@@ -261,6 +280,7 @@ def _cone(script: Script) -> None:
             (n + 1) - motions == sum(curvature_form(single_vertex(n), n).inertia[:2])
             for n in range(3, 9)
         ),
+        of="IIB.22",
     )
     t, y1, y2, s = symbols("t y1 y2 s")
     all_axes = script.alter("one axis not rescaled", s, s**0)
@@ -269,23 +289,23 @@ def _cone(script: Script) -> None:
         "over R^{N-3}; rescaling by s > 0 keeps it, so it is the cone over |y| = 1, a sphere of "
         "dimension N-4",
         (s * t) ** 2 - (s * y1) ** 2 - (all_axes * y2) ** 2 - s**2 * (t**2 - y1**2 - y2**2),
+        of="IIB.23",
     )
     script.state(
         "IIB.22",
         "Section II B, after Eq. (stressmatrix)",
         r"\text{a single }N\text{-fold vertex has }N-2\text{ first-order motions; Eq. "
         r"(stressmatrix) defines an }(N-3)\text{-dimensional surface, the null cone}",
-        Ruling.AS_PRINTED,
         note="first-order motions: height motions modulo rigid ones. For N = 3 the cone is the "
         "point 0, of dimension 0",
         code="BranchSystem",
+        equation="8",
     )
     script.state(
         "IIB.23",
         "Section II B, after Eq. (stressmatrix)",
         r"\text{two nappes meet at the unfolded state; topologically they are cones over }(N-4)"
         r"\text{-dimensional spheres}",
-        Ruling.AS_PRINTED,
         note="N >= 4. For N = 4 the sphere is two points: a nappe is two rays, and the cone two "
         "lines",
     )

@@ -26,7 +26,8 @@ from exactfold.exact.linalg import from_fmpq, to_flint
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity import curvature_form, stress_form, wheel_stress
 from exactfold.rigidity.kapovich_millson import kapovich_millson
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
+from proofs.spokes import equation, wheel
 
 NAME = "vertex_forms"
 TITLE = "The quadratic form of one vertex: sign, factor, null directions, determinant"
@@ -102,11 +103,13 @@ def _forms(script: Script) -> None:
         "in each sector: form (compat) = 2 K, form (constraint) = K, form of Appendix C = -2 K",
         stress - 2 * curvature,
         appendix - factor * curvature,
+        of="C.1 C.3",
     )
     script.identity(
         "in each sector: A_n = -f_n - g = (csc a / L_{n+1} - cot a / L_n) / L_n = sigma_n / L_n",
         A - script.alter("sigma_n for sigma_n / L_n", 1, L) * spoke,
         A_next - next_spoke,
+        of="C.2",
     )
     pattern = star(*REFLEX)
     matrix = curvature_form(pattern, 4).matrix
@@ -117,24 +120,26 @@ def _forms(script: Script) -> None:
         == tuple(tuple(matrix[(i + 1) % 5][(j + 1) % 5] for j in range(5)) for i in range(5))
         and kapovich_millson(REFLEX).form.matrix
         == tuple(tuple(factor * entry for entry in row) for row in matrix),
+        of="C.1 C.3",
     )
-    script.state(
+    script.formula(
         "C.1",
         r"Appendix C, 'Eq. (constraint) then reads'",
-        r"0=\sum_{n=1}^N(2g_{n,n+1}h_nh_{n+1}+f_nh_n^2+2A_nh_0h_n)-h_0^2\sum_{n=1}^NA_n",
-        Ruling.AS_PRINTED,
+        r"0=\sum_{n=1}^N(g_{n,n+1}2h_nh_{n+1}+f_nh_n^2+A_n2h_0h_n)-h_0^2\sum_{n=" r"1}^NA_n",
+        over=[equation(wheel(3), -2)],
         note="as an equation. As a form it is -2 K_v, where Eq. (constraint) is K_v and Eq. "
         "(compat) with the wheel stress (wheelstress) is 2 K_v: the sign is reversed on the way",
         code="curvature_form, stress_form, kapovich_millson",
     )
-    script.state(
+    script.formula(
         "C.2",
         "Appendix C, definitions of f_n, g_{n,n+1}, A_n",
-        r"A_n=-f_n-g_{n,n+1}-g_{n-1,n}=\sigma_n/L_n",
-        Ruling.AS_PRINTED,
+        r"A_n=-f_n-g_{n,n+1}-g_{n-1,n}=\frac{\sigma_n}{L_n}",
+        over=[wheel(5)],
         note="sigma_n is the stress of Eq. (spokes); rationally f_n = (d_{n-1} x "
         "d_{n+1})/(c_{n-1} c_n), g_{n,n+1} = -1/c_n with c_n = d_n x d_{n+1}",
         code="wheel_stress",
+        equation="C3",
     )
 
 
@@ -148,12 +153,15 @@ def _stress_signs(script: Script) -> None:
         "A_n = turn_n / (c_{n-1} c_n), turn_n = (d_n - d_{n-1}) x (d_{n+1} - d_n)",
         A - script.alter("turn of the link reversed", 1, -1) * turn / (before * after),
         f - cross(a, c) / (before * after),
+        of="C.23",
     )
     convex = [(4, 0), (3, 3), (0, 4), (-1, -1)]
     stress = wheel_stress(star(*script.alter("a convex link", REFLEX, convex)), 4)
     script.counterexample(
         "hub (0,0), spokes (4,0), (1,1), (0,4), (-1,-1): A_2 = -1/2, the other three A_n > 0",
         stress[1, 4] == Fraction(-1, 2) and all(stress[j, 4] > 0 for j in (0, 2, 3)),
+        of="C.23",
+        against="C.23",
     )
     sign = script.alter("rim densities positive", -1, 1)
     script.example(
@@ -162,13 +170,14 @@ def _stress_signs(script: Script) -> None:
             stress[min(j, k), max(j, k)] == Fraction(sign, cross(REFLEX[j], REFLEX[k])) < 0
             for j, k in ((0, 1), (1, 2), (2, 3), (3, 0))
         ),
+        of="C.3",
+        against="C.3",
     )
     script.state(
         "C.3",
         "Appendix C, first paragraph",
         r"\text{the form of Eq. (constraint) ``has the interpretation as the energy if the wheel "
         r"self stress is applied as a pre-stress''; it places ``the outer edges under tension''}",
-        Ruling.CORRECTED,
         r"\text{the form of Eq. (constraint) is the energy of a pre-stress with the outer edges "
         r"under compression; its negative, the form that is written next, that of one with the "
         r"outer edges under tension}",
@@ -176,18 +185,19 @@ def _stress_signs(script: Script) -> None:
         "tension. Eq. (constraint) has w = -csc a/(L L') < 0 on the rim; the form of Appendix C, "
         "-2 K_v, has the opposite stress, to which the sentence applies (C.23 for the spokes)",
         code="wheel_stress",
+        severity=Severity.TYPO,
     )
     script.state(
         "C.23",
         "Appendix C, first paragraph",
         r"\text{this pre-stress ``places the spokes under compression''}",
-        Ruling.CORRECTED,
         r"\text{spoke }n\text{ is under compression iff the link polygon is strictly convex at }n"
         r"\text{, unstressed iff it is straight there, under tension iff it is reflex there}",
         note="for the pre-stress of C.3 with the outer edges under tension; all signs are opposite "
         "for the other. Spoke under tension: hub (0,0), spokes (4,0), (1,1), (0,4), (-1,-1), at "
         "(1,1)",
         code="wheel_stress",
+        severity=Severity.CONDITION,
     )
 
 
@@ -200,6 +210,7 @@ def _null_directions(script: Script) -> None:
         "the row of spoke n vanishes on h_j = l . d_j: g_{n-1,n} d_{n-1} + f_n d_n + g_{n,n+1} "
         "d_{n+1} = 0 (and the row of the hub is minus the sum of the others)",
         *(sign * a[i] / before + f * b[i] + sign * c[i] / after for i in range(2)),
+        of="C.4",
     )
     g, a, c = (symbols("gx gy ax ay cx cy")[2 * i : 2 * i + 2] for i in range(3))
     turn = script.alter("quarter turn to the right", 1, -1)
@@ -209,27 +220,30 @@ def _null_directions(script: Script) -> None:
         "not 0",
         cross(c, a) * g[0] + turn * (dot(g, a) * c[1] - dot(g, c) * a[1]),
         cross(c, a) * g[1] - turn * (dot(g, a) * c[0] - dot(g, c) * a[0]),
+        of="C.4",
     )
     script.state(
         "C.4",
         "Appendix C and Section II B",
         r"\text{three null directions: vertical translation, rotations about the axes; removed by }"
         r"h_0=h_1=h_N=0",
-        Ruling.AS_PRINTED,
         note="exactly three, by C.6: the remaining determinant chi(N) = -c_N/(c_1...c_{N-1}) is "
         "not 0",
         code="curvature_form",
+        rests="C.6",
     )
     script.example(
         "with h_0 = h_1 = h_N = 0 the terms left have indices 2 to N-1, tridiagonally (N = 3 to 9)",
         all(_is_pinned_form(n, sign) for n in range(3, 10)),
+        of="C.5",
     )
-    script.state(
+    script.formula(
         "C.5",
         "Appendix C, Eq. (form)",
-        r"0=\sum_{n=2}^{N-1}(2g_{n,n+1}h_nh_{n+1}+f_nh_n^2)",
-        Ruling.AS_PRINTED,
+        r"0=\sum_{n=2}^{N-1}(g_{n,n+1}2h_nh_{n+1}+f_nh_n^2)",
+        over=[equation(wheel(4, True), -2)],
         note="with h_N = 0: the term g_{N-1,N} h_{N-1} h_N drops out; the matrix is (N-2) x (N-2)",
+        equation="C4",
     )
 
 
@@ -261,12 +275,14 @@ def _determinant(script: Script) -> None:
     script.identity(
         "step for every N: chi(N+2) = f_{N+1} chi(N+1) - g_{N,N+1}^2 chi(N) for the closed formula",
         chi_2 - f * chi_1 + g**power * chi,
+        of="C.6 C.7",
     )
     over = script.alter("base over the wrong length", lq, lp)
     script.identity(
         "base: the formula gives chi(2) = 1 (empty matrix) and chi(3) = f_2",
         csc(p, q) * cross(p, q) - 1,
         csc(p, q) * csc(q, r) / over**2 * cross(p, r) - f,
+        of="C.6 C.7",
     )
     d = [(4, 0), (3, 3), (0, 4), (-3, 1), (-1, -4), (2, -3)]
     crosses = [cross(a, b) for a, b in pairwise(d)]
@@ -286,35 +302,45 @@ def _determinant(script: Script) -> None:
     script.example(
         "the recurrence holds for the determinants of a six-fold star, N = 2, 3, 4",
         all(minor(n + 2) == right_side(n, shift) for n in (2, 3, 4)),
+        of="C.7",
     )
     printed = script.alter("the corrected recurrence for the printed one", 1, 0)
     script.counterexample(
         "with f_{N+2} and g_{N+1,N+2} it fails on the same star for N = 2, 3, 4",
         all(minor(n + 2) != right_side(n, printed) for n in (2, 3, 4)),
+        against="C.7",
     )
     last = script.alter("chi(n) over c_n as well", 1, 0)
     script.example(
         "chi(n) = (d_1 x d_n)/(c_1 ... c_{n-1}) on the same star, n = 3 to 6",
         all(minor(n) * prod(crosses[: n - last]) == cross(d[0], d[n - 1]) for n in (3, 4, 5, 6)),
+        of="C.6",
     )
-    script.state(
+    script.formula(
         "C.6",
         "Appendix C, Eq. (determinant)",
-        r"\chi(N)=\frac{\prod_{n=1}^{N-1}\csc\alpha_{n,n+1}}{\prod_{n=2}^{N-1}L_n^2}"
-        r"\sin\Big(\sum_{n=1}^{N-1}\alpha_{n,n+1}\Big)",
-        Ruling.AS_PRINTED,
+        r"\chi(N)=\frac{\prod_{n=1}^{N-1}\csc\alpha_{n,n+1}}{\prod_{n=2}^{N-1}L_"
+        r"n^2}\sin(\sum_{n=1}^{N-1}\alpha_{n,n+1})",
+        over=[wheel(3), wheel(4)],
+        functions=["chi"],
         note="chi(n) is the determinant on h_2, ..., h_{n-1}, of size n - 2; rationally "
         "(d_1 x d_n)/(c_1 ... c_{n-1})",
         code="kapovich_millson",
+        equation="C5",
     )
-    script.state(
+    script.formula(
         "C.7",
         "Appendix C, the continuant",
         r"\chi(N+2)=f_{N+2}\chi(N+1)-g_{N+1,N+2}^2\chi(N)",
-        Ruling.CORRECTED,
-        r"\chi(N+2)=f_{N+1}\chi(N+1)-g_{N,N+1}^2\chi(N),\qquad\chi(2)=1,\ \chi(3)=f_2",
-        note="indices one too large; for spokes (4,0), (3,3), (0,4), (-3,1), (-1,-4), (2,-3) the "
-        "printed recurrence fails at N = 2",
+        r"\chi(N+2)=f_{N+1}\chi(N+1)-g_{N,N+1}^2\chi(N)",
+        over=[{**wheel(4), "N": 2}, {**wheel(5), "N": 3}],
+        functions=["chi"],
+        note=(
+            "indices one too large. chi(2) = 1, chi(3) = f_2; for spokes (4,0), (3,3), (0,4), "
+            "(-3,1), (-1,-4), (2,-3) the printed recurrence fails at N = 2"
+        ),
+        equation="C6",
+        severity=Severity.TYPO,
     )
 
 

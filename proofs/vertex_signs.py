@@ -16,7 +16,7 @@ from exactfold.exact.linalg import rank
 from exactfold.pattern.families import flat_octahedron_in_square
 from exactfold.rigidity import definite_stress
 from exactfold.rigidity.functionals import vertex_sign_functional
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, Severity, run
 from proofs.patterns import SPIKY
 from proofs.vertex_forms import cot, csc, dot, star, symbols, unit
 
@@ -49,6 +49,7 @@ def _popping(script: Script) -> None:
         "= -(1/2) int rho, rho the slope in direction theta: K(t, h) = -(1/2) int rho d theta",
         integral - half * (x + y),
         polar + script.alter("factor one half", 1, 2) * integral / 2,
+        of="IIB.29",
     )
     # The area above the trace z = eps rho(theta) + ... on the sphere is 2 pi - eps int rho + ...
     opposite = script.alter("the straight line bent, too", (-5, 0, 0), (-4, 0, 3))
@@ -59,30 +60,32 @@ def _popping(script: Script) -> None:
         "no open hemisphere",
         all(sum(a * b for a, b in zip(ring[k - 1], ring[k], strict=True)) == 0 for k in range(4))
         and all(a == -b for a, b in zip(ring[0], ring[2], strict=True)),
+        against="IIB.28",
     )
     script.state(
         "IIB.28",
         "Section II B, popped up and popped down",
         r"\text{the trace of a folded origami vertex lies completely in an open hemisphere}",
-        Ruling.CORRECTED,
         r"\text{in a closed hemisphere; in an open one unless the vertex is folded along a "
         r"straight line only}",
         note="the trace has length 2 pi: if it holds antipodes it consists of two great "
         "semicircles. Then, too, one side has area less than 2 pi, and the definition of popping "
         "is not affected. That all other closed curves of length 2 pi lie in an open hemisphere "
         "is classical and not checked here",
+        severity=Severity.CONDITION,
+        cited="closed curves of length below 2 pi lie in an open hemisphere",
     )
     script.state(
         "IIB.29",
         "Section II B, popped up and popped down",
         r"\text{one of the nappes consists of popped up configurations and the other of popped "
         r"down ones, so we can use dot products with }\mathbf h_-",
-        Ruling.AS_PRINTED,
         note="near the unfolded state: for heights eps h the area above the trace is 2 pi + 2 eps "
         "K(t, h) + O(eps^2), t the round cone, and K(t, h) is not 0 on a nappe. The printed "
         "argument (the two types meet only in the unfolded state) needs connected nappes: for N = "
         "4 they are two rays each",
         code="vertex_sign_functional",
+        rests="IIB.24",
     )
 
 
@@ -96,6 +99,7 @@ def _hemispheres(script: Script) -> None:
         "K(t, h) = -(1/2) sum_j tan(a_j/2) (psi_j + psi_{j+1}): if all edges rise from the vertex, "
         "every term is negative, so the vertex is popped down; if all descend, popped up",
         polar + weight * (x + y) / 2,
+        of="IIB.30",
     )
     level = {0: 2, 1: 1, 2: 2, 3: 1, 4: 0}
     plane = script.alter("folded, not rotated", (1, 0, -1, 0, 0), (1, 0, 1, 0, 0))
@@ -105,13 +109,13 @@ def _hemispheres(script: Script) -> None:
     script.example(
         "rotated, four rising edges rise and descend, and the vertex stays popped down",
         signs[0] == signs[1] < 0 and min(tilted.values()) < 0 < max(tilted.values()),
+        of="IIB.30",
     )
     script.state(
         "IIB.30",
         "Section II B, last sentence",
         r"\text{popped down (up) if all edge vectors are in the northern (southern) hemisphere: "
         r"``our definition is a rotation-invariant generalization''}",
-        Ruling.AS_PRINTED,
         note="to lowest order in the heights, like the vertex signs of exactfold",
         code="vertex_sign_functional",
     )
@@ -132,6 +136,7 @@ def _chambers(script: Script) -> None:
         "0: heights that are 0 on the boundary and have all K_v(t_v, h) = 0 vanish (maximum "
         "principle)",
         weight - before - script.alter("mean value weights", after, -after),
+        of="IIIB.2",
     )
     squares = [random_square(5, k) for k in range(3)]
     reflex = script.alter("a reflex sheet", (), (SPIKY,))
@@ -140,18 +145,19 @@ def _chambers(script: Script) -> None:
         "positive definite there: heights with K_v(e_v, h) = 0, hence K_v(h) <= 0, at every v "
         "vanish",
         map(_is_independent, [*squares, flat_octahedron_in_square(), *reflex]),
+        of="IIIB.2",
     )
     script.state(
         "IIIB.2",
         "Section III B, chambers",
         r"\text{the planes divide }\mathbb R^{V_i-V_t+1}\text{ into }2^{V_i-V_t}\text{ chambers, "
         r"each the product of an orthant of }\mathbb R^{V_i-V_t}\text{ with a real line}",
-        Ruling.AS_PRINTED,
         note="because the functionals e_v . h are independent: heights that are 0 on the "
         "boundary, flat in the triangulated triangles, and have K_v(e_v, h) = 0 at the foldable v "
         "have K_v(h) <= 0 everywhere, and vanish by the key lemma for convex polygons "
         "(docs/theorem.md). The paper does not say why",
         code="definite_stress, vertex_sign_functional",
+        words="docs/theorem.md, key lemma",
     )
 
 

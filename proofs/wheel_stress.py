@@ -17,7 +17,7 @@ from sympy.polys.rings import ring
 from exactfold import CreasePattern, families
 from exactfold.exact.linalg import rank
 from exactfold.rigidity import rigidity_matrix, self_stresses, wheel_stress
-from proofs.framework import Proof, Ruling, Script, run
+from proofs.framework import Proof, Script, run
 
 NAME = "wheel_stress"
 TITLE = "Wheel stresses are a basis of the self stresses"
@@ -118,17 +118,19 @@ def _compatibility(script: Script) -> None:
         lengths.append(
             move - sum(along[k] * (motion[2 * i + k] - ends * motion[2 * j + k]) for k in (0, 1))
         )
-    script.identity("row (i, j) applied to u is (U_i - U_j) . (u_i - u_j)", *lengths)
-    script.identity("translations and rotations are in the kernel of every row", *products)
+    script.identity("row (i, j) applied to u is (U_i - U_j) . (u_i - u_j)", *lengths, of="IIA.14")
+    script.identity(
+        "translations and rotations are in the kernel of every row", *products, of="IIA.14"
+    )
     script.state(
         "IIA.14",
         "Section II A, Eq. (isometry)",
         r"[\mathbf C\mathbf u]_{(n,m)}=\frac{\mathbf U_n-\mathbf U_m}{|\mathbf U_n-\mathbf U_m|}"
         r"\cdot(\mathbf u_n-\mathbf u_m)",
-        Ruling.AS_PRINTED,
         note="row (n, m) of the rigidity matrix is this row times |U_n - U_m|, so its left kernel "
         "consists of the stress densities sigma/|U_n - U_m|",
         code="rigidity_matrix",
+        equation="3",
     )
     columns = ([2, 4, 5], [3, 4, 5])
     minors = [cross_minor([[row[c] for c in chosen] for row in rows]) for chosen in columns]
@@ -138,6 +140,7 @@ def _compatibility(script: Script) -> None:
         "triangle ABC: two 3 x 3 minors with squares adding up to |AB|^2 (2 area)^2 > 0: rank 3, "
         "and in-plane motions of one triangle are its rigid motions",
         minors[0] ** 2 + minors[1] ** 2 - ((bx - ax) ** 2 + (by - ay) ** 2) * (area / double) ** 2,
+        of="IIB.3 IIB.7",
     )
 
 
@@ -161,6 +164,7 @@ def _rank(script: Script) -> None:
         "adding up to |PQ|^2; so the motions of two triangles that share an edge are the same "
         "rigid motion, and along chains of triangles those of all: ker C has dimension 3",
         minors[0] ** 2 + minors[1] ** 2 - (qx - px) ** 2 - (qy - py) ** 2,
+        of="IIB.7",
     )
 
 
@@ -170,16 +174,21 @@ def _counts(script: Script) -> None:
     edges, vertices = 3 * vi + 2 * ve - 3, vi + ve
     faces = (2 * edges - ve) / 3  # every fold in two triangles, every boundary edge in one
     disk = script.alter("Euler characteristic of the sphere", 1, 2)
-    script.identity("E = 3 Vi + 2 Ve - 3 from V - E + F = 1", vertices - edges + faces - disk)
+    script.identity(
+        "E = 3 Vi + 2 Ve - 3 from V - E + F = 1", vertices - edges + faces - disk, of="IIB.7"
+    )
     left = script.alter("four rigid motions", 3, 4)
-    script.identity("E - (2V - 3) = Vi self stresses", edges - (2 * vertices - left) - vi)
-    script.identity("wheel: 2N - ((2N + 2) - 3) = 1", 2 * n - ((2 * (n + 1)) - left) - 1)
+    script.identity(
+        "E - (2V - 3) = Vi self stresses", edges - (2 * vertices - left) - vi, of="IIB.7"
+    )
+    script.identity(
+        "wheel: 2N - ((2N + 2) - 3) = 1", 2 * n - ((2 * (n + 1)) - left) - 1, of="IIB.3"
+    )
     script.state(
         "IIB.3",
         "Section II B, the wheel",
         r"2N+2\text{ in-plane positions},\ 2N\text{ constraints},\ 3\text{ motions: generically "
         r"one self stress}",
-        Ruling.AS_PRINTED,
         note="the 2N + 2 positions are the coordinates of N + 1 vertices. Exactly one self stress "
         "for every wheel with non-degenerate triangles, generic or not",
         code="self_stresses",
@@ -198,7 +207,7 @@ def _force_balance(script: Script) -> None:
     g0, g1 = gradient(d0, d1), gradient(d1, d2)
     one = script.alter("hat of height -1", 1, -1)
     script.identity(
-        "the hat is 1 at the hub and 0 at the rim", dot(g1, d1) + one, dot(g1, d2) + one
+        "the hat is 1 at the hub and 0 at the rim", dot(g1, d1) + one, dot(g1, d2) + one, of="IIB.5"
     )
     c0, c1, length2 = cross(d0, d1), cross(d1, d2), dot(d1, d1)
     angles = script.alter("cotangents left out", 1, 0)
@@ -214,6 +223,7 @@ def _force_balance(script: Script) -> None:
         jump[1] + spoke * d1[0],
         g1[0] - rim * along[1],
         g1[1] + rim * along[0],
+        of="IIB.5",
     )
     sign = script.alter("spokes with the sign of the rim", 1, -1)
     residues = []
@@ -224,12 +234,13 @@ def _force_balance(script: Script) -> None:
         for e in wheel.edges:
             stress[e] *= sign if n in e else 1
         residues += [sum(stress[e] * rows[e][k] for e in wheel.edges) for k in range(2 * n + 2)]
-    script.identity("the same by exactfold over the field of all spokes, N = 3, 4, 5", *residues)
+    script.identity(
+        "the same by exactfold over the field of all spokes, N = 3, 4, 5", *residues, of="IIB.5"
+    )
     script.state(
         "IIB.5",
         "Section II B, 'Eqs. (wheelstress) do give the coefficients of a self stress'",
         r"\tilde{\boldsymbol\sigma}^T\cdot\mathbf C=\mathbf 0^T",
-        Ruling.AS_PRINTED,
         note="also after embedding in the larger structure with all other components zero; for the "
         "proof of Appendix B see B.1 and following",
         code="wheel_stress",
@@ -248,6 +259,7 @@ def _independence(script: Script) -> None:
         "a, b and at the apex beyond ab (or ab is a boundary edge), then l_p = 0; from the rim "
         "inwards along chains of triangles all l_v = 0",
         *(sign * rims[j] * c[j] + 1 for j in range(4)),
+        of="IIB.6 IIB.7",
     )
     patterns = (
         families.two_vertex(),
@@ -261,6 +273,7 @@ def _independence(script: Script) -> None:
     script.cases(
         "by exactfold: rank C = 2V - 3, rank of the wheel stresses = number of self stresses = Vi",
         (_ranks(f, motions) for f in patterns),
+        of="IIB.6 IIB.7 IIB.8",
     )
 
 
@@ -277,7 +290,6 @@ def _basis(script: Script) -> None:
         "IIB.6",
         "Section II B, first observation",
         r"\text{``at least }V_i\text{ self stresses''}",
-        Ruling.AS_PRINTED,
         note="the wheel stresses are linearly independent",
     )
     script.state(
@@ -285,7 +297,6 @@ def _basis(script: Script) -> None:
         "Section II B, Fig. (wheel)",
         r"\text{``form a basis for the space of self stresses of a generic unfolded triangulated "
         r"origami, thus the dimensionality \dots\ is equal to the number of internal vertices''}",
-        Ruling.AS_PRINTED,
         note="for every triangulated disk: rank C = 2V - 3 by gluing triangles, E - 2V + 3 = Vi, "
         "and Vi wheel stresses are independent. Genericity is not needed",
         code="wheel_stress, self_stresses",
@@ -296,7 +307,6 @@ def _basis(script: Script) -> None:
         r"\text{each self stress gives one equation, the wheel stress constraint is precisely "
         r"Gaussian curvature preservation: }V_i\text{ quadratic equations in }V_i+V_e"
         r"\text{ heights}",
-        Ruling.AS_PRINTED,
         note="the equations K_v(h) = 0, one an interior vertex, are equivalent to Eq. (compat) for "
         "all self stresses (A.9 and IIB.7)",
         code="BranchSystem",

@@ -1,0 +1,202 @@
+"""What the names in the formulas of the appendices mean: stars with free spokes.
+
+The environments of `Script.formula`. Spokes, lengths and heights are the free elements of a field
+of rational functions; stresses, forms and determinants are those of exactfold over that field, so
+that a formula is compared with what the library computes and not with another formula.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import sympy
+from sympy import QQ
+from sympy.polys.fields import field
+
+from exactfold import families
+from exactfold.rigidity import curvature_form, wheel_stress
+from proofs.framework import is_zero
+from proofs.wheel_stress import Angle, cross, dot, with_vertices
+
+
+@cache
+def wheel(n: int, pinned: bool = False) -> dict[str, Any]:
+    """The names of a flat vertex with n free spokes; indices are taken modulo n, the hub is 0.
+
+    "alpha" are angles (over one or more sectors), "eta" those at spoke vertex 2, "L" and "Delta L"
+    lengths, "h" heights, "sigma" stresses of the wheel stress of exactfold, "f", "g", "A" entries
+    of -2 K_v, "K" computes K_v(h). The lengths of the rim, which are square roots, are free as
+    well: a formula that holds does not depend on them, or uses "Delta L squared". `pinned`: heights
+    that are 0 at the hub and at spokes 1 and n.
+    """
+    letters = [f"p{k}" for k in range(1, n)]
+    letters += [f"{x}{k}" for x in "LDh" for k in range(1, n + 1)] + ["h0"]
+    one, *free = field(letters, QQ)
+    p, rest = free[: n - 1], free[n - 1 :]
+    lengths, rim, heights = rest[:n], rest[n : 2 * n], rest[2 * n : 3 * n]
+    sectors = [Angle.twice_arctan(t) for t in p]
+    turns = [Angle(one(1), one(0))]
+    for sector in sectors:
+        turns.append(turns[-1] + sector)
+    sectors.append(-turns[-1])
+    ends = [(r * turn.cos, r * turn.sin) for r, turn in zip(lengths, turns, strict=True)]
+    sheet = with_vertices(families.single_vertex(n), [*ends, (one(0), one(0))])
+    stress, form = wheel_stress(sheet, n), curvature_form(sheet, n)
+    place = {v: form.labels.index(v) for v in range(n + 1)}
+    raised = {0: rest[3 * n], **{k + 1: x for k, x in enumerate(heights)}}
+    if pinned:
+        raised |= {0: one(0), 1: one(0), n: one(0)}
+
+    def spoke(i: int) -> int:
+        return (i - 1) % n
+
+    def adjacent(i: int, j: int) -> int:
+        """The sector from spoke i to spoke j."""
+        if (j - i) % n != 1:
+            raise LookupError(f"no sector from {i} to {j}")
+        return spoke(i)
+
+    def alpha(i: int, j: int) -> Angle:
+        if (j - i) % n == 0:
+            raise LookupError(f"no angle from {i} to {j}")
+        total = sectors[spoke(i)]
+        for k in range(1, (j - i) % n):
+            total = total + sectors[spoke(i + k)]
+        return total
+
+    def sigma(i: int, j: int | None = None) -> Any:
+        if j is None:
+            return stress[spoke(i), n] * lengths[spoke(i)]
+        k = adjacent(i, j)
+        return stress[min(k, (k + 1) % n), max(k, (k + 1) % n)] * rim[k]
+
+    def eta(i: int, j: int) -> Angle:
+        """The angle at spoke vertex 2 between its spoke and the rim edge from i to j."""
+        k, other = adjacent(i, j), j if i == 2 else i
+        if 2 not in (i, j):
+            raise LookupError("eta is an angle at spoke vertex 2")
+        a, b = ends[1], ends[spoke(other)]
+        edge = (b[0] - a[0], b[1] - a[1])
+        size = lengths[1] * rim[k]
+        turn = cross(edge, (-a[0], -a[1]))
+        return Angle(-dot(edge, a) / size, (turn if i == 2 else -turn) / size)
+
+    def entry(i: int, j: int) -> Any:
+        row, column = (place[n if k == 0 else spoke(k)] for k in (i, j))
+        return -2 * form.matrix[row][column]
+
+    def minor(size: int) -> Any:
+        """chi(size): the determinant of the form of Appendix C on h_2, ..., h_{size - 1}."""
+        if not 2 <= size <= n:
+            raise LookupError(f"no determinant chi({size})")
+        rows = [[entry(i, j) for j in range(2, size)] for i in range(2, size)]
+        return _determinant(rows, one(1))
+
+    def value() -> Any:
+        """K_v(h)."""
+        total = one(0)
+        for i in range(n + 1):
+            for j in range(n + 1):
+                entry_ij = form.matrix[place[spoke(i) if i else n]][place[spoke(j) if j else n]]
+                total += entry_ij * raised[i] * raised[j]
+        return total
+
+    return {
+        "all": range(1, n + 1),
+        "N": n,
+        "i": 2,
+        "n": 2,
+        "alpha": alpha,
+        "L": lambda i: lengths[spoke(i)],
+        "Delta L": lambda i, j: rim[adjacent(i, j)],
+        "eta": eta,
+        "h": lambda i: raised[i if i == 0 else spoke(i) + 1],
+        "sigma": sigma,
+        "sigma~": sigma,
+        "f": lambda i: entry(i, i),
+        "g": lambda i, j: entry(i, j) if adjacent(i, j) >= 0 else None,
+        "A": lambda i: entry(0, i),
+        "chi": minor,
+        "Delta": lambda j: minor(j + 2),
+        "K": value,
+    }
+
+
+def _determinant(rows: list[list[Any]], one: Any) -> Any:
+    """By expansion along the first row, in any ring."""
+    if not rows:
+        return one
+    total = 0 * one
+    for k, x in enumerate(rows[0]):
+        if x:
+            rest = [[*row[:k], *row[k + 1 :]] for row in rows[1:]]
+            total = total + (-1) ** k * x * _determinant(rest, one)
+    return total
+
+
+def equation(names: dict[str, Any], factor: int) -> dict[str, Any]:
+    """The same names where the left side 0 stands for K_v(h) = 0: the right is `factor` K_v(h)."""
+    target = factor * names["K"]()
+    return {**names, "zero": lambda difference: is_zero(difference - target)}
+
+
+def without(n: int, i: int = 2) -> dict[str, Any]:
+    """Names of a wheel of n spokes for the induction of Appendix B, spoke i being taken out.
+
+    "sigma0" are the stresses without it; "Delta sigma" is the change at its two neighbours.
+    """
+    names = dict(wheel(n))
+    a, length = names["alpha"], names["L"]
+
+    def spokes(before: int, at: int, after: int) -> Any:
+        """Eq. (spokes) for a spoke between two others."""
+        left, right = a(before, at), a(at, after)
+        terms = right.csc / length(after) + left.csc / length(before)
+        return terms - (right.cot + left.cot) / length(at)
+
+    changes = {
+        i - 1: names["sigma"](i - 1) - spokes(i - 2, i - 1, i + 1),
+        i + 1: names["sigma"](i + 1) - spokes(i - 1, i + 1, i + 2),
+    }
+    half_turn = Angle(a(1, 2).cos * 0 - 1, a(1, 2).cos * 0)
+    names |= {
+        "i": i,
+        "Delta sigma": lambda j: changes[j],
+        "beta": lambda j: {i: half_turn + -(a(i - 1, i) + a(i, i + 1))}[j],
+        "pi": half_turn,
+    }
+    return names
+
+
+@cache
+def equal_angles(n: int) -> dict[str, Any]:
+    """The names of a vertex with n spokes of length 3 at equal angles; exact algebraic numbers.
+
+    "lambda" are the eigenvalues of the form of Appendix C on h_2, ..., h_{n-1}, from the smallest
+    to the largest: f + g times those of a path, whose characteristic polynomial is solved.
+    """
+    angle = 2 * sympy.pi / n
+    f, g = 2 * sympy.cot(angle) / 9, -sympy.csc(angle) / 9
+    size = n - 2
+    path = sympy.Matrix(size, size, lambda i, j: int(abs(i - j) == 1))
+    roots = [r for r, k in path.eigenvals().items() for _ in range(k)]
+    values = sorted((f + g * r for r in roots), key=lambda x: float(x))
+    return {
+        "N": n,
+        "L": 3,
+        "f": f,
+        "g": g,
+        "pi": sympy.pi,
+        "lambda": lambda m: dict(enumerate(values, start=1))[m],
+        "zero": is_algebraic_zero,
+    }
+
+
+def is_algebraic_zero(value: Any) -> bool:
+    """Whether an algebraic number is 0: not if 30 digits say so, else by its minimal polynomial."""
+    value = sympy.sympify(value)
+    if abs(sympy.N(value, 30)) > sympy.Float("1e-20"):
+        return False
+    x = sympy.Symbol("x")
+    return bool(sympy.minimal_polynomial(value, x) == x)
