@@ -19,6 +19,7 @@ from .motion_equations import SPARE, LengthEquations
 from .motion_nodes import NodeTube
 from .motion_patches import Patch
 from .motion_paths import Path
+from .motion_rim import Rim
 from .motion_stretches import Arc, Link
 from .motion_tubes import Start, Tube
 from .reading import (
@@ -40,6 +41,7 @@ from .sheet import Sheet, read_sheet, turn
 REACH_BITS = 6
 PARAMETER_BITS = 40
 ROOT_BITS = 20
+_MOST_HEIGHTS = 8  # of a border in a summary
 
 
 def read(data: Any) -> dict[str, Any]:
@@ -55,6 +57,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     is followed by one analytic curve of configurations, all regular, which is at least `length`
     long in the space of the vertices (unit of the sheet, one triangle held). `side` is the sign of
     the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch closed.
+    With `rim`, heights of the boundary vertices of a convex border in order, these stay on the
+    curve in the ratio of the rim (`Rim`), and `side` is the sign of its factor near the flat state.
     With `clear`, no two faces touch beyond what they share before this length of the motion; with
     `contact`, some do between two lengths (docs/contacts.md). With `node` the motion ends at a
     configuration in which the stars of the vertices `flat` are flat; all before it are regular. If
@@ -72,14 +76,17 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     more = ["clear"] if "clear" in claims else []
     more = ["clear", "contact"] if "contact" in claims else more
     ends = ["node"] if "node" in claims else []
-    keys(claims, " ".join(["vertex_signs side length", *more, *ends]), "claims")
+    rim = ["rim"] if "rim" in claims else []
+    keys(claims, " ".join(["vertex_signs side length", *more, *ends, *rim]), "claims")
     found = ["contacts"] if more else []
     keys(evidence, " ".join(["emptied pinned bits start tubes", *found, *ends]), "evidence")
-    equations, removed = framework(given, evidence)
+    heights = Rim(given, claims["rim"]) if rim else None
+    require(not (rim and ends), "a node with a rim is not verified")
+    equations, removed = framework(given, evidence, heights)
     tubes = items(evidence["tubes"], "tubes")
     check_work(equations, len(tubes) + NODE_WORK * len(ends))
     start, tau = first_piece(equations, evidence["start"])
-    _check_names(given, removed, start, claims)
+    _check_names(given, removed, start, claims, heights)
     path = Path(start.configuration(tau), equations.bits)
     links: list[Link] = []
     for k, entry in enumerate(tubes):
@@ -116,15 +123,18 @@ def _to_the_node(equations: LengthEquations, path: Path, claim: Any, entry: Any)
     return arc, begin
 
 
-def framework(given: Sheet, evidence: Any) -> tuple[LengthEquations, set[int]]:
+def framework(
+    given: Sheet, evidence: Any, rim: Rim | None = None
+) -> tuple[LengthEquations, set[int]]:
     """The equations of what can fold, and the vertices that were removed."""
     sheet, removed = emptied_sheet(given, dict(given.points), evidence["emptied"])
-    require(len(sheet.boundary) == 4, "there are not four boundary vertices")
+    four = len(sheet.boundary) == 4
+    require(four or rim is not None, "there are not four boundary vertices")
     require(sheet.interior, "nothing can fold")
     bits = natural(evidence["bits"], "bits")
     require(bits <= MOTION_BITS, "bits are out of range")
     pinned = [natural(v, "pinned vertex") for v in items(evidence["pinned"], "pinned", 3)]
-    return LengthEquations(sheet, pinned, bits), removed
+    return LengthEquations(sheet, pinned, bits, rim), removed
 
 
 def check_work(equations: LengthEquations, tubes: int) -> None:
@@ -194,19 +204,23 @@ def start_of(equations: LengthEquations, entry: Any) -> Start:
     return Start(equations, centre, halvings, place, reach_of(entry["reach"]))
 
 
-def _check_names(given: Sheet, removed: set[int], start: Start, claims: Any) -> None:
+def _check_names(
+    given: Sheet, removed: set[int], start: Start, claims: Any, rim: Rim | None = None
+) -> None:
     """The vertex signs and the side of the heights at the flat state are those claimed."""
-    signs, side = names(given, removed, start)
+    signs, side = names(given, removed, start, rim)
     values = items(claims["vertex_signs"], "vertex_signs", len(given.interior))
     for v, value, expected in zip(given.interior, values, signs, strict=True):
         require(type(value) is int and value == expected, f"vertex {v} has another sign")
     require(type(claims["side"]) is int and claims["side"] == side, "the side is another")
 
 
-def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int]:
+def names(
+    given: Sheet, removed: set[int], start: Start, rim: Rim | None = None
+) -> tuple[list[int], int]:
     """The vertex signs, 0 for vertices that were removed, and the side of a half-branch.
 
-    They are those of the heights at the flat state.
+    With a rim the side is the sign of its factor. They are those of the heights at the flat state.
     """
     box, place = start.enclosure(Fraction(0)), start.equations.place
 
@@ -221,8 +235,11 @@ def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int
     signs = [0 if v in removed else sign(sheet.sign_of_vertex(v)) for v in given.interior]
     for v, found in zip(given.interior, signs, strict=True):
         require(found or v in removed, f"vertex {v} may be flat")
-    whole, corner = closed(sheet)
-    side = sign(saddle_of(sheet) if corner is None else whole.sign_of_vertex(corner))
+    if rim is not None:
+        side = sign(rim.factor)
+    else:
+        whole, corner = closed(sheet)
+        side = sign(saddle_of(sheet) if corner is None else whole.sign_of_vertex(corner))
     require(side, "the side of the branch is not certain")
     return signs, side
 
@@ -244,9 +261,18 @@ def summary(claims: dict[str, Any]) -> str:
     return (
         f"VALID: the motion along the half-branch {letters} ({len(signs)}), side {side}, is one "
         f"curve without a gap of length {shown(claims['length'])} or more{_end(claims)}"
-        f"{said(claims)}; {tubes}; "
+        f"{_border(claims)}{said(claims)}; {tubes}; "
         f"sha256 {claims['sha256']}"
     )
+
+
+def _border(claims: dict[str, Any]) -> str:
+    """The heights that the border has on a rim path."""
+    if "rim" not in claims:
+        return ""
+    heights = claims["rim"]
+    more = ", ..." if len(heights) > _MOST_HEIGHTS else ""
+    return f", with the border in the ratio of {', '.join(heights[:_MOST_HEIGHTS])}{more}"
 
 
 def _end(claims: dict[str, Any]) -> str:

@@ -89,13 +89,13 @@ class NodeTube(Piece):
         def derivative(parts: Parts, k: int) -> Columns:
             """The coefficient of s^k of DH, over 2^(bits + more)."""
             rows = x if k == 0 else parts[k - 1]
-            last = [t << bits + more - ROW_BITS for t in row] if k == 0 else None
+            last = [[t << bits + more - ROW_BITS for t in row]] if k == 0 else ()
             scaled = [[a * m << more for a in e] for m, e in zip(kept, rows, strict=True)]
             columns = equations.columns(scaled, last)
             for edge, stress in zip(replaced, stresses.rows, strict=True):
                 terms = parts[k] if k < len(parts) else [(0, 0, 0)] * len(x)
                 here = [[a * stress.get(e, 0) for a in y] for e, y in enumerate(terms)]
-                for column, found in zip(columns, equations.columns(here, None), strict=True):
+                for column, found in zip(columns, equations.columns(here), strict=True):
                     if total := sum(value for _, value in found):
                         column.append((edge, total))
             return columns

@@ -21,13 +21,15 @@ def motion_certificate(
     start: Document,
     tubes: Sequence[Document],
     arc: Document | None = None,
+    rim: Mapping[int, Fraction] | None = None,
 ) -> Document:
     """The proof of a motion as a JSON object (docs/motion.md, The certificate).
 
     `signs`: those of the foldable vertices on the half-branch, by vertex of the pattern; `pinned`
     and the vertex `held` of `start` are vertices of the pattern, too. `Track.certificate` calls it.
     With `arc` the motion ends at a node, where the vertices `flat` of it are flat. The certificate
-    does not claim that nothing touches up to there.
+    does not claim that nothing touches up to there. `rim`: with more than four corners the heights
+    of the border, in the ratio of which it stays.
     """
     document: Document = {
         "format": MOTION,
@@ -46,6 +48,8 @@ def motion_certificate(
             "tubes": list(tubes),
         },
     }
+    if rim is not None:
+        document["claims"]["rim"] = [format_rational(h) for _, h in sorted(rim.items())]
     if arc is not None:
         document["claims"]["node"] = {"flat": arc["flat"], "clear": False}
         document["evidence"]["node"] = {key: x for key, x in arc.items() if key != "flat"}

@@ -25,7 +25,8 @@ class Start:
 
         U_e . u_e + h_e^2 / 2 + t^2 |u_e|^2 / 2 = 0,
 
-    together with one height held fixed, are regular at t = 0 where the branch is simple. So their
+    together with the ties of the framework, which hold for h, and one height held fixed, are
+    regular at t = 0 where the branch is simple. So their
     solution is an analytic curve in s = t^2, each coefficient of which solves a linear system with
     the same matrix. `coefficients[k]` is that of s^k, shape (order + 1, unknowns), each unknown
     triple being (u_x, u_y, h) of one free vertex; `held` is the unknown that is fixed.
@@ -55,12 +56,13 @@ class Start:
         series[0] = y
         along = np.zeros((order + 1, len(framework.edges), 3))
         along[0] = framework.along(y)
+        none = np.zeros(len(framework.ties) + 1)
         for k in range(1, order + 1):
             right = sum(
                 (along[m, :, 2] * along[k - m, :, 2] for m in range(1, k)),
                 start=np.zeros(len(framework.edges)),
             ) + sum((along[m, :, :2] * along[k - 1 - m, :, :2]).sum(axis=1) for m in range(k))
-            series[k] = factors.solve(np.append(-0.5 * right, 0.0))
+            series[k] = factors.solve(np.append(-0.5 * right, none))
             along[k] = framework.along(series[k])
         if not np.isfinite(series).all():
             raise NotFollowedError("the series of the motion leaves the range of floats")
@@ -90,10 +92,11 @@ class Start:
 
 
 def blown_up(framework: Framework, y: FloatArray, s: float = 0.0) -> FloatArray:
-    """The left sides U_e . u_e + h_e^2 / 2 + s |u_e|^2 / 2, shape (edges,)."""
+    """The left sides U_e . u_e + h_e^2 / 2 + s |u_e|^2 / 2, then those of the ties."""
     e = framework.along(y)
     flat = (framework.flat_edges[:, :2] * e[:, :2]).sum(axis=1)
-    return np.asarray(flat + 0.5 * e[:, 2] ** 2 + 0.5 * s * (e[:, :2] ** 2).sum(axis=1))
+    bent = flat + 0.5 * e[:, 2] ** 2 + 0.5 * s * (e[:, :2] ** 2).sum(axis=1)
+    return np.concatenate([bent, framework.tie_rows @ y])
 
 
 def blown_up_jacobian(framework: Framework, y: FloatArray, s: float = 0.0) -> csc_array:
@@ -164,5 +167,6 @@ def _with_plane(framework: Framework, y: FloatArray) -> FloatArray:
     columns = np.arange(framework.size) % 3 != 2
     matrix = csc_array(framework.matrix(rows)[:, columns])
     y = y.copy()
-    y[columns] = least_squares(matrix, -0.5 * e[:, 2] ** 2)
+    none = np.zeros(len(framework.ties))
+    y[columns] = least_squares(matrix, np.append(-0.5 * e[:, 2] ** 2, none))
     return y

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -21,12 +21,12 @@ from exactfold.motion.length_equations import LengthEquations
 from exactfold.motion.links import Link, onwards
 from exactfold.motion.passages import Passage, passage_ahead
 from exactfold.motion.piece import Ball
+from exactfold.motion.rim_path import problem_of, ties_of
 from exactfold.motion.singular import singular_at
 from exactfold.motion.straight_folds import straight_fold
 from exactfold.motion.tube import sharpened
 from exactfold.motion.tube_start import StartTube, prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
-from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 1000
@@ -55,8 +55,10 @@ class Track:
     of each lies on the next, and both go the same way there (docs/motion.md, Theorem 4).
     `vertex_signs` are those on the half-branch itself, by foldable vertex of `pattern`; `side` is
     1 or -1, the sign of the boundary saddle or, if `corner` is not None, the vertex sign of this
-    reflex corner in the sheet with its notch closed. `labels[v]` is the vertex of `pattern` that
-    vertex v of the framework is: what lies in triangulated triangles moves with them.
+    reflex corner in the sheet with its notch closed. With more than four corners the border stays
+    in the ratio of the heights `rim`, and `side` is the sign of the factor (`rim_path`).
+    `labels[v]` is the vertex of `pattern` that vertex v of the framework is: what lies in
+    triangulated triangles moves with them.
 
     With `node` it ends at a node, a configuration in which other curves cross: the last piece is
     the part of this passage up to there, which begins on the last link before its exit or next to
@@ -74,6 +76,7 @@ class Track:
     status: Verdict
     reason: str
     node: Passage | None = None
+    rim: Mapping[int, Fraction] | None = None
 
     @property
     def framework(self) -> Framework:
@@ -145,6 +148,7 @@ class Track:
             },
             [self._tube(link) for link in self.links],
             None if self.node is None else self._arc(self.node),
+            self.rim,
         )
 
     def _tube(self, link: Link) -> Document:
@@ -238,7 +242,7 @@ def half_branch(
         raise UsageError(f"the side is {side!r}, not 1 or -1")
     if branch.status is not PROVED or branch.root is None:
         raise UsageError("a motion is proved from a branch that is proved")
-    problem = Problem.of(branch.pattern)
+    problem = problem_of(branch)
     problem.require_foldable()
     flat = [v for v in problem.foldable if branch.vertex_signs[v] == 0]
     if flat:
@@ -253,7 +257,7 @@ def half_branch(
             )
         )
     heights = branch.approx_heights
-    framework = Framework.of(problem.sheet, pinned)
+    framework = Framework.of(problem.sheet, pinned, ties_of(problem))
     start = prove_start(
         framework,
         problem.gauge,
@@ -261,7 +265,10 @@ def half_branch(
         bits=bits,
     )
     corner = None if problem.gauge.corner is None else problem.labels[problem.gauge.corner]
-    return Track(branch.pattern, problem.labels, corner, start, (), PROVED, "the start tube")
+    rim = branch.rim if framework.ties else None
+    return Track(
+        branch.pattern, problem.labels, corner, start, (), PROVED, "the start tube", rim=rim
+    )
 
 
 def follow_proved(
@@ -298,7 +305,8 @@ def follow_proved(
     for link in continued(track, bits=bits):
         if isinstance(link, str):
             reason = singular_at(track.labels, links, link)
-            found = passage_ahead(track.labels, links) if links else None
+            look = links and not track.framework.ties
+            found = passage_ahead(track.labels, links) if look else None
             if found is not None:
                 kept, passage = found
                 node, links = passage.to_the_node, links[:kept]

@@ -103,18 +103,45 @@ def test_numbers_of_any_length_are_printed(here: Path) -> None:
         assert "5: 1000000" in " ".join(done.stdout.split())
 
 
-def test_such_a_branch_is_drawn_and_exported_and_not_followed(here: Path) -> None:
+def test_such_a_branch_is_drawn_and_exported(here: Path) -> None:
     for options in (["--signs", "+-", "--rim", "rim.json"], ["--branch", "+-"], ["--up", "5"]):
         done = run("draw", "pentagon.fold", *options, "-o", "a.svg")
         assert done.exit_code == 0
         assert "branch +-" in Path("a.svg").read_text()
     exported = run("export", "pentagon.fold", "--signs", "+-", "--rim", "rim.json", "-o", "e.fold")
     assert exported.exit_code == 0
-    for name, signs in (("pentagon.fold", "+-"), ("six.fold", "+")):
-        refused = run("fold", name, "--signs", signs)
-        assert refused.exit_code == 4
-        assert "do not name a motion of a sheet with" in refused.stderr
-        assert "rim=" not in refused.stderr
+
+
+def test_such_a_branch_is_followed_and_proved(here: Path) -> None:
+    options = ["fold", "pentagon.fold", "--signs", "+-", "--rim", "rim.json", "--until", "20deg"]
+    done = run(*options, "--frames", "3", "--certificate", "c.json")
+    assert done.exit_code == 0
+    assert "border in the ratio 0: 1, 1: -1/2, 2: 1/4, 4: 1/10, others 0" in (
+        " ".join(done.stdout.split())
+    )
+    found = json.loads(run(*options, "--json").stdout)
+    jsonschema.validate(found, schema("motion"))
+    rim = {"0": "1", "1": "-1/2", "2": "1/4", "3": "0", "4": "1/10"}
+    assert found["rim"] == rim
+    assert checker.check(checker.load(Path("c.json").read_text()))["rim"] == list(rim.values())
+    # Without a file the rim is that of a saddle; of one vertex inside it is no panels that fold.
+    for name, asked in (("pentagon.fold", ["--up", "5"]), ("six.fold", [])):
+        found = json.loads(run("fold", name, *asked, "--until", "1deg", "--json").stdout)
+        assert found["theory"] == "branches"
+        assert found["rim"] is not None
+    assert json.loads(run("fold", "two-vertex", "--until", "1deg", "--json").stdout)["rim"] is None
+
+
+def test_what_a_rim_does_not_go_with_is_refused(here: Path) -> None:
+    for options, reason in (
+        (["six.fold", "--rim", "rim.json", "--branch", "1"], "--rim goes with --signs or --up"),
+        (["pentagon.fold", "--rim", "rim.json", "--modes", "1"], "--modes is for motions of rigid"),
+        (["square-twist", "--rim", "rim.json"], "--rim is for branches of triangulated sheets"),
+        (["pentagon.fold", "--rim", "six.fold"], "six.fold"),
+    ):
+        done = run("fold", *options)
+        assert done.exit_code in (2, 3)
+        assert reason in done.stderr
 
 
 def test_all_assignments(here: Path) -> None:
