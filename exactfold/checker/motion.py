@@ -81,7 +81,6 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     found = ["contacts"] if more else []
     keys(evidence, " ".join(["emptied pinned bits start tubes", *found, *ends]), "evidence")
     heights = Rim(given, claims["rim"]) if rim else None
-    require(not (rim and ends), "a node with a rim is not verified")
     equations, removed = framework(given, evidence, heights)
     tubes = items(evidence["tubes"], "tubes")
     check_work(equations, len(tubes) + NODE_WORK * len(ends))
@@ -116,8 +115,10 @@ def _to_the_node(equations: LengthEquations, path: Path, claim: Any, entry: Any)
     require(type(claim["clear"]) is bool, "clear is not true or false")
     keys(entry, "node centre row reach entry", "node")
     arc = arc_of(equations, claim["flat"], entry)
-    # That it is negative need not be asked for: docs/motion.md, Theorem 6.
+    # Without a rim that it is negative need not be asked for: docs/motion.md, Theorem 6.
     begin = Fraction(integer(entry["entry"]), 1 << PARAMETER_BITS)
+    before = begin < 0 or not equations.ties
+    require(before, "a motion with a rim meets the arc of its node beyond it")
     path.meet(*arc.configuration(begin))
     path.go(*arc.configuration(Fraction(0)))
     return arc, begin

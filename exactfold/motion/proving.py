@@ -178,9 +178,9 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
     until its first contact is proved with that contact; any other one with how far it is clear.
     Nodes are passed where the motion returns to the flat state (docs/motions.md), and are the end
     of the proof otherwise: a motion that ends at a node is proved up to it. With more than four
-    corners neither a node nor a return is proved, but the motion as far as tubes lead to it. The
-    frames of the motion that is returned are those of the proved curve, each in a box
-    (`Motion.bounds`). `bits`: after the point, of all numbers in the tubes.
+    corners the return is not proved, but the motion as far as tubes lead to it. The frames of the
+    motion that is returned are those of the proved curve, each in a box (`Motion.bounds`). `bits`:
+    after the point, of all numbers in the tubes.
 
     Raises `UsageError` where the branch is not proved. UNDECIDED says nothing against the motion.
 

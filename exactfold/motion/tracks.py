@@ -305,8 +305,7 @@ def follow_proved(
     for link in continued(track, bits=bits):
         if isinstance(link, str):
             reason = singular_at(track.labels, links, link)
-            look = links and not track.framework.ties
-            found = passage_ahead(track.labels, links) if look else None
+            found = passage_ahead(track.labels, links) if links else None
             if found is not None:
                 kept, passage = found
                 node, links = passage.to_the_node, links[:kept]
