@@ -58,7 +58,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     long in the space of the vertices (unit of the sheet, one triangle held). `side` is the sign of
     the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch closed.
     With `rim`, heights of the boundary vertices of a convex border in order, these stay on the
-    curve in the ratio of the rim (`Rim`), and `side` is the sign of its factor near the flat state.
+    curve in the ratio of the rim (`Rim`), above the face `pinned` that is held, which is returned;
+    `side` is the sign of the factor near the flat state.
     With `clear`, no two faces touch beyond what they share before this length of the motion; with
     `contact`, some do between two lengths (docs/contacts.md). With `node` the motion ends at a
     configuration in which the stars of the vertices `flat` are flat; all before it are regular. If
@@ -106,7 +107,8 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
         given_end = (evidence["contacts"]["tube"], evidence["contacts"]["clear"]) if more else None
         shown_to_be = given_end == (len(tubes) + 1, 0)
         require(shown_to_be, "the motion is not shown to be clear up to its node")
-    return {"sha256": digest, "tubes": len(tubes), **claims}
+    above = {"pinned": equations.pinned} if rim else {}
+    return {"sha256": digest, "tubes": len(tubes), **above, **claims}
 
 
 def _to_the_node(equations: LengthEquations, path: Path, claim: Any, entry: Any) -> Arc:
@@ -273,7 +275,9 @@ def _border(claims: dict[str, Any]) -> str:
         return ""
     heights = claims["rim"]
     more = ", ..." if len(heights) > _MOST_HEIGHTS else ""
-    return f", with the border in the ratio of {', '.join(heights[:_MOST_HEIGHTS])}{more}"
+    face = "-".join(map(str, claims["pinned"]))
+    ratio = ", ".join(heights[:_MOST_HEIGHTS]) + more
+    return f", with the border in the ratio of {ratio} above the face {face}"
 
 
 def _end(claims: dict[str, Any]) -> str:
