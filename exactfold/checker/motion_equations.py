@@ -41,8 +41,8 @@ class LengthEquations:
             for v, (a, b) in sheet.points.items()
         }
         least = max(max(abs(a), abs(b)) for a, b in flat.values()).bit_length()
-        require(bits >= max(least, 60), "the coordinates need more bits")
-        require(rim is None or bits >= rim.bits, "the heights of the border need more bits")
+        needed = max(least, 60, 0 if rim is None else rim.bits)
+        require(bits >= needed, "the coordinates need more bits")
         self.sheet, self.pinned, self.bits = sheet, pinned, bits
         self.unit = Fraction(1 << least, denominator)
         self.free = [v for v in sorted(flat) if v not in pinned]

@@ -11,7 +11,7 @@ from fractions import Fraction
 from math import gcd, lcm
 from typing import Any
 
-from .reading import items, parse_rational, require
+from .reading import items, parse_rational
 from .reduced import check_convex
 from .sheet import Sheet, turn
 
@@ -24,16 +24,15 @@ class Rim:
     """The equations `ties` of given heights, and the factor l as a functional of the heights."""
 
     def __init__(self, sheet: Sheet, texts: Any) -> None:
-        boundary = sorted(sheet.boundary)
-        require(len(boundary) > 4, "a rim needs more than four boundary vertices")
         check_convex(sheet)
+        boundary = sorted(sheet.boundary)
         values = [parse_rational(text) for text in items(texts, "rim", len(boundary))]
         heights = dict(zip(boundary, values, strict=True))
         base = _base(sheet, boundary)
         levels = {v: _level(sheet, base, v) for v in boundary if v not in base}
         above = {v: _value(row, heights) for v, row in levels.items()}
         highest = max(levels, key=lambda v: abs(above[v]))
-        require(above[highest], "the rim is flat")
+        # Of heights in one plane no factor is known: the division fails.
         self.factor = {v: c / above[highest] for v, c in levels[highest].items()}
         self.ties = [
             _whole(_less(row, self.factor, above[v])) for v, row in levels.items() if v != highest
@@ -42,7 +41,7 @@ class Rim:
     @property
     def bits(self) -> int:
         """k so that all coefficients are less than 2^k."""
-        return max(abs(c).bit_length() for tie in self.ties for c in tie.values())
+        return max((abs(c).bit_length() for tie in self.ties for c in tie.values()), default=0)
 
 
 def _base(sheet: Sheet, boundary: list[int]) -> tuple[int, int, int]:
