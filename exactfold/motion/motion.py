@@ -123,6 +123,11 @@ class Motion(Picture):
         return self.branch.rim if self.curve.framework.ties else None
 
     @property
+    def _rim_reported(self) -> dict[str, str] | None:
+        rim = self.rim
+        return None if rim is None else {str(v): format_rational(h) for v, h in rim.items()}
+
+    @property
     def name(self) -> str:
         """ "branch" and its signs, cut where there are many, and whether it is the mirror side."""
         signs = self.branch.sign_text
@@ -217,7 +222,7 @@ class Motion(Picture):
 
         `name`: of the pattern; `written`: the files that hold the motion.
         """
-        branch, rim = self.branch, self.rim
+        branch = self.branch
         return {
             **headed("motion"),
             "pattern": described(branch.pattern, name),
@@ -226,7 +231,7 @@ class Motion(Picture):
             "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
             "side": self.side,
-            "rim": None if rim is None else {str(v): format_rational(h) for v, h in rim.items()},
+            "rim": self._rim_reported,
             "modes": None,
             "component": None,
             **in_motion.frames_reported(self, written),
@@ -237,10 +242,12 @@ class Motion(Picture):
     @property
     def facts(self) -> dict[str, Any]:
         """What files say of the motion, as JSON."""
+        rim = self._rim_reported
         return {
             "vertex_signs": self.branch.sign_text,
             "vertices": list(self.pattern.interior),
             "side": self.side,
+            **({} if rim is None else {"rim": rim}),
             **in_motion.facts_of_frames(self),
         }
 

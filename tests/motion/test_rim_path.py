@@ -19,9 +19,11 @@ from exactfold.errors import NotFollowedError, UndecidedBranchError
 from exactfold.exact.linalg import rank
 from exactfold.motion import follow, prove, rim_path
 from exactfold.motion.following import Motion
+from exactfold.motion.framework import Framework
 from exactfold.motion.proving import prove_persistently
 from exactfold.motion.rim_path import factor_functional, problem_of, ties_of
 from exactfold.motion.tracks import follow_proved
+from exactfold.rigidity.functionals import vertex_sign_functional
 from exactfold.verdict import PROVED, UNDECIDED
 
 CORNERS = [(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9)]
@@ -111,6 +113,32 @@ def test_ties_hold_for_the_rim_and_planes_only(branch: Branch) -> None:
     x, y = sheet.vertices[sheet.boundary[1]]
     tilted = {v: 5 * rim[v] + 2 * sheet.vertices[v][0] + x - y for v in factor}
     assert sum(c * tilted[v] for v, c in factor.items()) == 5
+
+
+def test_near_the_flat_state_each_sign_vector_has_one_configuration() -> None:
+    """Theorem 7 (c): random starts with a small factor end in 2^n configurations."""
+    problem = problem_of(pentagon())
+    framework = Framework.of(problem.sheet, None, ties_of(problem))
+    functional = factor_functional(problem.sheet, problem.gauge.rim)
+    row, size = np.zeros(framework.size), 0.02
+    for k, v in enumerate(framework.free.tolist()):
+        row[3 * k + 2] = functional.get(v, 0)
+    random, found = np.random.default_rng(0), []
+    for _ in range(60):
+        x = random.normal(size=framework.size) * size * np.tile([size, size, 2], len(row) // 3)
+        for _ in range(40):
+            right = np.append(framework.residual(x), row @ x - size)
+            jacobian = np.vstack([framework.jacobian(x).toarray(), row])
+            step = np.linalg.lstsq(jacobian, right, rcond=None)[0]
+            x = x - step * min(1, 0.05 / np.abs(step).max())
+        if np.abs(step).max() < 1e-13 and all(np.abs(x - y).max() > 1e-7 for y in found):
+            found.append(x)
+    signs = []
+    for x in found:
+        heights = framework.displacement(x)[:, 2]
+        rows = [vertex_sign_functional(problem.sheet, v) for v in problem.sheet.interior]
+        signs.append(tuple(sum(c * heights[w] for w, c in r.items()) > 0 for r in rows))
+    assert sorted(signs) == [(False, False), (False, True), (True, False), (True, True)]
 
 
 @pytest.mark.slow
