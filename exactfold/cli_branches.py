@@ -183,6 +183,7 @@ def fold(
     signs: Signs = None,
     up: Up = None,
     place: Place = None,
+    rim: Rim = None,
     side: Side = None,
     through_nodes: Annotated[
         bool,
@@ -255,20 +256,25 @@ def fold(
     """Fold a sheet in space, faces rigid, until something happens.
 
     A triangulated sheet with four corners follows a branch: the one named by
-    --signs, --up or --branch, else that on which all vertices pop up. Any other
-    sheet follows modes of rigid panels: --component or --modes. That the branch
-    or mode exists is proved; what of the motion is proved is said.
+    --signs, --up or --branch, else that on which all vertices pop up. With more
+    corners it does if --signs, --up or --rim is given: its border then moves in
+    the ratio of the rim. Any other sheet follows modes of rigid panels:
+    --component or --modes. That the branch or mode exists is proved; what of
+    the motion is proved is said.
     """
     from exactfold.commands.fold import Wanted
+    from exactfold.commands.given import Given
 
     if (signs is not None) + (up is not None) + (place is not None) > 1:
         raise UsageError("give one of --signs, --up and --branch")
+    if rim is not None and place is not None:
+        raise UsageError("--rim goes with --signs or --up")
     if component is not None and modes is not None:
         raise UsageError("give one of --component and --modes")
-    apart(output, pattern, plot, picture, certificate)
-    apart(plot, pattern, picture, certificate)
-    apart(picture, pattern, certificate)
-    apart(certificate, pattern)
+    apart(output, pattern, rim, plot, picture, certificate)
+    apart(plot, pattern, rim, picture, certificate)
+    apart(picture, pattern, rim, certificate)
+    apart(certificate, pattern, rim)
     asked = Wanted(
         pattern,
         snap,
@@ -288,6 +294,7 @@ def fold(
         picture,
         certificate,
         as_json,
+        Given(rim),
     )
     raise typer.Exit(asked.answer())
 

@@ -28,7 +28,7 @@ from .reading import (
     parse_rational,
     require,
 )
-from .reduced import closed, emptied_sheet
+from .reduced import check_convex, closed, emptied_sheet
 from .sheet import Sheet, read_sheet, turn
 
 
@@ -67,7 +67,7 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
         require(not curved, "angle deficits need a given rim")
         require(claims["gauge"] == "saddle", "the gauge is neither saddle nor rim")
         place.fix_rim()
-    place.check_convex()
+    check_convex(place.sheet)
     proof = place.proof(evidence["heights"], evidence["denominator"], targets)
     require(
         proof.squared_distance <= parse_rational(claims["squared_distance"]),
@@ -104,14 +104,6 @@ class Place:
         require(len(self.sheet.boundary) == 4, "there are not four boundary vertices")
         self.sheet, self.corner = closed(self.sheet)
         self.fixed = True
-
-    def check_convex(self) -> None:
-        """Raise unless the boundary is convex."""
-        cycle = self.sheet.boundary
-        for k, v in enumerate(cycle):
-            corner = (cycle[k - 1], v, cycle[(k + 1) % len(cycle)])
-            side = turn(*(self.sheet.points[u] for u in corner))
-            require(side >= 0, "the boundary is not convex")
 
     def targets(self, texts: Any) -> dict[int, Fraction]:
         """The angle deficits that are not 0, for integer lengths."""

@@ -20,6 +20,7 @@ from .motion_names import names
 from .motion_nodes import NodeTube
 from .motion_patches import Patch
 from .motion_paths import Path
+from .motion_rim import Rim, border_of
 from .motion_stretches import Arc, Link, Step
 from .motion_tubes import Start, Tube
 from .reading import (
@@ -56,6 +57,9 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     is followed by one analytic curve of configurations, all regular, which is at least `length`
     long in the space of the vertices (unit of the sheet, one triangle held). `side` is the sign of
     the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch closed.
+    With `rim`, heights of the boundary vertices of a convex border in order, these stay on the
+    curve in the ratio of the rim (`Rim`), above the face `pinned` that is held, which is returned;
+    `side` is the sign of the factor near the flat state.
     With `clear`, no two faces touch beyond what they share before this length of the motion; with
     `contact`, some do between two lengths (docs/contacts.md). With `node` the motion ends at a
     configuration in which the stars of the vertices `flat` are flat; all before it are regular. If
@@ -76,14 +80,16 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     more = ["clear", "contact"] if "contact" in claims else more
     ends = ["node"] if "node" in claims else []
     through = ["through"] if "through" in claims else []
-    keys(claims, " ".join(["vertex_signs side length", *more, *ends, *through]), "claims")
+    rim = ["rim"] if "rim" in claims else []
+    keys(claims, " ".join(["vertex_signs side length", *more, *ends, *through, *rim]), "claims")
     found = ["contacts"] if more else []
     keys(evidence, " ".join(["emptied pinned bits start tubes", *found, *ends]), "evidence")
-    equations, removed = framework(given, evidence)
+    heights = Rim(given, claims["rim"]) if rim else None
+    equations, removed = framework(given, evidence, heights)
     tubes = items(evidence["tubes"], "tubes")
     check_steps(equations, tubes, len(ends))
     start, tau = first_piece(equations, evidence["start"])
-    _check_names(given, removed, start, claims)
+    _check_names(given, removed, start, claims, heights)
     path = Path(start.configuration(tau), equations.bits)
     steps = walked(equations, path, tubes, leaves=not ends)
     if through or any(map(is_node, tubes)):
@@ -98,7 +104,8 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
         given_end = (evidence["contacts"]["tube"], evidence["contacts"]["clear"]) if more else None
         shown_to_be = given_end == (len(tubes) + 1, 0)
         require(shown_to_be, "the motion is not shown to be clear up to its node")
-    return {"sha256": digest, "tubes": len(tubes), **claims}
+    above = {"pinned": equations.pinned} if rim else {}
+    return {"sha256": digest, "tubes": len(tubes), **above, **claims}
 
 
 def _to_the_node(equations: LengthEquations, path: Path, claim: Any, entry: Any) -> Arc:
@@ -109,7 +116,7 @@ def _to_the_node(equations: LengthEquations, path: Path, claim: Any, entry: Any)
     arc = arc_of(equations, claim["flat"], entry)
     begin, end = _parameter(entry["entry"]), Fraction(0)
     path.meet(*arc.configuration(begin))
-    # Only where a node was passed before can it be otherwise: docs/motion.md, Theorem 6.
+    # Only after another node or with a rim can it be otherwise: docs/motion.md, Theorem 6.
     require(begin < end, "an arc does not lead to its node")
     path.go(*arc.configuration(end))
     return Arc(arc, begin, end)
@@ -167,15 +174,18 @@ def _parameter(value: Any) -> Fraction:
     return Fraction(integer(value), 1 << PARAMETER_BITS)
 
 
-def framework(given: Sheet, evidence: Any) -> tuple[LengthEquations, set[int]]:
+def framework(
+    given: Sheet, evidence: Any, rim: Rim | None = None
+) -> tuple[LengthEquations, set[int]]:
     """The equations of what can fold, and the vertices that were removed."""
     sheet, removed = emptied_sheet(given, dict(given.points), evidence["emptied"])
-    require(len(sheet.boundary) == 4, "there are not four boundary vertices")
+    four = len(sheet.boundary) == 4
+    require(four or rim is not None, "there are not four boundary vertices")
     require(sheet.interior, "nothing can fold")
     bits = natural(evidence["bits"], "bits")
     require(bits <= MOTION_BITS, "bits are out of range")
     pinned = [natural(v, "pinned vertex") for v in items(evidence["pinned"], "pinned", 3)]
-    return LengthEquations(sheet, pinned, bits), removed
+    return LengthEquations(sheet, pinned, bits, rim), removed
 
 
 def check_steps(equations: LengthEquations, entries: list[Any], more: int = 0) -> None:
@@ -247,9 +257,11 @@ def start_of(equations: LengthEquations, entry: Any) -> Start:
     return Start(equations, centre, halvings, place, reach_of(entry["reach"]))
 
 
-def _check_names(given: Sheet, removed: set[int], start: Start, claims: Any) -> None:
+def _check_names(
+    given: Sheet, removed: set[int], start: Start, claims: Any, rim: Rim | None = None
+) -> None:
     """The vertex signs and the side of the heights at the flat state are those claimed."""
-    signs, side = names(given, removed, start)
+    signs, side = names(given, removed, start, rim)
     values = items(claims["vertex_signs"], "vertex_signs", len(given.interior))
     for v, value, expected in zip(given.interior, values, signs, strict=True):
         require(type(value) is int and value == expected, f"vertex {v} has another sign")
@@ -265,7 +277,7 @@ def summary(claims: dict[str, Any]) -> str:
     return (
         f"VALID: the motion along the half-branch {letters} ({len(signs)}), side {side}, is one "
         f"curve without a gap of length {shown(claims['length'])} or more{_nodes(claims)}"
-        f"{said(claims)}; {tubes}; "
+        f"{border_of(claims)}{said(claims)}; {tubes}; "
         f"sha256 {claims['sha256']}"
     )
 

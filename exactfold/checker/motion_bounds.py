@@ -86,6 +86,7 @@ def bounds(
     at most, for |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
     """
     n = len(p)
+    linear = [0] * n  # of the equations after those of `squares`
     one = 1 << INVERSE_BITS + matrix_bits
     for i in range(n):
         matrices[0][i][i] -= one
@@ -104,7 +105,11 @@ def bounds(
         for matrix in matrices
     ]
     kappa = [
-        norm([dot(row, [*square, 0]) for row in sizes], weights, INVERSE_BITS + 2 * WEIGHT_BITS)
+        norm(
+            [dot(row, [*square, *linear[len(square) :]]) for row in sizes],
+            weights,
+            INVERSE_BITS + 2 * WEIGHT_BITS,
+        )
         for square in squares
     ]
     return Bounds(*([rounded(x, ROUND) for x in part] for part in (b, q, kappa)))

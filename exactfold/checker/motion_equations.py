@@ -9,6 +9,7 @@ from operator import add, mul, sub
 
 from .krawczyk import inverse
 from .motion_bounds import INVERSE_BITS, Columns, Vector, dot
+from .motion_rim import Rim, Tie
 from .reading import require
 from .sheet import Sheet
 
@@ -26,11 +27,12 @@ Coefficient = Callable[[Curve, Parts, int], Vector]
 class LengthEquations:
     """g_e(d) = U_e . d_e + |d_e|^2 / 2 = 0 for every edge with a free end, a_e = a_i - a_j.
 
+    With a rim its ties follow: linear equations of the d_z, `ties` over 2^bits.
     Lengths are such that all coordinates U, from the first pinned corner, are at most 1: `unit` is
     their unit in that of the sheet. The unknowns are d_x, d_y, d_z of the free vertices in turn.
     """
 
-    def __init__(self, sheet: Sheet, pinned: list[int], bits: int) -> None:
+    def __init__(self, sheet: Sheet, pinned: list[int], bits: int, rim: Rim | None = None) -> None:
         require(frozenset(pinned) in sheet.triangles, "what is pinned is no face")
         denominator = lcm(*(x.denominator for point in sheet.points.values() for x in point))
         x, y = sheet.points[pinned[0]]
@@ -39,7 +41,8 @@ class LengthEquations:
             for v, (a, b) in sheet.points.items()
         }
         least = max(max(abs(a), abs(b)) for a, b in flat.values()).bit_length()
-        require(bits >= max(least, 60), "the coordinates need more bits")
+        needed = max(least, 60, 0 if rim is None else rim.bits)
+        require(bits >= needed, "the coordinates need more bits")
         self.sheet, self.pinned, self.bits = sheet, pinned, bits
         self.unit = Fraction(1 << least, denominator)
         self.free = [v for v in sorted(flat) if v not in pinned]
@@ -52,14 +55,31 @@ class LengthEquations:
             for i, j in self.edges
         ]
 
+        self.ties = [] if rim is None else [self._tie(tie, bits - rim.bits) for tie in rim.ties]
+
+    def _tie(self, tie: Tie, up: int) -> Vector:
+        row = [0] * self.size
+        for v, c in tie.items():
+            if v in self.place:
+                row[self.place[v] + 2] = c << up
+        return row
+
+    def tied(self, row: Sequence[int]) -> Vector:
+        """The left sides of the ties, over 2^(2 bits)."""
+        return [dot(tie, row) for tie in self.ties]
+
+    def last_rows(self, last: Sequence[int], more: int = 0) -> list[Sequence[int]]:
+        """The ties, over 2^(bits + more), and one more row."""
+        return [*([c << more for c in tie] for tie in self.ties), last]
+
     def along(self, row: Sequence[int]) -> list[tuple[int, ...]]:
         """a_e for all edges."""
         at: dict[int, tuple[int, ...]] = dict.fromkeys(self.pinned, (0, 0, 0))
         at |= {v: tuple(row[k : k + 3]) for v, k in self.place.items()}
         return [tuple(map(sub, at[i], at[j])) for i, j in self.edges]
 
-    def columns(self, rows: Sequence[Sequence[int]], last: Sequence[int] | None) -> Columns:
-        """The matrix of d -> rows_e . d_e, and of one more row."""
+    def columns(self, rows: Sequence[Sequence[int]], last: Sequence[Sequence[int]] = ()) -> Columns:
+        """The matrix of d -> rows_e . d_e, and of more rows."""
         found: Columns = [[] for _ in range(self.size)]
         for e, ((i, j), row) in enumerate(zip(self.edges, rows, strict=True)):
             for v, sign in ((i, 1), (j, -1)):
@@ -67,10 +87,10 @@ class LengthEquations:
                     for a in range(3):
                         if row[a]:
                             found[self.place[v] + a].append((e, sign * row[a]))
-        if last is not None:
-            for k, x in enumerate(last):
+        for n, line in enumerate(last, len(self.edges)):
+            for k, x in enumerate(line):
                 if x:
-                    found[k].append((len(self.edges), x))
+                    found[k].append((n, x))
         return found
 
     def weight_sums(self, weights: Sequence[int]) -> list[tuple[int, ...]]:

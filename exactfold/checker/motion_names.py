@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from .motion_rim import Rim
 from .motion_tubes import Start
 from .reading import require
 from .reduced import closed
 from .sheet import Sheet, turn
 
 
-def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int]:
+def names(
+    given: Sheet, removed: set[int], start: Start, rim: Rim | None = None
+) -> tuple[list[int], int]:
     """The vertex signs, 0 for vertices that were removed, and the side of a half-branch.
 
-    They are those of the heights at the flat state.
+    With a rim the side is the sign of its factor. They are those of the heights at the flat state.
     """
     box, place = start.enclosure(Fraction(0)), start.equations.place
 
@@ -29,8 +32,11 @@ def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int
     signs = [0 if v in removed else sign(sheet.sign_of_vertex(v)) for v in given.interior]
     for v, found in zip(given.interior, signs, strict=True):
         require(found or v in removed, f"vertex {v} may be flat")
-    whole, corner = closed(sheet)
-    side = sign(saddle_of(sheet) if corner is None else whole.sign_of_vertex(corner))
+    if rim is not None:
+        side = sign(rim.factor)
+    else:
+        whole, corner = closed(sheet)
+        side = sign(saddle_of(sheet) if corner is None else whole.sign_of_vertex(corner))
     require(side, "the side of the branch is not certain")
     return signs, side
 

@@ -89,13 +89,13 @@ class NodeTube(Piece):
         def derivative(parts: Parts, k: int) -> Columns:
             """The coefficient of s^k of DH, over 2^(bits + more)."""
             rows = x if k == 0 else parts[k - 1]
-            last = [t << bits + more - ROW_BITS for t in row] if k == 0 else None
+            last = [t << bits + more - ROW_BITS for t in row]
             scaled = [[a * m << more for a in e] for m, e in zip(kept, rows, strict=True)]
-            columns = equations.columns(scaled, last)
+            columns = equations.columns(scaled, () if k else equations.last_rows(last, more))
             for edge, stress in zip(replaced, stresses.rows, strict=True):
                 terms = parts[k] if k < len(parts) else [(0, 0, 0)] * len(x)
                 here = [[a * stress.get(e, 0) for a in y] for e, y in enumerate(terms)]
-                for column, found in zip(columns, equations.columns(here, None), strict=True):
+                for column, found in zip(columns, equations.columns(here), strict=True):
                     if total := sum(value for _, value in found):
                         column.append((edge, total))
             return columns
@@ -112,9 +112,10 @@ class NodeTube(Piece):
             squares = convolved(parts, slice(0, 3), k)
             for edge, stress in zip(replaced, stresses.rows, strict=True):
                 total[edge] = sum(w * squares[e] for e, w in stress.items())
-            last = dot(row, curve[k]) if k < len(curve) else 0
-            last -= int(k == 0) << bits + ROW_BITS
-            return [*total, last << bits + more - ROW_BITS + 1]
+            here = curve[k] if k < len(curve) else [0] * equations.size
+            ties = [t << more + 1 for t in equations.tied(here)]
+            last = dot(row, here) - (int(k == 0) << bits + ROW_BITS)
+            return [*total, *ties, last << bits + more - ROW_BITS + 1]
 
         columns = derivative([equations.along(centre)], 0)
         p = equations.approximate_inverse(columns, bits + more)

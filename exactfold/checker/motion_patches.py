@@ -47,16 +47,17 @@ class Patch:
                     self.rows[v][place[corner]] = int(w * self.denominator)
         self.bars = [e for e in equations.edges if not self.vertices.issuperset(e)]
         self.bars += [e for e in combinations(self.base, 2) if not set(pinned).issuperset(e)]
-        square = bool(self.moving) and len(self.bars) == 3 * len(self.moving)
+        number = len(self.bars) + len(equations.ties)
+        square = bool(self.moving) and number == 3 * len(self.moving)
         require(square, "a flat patch leaves no unknowns, or not as many equations")
 
     def node(self, near: Vector) -> Ball:
         """A box that holds a configuration with a flat patch, from unknowns near to it.
 
         Newton's test for the equations D^2 (|X_i - X_j|^2 - |U_i - U_j|^2) / 2^(k + 1), with the
-        denominator D, and D^2 about 2^k.
+        denominator D, and D^2 about 2^k, and those of the ties times D / 2^(k / 2).
         """
-        bits, size = self.equations.bits, 3 * len(self.moving)
+        equations, bits, size = self.equations, self.equations.bits, 3 * len(self.moving)
         k = 2 * (self.denominator.bit_length() - 1)
         z = [near[self.equations.place[v] + a] for v in self.moving for a in range(3)]
         columns: Columns = [[] for _ in range(size)]
@@ -73,6 +74,11 @@ class Patch:
                     columns[3 * m + a].append((e, c * x[a]))
             most = sum(map(abs, row.values())) << WEIGHT_BITS
             squares.append((3 * most * most >> k) + 1)
+        for e, tie in enumerate(equations.ties, len(self.bars)):
+            line = self._tie(tie)
+            residual.append(sum(c * z[3 * m + 2] for m, c in line.items()) << k // 2 + 1)
+            for m, c in line.items():
+                columns[3 * m + 2].append((e, c << k // 2))
         p = approximate_inverse(columns, bits + k)
         proof = bounds(
             p,
@@ -95,6 +101,14 @@ class Patch:
                 centre.append(sum(c * z[3 * m + a] for m, c in row.items()) // whole)
                 radii.append(int(spread) + 2)
         return Ball(centre, radii)
+
+    def _tie(self, tie: Vector) -> dict[int, int]:
+        """A tie as a row on the heights of `moving`, over 2^bits times the denominator."""
+        found: dict[int, int] = {}
+        for v, k in self.equations.place.items():
+            for m, c in self.rows[v].items() if tie[k + 2] else ():
+                found[m] = found.get(m, 0) + tie[k + 2] * c
+        return found
 
     def _side(self, i: int, j: int) -> Vector:
         """U_i - U_j over 2^bits."""

@@ -63,18 +63,19 @@ class Start(Piece):
     """The curve near the flat state: d = (t^2 u, t h), t = tau / 2^halvings, s = tau^2.
 
     Its unknowns (u_x, u_y, h) solve U_e . u_e + h_e^2 / 2 + t^2 |u_e|^2 / 2 = 0, with the height
-    number `held` fixed.
+    number `held` fixed, and with a rim its ties for h.
     """
 
     def __init__(
         self, equations: LengthEquations, centre: Vector, halvings: int, held: int, reach: Fraction
     ) -> None:
         self.halvings, up, bits = halvings, 1 << 2 * halvings, equations.bits
+        none = [0] * equations.size
         last = [int(k == held) << bits + 2 * halvings for k in range(equations.size)]
         edges = equations.along(centre)
         pairs = zip(equations.flat, edges, strict=True)
         tilted = [(x * up, y * up, e[2] * up) for (x, y, _), e in pairs]
-        columns = equations.columns(tilted, last)
+        columns = equations.columns(tilted, equations.last_rows(last, 2 * halvings))
         p = equations.approximate_inverse(columns, bits + 2 * halvings)
 
         def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
@@ -93,7 +94,9 @@ class Start(Piece):
                 plane = convolved(parts, slice(0, 2), k - 1)
                 total = [x + y for x, y in zip(total, plane, strict=True)]
             here = curve[k][held] if 0 < k < len(curve) else 0
-            return [*total, here << bits + 2 * halvings + 1]
+            ties = equations.tied(curve[k] if k < len(curve) else none)
+            ties = [x << 2 * halvings + 1 for x in ties]
+            return [*total, *ties, here << bits + 2 * halvings + 1]
 
         curve = extended(equations, centre, p, coefficient, bits + 2 * halvings + 1)
         parts = [equations.along(row) for row in curve]
@@ -102,7 +105,7 @@ class Start(Piece):
             plane = [e[:2] for e in parts[k - 1]]
             heights = [e[2] * up for e in parts[k]] if k < len(curve) else [0] * len(plane)
             rows = [(x, y, z) for (x, y), z in zip(plane, heights, strict=True)]
-            matrices.append(product(p, equations.columns(rows, None)))
+            matrices.append(product(p, equations.columns(rows)))
         weights = weights_of(slopes(matrices, bits + 2 * halvings))
         sums = equations.weight_sums(weights)
         squares = [[z * z for _, _, z in sums], [(x * x + y * y) // up + 1 for x, y, _ in sums]]
@@ -141,13 +144,14 @@ class Tube(Piece):
     def __init__(
         self, equations: LengthEquations, centre: Vector, row: Vector, reach: Fraction
     ) -> None:
-        self.row, bits = row, equations.bits
+        self.row, bits, none = row, equations.bits, [0] * equations.size
         edges = equations.along(centre)
         here = [
             tuple(x + y for x, y in zip(u, e, strict=True))
             for u, e in zip(equations.flat, edges, strict=True)
         ]
-        columns = equations.columns(here, [t << bits - ROW_BITS for t in row])
+        last_row = [t << bits - ROW_BITS for t in row]
+        columns = equations.columns(here, equations.last_rows(last_row))
         p = equations.approximate_inverse(columns, bits)
 
         def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
@@ -160,12 +164,13 @@ class Tube(Piece):
                 if k:
                     last = dot(row, curve[k])
             last -= int(k == 1) << bits + ROW_BITS
-            return [*total, last << bits - ROW_BITS + 1]
+            ties = [2 * x for x in equations.tied(curve[k] if k < len(curve) else none)]
+            return [*total, *ties, last << bits - ROW_BITS + 1]
 
         curve = extended(equations, centre, p, coefficient, bits + 1)
         parts = [equations.along(a) for a in curve]
         matrices = [product(p, columns)]
-        matrices += [product(p, equations.columns(part, None)) for part in parts[1:]]
+        matrices += [product(p, equations.columns(part)) for part in parts[1:]]
         weights = weights_of(slopes(matrices, bits))
         squares = [[sum(x * x for x in e) for e in equations.weight_sums(weights)]]
         proof = bounds(

@@ -29,6 +29,7 @@ from .reading import (
     natural,
     require,
 )
+from .reduced import check_convex
 from .sheet import read_sheet
 from .towers import Tower
 
@@ -63,7 +64,7 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     keys(evidence, "emptied chord flat", "evidence")
     place = Place(given, evidence["emptied"])
     require(len(place.sheet.boundary) > 4, "there are fewer than five boundary vertices")
-    place.check_convex()
+    check_convex(place.sheet)
     search = _Search(place)
     require(claims["vertices"] == search.vertices, "other vertices can pop")
     if evidence["chord"] is not None:

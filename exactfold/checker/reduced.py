@@ -38,3 +38,12 @@ def closed(sheet: Sheet) -> tuple[Sheet, int | None]:
             faces = [sheet.face(t) for t in sheet.triangles]
             return Sheet(sheet.points, [*faces, (before, after, v)]), v
     return sheet, None
+
+
+def check_convex(sheet: Sheet) -> None:
+    """Raise unless the boundary is convex."""
+    cycle = sheet.boundary
+    for k, v in enumerate(cycle):
+        corner = (cycle[k - 1], v, cycle[(k + 1) % len(cycle)])
+        side = turn(*(sheet.points[u] for u in corner))
+        require(side >= 0, "the boundary is not convex")

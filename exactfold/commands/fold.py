@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 
 from exactfold.branches.branch import Branch
 from exactfold.commands.branch import chosen
+from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
-from exactfold.motion.following import Goal, check_corners, follow
+from exactfold.motion.following import Goal, follow
 from exactfold.motion.motion import Motion
 from exactfold.motion.writing import checked_ending, write_motion
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
@@ -56,6 +57,7 @@ class Wanted:
     picture: Path | None
     certificate: Path | None
     as_json: bool
+    given: Given = NOTHING
 
     def answer(self) -> int:
         """Follow the sheet, write what was asked for and print; the exit code.
@@ -73,9 +75,7 @@ class Wanted:
             opened = read_any(self.file, self.snap, self.sheet)
             sheet = opened.sheet
             motion: Motion | PanelMotion
-            if isinstance(sheet, CreasePattern) and (self.signs or self.up) is not None:
-                check_corners(sheet)
-            if isinstance(sheet, CreasePattern) and has_branches(sheet):
+            if isinstance(sheet, CreasePattern) and (self._named or has_branches(sheet)):
                 branch = self._branch(sheet, bar)
                 try:
                     motion = self._along(branch, bar)
@@ -114,6 +114,11 @@ class Wanted:
 
     # --- branches --------------------------------------------------------------------------------
 
+    @property
+    def _named(self) -> bool:
+        """Whether a branch was asked for, which a sheet with more corners has with a rim only."""
+        return (self.signs or self.up) is not None or bool(self.given)
+
     def _branch(self, pattern: CreasePattern, bar: Bar) -> Branch:
         given = {"--component": self.component, "--modes": self.modes}
         _refuse(
@@ -123,9 +128,9 @@ class Wanted:
         )
         Goal.of(self.until)  # before the work
         if (self.signs, self.up, self.place) != (None, None, None):
-            return chosen(pattern, self.signs, self.up, self.place, bar)
+            return chosen(pattern, self.signs, self.up, self.place, bar, self.given)
         up = ",".join(map(str, pattern.foldable_vertices))
-        branch = chosen(pattern, None, up, None, bar)
+        branch = chosen(pattern, None, up, None, bar, self.given)
         say(
             "no branch was named (--signs, --up, --branch): this is the one on which all "
             "vertices pop up"
@@ -155,12 +160,13 @@ class Wanted:
             "--up": self.up,
             "--branch": self.place,
             "--side": self.side,
+            "--rim": self.given.rim,
             "--through-nodes": self.through_nodes or None,
         }
         _refuse(
             given,
-            "branches of triangulated sheets with four corners, and this sheet folds along modes "
-            "of rigid panels: name them by --component or --modes",
+            "branches of triangulated sheets with four corners, or with more and a rim, and this "
+            "sheet folds along modes of rigid panels: name them by --component or --modes",
         )
         ways = decompose_opened(opened, progress=bar)
         if ways.warning is not None:

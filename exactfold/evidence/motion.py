@@ -21,6 +21,7 @@ def motion_certificate(
     start: Document,
     tubes: Sequence[Document],
     ends_at_a_node: bool = False,
+    rim: Mapping[int, Fraction] | None = None,
 ) -> Document:
     """The proof of a motion as a JSON object (docs/motion.md, The certificate).
 
@@ -28,7 +29,8 @@ def motion_certificate(
     and the vertex `held` of `start` are vertices of the pattern, too. `Track.certificate` calls it.
     Of `tubes` those with the key `flat` are arcs through nodes, at which these vertices are flat.
     With `ends_at_a_node` the motion ends at the node of the last one. The certificate does not
-    claim that nothing touches up to there.
+    claim that nothing touches up to there. `rim`: with more than four corners the heights of the
+    border, in the ratio of which it stays.
     """
     *steps, last = tubes if ends_at_a_node else [*tubes, {}]
     through = [step["flat"] for step in steps if "flat" in step]
@@ -49,6 +51,8 @@ def motion_certificate(
             "tubes": steps,
         },
     }
+    if rim is not None:
+        document["claims"]["rim"] = [format_rational(h) for _, h in sorted(rim.items())]
     if through:
         document["claims"]["through"] = through
     if ends_at_a_node:

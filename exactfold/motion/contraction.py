@@ -162,7 +162,7 @@ def contraction(
     residual_bits: int,
     places: Places,
     rows: Sequence[BigArray],
-    last: Sequence[int],
+    linear: Sequence[Sequence[int]],
     row_bits: int,
     squares: Sequence[Sequence[int]],
     sums: BigArray,
@@ -171,10 +171,11 @@ def contraction(
     """The bounds for P, which is `inverse` rounded. Everything is exact or rounded upwards.
 
     `residuals[k]` is the coefficient of s^k of H(p(s), s), integers over 2^`residual_bits`.
-    `rows[k]` are the edge vectors of that of DH(p(s), s) and `last` is its last row, for k = 0
-    only, integers over 2^`row_bits`. With the positive `weights` over 2^WEIGHT_BITS, `sums` holds
-    w_i + w_j for the three places of every edge (i, j), shape (edges, 3), and `squares[k]` bounds
-    the coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
+    `rows[k]` are the edge vectors of that of DH(p(s), s) and `linear` its rows after those of the
+    edges, for k = 0 only, integers over 2^`row_bits`. With the positive `weights` over
+    2^WEIGHT_BITS, `sums` holds w_i + w_j for the three places of every edge (i, j), shape
+    (edges, 3), and `squares[k]` bounds the coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over
+    2^(2 WEIGHT_BITS).
     """
     n = len(weights)
     p = _whole(inverse)
@@ -189,9 +190,10 @@ def contraction(
     # The first product nearly cancels and is exact. In the others P and the rows are rounded to
     # what machine words hold; `off` and `spread` are what half a unit in the rows, and in P, does.
     coarse = (p + (1 << (_COARSE - 1))) >> _COARSE
-    off = _above(size[:, :-1], [int(x) for x in sums.sum(axis=1)])
+    edges = len(sums)
+    off = _above(size[:, :edges], [int(x) for x in sums.sum(axis=1)])
     room = _WORD - _largest(coarse).bit_length() - places.most.bit_length()
-    product = _product(p, places, rows[0]) + _dot(p[:, -1:], np.array([last], dtype=object))
+    product = _product(p, places, rows[0]) + _dot(p[:, edges:], np.array(linear, dtype=object))
     product[np.diag_indices(n)] -= 1 << INVERSE_BITS + row_bits
     slope = [norm(_above(np.asarray(abs(product)), weights), INVERSE_BITS + row_bits + WEIGHT_BITS)]
     if len(rows) > 1:
@@ -211,7 +213,7 @@ def contraction(
             ]
             slope.append(norm(sizes, INVERSE_BITS + row_bits + WEIGHT_BITS + 1))
     quadratic = [
-        norm(_above(size[:, :-1], square), INVERSE_BITS + 2 * WEIGHT_BITS) for square in squares
+        norm(_above(size[:, :edges], square), INVERSE_BITS + 2 * WEIGHT_BITS) for square in squares
     ]
     # Residuals likewise: floor instead of the nearest, and P to _COARSE bits less.
     spare = max(_WORD - _largest(coarse).bit_length() - n.bit_length(), _SHORTEST)
@@ -251,9 +253,10 @@ def _dot(a: Whole, b: Whole) -> Whole:
 
 def _product(p: Whole, places: Places, rows: Whole) -> Whole:
     """P times the matrix of the rows, exact as `_dot`."""
+    p = p[:, : rows.shape[-2]]
     if _largest(p) * _largest(rows) * places.most < 1 << _WORD:
-        return np.asarray(places.product(p[:, :-1].astype(np.int64), rows.astype(np.int64)))
-    return np.asarray(places.product(p[:, :-1].astype(object), rows.astype(object)))
+        return np.asarray(places.product(p.astype(np.int64), rows.astype(np.int64)))
+    return np.asarray(places.product(p.astype(object), rows.astype(object)))
 
 
 def _above(a: Whole, v: Sequence[int]) -> list[int]:

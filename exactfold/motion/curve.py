@@ -216,9 +216,10 @@ def expansion(
     series[0], series[1] = x, tangent
     along = np.zeros((order + 1, len(framework.edges), 3))
     along[1] = framework.along(tangent)
+    none = np.zeros(len(framework.ties) + 1)
     for k in range(2, order + 1):
         products = np.einsum("mec,mec->e", along[1:k], along[k - 1 : 0 : -1])
-        row = factors.solve(np.append(-0.5 * products, 0.0))
+        row = factors.solve(np.append(-0.5 * products, none))
         series[k] = row - (tangent @ row) * tangent
         along[k] = framework.along(series[k])
     if not np.isfinite(series).all():
@@ -250,7 +251,7 @@ def on_curve(
         raise LostCurveError("the Jacobian is singular") from None
     last = np.inf
     for _ in range(_CORRECTIONS):
-        step = factors.solve(np.append(-framework.stretch(x), 0.0))
+        step = factors.solve(np.append(-framework.residual(x), 0.0))
         size = float(np.max(np.abs(step)))
         if not np.isfinite(size) or size > 1e-2 or size > 2 * max(last, 1e-12):
             raise LostCurveError("Newton's method does not converge")

@@ -14,6 +14,7 @@ from exactfold.motion.angles import fold_angles_of, hinges_of
 from exactfold.motion.arclength import in_floats
 from exactfold.motion.framework import Framework
 from exactfold.motion.motion import FrameBounds, Motion
+from exactfold.motion.rim_path import problem_of
 from exactfold.motion.tracks import Frame
 from exactfold.problem.problem import Problem
 
@@ -92,7 +93,7 @@ def with_enclosed_frames(
 
     None if they are not near those in floats: then these have left the branch somewhere.
     """
-    problem = Problem.of(motion.pattern)
+    problem = problem_of(motion.branch)
     found = [positions_in(problem, framework, frame) for frame in frames]
     coords = np.array([positions.coords for positions in found])
     if np.abs(coords - motion.coords).max() > _NEAR * float(framework.unit):

@@ -27,7 +27,8 @@ class FlatPatch:
     `flat` are the vertices. The framework whose patch is rigid has as unknowns the displacements
     of `moving`, which are the free vertices outside of the patch and up to three of it, `base`; the
     other vertices of the patch are affine combinations of the base, with rational `weights`. Its
-    equations are the lengths of `bars`: the edges that leave the patch, and the sides of the base.
+    equations are the lengths of `bars`: the edges that leave the patch, and the sides of the base;
+    then the ties of the framework.
     """
 
     framework: Framework
@@ -44,7 +45,8 @@ class FlatPatch:
         patch = cls(framework, tuple(sorted(flat)))
         if not patch.flat or len(patch.base) != 3:
             return None
-        return patch if len(patch.bars) == 3 * len(patch.moving) else None
+        equations = len(patch.bars) + len(framework.ties)
+        return patch if equations == 3 * len(patch.moving) else None
 
     @cached_property
     def vertices(self) -> frozenset[int]:
@@ -108,6 +110,19 @@ class FlatPatch:
                 if corner in place:
                     rows[v, place[corner]] = int(weight * self._denominator)
         return rows
+
+    @cached_property
+    def _ties(self) -> BigArray:
+        """The ties as rows on the heights of the moving vertices, over `_tie_unit`."""
+        ties = np.zeros((len(self.framework.ties), len(self.framework.points)), dtype=object)
+        for row, tie in zip(ties, self.framework.ties, strict=True):
+            for v, c in tie:
+                row[v] = c
+        return np.asarray(ties @ self._rows)
+
+    @cached_property
+    def _tie_unit(self) -> int:
+        return self._denominator << self.framework.tie_bits
 
     def enclosed(self, near: FloatArray, bits: int) -> Ball | None:
         """The box of `point`."""
@@ -178,11 +193,13 @@ class FlatPatch:
         return d[i] - d[j], (flat[i] - flat[j]) * self._denominator
 
     def _stretch(self, z: BigArray, bits: int) -> BigArray:
-        """Twice the equations, over 2^(2 bits), rounded towards 0 by less than a unit."""
+        """Twice the equations, over 2^(2 bits), rounded by less than a unit."""
         d, flat = self._edges(z, bits)
         exact = ((d + 2 * flat) * d).sum(axis=1)
         square = self._denominator**2
-        return np.array([-(-x // square) if x < 0 else x // square for x in exact], dtype=object)
+        found = [-(-x // square) if x < 0 else x // square for x in exact]
+        found += [int(x << bits + 1) // self._tie_unit for x in self._ties @ z[:, 2]]
+        return np.array(found, dtype=object)
 
     def _jacobian(self, z: BigArray, bits: int) -> BigArray:
         """The derivative of the equations, over 2^_MATRIX_BITS, rounded down."""
@@ -191,15 +208,18 @@ class FlatPatch:
         rows = self._rows[i] - self._rows[j]
         dense = (rows[:, :, None] * (d + flat)[:, None, :]).reshape(len(i), -1)
         shift, square = bits - _MATRIX_BITS, self._denominator**2
-        return np.asarray((dense // square) >> shift)
+        ties = np.zeros((len(self._ties), dense.shape[1]), dtype=object)
+        ties[:, 2::3] = (self._ties << _MATRIX_BITS) // self._tie_unit
+        return np.vstack([(dense // square) >> shift, ties])
 
     @cached_property
     def _second(self) -> BigArray:
-        """For each bar a bound of its second derivative in the maximum norm, rounded up."""
+        """For each equation a bound of its second derivative in the maximum norm, rounded up."""
         i, j = self.bars.T
         spread = abs(self._rows[i] - self._rows[j]).sum(axis=1)
         square = self._denominator**2
-        return np.array([-(-3 * int(x) ** 2 // square) for x in spread], dtype=object)
+        found = [-(-3 * int(x) ** 2 // square) for x in spread]
+        return np.array(found + [0] * len(self._ties), dtype=object)
 
     def __repr__(self) -> str:
         return f"<FlatPatch: flat at {self.flat}, {len(self.bars)} bars>"

@@ -27,10 +27,11 @@ from exactfold.motion.events import (
 )
 from exactfold.motion.framework import Framework
 from exactfold.motion.motion import Motion, angles_at, in_space
+from exactfold.motion.rim_path import problem_of, ties_of
 from exactfold.motion.start import Start
 from exactfold.motion.straight_folds import straight_fold
 from exactfold.motion.zeros import zero_of
-from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
+from exactfold.pattern.crease_pattern import Edge, Triangle
 from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 
@@ -60,12 +61,14 @@ def follow(
     `through_nodes`. `frames`: their number, at equal steps of time, or of the angle of the fold
     `by`. `side`: 1 for the ray that `branch` shows, -1 for its mirror image. `pinned`: the triangle
     that is held, by vertices of the sheet without what stays flat (`Problem.sheet`), by default the
-    largest; times depend on it.
+    largest; times depend on it. With more than four corners the branch has a rim: on the motion the
+    heights of the border above the face that is held stay in the ratio of that rim, but for an
+    affine function of the flat sheet, so that the motion depends on `pinned` as well.
 
     Raises `UsageError` for options that make no sense, `NotFollowedError` for a branch that is not
-    simple, that of a sheet with more than four corners or a shape with angle deficits,
-    `UndecidedBranchError` for a branch of which nothing is proved. A motion that ends "singular"
-    could not be followed further, which does not mean that it ends there.
+    simple, or is a shape with angle deficits, `UndecidedBranchError` for a branch of which nothing
+    is proved. A motion that ends "singular" could not be followed further, which does not mean that
+    it ends there.
 
     >>> from exactfold.count.find import find_branch
     >>> follow(find_branch("two-vertex", "+-"), until="90deg", frames=5)
@@ -78,10 +81,10 @@ def follow(
     if side not in (1, -1):
         raise UsageError(f"side {side}: give 1 or -1")
     _check_followable(branch)
-    problem = Problem.of(branch.pattern)
+    problem = problem_of(branch)
     if by is not None and by not in branch.pattern.folds:
         raise UsageError(f"there is no fold {by[0]}-{by[1]} to make equal steps of")
-    framework = Framework.of(problem.sheet, pinned)
+    framework = Framework.of(problem.sheet, pinned, ties_of(problem))
     curve, events, end = _followed(framework, _start(framework, problem, branch), goal, progress)
     unit = float(framework.unit)
     times = np.linspace(0.0, curve.duration * unit, frames)
@@ -139,28 +142,22 @@ class Goal:
 
 
 def _check_followable(branch: Branch) -> None:
-    """Raise `NotFollowedError` where a branch is not tangent to one curve, but to many or none."""
+    """Raise where a branch is not tangent to one curve, but to many or none; as `follow`."""
     if branch.curvature:
         raise NotFollowedError(
             "a shape with angle deficits is not followed: its sheet is not flat to begin with"
         )
-    check_corners(branch.pattern)
-
-
-def check_corners(pattern: CreasePattern) -> None:
-    """Raise `NotFollowedError` for a sheet with more than four corners, whose branches are many."""
-    if pattern.Ve > 4:
+    if not branch.approx_heights:
+        raise UndecidedBranchError("nothing is proved of the branch: there is nothing to follow")
+    if branch.pattern.Ve > 4 and branch.rim is None:
         raise NotFollowedError(
-            f"vertex signs do not name a motion of a sheet with {pattern.Ve} boundary vertices: "
-            "with heights of the border they name one way to start (`exactfold branch`, `exactfold "
-            "draw --signs`), and many motions start that way"
+            f"of a sheet with {branch.pattern.Ve} boundary vertices only a branch with given "
+            "heights of the border is followed (`find_branch` with rim=)"
         )
 
 
 def _start(framework: Framework, problem: Problem, branch: Branch) -> Start:
     heights = branch.approx_heights
-    if not heights:
-        raise UndecidedBranchError("nothing is proved of the branch: there is nothing to follow")
     for vertex, sign in branch.vertex_signs.items():
         if not sign and vertex in problem.foldable:
             line = "-".join(map(str, straight_fold(branch)))

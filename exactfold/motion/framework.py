@@ -17,6 +17,8 @@ if TYPE_CHECKING:  # SciPy takes as long to load as a small sheet to follow
     from scipy.sparse import csc_array
 
 Points = tuple[tuple[int, int], ...]
+Tie = tuple[tuple[int, int], ...]
+"""An equation sum c_v z_v = 0 for the heights z: pairs (v, c_v) in the order of the vertices."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -31,7 +33,8 @@ class Framework:
     half the change of the squared length, without the cancellation of lengths near the flat state.
     The unknowns are the 3V - 9 coordinates of the `free` vertices, x, y, z of each in turn, and
     `edges` the edges with a free end. With four boundary vertices there are 3V - 10 of them, so
-    that regular configurations form curves.
+    that regular configurations form curves. With more there are 3V - 9 - D, D = Ve - 3; then D - 1
+    linear equations of the heights, the `ties`, cut a curve out (`rim_path.ties_of`).
 
     The flat coordinates are `points` / 2^`bits`, exact integers from the first pinned corner;
     `flat` are the nearest floats, and `unit` is the length 1 of these in the unit of `sheet`.
@@ -41,9 +44,12 @@ class Framework:
     pinned: Triangle
     points: Points
     bits: int
+    ties: tuple[Tie, ...] = ()
 
     @classmethod
-    def of(cls, sheet: CreasePattern, pinned: Triangle | None = None) -> Framework:
+    def of(
+        cls, sheet: CreasePattern, pinned: Triangle | None = None, ties: tuple[Tie, ...] = ()
+    ) -> Framework:
         """The framework of a sheet, by default with its largest triangle pinned, the first such.
 
         >>> from exactfold.pattern.families import two_vertex
@@ -57,7 +63,7 @@ class Framework:
         x, y = whole[pinned[0]]
         points = tuple((a - x, b - y) for a, b in whole)
         largest = max(max(abs(a), abs(b)) for a, b in points)
-        return cls(sheet, pinned, points, largest.bit_length())
+        return cls(sheet, pinned, points, largest.bit_length(), ties)
 
     @cached_property
     def unit(self) -> Fraction:
@@ -77,7 +83,7 @@ class Framework:
 
     @cached_property
     def edges(self) -> IndexArray:
-        """The edges with a free end, shape (3V - 10, 2) for four boundary vertices."""
+        """The edges with a free end, shape (3V - 9 - D, 2)."""
         held = set(self.pinned)
         return np.array([e for e in self.sheet.edges if not held.issuperset(e)], dtype=np.intp)
 
@@ -91,6 +97,22 @@ class Framework:
         """U_e, shape (edges, 3), with a third component of 0."""
         i, j = self.edges.T
         return np.column_stack([self.flat[i] - self.flat[j], np.zeros(len(i))])
+
+    @cached_property
+    def tie_bits(self) -> int:
+        """The ties in floats are over 2^tie_bits, so that their coefficients are at most 1."""
+        return max((abs(c).bit_length() for tie in self.ties for _, c in tie), default=0)
+
+    @cached_property
+    def tie_rows(self) -> FloatArray:
+        """The ties as rows on the unknowns, shape (ties, unknowns)."""
+        place, one = {int(v): 3 * k + 2 for k, v in enumerate(self.free)}, 1 << self.tie_bits
+        rows = np.zeros((len(self.ties), self.size))
+        for row, tie in zip(rows, self.ties, strict=True):
+            for v, c in tie:
+                if v in place:
+                    row[place[v]] = c / one
+        return rows
 
     # --- displacements ---------------------------------------------------------------------------
 
@@ -114,36 +136,49 @@ class Framework:
         d = self.along(unknowns)
         return np.asarray(((self.flat_edges + 0.5 * d) * d).sum(axis=-1))
 
+    def residual(self, unknowns: FloatArray) -> FloatArray:
+        """The left sides of all equations: `stretch`, then the ties."""
+        return np.concatenate([self.stretch(unknowns), self.tie_rows @ unknowns])
+
     def length_error(self, unknowns: FloatArray) -> float:
         """The largest relative change of the length of an edge, to first order."""
         squares = (self.flat_edges**2).sum(axis=1)
         return float(np.max(np.abs(self.stretch(unknowns) / squares), initial=0.0))
 
     def jacobian(self, unknowns: FloatArray) -> csc_array:
-        """The derivative of `stretch`, shape (edges, unknowns), sparse."""
+        """The derivative of `residual`, shape (edges + ties, unknowns), sparse."""
         return self.matrix(self.flat_edges + self.along(unknowns))
 
     def matrix(self, rows: FloatArray) -> csc_array:
-        """The matrix that takes d to rows_e . d_e, sparse; `rows` has the shape (edges, 3)."""
+        """The matrix that takes d to rows_e . d_e, then the ties, sparse.
+
+        `rows` has the shape (edges, 3).
+        """
         from scipy.sparse import csc_array
 
-        row, starts, source, sign = self._structure
-        data = sign * rows.reshape(-1)[source]
-        return csc_array((data, row, starts), shape=(len(self.edges), self.size))
+        row, starts, _, _ = self._structure
+        shape = len(self.edges) + len(self.ties), self.size
+        return csc_array((self._entries(rows), row, starts), shape=shape)
+
+    def _entries(self, rows: FloatArray) -> FloatArray:
+        """The entries of `matrix` that may differ from 0, column by column."""
+        _, _, source, factor = self._structure
+        found: FloatArray = factor * np.append(rows.reshape(-1), 1.0)[source]
+        return found
 
     def dense(self, rows: FloatArray) -> FloatArray:
-        """The matrix of `matrix`, dense, shape (edges, unknowns)."""
-        row, starts, source, sign = self._structure
-        found = np.zeros((len(self.edges), self.size))
+        """The matrix of `matrix`, dense."""
+        row, starts, _, _ = self._structure
+        found = np.zeros((len(self.edges) + len(self.ties), self.size))
         columns = np.repeat(np.arange(self.size), np.diff(starts))
-        found[row, columns] = sign * rows.reshape(-1)[source]
+        found[row, columns] = self._entries(rows)
         return found
 
     @cached_property
     def _structure(self) -> tuple[IndexArray, IndexArray, IndexArray, FloatArray]:
-        """Row, place in the rows (edges, 3) and sign of every entry, column by column.
+        """Row, place in the rows (edges, 3) and factor of every entry, column by column.
 
-        The second array says where the columns start.
+        The place after all of them stands for 1. The second array says where the columns start.
         """
         place = np.full(len(self.points), -1, dtype=np.intp)
         place[self.free] = np.arange(len(self.free))
@@ -153,11 +188,14 @@ class Framework:
             e = np.flatnonzero(at >= 0)
             for axis in range(3):
                 parts.append((e, 3 * at[e] + axis, 3 * e + axis, np.full(len(e), sign)))
-        row, column, source, signs = (np.concatenate(part) for part in zip(*parts, strict=True))
+        k, at = np.nonzero(self.tie_rows)
+        one = np.full(len(k), 3 * len(self.edges))
+        parts.append((k + len(self.edges), at, one, self.tie_rows[k, at]))
+        row, column, source, factor = (np.concatenate(part) for part in zip(*parts, strict=True))
         order = np.lexsort((row, column))
         starts = np.searchsorted(column[order], np.arange(self.size + 1))
         # 32 bits, as the solver wants them.
-        return row[order].astype(np.int32), starts.astype(np.int32), source[order], signs[order]
+        return row[order].astype(np.int32), starts.astype(np.int32), source[order], factor[order]
 
     # --- faces in space --------------------------------------------------------------------------
 

@@ -27,13 +27,13 @@ class LengthEquations:
 
     @classmethod
     def of(cls, framework: Framework, bits: int = 64) -> LengthEquations:
-        """With `bits` or more, as many as the flat coordinates need.
+        """With `bits` or more, as many as the flat coordinates and the ties need.
 
         >>> from exactfold.pattern.families import two_vertex
         >>> LengthEquations.of(Framework.of(two_vertex()))
         <LengthEquations: 8 edges, 64 bits>
         """
-        return cls(framework, max(bits, framework.bits))
+        return cls(framework, max(bits, framework.bits, framework.tie_bits))
 
     @cached_property
     def flat_edges(self) -> BigArray:
@@ -44,6 +44,32 @@ class LengthEquations:
             for i, j in self.framework.edges
         ]
         return np.array(rows, dtype=object).reshape(-1, 3)
+
+    @cached_property
+    def ties(self) -> tuple[Row, ...]:
+        """The ties as rows on the unknowns, over 2^bits."""
+        framework, shift = self.framework, self.bits - self.framework.tie_bits
+        place = {int(v): 3 * k + 2 for k, v in enumerate(framework.free)}
+        found = []
+        for tie in framework.ties:
+            row = [0] * framework.size
+            for v, c in tie:
+                if v in place:
+                    row[place[v]] = c << shift
+            found.append(tuple(row))
+        return tuple(found)
+
+    def tied(self, unknowns: Sequence[int]) -> list[int]:
+        """The left sides of the ties for unknowns over 2^bits, over 2^(2 bits)."""
+        return [sum(c * x for c, x in zip(row, unknowns, strict=True) if c) for row in self.ties]
+
+    def matrix(self, rows: FloatArray, last: FloatArray) -> FloatArray:
+        """The square matrix of edge vectors, then the ties and one more row, in floats."""
+        return np.vstack([self.places.dense(rows), self.framework.tie_rows, last])
+
+    def inverse(self, rows: FloatArray, last: FloatArray) -> FloatArray:
+        """The inverse of `matrix`; raises `numpy.linalg.LinAlgError`."""
+        return np.asarray(np.linalg.inv(self.matrix(rows, last)), dtype=np.float64)
 
     def along(self, curve: Sequence[Sequence[int]]) -> BigArray:
         """a_k,e for all coefficients of a curve, shape (coefficients, edges, 3)."""

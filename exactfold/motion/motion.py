@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, Final
 
@@ -14,10 +15,12 @@ from exactfold.branches.branch import Branch
 from exactfold.branches.export import AMOUNT
 from exactfold.branches.letters import UPSIDE_DOWN
 from exactfold.errors import UsageError
+from exactfold.exact.numbers import format_rational
 from exactfold.motion import in_motion
 from exactfold.motion.angles import fold_angles_of, hinges_of
 from exactfold.motion.curve import Curve
 from exactfold.motion.events import Event
+from exactfold.motion.rim_path import problem_of
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
@@ -115,6 +118,16 @@ class Motion(Picture):
         return self.branch.pattern
 
     @property
+    def rim(self) -> Mapping[int, Fraction] | None:
+        """With more than four corners the heights in the ratio of which the border stays."""
+        return self.branch.rim if self.curve.framework.ties else None
+
+    @property
+    def _rim_reported(self) -> dict[str, str] | None:
+        rim = self.rim
+        return None if rim is None else {str(v): format_rational(h) for v, h in rim.items()}
+
+    @property
     def name(self) -> str:
         """ "branch" and its signs, cut where there are many, and whether it is the mirror side."""
         signs = self.branch.sign_text
@@ -161,7 +174,7 @@ class Motion(Picture):
 
     @cached_property
     def _problem(self) -> Problem:
-        return Problem.of(self.branch.pattern)
+        return problem_of(self.branch)
 
     def at(self, time: float) -> FloatArray:
         """The positions of all vertices at a time, shape (V, 3).
@@ -218,6 +231,7 @@ class Motion(Picture):
             "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
             "side": self.side,
+            "rim": self._rim_reported,
             "modes": None,
             "component": None,
             **in_motion.frames_reported(self, written),
@@ -228,10 +242,12 @@ class Motion(Picture):
     @property
     def facts(self) -> dict[str, Any]:
         """What files say of the motion, as JSON."""
+        rim = self._rim_reported
         return {
             "vertex_signs": self.branch.sign_text,
             "vertices": list(self.pattern.interior),
             "side": self.side,
+            **({} if rim is None else {"rim": rim}),
             **in_motion.facts_of_frames(self),
         }
 

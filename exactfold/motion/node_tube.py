@@ -30,7 +30,7 @@ class NodeTube(Piece):
     y solves, with the edge vectors X_e of x* and the wheel stresses w_v of the flat vertices v,
 
         X_e . y_e + (s / 2) |y_e|^2 = 0 for edges e, except one for each v, in place of which
-        sum_e w_v,e |y_e|^2 / 2 = 0,   and T . y = 1:
+        sum_e w_v,e |y_e|^2 / 2 = 0,   the ties of the framework, and T . y = 1:
 
     at x* the wheel stresses balance, so that the sum of w_v,e times the equations of the edges is s
     times the second line. So for s = 0, too, these are N regular equations (docs/motions.md), and
@@ -127,9 +127,14 @@ def _series(
     for _ in range(8):
         e = framework.along(y)
         value = np.concatenate(
-            [(x * e).sum(axis=1)[kept], 0.5 * w @ (e * e).sum(axis=1), [row @ y - 1.0]]
+            [
+                (x * e).sum(axis=1)[kept],
+                0.5 * w @ (e * e).sum(axis=1),
+                framework.tie_rows @ y,
+                [row @ y - 1.0],
+            ]
         )
-        matrix = np.vstack([linear[kept], w @ dense(e), row])
+        matrix = np.vstack([linear[kept], w @ dense(e), framework.tie_rows, row])
         try:
             y = y - np.linalg.solve(matrix, value)
         except np.linalg.LinAlgError:
@@ -152,7 +157,7 @@ def _series(
     if not np.abs(whole).max() < 2.0**40:
         return None
     e = framework.along(series[0])
-    matrix = np.vstack([linear, whole * 2.0**-ROW_BITS])
+    matrix = np.vstack([linear, framework.tie_rows, whole * 2.0**-ROW_BITS])
     for k, edge in enumerate(stresses.replaced):
         matrix[edge] = w[k] @ dense(e)
     try:
@@ -182,16 +187,15 @@ def _derivative(
     k: int,
     kept_factor: int = 1,
 ) -> Any:
-    """The coefficient of s^k of the derivative of the equations, without its last row T.
+    """The coefficient of s^k of the derivative of the equations, without the ties and the row T.
 
     X_e for k = 0 and else the y_e of the coefficient before, times `kept_factor`; the rows that are
     replaced hold the sum of w_v,e times those of the coefficient k.
     """
     dense, none = equations.places.dense, np.zeros_like(x)
     before = x if k == 0 else parts[k - 1] if k - 1 < len(parts) else none
-    matrix = np.vstack(
-        [dense(before) * kept_factor, np.zeros((1, equations.framework.size), dtype=x.dtype)]
-    )
+    linear = np.zeros((len(equations.ties) + 1, equations.framework.size), dtype=x.dtype)
+    matrix = np.vstack([dense(before) * kept_factor, linear])
     matrix[list(replaced)] = stresses @ dense(parts[k] if k < len(parts) else none)
     return matrix
 
@@ -206,7 +210,8 @@ def _taylor(
     order: int,
 ) -> FloatArray | None:
     framework, w = equations.framework, stresses.floats
-    matrix = np.vstack([linear[kept], w @ equations.places.dense(framework.along(y)), row])
+    stressed = w @ equations.places.dense(framework.along(y))
+    matrix = np.vstack([linear[kept], stressed, framework.tie_rows, row])
     try:
         inverse = np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
@@ -223,7 +228,8 @@ def _taylor(
             ((parts[i] * parts[k - i]).sum(axis=1) for i in range(1, k)),
             start=np.zeros(len(framework.edges)),
         )
-        right = np.concatenate([linear_right[kept], w @ square_right, [0.0]])
+        none = np.zeros(len(framework.ties) + 1)
+        right = np.concatenate([linear_right[kept], w @ square_right, none])
         series[k] = -0.5 * inverse @ right
         parts[k] = framework.along(series[k])
     return series
@@ -251,11 +257,13 @@ def _residuals(
             else np.zeros(len(stresses.rows), dtype=object)
         )
         total[list(stresses.replaced)] = stressed
-        last = 0
+        last, ties = 0, [0] * len(equations.ties)
         if k < len(curve):
             last = sum(t * a for t, a in zip(row, curve[k], strict=True))
             last -= (1 << bits + ROW_BITS) if k == 0 else 0
-        found.append(np.append(total, last << (bits + more - ROW_BITS + 1)))
+            ties = [x << more + 1 for x in equations.tied(curve[k])]
+        linear = np.array([*ties, last << (bits + more - ROW_BITS + 1)], dtype=object)
+        found.append(np.append(total, linear))
     return found
 
 
@@ -318,6 +326,8 @@ def _bounds(
             equations, stresses.replaced, stresses.rows, x, parts, k, kept_factor=1 << more
         )
         if k == 0:
+            for line, tie in zip(matrix[len(x) :], equations.ties, strict=False):
+                line[:] = [c << more for c in tie]
             matrix[-1] = [t << (bits + more - ROW_BITS) for t in row]
         product = p @ matrix
         if k == 0:

@@ -207,6 +207,7 @@ class PanelMotion(Picture):
             "vertex_signs": None,
             "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
             "side": None,
+            "rim": None,
             "modes": list(self.modes),
             "component": self.component,
             **in_motion.frames_reported(self, written),

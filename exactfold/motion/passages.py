@@ -70,10 +70,11 @@ class Passage:
     def near(self, time: Fraction) -> tuple[Interval, Ball]:
         """Bounds of the time of a point of the arc near a given time, and a box that holds it.
 
-        In the unit of the framework. Close to the node it has the width of the box of the node.
+        In the unit of the framework. Close to the node it has the width of the box of the node. A
+        time that is as near to that of the exit as this is known is taken for it.
         """
         at = self.exit
-        if time < self.left[0]:
+        if time < 2 * self.left[0] - self.left[1]:
             at = self.tube.near(float(time - self.entered[0]), self.entry, self.exit)
         return _refined(self.tube, at, self.time(at))
 

@@ -201,7 +201,8 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
     (docs/motion.md), and separating planes show what does not touch (docs/contacts.md). A motion
     until its first contact is proved with that contact; any other one with how far it is clear.
     Through nodes that the motion passes the proof goes on along the same arc (docs/motions.md); a
-    motion that ends at a node is proved up to it. The frames of the
+    motion that ends at a node is proved up to it. With more than four corners the return is not
+    proved, but the motion as far as tubes lead to it. The frames of the
     motion that is returned are those of the proved curve, each in a box (`Motion.bounds`). `bits`:
     after the point, of all numbers in the tubes.
 
@@ -214,7 +215,7 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
     (<Verdict.PROVED: 'proved'>, 'flat-fold', True)
     """
     try:
-        if motion.end == RETURN:
+        if motion.end == RETURN and not motion.curve.framework.ties:
             return _returning(motion, bits, progress)
         return _tracked(motion, bits, progress)
     except NotProvedAtTheFlatStateError as error:
@@ -261,7 +262,12 @@ def prove_persistently(
 
 
 def _another(framework: Framework) -> Triangle | None:
-    """The triangle to hold instead: one with as few of the same corners as possible."""
+    """The triangle to hold instead: one with as few of the same corners as possible.
+
+    None where there is no other, and with a rim: the rim path with another one held is another.
+    """
+    if framework.ties:
+        return None
     held = set(framework.pinned)
     others = [t for t in framework.sheet.triangles if set(t) != held]
     return min(others, key=lambda t: len(held & set(t)), default=None)

@@ -98,8 +98,10 @@ def _dependent(framework: Framework, labels: Sequence[int], unknowns: FloatArray
     left, sizes, _ = np.linalg.svd(framework.jacobian(unknowns).toarray())
     if not sizes[-1] < _DEPENDENT * sizes[-2]:
         return ""
-    stress = np.abs(left[:, -1])
-    edges = framework.edges[stress > _STRESSED * stress.max()]
+    stressed = np.abs(left[:, -1]) > _STRESSED * np.abs(left[:, -1]).max()
+    edges = framework.edges[stressed[: len(framework.edges)]]
+    if stressed[len(framework.edges) :].any():
+        return "the heights of the border come to depend on the lengths of edges"
     vertices = sorted({int(v) for edge in edges for v in edge})
     names = _listed("vertex", [str(labels[v]) for v in vertices])
     turned = ""

@@ -18,6 +18,9 @@ if TYPE_CHECKING:  # as in `framework`
     from scipy.sparse.linalg import SuperLU
 
 _NEWTON = 30
+_SINGULAR = 1e13
+"""Matrices with a larger condition are taken for singular."""
+
 _DENSE = 60
 """Unknowns up to which matrices are dense, so that SciPy, which takes a while, is not loaded."""
 
@@ -30,7 +33,8 @@ class Start:
 
         U_e . u_e + h_e^2 / 2 + t^2 |u_e|^2 / 2 = 0,
 
-    together with one height held fixed, are regular at t = 0 where the branch is simple. So their
+    together with the ties of the framework, which hold for h, and one height held fixed, are
+    regular at t = 0 where the branch is simple. So their
     solution is an analytic curve in s = t^2, each coefficient of which solves a linear system with
     the same matrix. `coefficients[k]` is that of s^k, shape (order + 1, unknowns), each unknown
     triple being (u_x, u_y, h) of one free vertex; `held` is the unknown that is fixed.
@@ -60,12 +64,13 @@ class Start:
         series[0] = y
         along = np.zeros((order + 1, len(framework.edges), 3))
         along[0] = framework.along(y)
+        none = np.zeros(len(framework.ties) + 1)
         for k in range(1, order + 1):
             right = sum(
                 (along[m, :, 2] * along[k - m, :, 2] for m in range(1, k)),
                 start=np.zeros(len(framework.edges)),
             ) + sum((along[m, :, :2] * along[k - 1 - m, :, :2]).sum(axis=1) for m in range(k))
-            series[k] = factors.solve(np.append(-0.5 * right, 0.0))
+            series[k] = factors.solve(np.append(-0.5 * right, none))
             along[k] = framework.along(series[k])
         if not np.isfinite(series).all():
             raise NotFollowedError("the series of the motion leaves the range of floats")
@@ -95,10 +100,11 @@ class Start:
 
 
 def blown_up(framework: Framework, y: FloatArray, s: float = 0.0) -> FloatArray:
-    """The left sides U_e . u_e + h_e^2 / 2 + s |u_e|^2 / 2, shape (edges,)."""
+    """The left sides U_e . u_e + h_e^2 / 2 + s |u_e|^2 / 2, then those of the ties."""
     e = framework.along(y)
     flat = (framework.flat_edges[:, :2] * e[:, :2]).sum(axis=1)
-    return np.asarray(flat + 0.5 * e[:, 2] ** 2 + 0.5 * s * (e[:, :2] ** 2).sum(axis=1))
+    bent = flat + 0.5 * e[:, 2] ** 2 + 0.5 * s * (e[:, :2] ** 2).sum(axis=1)
+    return np.concatenate([bent, framework.tie_rows @ y])
 
 
 def blown_up_jacobian(framework: Framework, y: FloatArray, s: float = 0.0) -> csc_array:
@@ -151,8 +157,11 @@ def _factors(framework: Framework, y: FloatArray, held: int) -> SuperLU | _Inver
         return factorised(bordered(blown_up_jacobian(framework, y), held))
     last = np.zeros((1, framework.size))
     last[0, held] = 1.0
-    matrix = framework.dense(_blown_up_rows(framework, y, 0.0))
-    return _Inverse(np.linalg.inv(np.concatenate([matrix, last])))
+    matrix = np.concatenate([framework.dense(_blown_up_rows(framework, y, 0.0)), last])
+    inverse = np.linalg.inv(matrix)
+    if np.linalg.norm(matrix, 1) * np.linalg.norm(inverse, 1) > _SINGULAR:
+        raise np.linalg.LinAlgError("singular in floats")
+    return _Inverse(inverse)
 
 
 def _newton(
@@ -204,7 +213,7 @@ def _with_plane(framework: Framework, y: FloatArray) -> FloatArray:
     e = framework.along(y)
     rows = framework.flat_edges
     columns = np.arange(framework.size) % 3 != 2
-    right = -0.5 * e[:, 2] ** 2
+    right = np.append(-0.5 * e[:, 2] ** 2, np.zeros(len(framework.ties)))
     y = y.copy()
     if framework.size > _DENSE:
         y[columns] = least_squares(framework.matrix(rows)[:, columns], right)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -20,10 +20,10 @@ from exactfold.motion.framework import Framework
 from exactfold.motion.links import Link
 from exactfold.motion.passages import Passage
 from exactfold.motion.piece import Ball
+from exactfold.motion.rim_path import problem_of, ties_of
 from exactfold.motion.straight_folds import straight_fold
 from exactfold.motion.tube_start import StartTube, prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
-from exactfold.problem.problem import Problem
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
 MOST_TUBES = 1000
@@ -55,8 +55,10 @@ class Track:
     the part of this passage up to there.
     `vertex_signs` are those on the half-branch itself, by foldable vertex of `pattern`; `side` is
     1 or -1, the sign of the boundary saddle or, if `corner` is not None, the vertex sign of this
-    reflex corner in the sheet with its notch closed. `labels[v]` is the vertex of `pattern` that
-    vertex v of the framework is: what lies in triangulated triangles moves with them.
+    reflex corner in the sheet with its notch closed. With more than four corners the border stays
+    in the ratio of the heights `rim`, and `side` is the sign of the factor (`rim_path`).
+    `labels[v]` is the vertex of `pattern` that vertex v of the framework is: what lies in
+    triangulated triangles moves with them.
 
     `status` is PROVED if the track goes as far as asked, else UNDECIDED; what there is is proved in
     any case. `reason` says where it ended and why.
@@ -69,6 +71,7 @@ class Track:
     steps: tuple[Step, ...]
     status: Verdict
     reason: str
+    rim: Mapping[int, Fraction] | None = None
 
     @property
     def framework(self) -> Framework:
@@ -155,6 +158,7 @@ class Track:
             },
             step_documents(self.steps, leaves=True),
             ends_at_a_node=self.node is not None,
+            rim=self.rim,
         )
 
     def frames(self, times: FloatArray | list[float]) -> list[Frame]:
@@ -202,7 +206,7 @@ def half_branch(
         raise UsageError(f"the side is {side!r}, not 1 or -1")
     if branch.status is not PROVED or branch.root is None:
         raise UsageError("a motion is proved from a branch that is proved")
-    problem = Problem.of(branch.pattern)
+    problem = problem_of(branch)
     problem.require_foldable()
     flat = [v for v in problem.foldable if branch.vertex_signs[v] == 0]
     if flat:
@@ -217,7 +221,7 @@ def half_branch(
             )
         )
     heights = branch.approx_heights
-    framework = Framework.of(problem.sheet, pinned)
+    framework = Framework.of(problem.sheet, pinned, ties_of(problem))
     start = prove_start(
         framework,
         problem.gauge,
@@ -225,7 +229,10 @@ def half_branch(
         bits=bits,
     )
     corner = None if problem.gauge.corner is None else problem.labels[problem.gauge.corner]
-    return Track(branch.pattern, problem.labels, corner, start, (), PROVED, "the start tube")
+    rim = branch.rim if framework.ties else None
+    return Track(
+        branch.pattern, problem.labels, corner, start, (), PROVED, "the start tube", rim=rim
+    )
 
 
 def follow_proved(

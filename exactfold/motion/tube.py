@@ -143,7 +143,7 @@ class Tube(Piece):
 
 
 def _residuals(equations: LengthEquations, curve: Curve, row: Row) -> list[list[int]]:
-    """The coefficients of 2 [g(p(s)); T(p(s) - c) - s], over 2^(2 bits)."""
+    """The coefficients of 2 [g(p(s)); ties; T(p(s) - c) - s], over 2^(2 bits)."""
     e = equations.along(curve)
     shift = equations.bits - ROW_BITS
     found = squared(e)
@@ -153,7 +153,9 @@ def _residuals(equations: LengthEquations, curve: Curve, row: Row) -> list[list[
     last[0] = 0
     last[1] -= 1 << (equations.bits + ROW_BITS)
     last += [0] * (len(found) - len(curve))
-    return [[*map(int, g), x << (shift + 1)] for g, x in zip(found, last, strict=True)]
+    ties = [[2 * x for x in equations.tied(a)] for a in curve]
+    ties += [[0] * len(equations.ties)] * (len(found) - len(curve))
+    return [[*map(int, g), *t, x << (shift + 1)] for g, t, x in zip(found, ties, last, strict=True)]
 
 
 def _bounds(
@@ -164,7 +166,7 @@ def _bounds(
     weights: Row,
     inverse: FloatArray,
 ) -> Contraction:
-    """The contraction of the length equations along a curve, with the row T(x - c) - s below."""
+    """The contraction of the equations along a curve, with the row T(x - c) - s below."""
     e = equations.along(curve)
     sums = equations.weight_sums(weights)
     return contraction(
@@ -173,7 +175,7 @@ def _bounds(
         2 * equations.bits + 1,
         equations.places,
         [e[0] + equations.flat_edges, *e[1:]],
-        [t << (equations.bits - ROW_BITS) for t in row],
+        [*equations.ties, [t << (equations.bits - ROW_BITS) for t in row]],
         equations.bits,
         [[int(x) for x in (sums**2).sum(axis=1)]],
         sums,
@@ -199,26 +201,23 @@ def prove_tube(
     framework, bits = equations.framework, equations.bits
     centre = equations.nearest(near) if isinstance(near, np.ndarray) else near
     try:
-        jacobian = equations.places.dense(
-            framework.flat_edges + framework.along(equations.floats(centre))
-        )
+        edges = framework.flat_edges + framework.along(equations.floats(centre))
         last = np.zeros(framework.size)
         last[-1] = 1.0
-        tangent = np.linalg.solve(np.vstack([jacobian, towards]), last)
+        tangent = np.linalg.solve(equations.matrix(edges, towards), last)
         tangent = tangent / np.linalg.norm(tangent)
         scale = 2.0 ** np.rint(np.log2(step))
         whole = np.rint(tangent / scale * 2.0**ROW_BITS)
         if not np.abs(whole).max() < 2.0**40:
             return None
         row = tuple(int(x) for x in whole)
-        inverse = np.linalg.inv(np.vstack([jacobian, whole * 2.0**-ROW_BITS]))
+        inverse = equations.inverse(edges, whole * 2.0**-ROW_BITS)
     except np.linalg.LinAlgError:
         return None
     if not np.abs(inverse).max() < 2.0**40:
         return None
     for _ in range(2):
-        g = [int(x) for x in _stretch(equations, centre)]
-        (centre,) = corrected(inverse, [centre], [[*g, 0]], bits + 1)
+        (centre,) = corrected(inverse, [centre], [[*_stretch(equations, centre), 0]], bits + 1)
     series = _taylor(framework, inverse, order)
     weights = weights_of(_slopes(equations, inverse, series))
     curve = (centre, *(equations.nearest(a) for a in series))
@@ -264,7 +263,7 @@ def sharpened(tube: Tube, parameter: int) -> Ball:
     row = np.array([float(t) for t in tube.row]) / (1 << ROW_BITS)
     edges = framework.flat_edges + framework.along(equations.floats(point))
     try:
-        inverse = np.linalg.inv(np.vstack([equations.places.dense(edges), row]))
+        inverse = equations.inverse(edges, row)
     except np.linalg.LinAlgError:
         return whole
 
@@ -283,9 +282,10 @@ def sharpened(tube: Tube, parameter: int) -> Ball:
 
 
 def _stretch(equations: LengthEquations, centre: Row) -> list[int]:
-    """2 g_e(c) over 2^(2 bits)."""
+    """2 g_e(c), then twice the ties, over 2^(2 bits)."""
     e = equations.along([centre])[0]
-    return [int(x) for x in ((e + 2 * equations.flat_edges) * e).sum(axis=1)]
+    stretch = [int(x) for x in ((e + 2 * equations.flat_edges) * e).sum(axis=1)]
+    return [*stretch, *(2 * x for x in equations.tied(centre))]
 
 
 def _taylor(framework: Framework, inverse: FloatArray, order: int) -> list[FloatArray]:
@@ -297,7 +297,7 @@ def _taylor(framework: Framework, inverse: FloatArray, order: int) -> list[Float
             ((parts[i] * parts[k - 2 - i]).sum(axis=1) for i in range(k - 1)),
             start=np.zeros(len(framework.edges)),
         )
-        found.append(-0.5 * (inverse[:, :-1] @ right))
+        found.append(-0.5 * (inverse[:, : len(right)] @ right))
         parts.append(framework.along(found[-1]))
     return found
 
@@ -309,5 +309,5 @@ def _slopes(
     total = np.zeros_like(inverse)
     for k, row in enumerate(curve[:3]):
         rows = equations.framework.along(row)
-        total += np.abs(equations.places.product(inverse[:, :-1], rows)) / 2.0**k
+        total += np.abs(equations.places.product(inverse[:, : len(rows)], rows)) / 2.0**k
     return total

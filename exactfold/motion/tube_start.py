@@ -28,9 +28,10 @@ from exactfold.motion.length_equations import (
     weights_of,
 )
 from exactfold.motion.piece import PARAMETER_BITS, Ball, Piece
+from exactfold.motion.rim_path import factor_functional
 from exactfold.motion.start import Start
 from exactfold.motion.tube import longest
-from exactfold.problem.gauge import Gauge
+from exactfold.problem.gauge import RIM, Gauge
 from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functional
 
 ROOT_BITS = PARAMETER_BITS // 2
@@ -42,11 +43,12 @@ class StartTube(Piece):
     """The curve near the flat state: d = (t^2 u, t h), t = tau / 2^`halvings`, s = tau^2.
 
     The unknowns are (u_x, u_y, h) of each free vertex; they solve U_e . u_e + h_e^2 / 2 +
-    t^2 |u_e|^2 / 2 = 0 with the height at `held` fixed. For tau < 0 the curve is the mirror image:
-    the half-branch in the opposite direction. `gauge` and `vertex_signs` name the half-branch
-    tau > 0 (docs/motion.md, Theorem 3): the proved signs of the heights at tau = 0 at every
-    interior vertex of the sheet of the framework, and the sign `side` of the boundary saddle or,
-    with a reflex corner, of this corner in the closed sheet.
+    t^2 |u_e|^2 / 2 = 0, and the ties for h, with the height at `held` fixed. For tau < 0 the curve
+    is the mirror image: the half-branch in the opposite direction. `gauge` and `vertex_signs` name
+    the half-branch tau > 0 (docs/motion.md, Theorem 3): the proved signs of the heights at tau = 0
+    at every interior vertex of the sheet of the framework, and the sign `side` of the boundary
+    saddle or, with a reflex corner, of this corner in the closed sheet, or, with more than four
+    corners, of the factor of the rim.
     """
 
     halvings: int
@@ -84,8 +86,9 @@ class StartTube(Piece):
             bent = np.concatenate([s * e[:, :2], e[:, 2:] * (1 << up_to)], axis=1)
             residual = (((2 << up_to) * flat + bent) * e).sum(axis=1)
             held = point[self.held] - self.coefficients[0][self.held]
+            ties = [x << up_to + 1 for x in equations.tied(point)]
             last = held << self.bits + up_to + 1
-            return flat * (1 << up_to) + bent, [*(int(x) for x in residual), last]
+            return flat * (1 << up_to) + bent, [*(int(x) for x in residual), *ties, last]
 
         rows, _ = terms()
         one = 1 << self.bits + up_to
@@ -93,7 +96,7 @@ class StartTube(Piece):
         last[self.held] = 1.0
         edges = np.array([[x / one for x in row] for row in rows])
         try:
-            inverse = np.linalg.inv(np.vstack([equations.places.dense(edges), last]))
+            inverse = equations.inverse(edges, last)
         except np.linalg.LinAlgError:
             return self._blown_down(whole, tau)
         for _ in range(2):
@@ -106,7 +109,7 @@ class StartTube(Piece):
             2 * self.bits + up_to + 1,
             equations.places,
             [rows],
-            [one * (i == self.held) for i in range(len(point))],
+            [*_shifted(equations, up_to), [one * (i == self.held) for i in range(len(point))]],
             self.bits + up_to,
             [[up(int(s * (x * x + y * y)), up_to) + int(z * z) for x, y, z in sums]],
             sums,
@@ -201,11 +204,10 @@ def prove_start(
     tilted = flat + framework.along(series[0]) * np.array([0.0, 0.0, 1.0])
     last = np.zeros(framework.size)
     last[held] = 1.0
-    matrix = np.vstack([equations.places.dense(tilted), last])
     try:
-        inverse = np.linalg.inv(matrix)
+        inverse = equations.inverse(tilted, last)
     except np.linalg.LinAlgError:
-        inverse = np.full_like(matrix, np.inf)
+        inverse = np.full((framework.size, framework.size), np.inf)
     if not np.abs(inverse).max() < 2.0**40:
         raise NotProvedAtTheFlatStateError("the branch is not simple, or floats do not show it")
     for _ in range(2):
@@ -218,7 +220,7 @@ def prove_start(
     for k in (1, 2):
         rows = framework.along(scaled[k])
         rows[:, :2] = framework.along(scaled[k - 1])[:, :2] * 2.0 ** (-2 * m)
-        slopes += np.abs(equations.places.product(inverse[:, :-1], rows)) / 2.0**k
+        slopes += np.abs(equations.places.product(inverse[:, : len(rows)], rows)) / 2.0**k
     weights = weights_of(slopes)
     proof = _bounds(equations, curve, held, m, weights, inverse)
     reach = longest(proof, thickness)
@@ -248,6 +250,8 @@ def names_at(gauge: Gauge, framework: Framework, box: Ball) -> tuple[tuple[int, 
 
     sheet = framework.sheet
     signs = tuple(sign(vertex_sign_functional(sheet, v), f"vertex {v}") for v in sheet.interior)
+    if gauge.kind == RIM:
+        return signs, sign(factor_functional(sheet, gauge.rim), "the border")
     if gauge.corner is None:
         return signs, sign(saddle_functional(sheet), "the boundary saddle")
     functional = vertex_sign_functional(gauge.sheet, gauge.corner)
@@ -269,7 +273,7 @@ def _halvings(series: FloatArray) -> int:
 
 
 def _residuals(equations: LengthEquations, curve: Sequence[Row], m: int) -> list[list[int]]:
-    """The coefficients of 2 [U . u + h^2 / 2 + s |u|^2 / 2; 0], over 2^(2 bits + 2 m)."""
+    """The coefficients of 2 [U . u + h^2 / 2 + s |u|^2 / 2; ties; 0], over 2^(2 bits + 2 m)."""
     e = equations.along(curve)
     heights, plane = squared(e[:, :, 2:]), squared(e[:, :, :2])
     found = []
@@ -282,8 +286,14 @@ def _residuals(equations: LengthEquations, curve: Sequence[Row], m: int) -> list
         total = total * (1 << 2 * m)
         if k:
             total = total + plane[k - 1]
-        found.append([*map(int, total), 0])
+        ties = equations.tied(curve[k]) if k < len(curve) else [0] * len(equations.ties)
+        found.append([*map(int, total), *(x << 2 * m + 1 for x in ties), 0])
     return found
+
+
+def _shifted(equations: LengthEquations, more: int) -> list[list[int]]:
+    """The ties over 2^(bits + more)."""
+    return [[c << more for c in row] for row in equations.ties]
 
 
 def _bounds(
@@ -305,7 +315,10 @@ def _bounds(
         2 * (equations.bits + m) + 1,
         equations.places,
         rows,
-        [(i == held) << (equations.bits + 2 * m) for i in range(len(weights))],
+        [
+            *_shifted(equations, 2 * m),
+            [(i == held) << (equations.bits + 2 * m) for i in range(len(weights))],
+        ],
         equations.bits + 2 * m,
         [[int(x) ** 2 for x in sums[:, 2]], [up(int(x), 2 * m) for x in flat]],
         sums,

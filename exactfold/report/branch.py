@@ -35,7 +35,7 @@ def branch_report(result: Branch) -> Group:
         deficits = _by_vertex(dict(sorted(result.curvature.items())))
         rows.append(("angle deficits", cut(deficits)))
     if result.rim is not None:
-        rows.append(("heights of the border", cut(_rim(result.rim))))
+        rows.append(("heights of the border", cut(rim_text(result.rim))))
         if straight := result.straight_border:
             rows.append(("on a straight side", f"{_vertices(straight)}: the side may bend there"))
     if result.radius is not None:
@@ -60,8 +60,12 @@ def _vertices(chosen: Sequence[int]) -> str:
     return f"{'vertex' if len(chosen) == 1 else 'vertices'} {', '.join(map(str, chosen))}"
 
 
-def _rim(heights: Mapping[int, Fraction]) -> str:
-    """Such as "0: 1, 3: -11/20, others 0"."""
+def rim_text(heights: Mapping[int, Fraction]) -> str:
+    """Heights by vertex, those that are not 0.
+
+    >>> rim_text({0: Fraction(1), 1: Fraction(0), 3: Fraction(-11, 20)})
+    '0: 1, 3: -11/20, others 0'
+    """
     raised = {v: height for v, height in heights.items() if height}
     if not raised:
         return "all 0"
@@ -81,7 +85,7 @@ def shapes_report(result: ShapeCount, *, everything: bool = False) -> Group:
         ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
         ("shapes", f"{number}; {result.with_multiplicity} with multiplicity"),
         ("angle deficits", cut(deficits)),
-        ("heights of the border", cut(_rim(result.rim))),
+        ("heights of the border", cut(rim_text(result.rim))),
     ]
     if result.signs:
         texts = ", ".join(result.signs)

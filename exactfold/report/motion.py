@@ -22,6 +22,7 @@ from exactfold.motion.events import (
     Event,
 )
 from exactfold.motion.motion import Motion
+from exactfold.report.branch import rim_text
 from exactfold.report.terminal import cut, facts_table, letters_text, status_text
 from exactfold.verdict import PROVED
 from exactfold.wording import counted
@@ -75,10 +76,13 @@ def _frames(motion: SheetInMotion) -> str:
 def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
     branch = motion.branch
     side = "mirror image: all signs reversed" if motion.side < 0 else "as named"
-    return [
+    rows: list[tuple[str, RenderableType]] = [
         ("branch", Text.assemble(cut(branch.sign_text), ", ", status_text(branch.status))),
         ("side", f"{'-' if motion.side < 0 else '+'} ({side})"),
     ]
+    if motion.rim is not None:
+        rows.append(("border", f"in the ratio {cut(rim_text(motion.rim))}"))
+    return rows
 
 
 def _mode_rows(motion: PanelMotion) -> list[tuple[str, RenderableType]]:

@@ -218,6 +218,7 @@ def test_formulas_of_single_branches_are_their_own() -> None:
         ("sheet", "turn"),
         ("sheet", "read_sheet"),
         ("flat_folds", "close_flat"),
+        ("reduced", "check_convex"),
         ("reduced", "closed"),
         ("reduced", "emptied_sheet"),
     }

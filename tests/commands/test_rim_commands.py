@@ -10,6 +10,7 @@ import pytest
 from running import error_class, run
 
 from exactfold import checker, delaunay, families, write_fold
+from exactfold.problem.rims import default_rim
 from exactfold.schemas import schema
 
 RIM = '{"0": 1, "1": "-1/2", "2": 0.25, "3": 0, "4": 1e-1}'
@@ -103,18 +104,41 @@ def test_numbers_of_any_length_are_printed(here: Path) -> None:
         assert "5: 1000000" in " ".join(done.stdout.split())
 
 
-def test_such_a_branch_is_drawn_and_exported_and_not_followed(here: Path) -> None:
+def test_such_a_branch_is_drawn_and_exported(here: Path) -> None:
     for options in (["--signs", "+-", "--rim", "rim.json"], ["--branch", "+-"], ["--up", "5"]):
         done = run("draw", "pentagon.fold", *options, "-o", "a.svg")
         assert done.exit_code == 0
         assert "branch +-" in Path("a.svg").read_text()
     exported = run("export", "pentagon.fold", "--signs", "+-", "--rim", "rim.json", "-o", "e.fold")
     assert exported.exit_code == 0
-    for name, signs in (("pentagon.fold", "+-"), ("six.fold", "+")):
-        refused = run("fold", name, "--signs", signs)
-        assert refused.exit_code == 4
-        assert "do not name a motion of a sheet with" in refused.stderr
-        assert "rim=" not in refused.stderr
+
+
+def test_such_a_branch_is_followed_and_proved(here: Path) -> None:
+    options = ["--signs", "+-", "--rim", "rim.json", "--until", "5deg", "--frames", "2"]
+    done = run("fold", "pentagon.fold", *options, "--certificate", "c.json")
+    assert done.exit_code == 0
+    said = "border in the ratio 0: 1, 1: -1/2, 2: 1/4, 4: 1/10, others 0"
+    assert said in " ".join(done.stdout.split())
+    claims = checker.check(checker.load(Path("c.json").read_text()))
+    assert claims["rim"] == ["1", "-1/2", "1/4", "0", "1/10"]
+    # Without a file the rim is that of a saddle; with one vertex inside no signs are needed.
+    found = json.loads(run("fold", "six.fold", "--until", "1deg", "--json").stdout)
+    jsonschema.validate(found, schema("motion"))
+    assert found["theory"] == "branches"
+    rim = default_rim(families.single_vertex(6))
+    assert found["rim"] == {str(v): str(h) for v, h in rim.items()}
+
+
+def test_what_a_rim_does_not_go_with_is_refused(here: Path) -> None:
+    for options, reason in (
+        (["six.fold", "--rim", "rim.json", "--branch", "1"], "--rim goes with --signs or --up"),
+        (["pentagon.fold", "--rim", "rim.json", "--modes", "1"], "--modes is for motions of rigid"),
+        (["square-twist", "--rim", "rim.json"], "--rim is for branches of triangulated sheets"),
+        (["pentagon.fold", "--rim", "six.fold"], "six.fold"),
+    ):
+        done = run("fold", *options)
+        assert done.exit_code in (2, 3)
+        assert reason in done.stderr
 
 
 def test_all_assignments(here: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 
 import mpmath
@@ -13,8 +14,14 @@ from exactfold.motion.piece import PARAMETER_BITS, Ball
 from exactfold.motion.tube import ROW_BITS, Tube
 
 
-def newton(framework: Framework, tube: Tube, parameter: int) -> list[Fraction]:
-    """x(s) with 60 digits, from the middle of the tube; at 240 bits of precision or more."""
+def newton(
+    framework: Framework, tube: Tube, parameter: int, rim: Mapping[int, Fraction] | None = None
+) -> list[Fraction]:
+    """x(s) with 60 digits, from the middle of the tube; at 240 bits of precision or more.
+
+    With a rim there are four more unknowns: the heights of the border are (l, a, b, c) times
+    (rim, x, y, 1).
+    """
     place = {int(v): 3 * k for k, v in enumerate(framework.free)}
     flat = [[fmpq(x, 1 << framework.bits) for x in (*p, 0)] for p in framework.points]
     one = 1 << tube.bits
@@ -23,8 +30,10 @@ def newton(framework: Framework, tube: Tube, parameter: int) -> list[Fraction]:
     s = fmpq(parameter, 1 << PARAMETER_BITS)
     n = len(centre)
     x = [arb(fmpq(c, one)) for c in tube.enclosure(parameter).centre]
+    x += [arb(0)] * (0 if rim is None else 4)
+    size = len(x)
     for _ in range(5):
-        matrix, right = [[arb(0)] * n for _ in range(n)], []
+        matrix, right = [[arb(0)] * size for _ in range(size)], []
         for e, (i, j) in enumerate(framework.edges.tolist()):
             ends = [(place[v], sign) for v, sign in ((i, 1), (j, -1)) if v in place]
             d = [sum((sign * x[k + a] for k, sign in ends), arb(0)) for a in range(3)]
@@ -33,13 +42,20 @@ def newton(framework: Framework, tube: Tube, parameter: int) -> list[Fraction]:
             for k, sign in ends:
                 for a in range(3):
                     matrix[e][k + a] = sign * (u[a] + d[a])
-        matrix[n - 1] = [arb(t) for t in row]
-        gap = sum((arb(t) * (a - c) for t, a, c in zip(row, x, centre, strict=True)), arb(0))
+        for v, height in () if rim is None else rim.items():
+            line = matrix[len(right)]
+            height = fmpq(height.numerator, height.denominator)
+            line[n:] = [arb(c) for c in (height, *flat[v][:2], 1)]
+            if v in place:
+                line[place[v] + 2] = arb(-1)
+            right.append([sum((a * b for a, b in zip(line, x, strict=True)), arb(0))])
+        matrix[-1][:n] = [arb(t) for t in row]
+        gap = sum((arb(t) * (a - c) for t, a, c in zip(row, x[:n], centre, strict=True)), arb(0))
         right.append([gap - s])
         step = arb_mat(matrix).solve(arb_mat(right))
         x = [(a - step[k, 0]).mid() for k, a in enumerate(x)]
-    assert max(abs(float(step[k, 0])) for k in range(n)) < 1e-55
-    return [Fraction(int(q.p), int(q.q)) for q in (a.mid().fmpq() for a in x)]
+    assert max(abs(float(step[k, 0])) for k in range(size)) < 1e-55
+    return [Fraction(int(q.p), int(q.q)) for q in (a.mid().fmpq() for a in x[:n])]
 
 
 def holds(ball: Ball, x: list[Fraction]) -> bool:
@@ -47,8 +63,13 @@ def holds(ball: Ball, x: list[Fraction]) -> bool:
     return all(abs(a * one - c) <= r for a, c, r in zip(x, ball.centre, ball.radii, strict=True))
 
 
-def assert_holds_the_node(patch: FlatPatch, box: Ball) -> None:
-    """The framework with a rigid patch, written down anew and solved by mpmath."""
+def assert_holds_the_node(
+    patch: FlatPatch, box: Ball, rim: Mapping[int, Fraction] | None = None
+) -> None:
+    """The framework with a rigid patch, written down anew and solved by mpmath.
+
+    With a rim the heights of five vertices of the border are always dependent on (rim, x, y, 1).
+    """
     framework = patch.framework
     with mpmath.workdps(60):
         one = mpmath.mpf(1 << framework.bits)
@@ -59,6 +80,12 @@ def assert_holds_the_node(patch: FlatPatch, box: Ball) -> None:
         weights = {
             v: [mpmath.mpf(w.numerator) / w.denominator for w in row]
             for v, row in patch.weights.items()
+        }
+
+        border = list(rim or ())
+        fives = [[*border[:4], v] for v in border[4:]]
+        row = {
+            v: [1, *flat[v][:2], mpmath.mpf(rim[v].numerator) / rim[v].denominator] for v in border
         }
 
         def places(unknowns):
@@ -73,10 +100,11 @@ def assert_holds_the_node(patch: FlatPatch, box: Ball) -> None:
 
         def equations(*unknowns):
             x = places(unknowns)
-            return [
+            lengths = [
                 sum((x[i][a] - x[j][a]) ** 2 - (flat[i][a] - flat[j][a]) ** 2 for a in range(3))
                 for i, j in patch.bars.tolist()
             ]
+            return [*lengths, *(mpmath.det([[*row[v], x[v][2]] for v in five]) for five in fives)]
 
         free = {int(v): k for k, v in enumerate(framework.free)}
         centre = [mpmath.mpf(c) / (1 << box.bits) for c in box.centre]
