@@ -35,6 +35,8 @@ def rim_match_document(found: RimMatch, name: str | None = None) -> dict[str, An
         "matches": [] if found.branch is None else [_match(found)],
         "ways": _ways(found),
         "reasons": list(reasons(found)),
+        "together": None,
+        "never": None,
         "vertices": [] if found.starts is not REFUTED else sorted(conflicts),
         "seconds": round(found.seconds, 3),
     }

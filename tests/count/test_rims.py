@@ -170,9 +170,8 @@ def test_errors_of_heights_name_the_vertex() -> None:
     assert flat.value.vertices == TWO.boundary
 
 
-def test_what_is_no_single_motion_is_not_followed() -> None:
-    with pytest.raises(NotFollowedError, match="6 boundary vertices"):
-        follow(find_branch(TWO, "+-"))
+def test_rims_are_followed_and_deficits_are_not() -> None:
+    assert follow(find_branch(TWO, "+-"), frames=2).rim == default_rim(TWO)
     curved = find_branch("two-vertex", "+-", curvature={4: 1})
     with pytest.raises(NotFollowedError, match="angle deficits"):
         follow(curved)
