@@ -14,5 +14,5 @@ Definition others :=
    key_energy, no_zero_at_infinity, definite_stress, jacobian_nonsingular, jacobian_singular,
    simple_iff_no_flat_star, different_sign_vectors, list_of_solutions, rigid,
    every_solution_on_a_branch, branch_has_one_representative, at_most_2_to_the_n,
-   two_branches_per_pair, unique, cone_positive, sheet_of, square_has_two_domes, square_has_at_most_two_branches).
+   two_branches_per_pair, unique, cone_positive, sheet_of, shapes, at_most, exactly).
 Print Assumptions others.

@@ -1,34 +1,51 @@
-(** A square with one vertex inside: the hypotheses of a sheet can be met, and are decided by
-    computation.  `exactfold export PATTERN.fold --coq` writes such a file. *)
+(** A sheet, written by exactfold.  Coordinates are multiplied by 840. *)
 From Coq Require Import Reals ZArith List Lra.
 From Exactfold Require Import Vectors Nappes Sheet Flat Complex Theorems Branches Drawing.
 Import ListNotations.
 Open Scope nat_scope.
 
-Definition d : drawing := {|
-  points := [(0, 0); (4, 0); (4, 4); (0, 4); (1, 2)]%Z;
-  inside := [4];
+Definition sheet_drawing : drawing := {|
+  points := [(0, 0); (840, 0); (840, 840); (0, 840); (280, 336); (525, 480)]%Z;
+  inside := [4; 5];
   border := [0; 1; 2; 3];
-  triangles := [(0, 1, 4); (1, 2, 4); (2, 3, 4); (3, 0, 4)];
-  fans_of := [[1; 4; 3]; [2; 4; 0]; [3; 4; 1]; [0; 4; 2]; [0; 1; 2; 3; 0]]
+  triangles := [(0, 1, 4); (1, 5, 4); (1, 2, 5); (2, 3, 5); (3, 4, 5); (0, 4, 3)];
+  fans_of := [[1; 4; 3]; [2; 5; 4; 0]; [3; 5; 1]; [0; 4; 5; 2]; [0; 1; 5; 3; 0]; [1; 2; 3; 4; 1]]
 |}.
-Definition square : sheet := sheet_of d (eq_refl true).
 
-(** With any heights of the rim there are exactly two shapes with curvature 1 at the vertex. *)
-Theorem square_has_two_domes (r : vec) : exists l : list vec, length l = 2 /\ NoDup l /\
-  forall h, In h l -> has_rim square r h /\ solves square (fun _ => 1%R) h.
+(** The hypotheses of a convex sheet, decided by computation. *)
+Lemma sheet_checked : check sheet_drawing = true.
+Proof. vm_compute. reflexivity. Qed.
+Definition this_sheet : sheet := sheet_of sheet_drawing sheet_checked.
+
+(** With heights of the rim and curvatures > 0: 2^2 shapes. *)
+Theorem shapes (k : nat -> R) (r : vec) : (forall v, In v [4; 5] -> (0 < k v)%R) ->
+  exists l : list vec, length l = 2 ^ 2 /\ NoDup l /\
+    forall h, In h l <-> has_rim this_sheet r h /\ solves this_sheet k h.
 Proof.
-  destruct (list_of_solutions square (fun _ => 1%R) r) as (l & Len & Sol & Once); [intros; lra|].
-  exists l. split; [exact Len|]. split; [|intros h; apply Sol].
-  apply Once. intros h _ Hs v Hv. left. rewrite (Hs v Hv). lra.
+  intros P. destruct (list_of_solutions this_sheet k r) as (l & Len & Sol & Once).
+  - intros v Hv. apply Rlt_le, P, Hv.
+  - exists l. split; [exact Len|]. split; [|exact Sol].
+    apply Once. intros h _ Hs v Hv. left. rewrite (Hs v Hv). apply P, Hv.
 Qed.
 
-Theorem square_has_at_most_two_branches : exists l : list vec, length l = 2 /\
-  forall z, complex_solution square z ->
-    complex_affine square z \/ exists s h, In h l /\ on_branch square z s h.
+Lemma corners : cross (sub (at_R sheet_drawing 1) (at_R sheet_drawing 0))
+  (sub (at_R sheet_drawing 2) (at_R sheet_drawing 0)) <> 0%R.
+Proof. rewrite cross_IZR. now apply (IZR_neq _ 0). Qed.
+
+(** At most 2^2 branches, all real; as many if no star is flat on any of them. *)
+Theorem at_most : exists l : list vec, length l = 2 ^ 2 /\
+  (forall h, In h l <-> representative this_sheet 3 h) /\
+  forall z, complex_solution this_sheet z ->
+    complex_affine this_sheet z \/ exists s h, In h l /\ on_branch this_sheet z s h.
+Proof. exact (at_most_2_to_the_n this_sheet 0 1 2 3 eq_refl corners). Qed.
+
+Theorem exactly :
+  (forall h, representative this_sheet 3 h ->
+    forall v, In v [4; 5] -> ~ flat_star this_sheet v h) ->
+  exists l : list vec, length l = 2 ^ 2 /\ NoDup l /\
+    forall h, In h l <-> representative this_sheet 3 h.
 Proof.
-  destruct (at_most_2_to_the_n square 0 1 2 3 eq_refl) as (l & Len & _ & Sol).
-  - change (cross (sub (at_R d 1) (at_R d 0)) (sub (at_R d 2) (at_R d 0)) <> 0%R).
-    rewrite cross_IZR. now apply (IZR_neq _ 0).
-  - now exists l.
+  intros NF. destruct (branches this_sheet 0 1 2 3 eq_refl corners NF)
+    as (l & Len & Once & Sol & _).
+  now exists l.
 Qed.

@@ -146,6 +146,7 @@ TAKES_PATTERN = {
 }
 
 TAKES_PATTERN_ELSEWHERE = {
+    "bridges.to_coq",
     "bridges.to_networkx",
     "bridges.to_pyrigi",
     "bridges.to_trimesh",

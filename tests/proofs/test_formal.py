@@ -7,6 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from exactfold.bridges import to_coq
+from exactfold.errors import NotApplicableError
+from exactfold.pattern.crease_pattern import CreasePattern
+
 ROOT = Path(__file__).parent.parent.parent
 FORMAL = ROOT / "proofs" / "formal"
 SOURCES = {path.name: path.read_text(encoding="utf-8") for path in sorted(FORMAL.glob("*.v"))}
@@ -77,6 +81,23 @@ def test_the_assumptions_of_every_theorem_are_printed() -> None:
     }
     assert len(theorems) > 20
     assert theorems - set(re.findall(r"\w+", without_comments(text))) == set()
+
+
+def test_the_example_is_what_is_written_of_a_pattern() -> None:
+    assert to_coq("two-vertex") == SOURCES["Example.v"]
+
+
+def test_a_straight_corner_is_not_among_the_first_three_of_the_border() -> None:
+    tent = CreasePattern(
+        [(0, 0), (1, 0), (2, 0), (1, 3), (1, 1)], [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+    )
+    assert "border := [1; 2; 3; 0];" in to_coq(tent)
+
+
+def test_a_reflex_corner_is_refused() -> None:
+    dart = CreasePattern([(0, 0), (4, -4), (1, 0), (4, 4)], [(0, 1, 2), (0, 2, 3)])
+    with pytest.raises(NotApplicableError, match="vertex 2 is reflex"):
+        to_coq(dart)
 
 
 @pytest.mark.slow
