@@ -20,6 +20,8 @@ if TYPE_CHECKING:  # as in `framework`
 _NEWTON = 30
 _DENSE = 60
 """Unknowns up to which matrices are dense, so that SciPy, which takes a while, is not loaded."""
+_SINGULAR = 2.0**48
+"""What the largest entries of a matrix and of its inverse may have as a product."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -151,8 +153,11 @@ def _factors(framework: Framework, y: FloatArray, held: int) -> SuperLU | _Inver
         return factorised(bordered(blown_up_jacobian(framework, y), held))
     last = np.zeros((1, framework.size))
     last[0, held] = 1.0
-    matrix = framework.dense(_blown_up_rows(framework, y, 0.0))
-    return _Inverse(np.linalg.inv(np.concatenate([matrix, last])))
+    matrix = np.concatenate([framework.dense(_blown_up_rows(framework, y, 0.0)), last])
+    inverse = np.linalg.inv(matrix)
+    if not np.abs(inverse).max() * np.abs(matrix).max() < _SINGULAR:
+        raise np.linalg.LinAlgError("singular to the precision of floats")
+    return _Inverse(inverse)
 
 
 def _newton(
