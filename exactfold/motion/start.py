@@ -18,11 +18,10 @@ if TYPE_CHECKING:  # as in `framework`
     from scipy.sparse.linalg import SuperLU
 
 _NEWTON = 30
-_SINGULAR = 1e13
-"""Matrices with a larger condition are taken for singular."""
-
 _DENSE = 60
 """Unknowns up to which matrices are dense, so that SciPy, which takes a while, is not loaded."""
+_SINGULAR = 2.0**48
+"""What the largest entries of a matrix and of its inverse may have as a product."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -159,8 +158,8 @@ def _factors(framework: Framework, y: FloatArray, held: int) -> SuperLU | _Inver
     last[0, held] = 1.0
     matrix = np.concatenate([framework.dense(_blown_up_rows(framework, y, 0.0)), last])
     inverse = np.linalg.inv(matrix)
-    if np.linalg.norm(matrix, 1) * np.linalg.norm(inverse, 1) > _SINGULAR:
-        raise np.linalg.LinAlgError("singular in floats")
+    if not np.abs(inverse).max() * np.abs(matrix).max() < _SINGULAR:
+        raise np.linalg.LinAlgError("singular to the precision of floats")
     return _Inverse(inverse)
 
 
