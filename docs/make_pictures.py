@@ -8,6 +8,7 @@ from exactfold import PROVED, count_ways, find_branch, follow, load, open_patter
 from exactfold.data import example_path
 from exactfold.motion import follow_panels
 from exactfold.pattern import CreasePattern
+from exactfold.problem.rims import default_rim
 from exactfold.report import (
     branch_way,
     motion_animation,
@@ -44,7 +45,15 @@ def pictures() -> dict[str, str]:
     for name, (pattern, component) in PANELS.items():
         motion = follow_panels(count_ways(pattern), component=component)
         panels[f"{name}.svg"] = motion_stills(motion, 5, f"{pattern}, component {component}")
-    return branches | panels | drawings() | {"folding.svg": folding(), "rim.svg": rim()}
+    others = {"folding.svg": folding(), "rim.svg": rim(), "rim-path.svg": rim_path()}
+    return branches | panels | drawings() | others
+
+
+def rim_path() -> str:
+    """A sheet with six corners, folded with the heights of its border in a given ratio."""
+    pattern = load("waterbomb")
+    branch = find_branch(pattern, "+", rim=default_rim(pattern))
+    return motion_stills(follow(branch, until="150deg"), 5, "waterbomb, branch +")
 
 
 def rim() -> str:

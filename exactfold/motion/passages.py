@@ -70,11 +70,12 @@ class Passage:
     def near(self, time: Fraction) -> tuple[Interval, Ball]:
         """Bounds of the time of a point of the arc near a given time, and a box that holds it.
 
-        In the unit of the framework. Close to the node it has the width of the box of the node. A
-        time that is as near to that of the exit as this is known is taken for it.
+        In the unit of the framework. Close to the node it has the width of the box of the node. Of
+        an arc that ends at its node a time as near to that of the node as this is known is its.
         """
         at = self.exit
-        if time < 2 * self.left[0] - self.left[1]:
+        last = self.left[0] if at else 2 * self.left[0] - self.left[1]
+        if time < last:
             at = self.tube.near(float(time - self.entered[0]), self.entry, self.exit)
         return _refined(self.tube, at, self.time(at))
 

@@ -66,7 +66,7 @@ def test_the_answers_are_those_of_the_list_of_all_assignments():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [1, 2])
 def test_the_answers_are_those_of_longer_lists(seed):
     rng = random.Random(seed)
     inside = [(rng.randint(2, 12), rng.randint(1, 9)) for _ in range(3)]

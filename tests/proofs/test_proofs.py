@@ -68,7 +68,16 @@ def test_every_proof_holds_and_the_pages_show_it() -> None:
         assert (folder / name).read_text(encoding="utf-8") == text
 
 
-LONGEST = {*LONG, "curvature_expansion", "hub_balance", "panels", "wheel_stress"}
+LONGEST = {
+    *LONG,
+    "curvature_expansion",
+    "hub_balance",
+    "panels",
+    "wheel_stress",
+    "kapovich_millson",
+    "vertex_eigenvalues",
+    "vertex_forms",
+}
 """Those whose changes take more than five seconds to try: by hand, with `-m survey`."""
 
 
