@@ -67,7 +67,7 @@ def test_flat_vertices_and_the_exact_engine_agree():
         assert [b.multiplicity for b in paths.branches] == [b.multiplicity for b in exact.branches]
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_flat_vertices_by_boxes_and_by_exact_classes_agree(monkeypatch):
     pattern = hypar(2, twist=0)
     exact = count_branches(pattern)

@@ -10,7 +10,7 @@ from exactfold import PROVED, certificate, checker, count_branches, random_squar
 @pytest.mark.parametrize(
     "interior",
     [
-        pytest.param(k, marks=getattr(pytest.mark, "slow" if k < 7 else "survey"))
+        pytest.param(k, marks=getattr(pytest.mark, "slow" if k < 6 else "survey"))
         for k in range(2, 9)
     ],
 )

@@ -68,7 +68,7 @@ def test_undecided_where_signs_stay_open(monkeypatch):
     [
         "cross",
         "straight-path",
-        pytest.param("ring", marks=pytest.mark.slow),
+        pytest.param("ring", marks=pytest.mark.survey),
         pytest.param("waterbomb-pair", marks=pytest.mark.slow),
     ],
 )

@@ -159,7 +159,7 @@ def test_the_arcs_of_a_loop_are_as_long_as_the_loop(graph):
 @pytest.mark.parametrize(
     ("number", "seed"),
     [
-        pytest.param(4, 75, marks=pytest.mark.slow),
+        pytest.param(4, 75, marks=pytest.mark.survey),
         pytest.param(5, 0, marks=pytest.mark.survey),
     ],
 )

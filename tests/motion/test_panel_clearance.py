@@ -208,7 +208,7 @@ def test_one_fold_is_claimed_clear_as_far_as_the_checker_sees():
     assert low < proof.contacts.clear
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_a_large_sheet_that_folds_flat_is_apart_until_then():
     motion = follow_panels(miura(4, 5), frames=2)
     found = prove_contacts(motion)

@@ -140,7 +140,7 @@ def test_faces_at_a_vertex_whose_other_corners_touch_are_not_apart():
     assert apart_at_corner([v, a, b, (1, 0, 1e-6), (1, -1, 1)])
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_positions_within_the_error_are_all_apart():
     rng = np.random.default_rng(5)
     shown = 0

@@ -39,7 +39,7 @@ def test_exceptions_are_those_of_the_counts():
     )
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_degrees_of_flat_vertices_and_what_causes_them():
     run = run_study("flat", numbers={2: 200, 4: 200})
     exceptional = [row for row in run.rows if row["flat"]]

@@ -30,7 +30,7 @@ def sheet(browser):
         return np.asarray(found.convert("RGB")).astype(int)
 
 
-def test_the_sheet_is_drawn_in_space_and_folds(browser):
+def is_drawn_in_space_and_folds(browser):
     browser.slide(0)
     flat = sheet(browser)
     browser.slide(700)
@@ -42,7 +42,7 @@ def test_the_sheet_is_drawn_in_space_and_folds(browser):
     assert np.ptp(z) > 0.05
 
 
-def test_clicks_and_keys_reach_the_page(browser):
+def clicks_and_keys_reach_it(browser):
     before = browser.shown()[0]
     browser.click('[data-vertex="4"] .reach')
     assert browser.shown()[0] != before
@@ -54,7 +54,7 @@ def test_clicks_and_keys_reach_the_page(browser):
     assert browser.shown()[2]
 
 
-def test_nothing_is_complained_of(browser):
+def nothing_is_complained_of(browser):
     assert browser.complaints() == []
     browser.run("setTimeout(() => { throw new Error('heard') })")
     browser.until("true")
@@ -63,3 +63,10 @@ def test_nothing_is_complained_of(browser):
             break
         browser.run("new Promise((done) => setTimeout(done, 50))")
     assert "heard" in browser.complaints()[0]
+
+
+def test_the_page_in_firefox(browser):
+    """One test for all, as each process would start Firefox again."""
+    is_drawn_in_space_and_folds(browser)
+    clicks_and_keys_reach_it(browser)
+    nothing_is_complained_of(browser)
