@@ -6,7 +6,7 @@ multiples of 1/denominator some squares are exceptions. A row is one random squa
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -18,8 +18,9 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import collinear_folds
 from exactfold.studies.lines import Lines, SignArray
 from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.statistics import interval, interval_text
+from exactfold.studies.statistics import interval_text
 from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.tallies import draw_shares, tallied
 from exactfold.verdict import PROVED
 
 DENOMINATORS: Final = (16, 64, 256, 1024)
@@ -113,16 +114,13 @@ class _Tally:
         return self.squares - self.undecided
 
 
-def _tallies(rows: Iterable[Row]) -> dict[tuple[int, int], _Tally]:
-    found: dict[tuple[int, int], _Tally] = defaultdict(_Tally)
-    for row in rows:
-        found[row["interior"], row["denominator"]].add(row)
-    return dict(sorted(found.items()))
+def _key(row: Row) -> tuple[int, int]:
+    return row["interior"], row["denominator"]
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """How many squares are exceptions, by grid, and the stars that are flat on them."""
-    tallies = _tallies(rows)
+    tallies = tallied(rows, _Tally, _key)
     lines = tuple(
         (
             n,
@@ -189,24 +187,14 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of exceptions against the grid."""
-    tallies = _tallies(rows)
+    tallies = tallied(rows, _Tally, _key)
 
     def shares(axes: Any) -> None:
         for n in sorted({n for n, _ in tallies}):
             points = [(d, t) for (m, d), t in tallies.items() if m == n and t.exceptions]
-            bounds = [interval(t.exceptions, t.proved) for _, t in points]
-            middle = [t.exceptions / t.proved for _, t in points]
-            axes.errorbar(
-                [d for d, _ in points],
-                middle,
-                [
-                    [m - low for m, (low, _) in zip(middle, bounds, strict=True)],
-                    [high - m for m, (_, high) in zip(middle, bounds, strict=True)],
-                ],
-                fmt="o-",
-                label=f"$V_i = {n}$",
-                **of_size(n),
-            )
+            counts = [(t.exceptions, t.proved) for _, t in points]
+            places = [d for d, _ in points]
+            draw_shares(axes, places, counts, 1.0, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xscale("log", base=2)
         axes.set_yscale("log")
         axes.set_xlabel("denominator of the grid")

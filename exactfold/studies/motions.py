@@ -6,7 +6,7 @@ the flat state (docs/motions.md), and all its branches until two faces touch (do
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -21,6 +21,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.solve.dense_newton import sign_vectors
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.tallies import draw_distribution, interior_of, tallied
 from exactfold.verdict import PROVED, UNDECIDED
 
 ENDS: Final = ("flat-fold", "contact", "node", "open")
@@ -110,16 +111,9 @@ class _Tally:
             self.lengths.append((loop["length"][0], loop["length"][1]))
 
 
-def _tallies(rows: Iterable[Row]) -> dict[int, _Tally]:
-    found: dict[int, _Tally] = defaultdict(_Tally)
-    for row in rows:
-        found[row["interior"]].add(row)
-    return dict(sorted(found.items()))
-
-
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """Loops by the signs that flip, their lengths, and what ends motions first."""
-    tallies = _tallies(rows)
+    tallies = tallied(rows, _Tally, interior_of)
     loops = tuple(
         (
             n,
@@ -189,13 +183,12 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The distribution of the lengths of loops."""
-    tallies = {n: t for n, t in _tallies(rows).items() if t.lengths}
+    tallies = {n: t for n, t in tallied(rows, _Tally, interior_of).items() if t.lengths}
 
     def lengths(axes: Any) -> None:
         for n, tally in tallies.items():
-            values = sorted(low for low, _ in tally.lengths)
-            shares = [100 * (k + 1) / len(values) for k in range(len(values))]
-            axes.plot(values, shares, label=f"$V_i = {n}$", drawstyle="steps-post", **of_size(n))
+            lengths_of = [low for low, _ in tally.lengths]
+            draw_distribution(axes, lengths_of, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xlabel("length of a loop, in sides of the square")
         axes.set_ylabel("loops (%)")
         axes.legend()

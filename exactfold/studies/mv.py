@@ -6,7 +6,6 @@ letters, the vertex signs and the boundary saddle.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -17,6 +16,7 @@ from exactfold.studies.lines import UNKNOWN, Lines
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
 from exactfold.studies.table1 import same_side
+from exactfold.studies.tallies import interior_of, tallied
 from exactfold.verdict import PROVED
 
 
@@ -102,16 +102,9 @@ def _first(seed: int | None, other: int) -> int:
     return other if seed is None else min(seed, other)
 
 
-def _tallies(rows: Iterable[Row]) -> dict[int, _Tally]:
-    found: dict[int, _Tally] = defaultdict(_Tally)
-    for row in rows:
-        found[row["interior"]].add(row)
-    return dict(sorted(found.items()))
-
-
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """How many assignments occur, and what tells branches with equal letters apart."""
-    tallies = _tallies(rows)
+    tallies = tallied(rows, _Tally, interior_of)
     occurring = tuple(
         (
             size,
@@ -171,7 +164,7 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of all assignments that occurs, against the number of vertices."""
-    tallies = {size: t for size, t in _tallies(rows).items() if t.known}
+    tallies = {size: t for size, t in tallied(rows, _Tally, interior_of).items() if t.known}
 
     def shares(axes: Any) -> None:
         sizes = sorted(tallies)

@@ -6,7 +6,7 @@ between 1 - size and 1 + size (`exactfold.problem.perturbed`). All zeros are pro
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -18,8 +18,9 @@ from exactfold.problem.perturbation import perturbed
 from exactfold.problem.sign_rows import Functionals
 from exactfold.solve.homotopy_ends import homotopy
 from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.statistics import interval, percent
+from exactfold.studies.statistics import percent
 from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.tallies import draw_shares, tallied
 from exactfold.verdict import PROVED
 
 SIZES: Final = ("0", "1/1000", "1/100", "1/10", "1/2")
@@ -101,11 +102,13 @@ class _Tally:
         return self.systems - self.undecided
 
 
+def _key(row: Row) -> tuple[int, int]:
+    return row["interior"], SIZES.index(row["size"])
+
+
 def _tallies(rows: Iterable[Row]) -> dict[tuple[int, str], _Tally]:
-    found: dict[tuple[int, str], _Tally] = defaultdict(_Tally)
-    for row in rows:
-        found[row["interior"], row["size"]].add(row)
-    return dict(sorted(found.items(), key=lambda item: (item[0][0], SIZES.index(item[0][1]))))
+    found = tallied(rows, _Tally, _key)
+    return {(n, SIZES[place]): tally for (n, place), tally in found.items()}
 
 
 def _share(part: int, whole: int) -> str | None:
@@ -151,19 +154,9 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         places = dict(zip(SIZES, range(len(SIZES)), strict=True))
         for n in sorted({n for n, _ in tallies}):
             points = [(places[s], t) for (m, s), t in tallies.items() if m == n and t.proved]
-            bounds = [interval(t.some, t.proved) for _, t in points]
-            middle = [100 * t.some / t.proved for _, t in points]
-            axes.errorbar(
-                [x for x, _ in points],
-                middle,
-                [
-                    [m - 100 * low for m, (low, _) in zip(middle, bounds, strict=True)],
-                    [100 * high - m for m, (_, high) in zip(middle, bounds, strict=True)],
-                ],
-                fmt="o-",
-                label=f"$V_i = {n}$",
-                **of_size(n),
-            )
+            counts = [(t.some, t.proved) for _, t in points]
+            at = [x for x, _ in points]
+            draw_shares(axes, at, counts, 100.0, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xticks(range(len(SIZES)), SIZES)
         axes.set_xlabel("largest relative change of a coefficient")
         axes.set_ylabel("systems with zeros\nthat are not real (%)")

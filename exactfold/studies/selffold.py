@@ -6,7 +6,7 @@ A row is one random square and one of its branches, drawn at random (docs/actuat
 from __future__ import annotations
 
 import random
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -15,6 +15,7 @@ from exactfold.actuation.drive import actuate
 from exactfold.errors import UnprovedRivalsError
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.tallies import draw_distribution, interior_of, tallied
 from exactfold.verdict import PROVED, UNDECIDED
 
 
@@ -70,16 +71,9 @@ class _Tally:
         self.slack = max(self.slack, row["best"] - row["margin"])
 
 
-def _tallies(rows: Iterable[Row]) -> dict[int, _Tally]:
-    found: dict[int, _Tally] = defaultdict(_Tally)
-    for row in rows:
-        found[row["interior"]].add(row)
-    return dict(sorted(found.items()))
-
-
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """The dimension of Tachi and Hull, and the best margins."""
-    tallies = _tallies(rows)
+    tallies = tallied(rows, _Tally, interior_of)
     dimensions = tuple(
         (
             n,
@@ -126,13 +120,11 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The distribution of the best margins."""
-    tallies = {n: t for n, t in _tallies(rows).items() if t.margins}
+    tallies = {n: t for n, t in tallied(rows, _Tally, interior_of).items() if t.margins}
 
     def margins(axes: Any) -> None:
         for n, tally in tallies.items():
-            values = sorted(tally.margins)
-            shares = [100 * (k + 1) / len(values) for k in range(len(values))]
-            axes.plot(values, shares, label=f"$V_i = {n}$", drawstyle="steps-post", **of_size(n))
+            draw_distribution(axes, tally.margins, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xlabel("best margin, torques of size at most 1")
         axes.set_ylabel("branches (%)")
         axes.legend()

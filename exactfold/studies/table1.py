@@ -19,6 +19,7 @@ from exactfold.studies.lines import UNKNOWN, Lines, SignArray
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.statistics import agreement, interval, interval_text, same_probability
 from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.tallies import interior_of, tallied
 from exactfold.verdict import PROVED
 
 PAPER: Final = {
@@ -143,16 +144,9 @@ class _Tally:
                 self.closest, self.closest_seed = row["closest"], row["seed"]
 
 
-def _tallies(rows: Iterable[Row]) -> dict[int, _Tally]:
-    found: dict[int, _Tally] = defaultdict(_Tally)
-    for row in rows:
-        found[row["interior"]].add(row)
-    return dict(sorted(found.items()))
-
-
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """The table of the paper, the comparison with it, and how close branches come."""
-    tallies = _tallies(rows)
+    tallies = tallied(rows, _Tally, interior_of)
     return [_main(tallies), _comparison(tallies), _distances(tallies)]
 
 
@@ -256,7 +250,7 @@ def _median(histogram: dict[int, int]) -> int:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of squares with branches that share their letters, and the digits needed."""
-    tallies = {size: t for size, t in _tallies(rows).items() if t.digits}
+    tallies = {size: t for size, t in tallied(rows, _Tally, interior_of).items() if t.digits}
 
     def shares(axes: Any) -> None:
         for label, points in (
