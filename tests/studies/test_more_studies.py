@@ -9,6 +9,7 @@ from exactfold import count_branches, random_square
 from exactfold.algebra.groebner_bases import quotient_algebra
 from exactfold.algebra.hermite import hermite_counts
 from exactfold.problem import BranchSystem, perturbed
+from exactfold.rigidity.functionals import saddle_functional
 from exactfold.studies import run_study
 from exactfold.studies.flat import has_straight_folds
 from exactfold.studies.lines import Lines
@@ -62,6 +63,9 @@ def test_letters_are_those_of_the_counts():
         known = {min(b.assignment_text, b.assignment_text.translate(TURNED)) for b in result}
         assert row["assignments"] == len(known)
         assert row["separated"]
+        saddle = saddle_functional(result.pattern)  # signs are those of this side
+        for branch in result:
+            assert sum(c * branch.approx_heights[v] for v, c in saddle.items()) > 0
     occurring = columns(run, "occurring")
     assert occurring["Vi"] == (4, 5)
     assert all(
