@@ -385,6 +385,8 @@ def _with_frames(
         return proof
     longest = in_floats((proof.length[1], proof.length[1]))[0]
     times = [min(time, longest) for time in proof.motion.times.tolist()]
+    if proof.node is not None and proof.motion.end == NODE:
+        times[-1] = longest  # the node itself, where floats come near to it only
     motion = with_enclosed_frames(proof.motion, framework, [frame(time) for time in times])
     if motion is None:
         return replace(proof, status=UNDECIDED, reason=_STRAYED)
