@@ -127,6 +127,11 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
         notes.append(_flat(result.still, "in every motion to second order", everything))
     if result.free:
         notes.append(f"{counted(len(result.free), 'fold')} from border to border, each free")
+    if result.second_order is None and result.rigid is not PROVED:
+        notes.append(
+            "whether it starts to fold with given mountains and valleys is often known even so: "
+            "see `exactfold match`"
+        )
     if result.warning is not None:
         notes.append(f"warning: {result.warning}")
     return notes
