@@ -142,7 +142,7 @@ def export(
     place: Place = None,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE.fold", help="Default, and -: stdout."),
+        typer.Option("-o", "--output", metavar="FILE", help="Default, and -: stdout."),
     ] = None,
     amount: Annotated[
         float | None,
@@ -154,6 +154,9 @@ def export(
         bool, flag("--force", text="Write a branch that is enclosed but not proved, too.")
     ] = False,
     rim: Rim = None,
+    coq: Annotated[
+        bool, flag("--coq", text="Instead: the sheet itself, for the Coq proof.")
+    ] = False,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
@@ -162,19 +165,16 @@ def export(
 
     The fold angles in it are in proportion to those of the branch, so that a
     simulator that is driven by them stays on it. A second frame shows the sheet
-    in space, to second order.
+    in space, to second order. With --coq no branch is named: the file states
+    what is proved of all branches of the sheet, and Coq verifies it.
     """
-    from exactfold.commands.export import Wanted
+    from exactfold.commands.export import Wanted, write_coq
     from exactfold.commands.given import Given
 
-    if (signs is not None) + (up is not None) + (place is not None) != 1:
-        raise UsageError("give one of --signs, --up and --branch")
-    if rim is not None and place is not None:
-        raise UsageError("--rim goes with --signs or --up")
     apart(output, pattern, rim)
     given = Given(rim)
     asked = Wanted(pattern, snap, sheet, signs, up, place, output, amount, force, as_json, given)
-    raise typer.Exit(asked.answer())
+    raise typer.Exit(write_coq(asked) if coq else asked.answer())
 
 
 @reported

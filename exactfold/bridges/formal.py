@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from textwrap import fill
 
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -10,33 +11,36 @@ from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.pattern.validate import orientation
 
 _HEAD = """\
-(** A sheet, written by exactfold.  Coordinates are multiplied by {denominator}. *)
+(** A sheet, written by exactfold.  Coordinates are multiplied by {denominator}.
+    Once `make -C proofs/formal` is done: coqc -Q proofs/formal Exactfold THIS_FILE.v *)
 From Coq Require Import Reals ZArith List Lra.
 From Exactfold Require Import Vectors Nappes Sheet Flat Complex Theorems Branches Drawing.
 Import ListNotations.
 Open Scope nat_scope.
 
 Definition sheet_drawing : drawing := {{|
-  points := [{points}]%Z;
-  inside := [{inside}];
-  border := [{border}];
-  triangles := [{triangles}];
-  fans_of := [{fans}]
+{points};
+{inside};
+{border};
+{triangles};
+{fans}
 |}}.
 
 (** The hypotheses of a convex sheet, decided by computation. *)
 Lemma sheet_checked : check sheet_drawing = true.
 Proof. vm_compute. reflexivity. Qed.
 Definition this_sheet : sheet := sheet_of sheet_drawing sheet_checked.
+Lemma size : length (inner this_sheet) = {n}.
+Proof. reflexivity. Qed.
 
 (** With heights of the rim and curvatures > 0: 2^{n} shapes. *)
-Theorem shapes (k : nat -> R) (r : vec) : (forall v, In v [{inside}] -> (0 < k v)%R) ->
+Theorem shapes (k : nat -> R) (r : vec) : (forall v, In v (inside sheet_drawing) -> (0 < k v)%R) ->
   exists l : list vec, length l = 2 ^ {n} /\\ NoDup l /\\
     forall h, In h l <-> has_rim this_sheet r h /\\ solves this_sheet k h.
 Proof.
   intros P. destruct (list_of_solutions this_sheet k r) as (l & Len & Sol & Once).
   - intros v Hv. apply Rlt_le, P, Hv.
-  - exists l. split; [exact Len|]. split; [|exact Sol].
+  - rewrite size in Len. exists l. refine (conj Len (conj _ Sol)).
     apply Once. intros h _ Hs v Hv. left. rewrite (Hs v Hv). apply P, Hv.
 Qed.
 """
@@ -53,17 +57,20 @@ Theorem at_most : exists l : list vec, length l = 2 ^ {n} /\\
   (forall h, In h l <-> representative this_sheet {d} h) /\\
   forall z, complex_solution this_sheet z ->
     complex_affine this_sheet z \\/ exists s h, In h l /\\ on_branch this_sheet z s h.
-Proof. exact (at_most_2_to_the_n this_sheet {a} {b} {c} {d} eq_refl corners). Qed.
+Proof.
+  pose proof (at_most_2_to_the_n this_sheet {a} {b} {c} {d} eq_refl corners) as H.
+  rewrite size in H. exact H.
+Qed.
 
 Theorem exactly :
   (forall h, representative this_sheet {d} h ->
-    forall v, In v [{inside}] -> ~ flat_star this_sheet v h) ->
+    forall v, In v (inside sheet_drawing) -> ~ flat_star this_sheet v h) ->
   exists l : list vec, length l = 2 ^ {n} /\\ NoDup l /\\
     forall h, In h l <-> representative this_sheet {d} h.
 Proof.
   intros NF. destruct (branches this_sheet {a} {b} {c} {d} eq_refl corners NF)
     as (l & Len & Once & Sol & _).
-  now exists l.
+  rewrite size in Len. exists l. exact (conj Len (conj Once Sol)).
 Qed.
 """
 
@@ -94,11 +101,11 @@ def to_coq(pattern: PatternLike) -> str:
     rim = _pinned_first(sheet)
     words = {
         "denominator": denominator,
-        "points": _listed(f"({x}, {y})" for x, y in points),
-        "inside": _listed(sheet.interior),
-        "border": _listed(rim),
-        "triangles": _listed(f"({a}, {b}, {c})" for a, b, c in sheet.triangles),
-        "fans": _listed(f"[{_listed(_fan(sheet, v))}]" for v in range(len(points))),
+        "points": _wrapped("points", points, "%Z"),
+        "inside": _wrapped("inside", sheet.interior),
+        "border": _wrapped("border", rim),
+        "triangles": _wrapped("triangles", sheet.triangles),
+        "fans": _wrapped("fans_of", (_listed(_fan(sheet, v)) for v in range(len(points)))),
         "n": sheet.Vi,
     }
     words |= dict(zip("abcd", rim, strict=False))
@@ -107,7 +114,14 @@ def to_coq(pattern: PatternLike) -> str:
 
 
 def _listed(items: Iterable[object]) -> str:
-    return "; ".join(map(str, items))
+    return f"[{'; '.join(map(str, items))}]"
+
+
+def _wrapped(name: str, items: Iterable[object], end: str = "") -> str:
+    """A field of the drawing, in lines of at most 100 characters."""
+    whole = (str(item).replace(" ", "\0") for item in items)
+    text = f"  {name} := {_listed(whole)}{end}"
+    return fill(text, 100, subsequent_indent="    ", break_on_hyphens=False).replace("\0", " ")
 
 
 def _fan(sheet: CreasePattern, vertex: int) -> tuple[int, ...]:

@@ -1,8 +1,13 @@
-"""`exactfold export`: a branch, found by its signs or its place in the listing, as FOLD."""
+"""`exactfold export`: a branch, found by its signs or its place in the listing, as FOLD.
+
+With `--coq` it is the sheet, as a file on which the formal proof is used.
+"""
 
 from __future__ import annotations
 
 import json
+import re
+import shlex
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,14 +22,15 @@ from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.pattern.described import described
+from exactfold.pattern.fold_writing import write_text
 from exactfold.pattern.near_degeneracy import warnings
 from exactfold.schemas import headed
-from exactfold.verdict import UNDECIDED
+from exactfold.verdict import PROVED, UNDECIDED
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """What was asked for on the command line; exactly one of `signs`, `up` and `place` is given."""
+    """What was asked for on the command line."""
 
     file: Path
     snap: Snap | None
@@ -42,9 +48,14 @@ class Wanted:
         """Find the branch, write it and say so; the exit code.
 
         Raises the errors of `read`, `chosen` and `exported`, but for
-        `UndecidedBranchError`, which is said on stderr with what `BranchFinder` gave as a reason.
+        `UndecidedBranchError`, which is said on stderr with what `BranchFinder` gave as a reason;
+        `UsageError` unless exactly one of `signs`, `up` and `place` is given.
         """
-        output = None if self.output is None or str(self.output) == "-" else self.output
+        if (self.signs is not None) + (self.up is not None) + (self.place is not None) != 1:
+            raise UsageError("give one of --signs, --up and --branch")
+        if self.given.rim is not None and self.place is not None:
+            raise UsageError("--rim goes with --signs or --up")
+        output = self.written
         if output is None and self.as_json:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
@@ -74,8 +85,51 @@ class Wanted:
         return EXIT[export.status]
 
     @property
+    def written(self) -> Path | None:
+        """The file to write, None for standard output."""
+        return None if self.output is None or str(self.output) == "-" else self.output
+
+    @property
     def _title(self) -> str | None:
         return None if str(self.file) == "/dev/stdin" else self.file.stem
+
+
+def write_coq(asked: Wanted) -> int:
+    """Write the sheet as a file for the formal proof; the exit code.
+
+    Raises the errors of `read` and `to_coq`, and `UsageError` for a file that Coq could not
+    compile by its name, and for options that name or describe a branch.
+    """
+    from exactfold.bridges.formal import to_coq
+
+    for name, value in (
+        ("--signs", asked.signs),
+        ("--up", asked.up),
+        ("--branch", asked.place),
+        ("--amount", asked.amount),
+        ("--force", asked.force or None),
+        ("--rim", asked.given.rim),
+        ("--json", asked.as_json or None),
+    ):
+        if value is not None:
+            raise UsageError(f"--coq is about all branches of the sheet: leave {name} away")
+    output = asked.written
+    if output is not None and not _MODULE.match(output.name):
+        raise UsageError(
+            f"Coq takes the name of a file for that of a module, which {output.name} cannot be: "
+            "a letter, then letters, digits and _, then .v"
+        )
+    text = to_coq(read(asked.file, asked.snap, asked.sheet, "export").pattern)
+    if output is None:
+        sys.stdout.write(text)
+    else:
+        write_text(output, text)
+        print(f"wrote {output}; after `make -C proofs/formal`, verify it with")
+        print(f"coqc -Q proofs/formal Exactfold {shlex.quote(str(output))}")
+    return EXIT[PROVED]
+
+
+_MODULE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\.v\Z", re.ASCII)
 
 
 def _summary(

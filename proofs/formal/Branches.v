@@ -118,7 +118,8 @@ Proof.
     - intros u Hu. unfold z'. now destruct in_dec.
     - intros v Hv. destruct (KC_equation S v z 0 Hv (Sol v Hv)) as (E1 & E2).
       rewrite KC_parts by now apply inner_vertex.
-      rewrite (K_vertices v (re_part z') a), (K_vertices v (im_part z') b), (K2_vertices v (re_part z') a (im_part z') b);
+      rewrite (K_vertices v (re_part z') a), (K_vertices v (im_part z') b),
+        (K2_vertices v (re_part z') a (im_part z') b);
         try assumption; try (intros u Hu; now apply Val).
       unfold a, b. rewrite !K_affine, K2_affine by assumption. unfold real. f_equal; lra. }
   intros u Hu. destruct (Val u Hu) as (Ea & Eb).
@@ -185,7 +186,8 @@ Proof.
       - intros u Hu. unfold z'. now destruct in_dec.
       - intros v Hv. destruct (Kab v Hv) as (E1 & E2).
         rewrite KC_parts by now apply inner_vertex.
-        rewrite (K_vertices v (re_part z') a), (K_vertices v (im_part z') b), (K2_vertices v (re_part z') a (im_part z') b);
+        rewrite (K_vertices v (re_part z') a), (K_vertices v (im_part z') b),
+          (K2_vertices v (re_part z') a (im_part z') b);
           try assumption; try (intros u Hu; now apply Val).
         rewrite E1, E2. unfold real. f_equal; ring. }
     exists c, g, c', g'. intros u Hu. destruct (Val u Hu) as (Ea & Eb).
@@ -202,7 +204,8 @@ Proof.
     assert (Kz : forall v, In v I -> KC S v z' = real 0).
     { intros v Hv. destruct (Kab v Hv) as (E1 & E2).
       rewrite KC_parts by now apply inner_vertex.
-      rewrite (K_vertices v (re_part z') a'), (K_vertices v (im_part z') b'), (K2_vertices v (re_part z') a' (im_part z') b');
+      rewrite (K_vertices v (re_part z') a'), (K_vertices v (im_part z') b'),
+        (K2_vertices v (re_part z') a' (im_part z') b');
         try assumption; try (intros u Hu; now apply Val).
       rewrite <- (K_polar_sheet S v a'), <- (K_polar_sheet S v b') by now apply inner_vertex.
       unfold a', b'. rewrite !K2_combine2, E1, E2 by assumption. unfold real. f_equal; ring. }
@@ -292,7 +295,8 @@ Proof.
   { intros h Hr Hs v Hv. right. split; [now apply Hs|]. apply NF; [split; assumption|assumption]. }
   destruct (list_of_solutions S (fun _ => 0) (unit b4)) as (l & Len & Sol & D); [intros; lra|]. specialize (D Reg).
   exists l. split; [assumption|]. split; [assumption|]. split; [exact Sol|]. split.
-  - intros e. destruct (one_solution_per_sign_vector S (fun _ => 0) (unit b4) e) as (h & (Hr & Hs & Hn) & U); [intros; lra|].
+  - intros e. destruct (one_solution_per_sign_vector S (fun _ => 0) (unit b4) e)
+      as (h & (Hr & Hs & Hn) & U); [intros; lra|].
     exists h. split.
     + split; [apply Sol; now split|]. intros v Hv. destruct (Hn v Hv) as (_ & P).
       pose proof (regular_sign S h v (Reg h Hr Hs) Hv) as N.

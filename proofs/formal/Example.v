@@ -1,4 +1,5 @@
-(** A sheet, written by exactfold.  Coordinates are multiplied by 840. *)
+(** A sheet, written by exactfold.  Coordinates are multiplied by 840.
+    Once `make -C proofs/formal` is done: coqc -Q proofs/formal Exactfold THIS_FILE.v *)
 From Coq Require Import Reals ZArith List Lra.
 From Exactfold Require Import Vectors Nappes Sheet Flat Complex Theorems Branches Drawing.
 Import ListNotations.
@@ -16,15 +17,17 @@ Definition sheet_drawing : drawing := {|
 Lemma sheet_checked : check sheet_drawing = true.
 Proof. vm_compute. reflexivity. Qed.
 Definition this_sheet : sheet := sheet_of sheet_drawing sheet_checked.
+Lemma size : length (inner this_sheet) = 2.
+Proof. reflexivity. Qed.
 
 (** With heights of the rim and curvatures > 0: 2^2 shapes. *)
-Theorem shapes (k : nat -> R) (r : vec) : (forall v, In v [4; 5] -> (0 < k v)%R) ->
+Theorem shapes (k : nat -> R) (r : vec) : (forall v, In v (inside sheet_drawing) -> (0 < k v)%R) ->
   exists l : list vec, length l = 2 ^ 2 /\ NoDup l /\
     forall h, In h l <-> has_rim this_sheet r h /\ solves this_sheet k h.
 Proof.
   intros P. destruct (list_of_solutions this_sheet k r) as (l & Len & Sol & Once).
   - intros v Hv. apply Rlt_le, P, Hv.
-  - exists l. split; [exact Len|]. split; [|exact Sol].
+  - rewrite size in Len. exists l. refine (conj Len (conj _ Sol)).
     apply Once. intros h _ Hs v Hv. left. rewrite (Hs v Hv). apply P, Hv.
 Qed.
 
@@ -37,15 +40,18 @@ Theorem at_most : exists l : list vec, length l = 2 ^ 2 /\
   (forall h, In h l <-> representative this_sheet 3 h) /\
   forall z, complex_solution this_sheet z ->
     complex_affine this_sheet z \/ exists s h, In h l /\ on_branch this_sheet z s h.
-Proof. exact (at_most_2_to_the_n this_sheet 0 1 2 3 eq_refl corners). Qed.
+Proof.
+  pose proof (at_most_2_to_the_n this_sheet 0 1 2 3 eq_refl corners) as H.
+  rewrite size in H. exact H.
+Qed.
 
 Theorem exactly :
   (forall h, representative this_sheet 3 h ->
-    forall v, In v [4; 5] -> ~ flat_star this_sheet v h) ->
+    forall v, In v (inside sheet_drawing) -> ~ flat_star this_sheet v h) ->
   exists l : list vec, length l = 2 ^ 2 /\ NoDup l /\
     forall h, In h l <-> representative this_sheet 3 h.
 Proof.
   intros NF. destruct (branches this_sheet 0 1 2 3 eq_refl corners NF)
     as (l & Len & Once & Sol & _).
-  now exists l.
+  rewrite size in Len. exists l. exact (conj Len (conj Once Sol)).
 Qed.

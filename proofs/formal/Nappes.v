@@ -490,7 +490,8 @@ Proof.
   assert (U : Rabs u <= s * m).
   { unfold u, m. replace (2 * s * n i x w + s * s * n i w w) with (s * (2 * n i x w + s * n i w w)) by ring.
     rewrite Rabs_mult, (Rabs_right s) by lra. apply Rmult_le_compat_l; [lra|].
-    eapply Rle_trans; [apply Rabs_triang|]. rewrite !Rabs_mult, (Rabs_right 2), (Rabs_right s), (Rabs_right (n i w w)) by lra.
+    eapply Rle_trans; [apply Rabs_triang|].
+    rewrite !Rabs_mult, (Rabs_right 2), (Rabs_right s), (Rabs_right (n i w w)) by lra.
     assert (s * n i w w <= 1 * n i w w) by (apply Rmult_le_compat_r; lra). lra. }
   assert (UU : u * u <= s * m * (s * m)).
   { rewrite <- (Rabs_right (u * u)) by apply Rle_ge, Rle_0_sqr. rewrite Rabs_mult.

@@ -250,12 +250,14 @@ Proof.
   rewrite steps_split in Hs. apply in_app_or in Hs.
   destruct Hs as [Hs|Hs]; [|destruct Hs as [Hs|Hs]].
   - cbn [app] in Hs. apply steps_in in Hs. destruct Hs as (Ha & Hb).
-    assert (M : forall z, In z (u :: up ++ [p]) -> 0 <= cross d0 (spoke v z) /\ (cross d0 (spoke v z) = 0 -> y h z = 0)).
+    assert (M : forall z, In z (u :: up ++ [p]) ->
+      0 <= cross d0 (spoke v z) /\ (cross d0 (spoke v z) = 0 -> y h z = 0)).
     { intros z [<-|Hz]; [split; [lra|auto]|]. specialize (Up z Hz). split; lra. }
     destruct (M a Ha), (M b (or_intror Hb)). apply good_one_side; auto. now apply Rmult_le_pos.
   - injection Hs as <- <-. right. split; [lra|]. split; [lra|assumption].
   - change (In (a, b) (steps (q :: down ++ [u]))) in Hs. apply steps_in in Hs. destruct Hs as (Ha & Hb).
-    assert (M : forall z, In z (q :: down ++ [u]) -> cross d0 (spoke v z) <= 0 /\ (cross d0 (spoke v z) = 0 -> y h z = 0)).
+    assert (M : forall z, In z (q :: down ++ [u]) ->
+      cross d0 (spoke v z) <= 0 /\ (cross d0 (spoke v z) = 0 -> y h z = 0)).
     { intros z [<-|Hz]; [split; assumption|]. apply in_app_or in Hz. destruct Hz as [Hz|[<-|[]]].
       - specialize (Down z Hz). split; lra.
       - split; [lra|auto]. }

@@ -87,7 +87,8 @@ Lemma sum_const_le l f c : (forall a, In a l -> f a <= c) -> sum l f <= INR (len
 Proof.
   induction l as [|a l IH]; intros E; [simpl; lra|].
   change (length (a :: l)) with (S (length l)). rewrite S_INR. simpl sum.
-  pose proof (E a (or_introl eq_refl)). assert (sum l f <= INR (length l) * c) by (apply IH; intros; apply E; simpl; auto).
+  pose proof (E a (or_introl eq_refl)).
+  assert (sum l f <= INR (length l) * c) by (apply IH; intros; apply E; simpl; auto).
   lra.
 Qed.
 

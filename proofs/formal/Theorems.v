@@ -420,11 +420,14 @@ Proof.
   set (nab := Nappes.n _ _ v a b) in *.
   set (x := sign e * la) in *. set (y := sign e * lb) in *.
   assert (Exx : la * la = x * x).
-  { unfold x. replace (sign e * la * (sign e * la)) with (sign e * sign e * (la * la)) by ring. rewrite sign_sqr. ring. }
+  { unfold x. replace (sign e * la * (sign e * la)) with (sign e * sign e * (la * la)) by ring.
+    rewrite sign_sqr. ring. }
   assert (Eyy : lb * lb = y * y).
-  { unfold y. replace (sign e * lb * (sign e * lb)) with (sign e * sign e * (lb * lb)) by ring. rewrite sign_sqr. ring. }
+  { unfold y. replace (sign e * lb * (sign e * lb)) with (sign e * sign e * (lb * lb)) by ring.
+    rewrite sign_sqr. ring. }
   assert (Exy : la * lb = x * y).
-  { unfold x, y. replace (sign e * la * (sign e * lb)) with (sign e * sign e * (la * lb)) by ring. rewrite sign_sqr. ring. }
+  { unfold x, y. replace (sign e * la * (sign e * lb)) with (sign e * sign e * (la * lb)) by ring.
+    rewrite sign_sqr. ring. }
   assert (Qa : sqrt (K S v a) * sqrt (K S v a) = K S v a) by now apply sqrt_sqrt.
   assert (Qb : sqrt (K S v b) * sqrt (K S v b) = K S v b) by now apply sqrt_sqrt.
   assert (Ra : sqrt na * sqrt na = na) by now apply sqrt_sqrt.

@@ -9,11 +9,13 @@ import pytest
 from typer.testing import CliRunner
 
 from exactfold import count_branches, export_branch, find_branch
+from exactfold.bridges import to_coq
 from exactfold.bridges.fold_frames import BRANCH_KEY
 from exactfold.cli import app
 from exactfold.data import example_path
 from exactfold.errors import UndecidedBranchError
 from exactfold.pattern import load_fold
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.fold_writing import fold_text
@@ -220,3 +222,48 @@ def test_a_branch_without_heights_is_refused_always(out):
     with pytest.raises(UndecidedBranchError, match="nothing is proved"):
         export_branch(nothing, out, force=True)
     assert not out.exists()
+
+
+# --- for Coq -------------------------------------------------------------------------------------
+
+
+def test_a_sheet_is_written_for_coq(tmp_path):
+    text = to_coq("two-vertex")
+    assert run("two-vertex", "--coq").stdout == text
+    assert run("two-vertex", "--coq", "-o", "-").stdout == text
+    out = tmp_path / "two_vertex.v"
+    result = run("two-vertex", "--coq", "-o", out)
+    assert (result.exit_code, result.stderr) == (OK, "")
+    assert out.read_text() == text
+    assert f"coqc -Q proofs/formal Exactfold {out}" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["two-vertex", "--signs", "-+"], USAGE, "leave --signs away"),
+        (["two-vertex", "--up", "4"], USAGE, "leave --up away"),
+        (["two-vertex", "--branch", "1"], USAGE, "leave --branch away"),
+        (["two-vertex", "--amount", "20"], USAGE, "leave --amount away"),
+        (["two-vertex", "--force"], USAGE, "leave --force away"),
+        (["two-vertex", "--rim", "rim.json"], USAGE, "leave --rim away"),
+        (["two-vertex", "--json"], USAGE, "leave --json away"),
+        (["two-vertex", "-o", "two-vertex.v"], USAGE, "which two-vertex.v cannot be"),
+        (["two-vertex", "-o", "two_vertex.coq"], USAGE, "which two_vertex.coq cannot be"),
+        (["miura"], UNDECIDED, "16 panels with more than three sides"),
+        (["bird-base"], UNDECIDED, "those of this one lie in Q(sqrt 2)"),
+    ],
+)
+def test_what_coq_does_not_take_is_refused(arguments, code, said):
+    result = run(*arguments, "--coq")
+    assert (result.exit_code, result.stdout.count("Theorem")) == (code, 0)
+    assert said in result.stderr
+
+
+def test_a_reflex_corner_is_named_to_who_asks_for_coq(tmp_path):
+    dart = tmp_path / "dart.fold"
+    pattern = CreasePattern([(0, 0), (4, -4), (1, 0), (4, 4)], [(0, 1, 2), (0, 2, 3)])
+    dart.write_text(fold_text(pattern))
+    result = run(dart, "--coq")
+    assert (result.exit_code, result.stdout) == (USAGE, "")
+    assert "vertex 2 is reflex" in result.stderr

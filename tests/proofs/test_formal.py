@@ -3,13 +3,17 @@
 import re
 import shutil
 import subprocess
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from exactfold.bridges import to_coq
-from exactfold.errors import NotApplicableError
+from exactfold.data import EXAMPLES, example_path
+from exactfold.errors import NotApplicableError, NotTriangulatedError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.opening import open_pattern, triangles
+from exactfold.pattern.random_squares import random_square
 
 ROOT = Path(__file__).parent.parent.parent
 FORMAL = ROOT / "proofs" / "formal"
@@ -87,17 +91,55 @@ def test_the_example_is_what_is_written_of_a_pattern() -> None:
     assert to_coq("two-vertex") == SOURCES["Example.v"]
 
 
+TENT = CreasePattern(
+    [(0, 0), (1, 0), (2, 0), (1, 3), (1, 1)], [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+)
+SMALL = (
+    TENT,
+    CreasePattern([(0, 0), (3, 0), (0, 3), (1, 1)], [(0, 1, 3), (1, 2, 3), (2, 0, 3)]),
+    CreasePattern([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 2), (0, 2, 3)]),
+)
+"""A straight corner; three corners; no interior vertex."""
+
+
 def test_a_straight_corner_is_not_among_the_first_three_of_the_border() -> None:
-    tent = CreasePattern(
-        [(0, 0), (1, 0), (2, 0), (1, 3), (1, 1)], [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
-    )
-    assert "border := [1; 2; 3; 0];" in to_coq(tent)
+    assert "border := [1; 2; 3; 0];" in to_coq(TENT)
 
 
 def test_a_reflex_corner_is_refused() -> None:
     dart = CreasePattern([(0, 0), (4, -4), (1, 0), (4, 4)], [(0, 1, 2), (0, 2, 3)])
     with pytest.raises(NotApplicableError, match="vertex 2 is reflex"):
         to_coq(dart)
+
+
+def in_scope() -> dict[str, CreasePattern]:
+    """The shipped patterns that are triangulated, with rational coordinates."""
+    found = {}
+    for name in EXAMPLES:
+        with suppress(NotTriangulatedError):
+            found[name] = triangles(open_pattern(example_path(name)), "the proof")
+    return found
+
+
+def test_the_page_names_the_shipped_patterns_that_it_is_about() -> None:
+    patterns = in_scope()
+    assert all(pattern.is_convex for pattern in patterns.values())
+    page = (ROOT / "docs" / "formal.md").read_text(encoding="utf-8")
+    scope = r"The shipped patterns (.*?) are,\s.*Not in scope are (.*?),\s+which"
+    found = re.search(scope, page, re.DOTALL)
+    assert found is not None
+    assert re.findall(r"`(.*?)`", found[1]) == [n for n in EXAMPLES if n in patterns]
+    assert re.findall(r"`(.*?)`", found[2]) == [n for n in EXAMPLES if n not in patterns]
+
+
+def test_the_lines_of_an_exported_sheet_are_short() -> None:
+    text = to_coq(random_square(20, seed=1))
+    assert max(map(len, text.splitlines())) <= 100
+    assert "\0" not in text
+
+
+def test_the_lines_of_the_sources_are_short() -> None:
+    assert max(len(line) for text in SOURCES.values() for line in text.splitlines()) <= 120
 
 
 @pytest.mark.slow
@@ -114,3 +156,16 @@ def test_it_builds_and_assumes_no_more_than_the_reals(tmp_path: Path) -> None:
     blocks = printed.split("Axioms:\n")[1:]
     axioms = [set(re.findall(r"^([\w.]+)(?= :|$)", block, flags=re.MULTILINE)) for block in blocks]
     assert dict(zip(ASSUMED, axioms, strict=True)) == ASSUMED
+    sheets = [*in_scope().values(), random_square(8, seed=2), random_square(20, seed=1), *SMALL]
+    exported = [
+        f"Module Sheet{k}.\n{to_coq(sheet)}\nEnd Sheet{k}.\n" for k, sheet in enumerate(sheets)
+    ]
+    (tmp_path / "Exported.v").write_text("".join(exported), encoding="utf-8")
+    verified = subprocess.run(
+        ["coqc", "-Q", ".", "Exactfold", "Exported.v"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert verified.returncode == 0, verified.stderr[-2000:]
