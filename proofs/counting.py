@@ -15,8 +15,9 @@ import sympy
 from exactfold import CreasePattern, count_branches, families
 from exactfold.problem import BranchSystem
 from exactfold.rigidity.functionals import fold_functional
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
 from proofs.mountain_valley import half_bend, sector
+from proofs.statements import Severity
 
 NAME = "counting"
 TITLE = "Degrees of freedom, folds, assignments and chambers"

@@ -21,7 +21,8 @@ if not __package__:  # run as a file
 import networkx as nx
 
 from exactfold import families
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
+from proofs.statements import Severity
 
 NAME = "h1_triangulations"
 TITLE = "H1 triangulations: counts, and all of them with few vertices"

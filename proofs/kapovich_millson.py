@@ -23,8 +23,9 @@ import sympy
 
 from exactfold.exact.linalg import rank
 from exactfold.rigidity.kapovich_millson import kapovich_millson
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
 from proofs.spokes import wheel
+from proofs.statements import Severity
 from proofs.vertex_forms import cross, csc, dot, symbols, unit
 
 NAME = "kapovich_millson"

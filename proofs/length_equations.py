@@ -14,7 +14,8 @@ import sympy
 from exactfold import CreasePattern, families
 from exactfold.exact.linalg import rank
 from exactfold.rigidity import curvature_form, rigidity_matrix, self_stresses
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
+from proofs.statements import Severity
 
 NAME = "length_equations"
 TITLE = "The expansion of the length equations"

@@ -32,7 +32,8 @@ import sympy
 from exactfold import CreasePattern, count_branches, families
 from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
+from proofs.statements import Severity
 from proofs.vertex_forms import star
 
 NAME = "mountain_valley"

@@ -38,9 +38,10 @@ from exactfold.rigidity.definite_stresses import disk_multipliers
 from proofs.branch_counts import OCTAHEDRON, SQUARE, TWISTED, gram, inner_points, restricted
 from proofs.chambers import jacobian
 from proofs.dual_space import dual_space, taylor_expansions, unit_rank
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
 from proofs.patterns import degenerate_patterns, grid_quadrilaterals
 from proofs.potential import corner_polar
+from proofs.statements import Severity
 
 NAME = "multiplicity"
 TITLE = "Multiplicities and the number of distinct branches"

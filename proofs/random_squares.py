@@ -29,8 +29,9 @@ from exactfold.problem import BranchSystem, QuadraticSystem
 from exactfold.problem.perturbation import perturbed
 from exactfold.rigidity.functionals import vertex_sign_functional
 from exactfold.verdict import PROVED
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
 from proofs.h1_triangulations import is_h1, reverse_moves
+from proofs.statements import Severity
 
 NAME = "random_squares"
 TITLE = "The paper's random squares"

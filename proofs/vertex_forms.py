@@ -26,8 +26,9 @@ from exactfold.exact.linalg import from_fmpq, to_flint
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity import curvature_form, stress_form, wheel_stress
 from exactfold.rigidity.kapovich_millson import kapovich_millson
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
 from proofs.spokes import equation, wheel
+from proofs.statements import Severity
 
 NAME = "vertex_forms"
 TITLE = "The quadratic form of one vertex: sign, factor, null directions, determinant"

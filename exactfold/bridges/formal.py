@@ -28,6 +28,8 @@ Definition sheet_drawing : drawing := {{|
 Lemma sheet_checked : check sheet_drawing = true.
 Proof. vm_compute. reflexivity. Qed.
 Definition this_sheet : sheet := sheet_of sheet_drawing sheet_checked.
+Lemma size : length (inner this_sheet) = {n}.
+Proof. reflexivity. Qed.
 
 (** With heights of the rim and curvatures > 0: 2^{n} shapes. *)
 Theorem shapes (k : nat -> R) (r : vec) : (forall v, In v [{inside}] -> (0 < k v)%R) ->
@@ -36,7 +38,7 @@ Theorem shapes (k : nat -> R) (r : vec) : (forall v, In v [{inside}] -> (0 < k v
 Proof.
   intros P. destruct (list_of_solutions this_sheet k r) as (l & Len & Sol & Once).
   - intros v Hv. apply Rlt_le, P, Hv.
-  - exists l. split; [exact Len|]. split; [|exact Sol].
+  - rewrite size in Len. exists l. split; [exact Len|]. split; [|exact Sol].
     apply Once. intros h _ Hs v Hv. left. rewrite (Hs v Hv). apply P, Hv.
 Qed.
 """
@@ -53,7 +55,9 @@ Theorem at_most : exists l : list vec, length l = 2 ^ {n} /\\
   (forall h, In h l <-> representative this_sheet {d} h) /\\
   forall z, complex_solution this_sheet z ->
     complex_affine this_sheet z \\/ exists s h, In h l /\\ on_branch this_sheet z s h.
-Proof. exact (at_most_2_to_the_n this_sheet {a} {b} {c} {d} eq_refl corners). Qed.
+Proof.
+  rewrite <- size. exact (at_most_2_to_the_n this_sheet {a} {b} {c} {d} eq_refl corners).
+Qed.
 
 Theorem exactly :
   (forall h, representative this_sheet {d} h ->
@@ -63,7 +67,7 @@ Theorem exactly :
 Proof.
   intros NF. destruct (branches this_sheet {a} {b} {c} {d} eq_refl corners NF)
     as (l & Len & Once & Sol & _).
-  now exists l.
+  rewrite size in Len. now exists l.
 Qed.
 """
 
