@@ -8,6 +8,9 @@ from typing import Any
 from proofs.formulas import Formula, Names, compare, evaluate
 from proofs.reading import Text
 
+MEANINGLESS = (LookupError, ZeroDivisionError, TypeError, ValueError, AttributeError)
+"""What an expression raises that has no value: such a form does not hold."""
+
 
 @dataclass(frozen=True)
 class Claim:
@@ -60,7 +63,7 @@ def is_true(formula: Formula, names: Names) -> bool:
             zero(right - left) if relation in ("=", r"\approx") else compare(left, relation, right)
             for left, relation, right in formula.comparisons(names)
         )
-    except (LookupError, ZeroDivisionError, TypeError, ValueError):
+    except MEANINGLESS:
         return False
 
 
@@ -68,7 +71,7 @@ def _is_value(formula: Formula, value: Any, names: Names) -> bool:
     try:
         found = evaluate(formula.sides[0], names)
         return bool(found == value) if isinstance(value, tuple) else is_zero(found - value)
-    except (LookupError, ZeroDivisionError, TypeError, ValueError):
+    except MEANINGLESS:
         return False
 
 

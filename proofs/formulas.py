@@ -134,11 +134,11 @@ def _over_index(node: Node, names: Names) -> Any:
     body, *ends = node.parts
     if ends:
         low, high = (int(evaluate(end, names)) for end in ends)
-        every: Sequence[int] = range(low, high + 1)
+        every: Sequence[int | tuple[int, int]] = range(low, high + 1)
     else:
         every = names["all"]
-    bound = tuple(re.findall("[a-z]", index))
-    free = [dict(zip(bound, k if len(bound) > 1 else (k,), strict=True)) for k in every]
+    bound = re.findall("[a-zA-Z]", index)
+    free = [dict(zip(bound, k if isinstance(k, tuple) else (k,), strict=True)) for k in every]
     values = [evaluate(body, {**names, **ks}) for ks in free]
     return _total(values) if operation == "sum" else prod(values[1:], start=values[0])
 
@@ -162,8 +162,7 @@ def _function(text: str, values: list[Any], names: Names) -> Any:
 def latex(part: Formula | Node) -> str:
     """The LaTeX of a formula or an expression."""
     if isinstance(part, Formula):
-        shown = map(latex, part.sides)
-        linked = zip(shown, (*part.relations, ""), strict=True)
+        linked = zip(map(latex, part.sides), (*part.relations, ""), strict=True)
         chain = "".join(_joined([x for pair in linked for x in pair]))
         if part.index:
             low, high = map(latex, part.ends)

@@ -183,20 +183,19 @@ class _Reader:
         if token in (r"\frac", r"\tfrac"):
             return Node("quotient", "frac", (self.argument(), self.argument()))
         if token in _CLOSING:
-            inside = [self.sum()]
+            several = [self.sum()]
             if token == "[" and self.peek() in RELATIONS:
                 relation = self.take()
-                truth = Node("truth", relation, (inside[0], self.sum()))
+                truth = Node("truth", relation, (several[0], self.sum()))
                 self.take("]")
                 return truth
             while self.peek() == ",":
                 self.take()
-                inside.append(self.sum())
+                several.append(self.sum())
             self.take(_CLOSING[token])
-            several = len(inside) > 1
-            return (
-                Node("tuple", "", tuple(inside)) if several else Node("group", token, (inside[0],))
-            )
+            if len(several) > 1:
+                return Node("tuple", "", tuple(several))
+            return Node("group", token, (several[0],))
         if token == "|":
             self.in_bars = True
             inside = self.sum()

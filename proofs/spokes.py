@@ -7,6 +7,9 @@ that a formula is compared with what the library computes and not with another f
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+from dataclasses import field as field_
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -19,6 +22,39 @@ from exactfold import families
 from exactfold.rigidity import curvature_form, wheel_stress
 from proofs.claims import is_zero
 from proofs.wheel_stress import Angle, cross, dot, with_vertices
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A vector, and the lengths of those vectors that are asked for: square roots are free."""
+
+    coordinates: tuple[Any, ...]
+    sizes: Mapping[tuple[Any, ...], Any] = field_(default_factory=dict, compare=False)
+
+    def __sub__(self, other: Vector) -> Vector:
+        pairs = zip(self.coordinates, other.coordinates, strict=True)
+        return Vector(tuple(a - b for a, b in pairs), self.sizes)
+
+    def __add__(self, other: Vector) -> Vector:
+        pairs = zip(self.coordinates, other.coordinates, strict=True)
+        return Vector(tuple(a + b for a, b in pairs), self.sizes)
+
+    def __neg__(self) -> Vector:
+        return Vector(tuple(-a for a in self.coordinates), self.sizes)
+
+    def __mul__(self, other: Vector) -> Any:
+        pairs = zip(self.coordinates, other.coordinates, strict=True)
+        return sum(a * b for a, b in pairs)
+
+    def __rmul__(self, factor: Any) -> Vector:
+        return Vector(tuple(factor * a for a in self.coordinates), self.sizes)
+
+    def __truediv__(self, divisor: Any) -> Vector:
+        return Vector(tuple(a / divisor for a in self.coordinates), self.sizes)
+
+    def __abs__(self) -> Any:
+        found = self.sizes.get(self.coordinates)
+        return self.sizes[(-self).coordinates] if found is None else found
 
 
 @cache
@@ -156,9 +192,7 @@ def drawn(*sizes: int) -> list[dict[str, Any]]:
 def forces(names: dict[str, Any]) -> list[dict[str, Any]]:
     """The same names twice, where u are the first and the second coordinates of the unit spokes."""
     ends, length = names["ends"], names["L"]
-    return [
-        {**names, "u": lambda i, k=k: ends[(i - 1) % len(ends)][k] / length(i)} for k in (0, 1)
-    ]
+    return [{**names, "u": lambda i, k=k: ends[(i - 1) % len(ends)][k] / length(i)} for k in (0, 1)]
 
 
 def ladder(names: dict[str, Any]) -> dict[str, Any]:
