@@ -177,16 +177,20 @@ class Script:
         over: Iterable[Names],
         at: Iterable[Names] = (),
         functions: Iterable[str] = (),
+        mentions: bool = False,
         **fields: Any,
     ) -> None:
         """State formulas, and evaluate them: as they stand, or as corrected, and then as printed.
 
         `over` and `at` say what the names mean: free geometries, in which they have to hold
         identically, and such with numbers, where the printed form fails (`over` if none is given).
+        With `mentions` single names and numbers among the words are evaluated, too.
         """
         names = tuple(functions)
-        first = read(printed, names)
-        right = read(corrected, names) if corrected else first
+        first = read(printed, names, mentions)
+        right = read(corrected, names, mentions) if corrected else first
+        if first.formulas and first.expressions != right.expressions:
+            raise ValueError(f"{key}: as many expressions are needed in both forms")
         free = tuple(over)
         claim = Claim(key, first, right, free, tuple(at) or free)
         self.claims.append(claim)
@@ -201,7 +205,7 @@ class Script:
                 formula=True,
             )
         )
-        if corrected:
+        if corrected and first.formulas:
             self.steps.append(
                 Step(
                     f"{key} as printed does not hold",

@@ -40,9 +40,9 @@ def survivors_as_printed(claim: Claim) -> list[str]:
 def garbled(text: Text) -> Iterator[Text]:
     """Every text with one mistake in one of its formulas."""
     for k, part in enumerate(text.parts):
-        if isinstance(part, Formula) and not part.is_mention:
+        if isinstance(part, Formula) and text.says(part):
             for wrong in mutants(part):
-                yield Text((*text.parts[:k], wrong, *text.parts[k + 1 :]))
+                yield replace(text, parts=(*text.parts[:k], wrong, *text.parts[k + 1 :]))
 
 
 def mutants(formula: Formula) -> list[Formula]:

@@ -27,12 +27,21 @@ class Text:
     """Words in LaTeX, with the spaces and commas beside them, and formulas."""
 
     parts: tuple[str | Formula, ...]
+    mentions: bool = False
 
     @property
     def formulas(self) -> tuple[Formula, ...]:
-        """Those that say something: not single names and numbers."""
-        found = (part for part in self.parts if isinstance(part, Formula))
-        return tuple(formula for formula in found if not formula.is_mention)
+        """Those that say something: single names and numbers only if `mentions` says so."""
+        return tuple(p for p in self.parts if isinstance(p, Formula) and self.says(p))
+
+    def says(self, formula: Formula) -> bool:
+        """Whether a formula of the text says something that has to be evaluated."""
+        return self.mentions or not formula.is_mention
+
+    @property
+    def expressions(self) -> int:
+        """The number of formulas that are no equation or inequality."""
+        return sum(not formula.relations for formula in self.formulas)
 
     @property
     def latex(self) -> str:
@@ -43,7 +52,7 @@ class Text:
 _RANGE = re.compile(r"[a-z]=.*\\dots")
 
 
-def read(text: str, functions: Sequence[str] = ()) -> Text:
+def read(text: str, functions: Sequence[str] = (), mentions: bool = False) -> Text:
     """Words are in `\\text{...}`; formulas are set apart by `,\\quad` or `;\\quad`.
 
     Raises `ValueError` where anything else is no formula.
@@ -59,7 +68,7 @@ def read(text: str, functions: Sequence[str] = ()) -> Text:
         for one in found:
             before, formula, after = _trimmed(one)
             parts += [x for x in (before, formula and parse(formula, functions), after) if x]
-    return Text(tuple(parts))
+    return Text(tuple(parts), mentions)
 
 
 def _trimmed(content: str) -> tuple[str, str, str]:
