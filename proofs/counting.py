@@ -238,7 +238,8 @@ def _folds(script: Script) -> None:
         severity=Severity.CONSTANT,
         rests="IIIA.3",
     )
-    shares = [_share(p) for p in (families.single_vertex(4), families.two_vertex())]
+    sheets = (families.single_vertex(4), families.two_vertex())
+    shares = [_share(p) for p in (*sheets, families.flat_octahedron_in_square())]
     script.formula(
         "IIIA.5",
         "Section III A, mountain and valley folds",
@@ -290,16 +291,20 @@ def _chambers(script: Script) -> None:
     )
     per = script.alter("one ray a chamber", 2, 1)
     squares = [families.single_vertex(4), families.two_vertex(), families.hypar(1)]
+    squares.append(families.flat_octahedron_in_square())
     counts = [count_branches(p) for p in squares]
     script.cases(
         "two branches for each pair of opposite sign vectors, so two rays in each chamber, on "
         "squares with 1, 2 and more vertices",
-        (list(c.sign_vectors.values()) == [per] * (c.distinct // per) for c in counts),
+        (
+            list(c.sign_vectors.values()) == [per] * 2 ** (p.Vi - p.Vt - 1)
+            for p, c in zip(squares, counts, strict=True)
+        ),
         of="IIIB.1 IIIB.3",
     )
     chambers = [
-        {"V_i": c.pattern.Vi, "V_t": 0, "signs": len(c.sign_vectors), "rays": 2 * c.distinct}
-        for c in counts
+        {"V_i": p.Vi, "V_t": p.Vt, "signs": len(c.sign_vectors), "rays": 2 * (c.distinct or 0)}
+        for p, c in zip(squares, counts, strict=True)
     ]
     script.state(
         "IIIA.7",
@@ -339,8 +344,8 @@ def _freedoms(system: BranchSystem) -> dict[str, Any]:
 def _share(pattern: CreasePattern) -> dict[str, Any]:
     """The share of all assignments, up to reflection, that are those of branches."""
     count = count_branches(pattern)
-    found = count.distinct - count.repeated_assignments
-    share = Fraction(found, 2 ** len(pattern.folds) // 2)
+    found = (count.distinct or 0) - count.repeated_assignments
+    share = Fraction(found, 2 ** len(pattern.without_rigid_parts()[0].folds) // 2)
     return {"V_i": pattern.Vi, "V_t": pattern.Vt, "values": (share,)}
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import random
 import sys
 from fractions import Fraction
 from itertools import pairwise
+from math import atan2
 from pathlib import Path
 from typing import Any
 
@@ -332,12 +334,28 @@ def _choice_of_spoke(script: Script) -> None:
         all(cross(straight[i - 1], straight[(i + step) % 4]) == 0 for i in range(4)),
         against="B.22",
     )
-    _, w, x, y, z = ring("w x y z", QQ)  # angles of four spokes
-    script.identity(
-        "four spokes: the sums at opposite spokes add up to 2 pi, so one is < pi, or all are pi",
-        (w + x) + (y + z) - ((x + y) + (z + script.alter("sums that share an angle", w, y))),
-        (w + x) - (x + y) - (w - y),
-        (x + y) - (y + z) - (x - z),
+    for size in (4, 5, 6, 7, 8):
+        _, *angles = ring([f"a{k}" for k in range(size)], QQ)
+        sums = [angles[k - 1] + angles[k] for k in range(size)]
+        every = sums[:: script.alter("sums at every spoke of four", 2, 1)] if size == 4 else sums
+        script.identity(
+            "four spokes: the sums at opposite spokes add up to all angles, 2 pi, so one is < pi, "
+            "or all are pi"
+            if size == 4
+            else f"{size} spokes: the {size} sums add up to twice all angles, 4 pi, so one is at "
+            f"most 4 pi/{size} < pi",
+            sum(every) - (1 if size == 4 else script.alter(f"once, {size}", 2, 1)) * sum(angles),
+            of="B.22",
+        )
+    wide = script.alter("spokes with a wide pair beside them", 1, -1)
+    script.cases(
+        "random stars of 4 to 8 spokes have a spoke between two others less than pi apart, unless "
+        "they are two straight lines",
+        (
+            any(wide * cross(d[k - 1], d[(k + 1) % len(d)]) > 0 for k in range(len(d)))
+            or (len(d) == 4 and all(cross(d[k], d[k - 2]) == 0 for k in range(4)))
+            for d in _random_stars()
+        ),
         of="B.22",
     )
     _, p, *L = field("p L1 L2 L3 L4", QQ)
@@ -347,12 +365,6 @@ def _choice_of_spoke(script: Script) -> None:
     s = [spoke(L[j - 1], L[j], L[(j + 1) % 4], angles[j - 1], angles[j]) for j in range(4)]
     script.identity(
         "all sums pi: sigma_1 = sigma_3, sigma_2 = sigma_4", s[0] - s[2], s[1] - s[3], of="B.22"
-    )
-    _, n = ring("N", QQ)
-    script.identity(
-        "N >= 5 spokes: N pi - 4 pi = pi ((N - 5) + 1) > 0, so the mean 4 pi/N of the sums is < pi",
-        n - script.alter("sums of three angles", 4, 6) - ((n - 5) + 1),
-        of="B.22",
     )
     script.state(
         "B.22",
@@ -376,6 +388,19 @@ def _choice_of_spoke(script: Script) -> None:
         code="wheel_stress",
         rests="B.24",
     )
+
+
+def _random_stars() -> list[list[tuple[int, int]]]:
+    """Integer spokes in counter-clockwise order, angles below pi; most are nearly a cross."""
+    source, found = random.Random(1), [[(2, 1), (-1, 2), (-4, -2), (1, -2)]]
+    while len(found) < 60:
+        near = [(9, 0), (0, 9), (-9, 0), (0, -9), (9, 9), (-9, 9), (-9, -9), (9, -9)]
+        chosen = near[: 4 + len(found) % 5]
+        spokes = [(x + source.randint(-2, 2), y + source.randint(-2, 2)) for x, y in chosen]
+        spokes.sort(key=lambda d: atan2(d[1], d[0]))
+        if all(cross(spokes[k - 1], spokes[k]) > 0 for k in range(len(spokes))):
+            found.append(spokes)
+    return found
 
 
 if __name__ == "__main__":

@@ -162,7 +162,8 @@ def _crossings(script: Script) -> None:
         and net_crossings(BACK_FIRST) == net,
         against="C.15",
     )
-    stars = [BACK_FIRST, *(d[-k:] + d[:-k] for d in (BACK_FIRST, TWICE_BACK) for k in range(1, 4))]
+    turned = [d[k:] + d[:k] for d in (BACK_FIRST, PENTAGRAM, TWICE_BACK) for k in range(3)]
+    stars = [d for d in (*turned, *_samples()) if all(cross(d[0], e) for e in d[1:])]
     script.formula(
         "C.15",
         "Appendix C, proof of Theorem KM",
@@ -182,10 +183,11 @@ def _crossings(script: Script) -> None:
 def _crossed(d: Spokes) -> Names:
     """The names of a star, with the crossings counted along its partial sums; angles by signs."""
     found, n = kapovich_millson(d), len(d)
-    signs = [1 if cross(d[k], d[(k + 1) % n]) > 0 else -1 for k in range(n)]
+    half = Fraction(1, 2)
+    signs = [half if cross(d[k], d[(k + 1) % n]) > 0 else -half for k in range(n)]
     crossed = [cross(d[0], a) * cross(d[0], b) < 0 for a, b in pairwise(d[1:])]
     inner = list(zip(signs[1:-1], crossed, strict=True))
-    forward, back = inner.count((1, True)), inner.count((-1, True))
+    forward, back = inner.count((half, True)), inner.count((-half, True))
     net = net_crossings(d)
     return {
         "N": n,
@@ -195,7 +197,7 @@ def _crossed(d: Spokes) -> Names:
         "C_b": back,
         "pi": sympy.pi,
         "alpha": lambda i, j: {(1, 2): signs[0], (n, 1): signs[-1]}[i, j],
-        "values": (net, net, inner.count((-1, False))),
+        "values": (net, net, inner.count((-half, False))),
     }
 
 
