@@ -13,7 +13,8 @@ sys.path.insert(0, str(HERE.parent))
 
 from proofs import MODULES
 from proofs.__main__ import load
-from proofs.framework import How, Proof, Ruling, Statement
+from proofs.framework import Proof
+from proofs.statements import How, Ruling, Statement
 
 SECTIONS = {
     "I": "Introduction",

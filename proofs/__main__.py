@@ -12,7 +12,8 @@ from functools import cache
 from pathlib import Path
 
 from proofs import MODULES
-from proofs.framework import Proof, Ruling, report, report_statement
+from proofs.framework import Proof, report, report_statement
+from proofs.statements import Ruling
 
 LEGEND = """
 verdict    proved: every step holds, and most of them prove; tested: every step holds, and at

@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exactfold import count_branches, random_square
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
+from proofs.statements import Severity
 
 NAME = "branch_angles"
 TITLE = "The angles between branches, measured"

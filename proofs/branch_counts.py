@@ -16,7 +16,8 @@ from exactfold.exact.linalg import inertia
 from exactfold.problem import BranchSystem
 from exactfold.rigidity import curvature_form, definite_stress
 from exactfold.rigidity.functionals import fold_functional
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
+from proofs.statements import Severity
 
 NAME = "branch_counts"
 TITLE = "Single vertices, triangulated triangles, components"

@@ -32,8 +32,9 @@ import sympy
 
 from exactfold import CreasePattern, count_branches, families
 from exactfold.rigidity import curvature_form, definite_stress
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
 from proofs.mountain_valley import sector
+from proofs.statements import Severity
 
 NAME = "butterfly"
 TITLE = "Butterflies and the H1 doubling step"

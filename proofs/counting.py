@@ -15,8 +15,9 @@ import sympy
 from exactfold import CreasePattern, count_branches, families
 from exactfold.problem import BranchSystem
 from exactfold.rigidity.functionals import fold_functional
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
 from proofs.mountain_valley import half_bend, sector
+from proofs.statements import Severity
 
 NAME = "counting"
 TITLE = "Degrees of freedom, folds, assignments and chambers"
@@ -38,28 +39,28 @@ def _freedom(script: Script) -> None:
     euler = sympy.solve([Vi + Ve - E + F - disk, 3 * F + Ve - 2 * E], [E, F])
     folds = euler[E] - Ve
     pins = script.alter("two pinned heights", 3, 2)
-    D = Ve - 3
-    script.identity(
-        "Vi + Ve heights, less 3 for planes and Vi equations: D = Ve - 3; less 3 only: D + Vi",
-        Vi + Ve - pins - Vi - D,
-        Vi + Ve - 3 - (D + Vi),
-        of="IIC.1 IIC.2",
-    )
+    D = Vi + Ve - pins - Vi
     script.identity("Euler: 3 Vi + Ve - 3 folds", folds - (3 * Vi + Ve - 3), of="IIC.11")
     script.identity(
-        "folded sheets: 3 V - 6 coordinates modulo motions less E lengths is Ve - 3 as well",
+        "Vi + Ve heights less 3 for planes and less Vi equations are as many as the 3 V - 6 "
+        "coordinates of folded sheets modulo motions less E lengths",
         3 * (Vi + Ve) - script.alter("planar motions only", 6, 3) - euler[E] - D,
-        of="IIC.11",
+        of="IIC.1 IIC.2 IIC.11",
     )
     a, b = sympy.symbols("a b")
     script.identity(
         "a chord cuts a disk into disks with a + b = Ve + 2 boundary vertices; the pieces share "
         "one "
         "edge and turn about it: (a - 3) + (b - 3) + 1 = Ve - 3, the same D",
-        (a - 3) + (b - 3) + script.alter("the chord does not turn", 1, 0) - (a + b - 2 - 3),
+        D.subs(Ve, a)
+        + D.subs(Ve, b)
+        + script.alter("the chord does not turn", 1, 0)
+        - D.subs(Ve, a + b - 2),
         of="IIC.3",
     )
-    systems = [BranchSystem(p) for p in (families.waterbomb(), families.hypar(2))]
+    sheets = [families.single_vertex(n) for n in (3, 4, 5, 7)]
+    sheets += [families.waterbomb(), families.two_vertex(), families.hypar(2)]
+    systems = [BranchSystem(p) for p in sheets]
     scaled = script.alter("the scale of the heights fixed", 0, 1)
     script.cases(
         "the branch system has Vi quadrics in Vi + D heights",
@@ -71,10 +72,12 @@ def _freedom(script: Script) -> None:
         of="IIC.1 IIC.2 IIIA.1",
     )
     state = script.state
-    state(
+    counts = [_freedoms(s) for s in systems]
+    script.formula(
         "IIC.1",
         "Section II C, Eq. (Dcount)",
         r"D=V_e-3",
+        over=counts,
         note="holds also with chords. With a convex boundary the dimension of the complex solution "
         "set is exactly Ve - 3: for fixed boundary heights there are finitely many solutions "
         "(definite stress, docs/mathematics.md, 6); transversality is not needed",
@@ -82,10 +85,11 @@ def _freedom(script: Script) -> None:
         equation="9",
         words="docs/mathematics.md, 6 (dimension)",
     )
-    state(
+    script.formula(
         "IIC.2",
         "Section II C, after Eq. (Dcount)",
-        r"V_i+V_e-3=D+V_i\text{ nontrivial linear motions}",
+        r"\text{``}V_i+V_e-3=D+V_i\text{ nontrivial linear motions''}",
+        over=counts,
         code="BranchSystem.variables",
         rests="IIC.1",
     )
@@ -146,11 +150,17 @@ def _freedom(script: Script) -> None:
         note="with a convex boundary every component has that dimension over C",
         rests="IIC.1",
     )
-    state(
+    script.formula(
         "IIIA.1",
         "Section III A",
-        r"V_i+1\text{ quadratic polynomials in }V_i+1\text{ heights, with }\sum_jh_j^2=1",
-        note="Vi + D = Vi + 1 for D = 1",
+        r"\text{``resulting in }V_i+1\text{ quadratic polynomials that must be simultaneously "
+        r"solved in terms of }V_i+1\text{ vertex heights''}",
+        over=[
+            {"V_i": s.pattern.Vi, "values": (len(s.quadrics) + 1, len(s.variables))}
+            for s in systems
+            if s.pattern.Ve == 4
+        ],
+        note="with sum h_j^2 = 1. Vi + D = Vi + 1 for D = 1",
     )
     n = script.alter("one quadric too many", 1, 2)
     script.example(
@@ -162,10 +172,19 @@ def _freedom(script: Script) -> None:
         ),
         of="IIIA.2",
     )
-    state(
+    script.formula(
         "IIIA.2",
         "Section III A, Bezout's theorem",
-        r"2^{V_i+1}\text{ roots; }B\text{ is half the number of real solutions; }B=2^{V_i}",
+        r"\text{``this yields }2^{V_i+1}\text{ roots'' \dots\ ``the branches correspond to "
+        r"}\pm\text{ pairs of solutions, we therefore have }B=2^{V_i}\text{''}",
+        over=[
+            {
+                "V_i": p.Vi,
+                "B": count_branches(p).real,
+                "values": (2 * BranchSystem(p).chart.system.bezout_number,),
+            }
+            for p in (families.single_vertex(4), families.two_vertex(), families.hypar(1))
+        ],
         note="finite and all real for convex boundaries: proved elsewhere; counted with "
         "multiplicity",
         code="QuadraticSystem.bezout_number",
@@ -219,30 +238,23 @@ def _folds(script: Script) -> None:
         severity=Severity.CONSTANT,
         rests="IIIA.3",
     )
-    script.state(
+    sheets = (families.single_vertex(4), families.two_vertex())
+    shares = [_share(p) for p in (*sheets, families.flat_octahedron_in_square())]
+    script.formula(
         "IIIA.5",
         "Section III A, mountain and valley folds",
-        r"\text{the fraction ``is at most }(1/4)^{V_i-V_t-1}\text{''; consistency constraints on "
-        r"the assignments make this ``certainly an overestimate''}",
-        r"\text{at most }(1/4)^{V_i-V_t}\text{, with equality whenever the }2^{V_i-V_t}\text{ "
-        r"branches have different assignments}",
-        "2^n branches over the 2^(3n) assignments of IIIA.4, n = Vi - Vt; the printed count of "
+        r"\text{``the fraction of these MV assignments that we should expect to find among the "
+        r"branches is at most }(1/4)^{V_i-V_t-1}\text{''}",
+        r"\text{the fraction of these MV assignments that we should expect to find among the "
+        r"branches is at most }(1/4)^{V_i-V_t}",
+        over=shares,
+        note="2^n branches over the 2^(3n) assignments of IIIA.4, n = Vi - Vt, where all have "
+        "different assignments, as in the two-vertex square: 4 of 64; the printed count of "
         "folds would give (1/4)^(n + 1). As a bound (1/4)^(n - 1) is true and an overestimate, but "
-        "not because of the constraints: these do not lower the number of branches. Equality: the "
-        "two-vertex square, 4 of 64",
-        "BranchCount.repeated_assignments",
+        "not because of the constraints: these do not lower the number of branches",
+        code="BranchCount.repeated_assignments",
         severity=Severity.CONSTANT,
         rests="IIIA.4",
-    )
-    two = count_branches(families.two_vertex())
-    shares = Fraction(4, 2**7 // 2)
-    script.counterexample(
-        "two vertices: four branches with four different assignments out of 2^7 / 2, the share "
-        "(1/4)^2 itself",
-        two.distinct == 4
-        and two.repeated_assignments == 0
-        and shares == Fraction(1, 4) ** script.alter("exponent of the share", 2, 1),
-        against="IIIA.5",
     )
     outcomes = [
         (next(iter(b.vertex_signs.values())), b.assignment_text.count("M"))
@@ -278,13 +290,22 @@ def _chambers(script: Script) -> None:
         of="IIIB.3",
     )
     per = script.alter("one ray a chamber", 2, 1)
-    script.example(
-        "2^(n+1) rays, 2^n chambers, 2 rays a chamber; 2^n sign vectors, 2^(n-1) up to sign, 2 "
-        "branches each (n = 1 to 30; two vertices counted)",
-        all(2 ** (n + 1) == per * 2**n and 2**n == per * 2 ** (n - 1) for n in range(1, 31))
-        and sorted(count_branches(families.two_vertex()).sign_vectors.values()) == [2, 2],
+    squares = [families.single_vertex(4), families.two_vertex(), families.hypar(1)]
+    squares.append(families.flat_octahedron_in_square())
+    counts = [count_branches(p) for p in squares]
+    script.cases(
+        "two branches for each pair of opposite sign vectors, so two rays in each chamber, on "
+        "squares with 1, 2 and more vertices",
+        (
+            list(c.sign_vectors.values()) == [per] * 2 ** (p.Vi - p.Vt - 1)
+            for p, c in zip(squares, counts, strict=True)
+        ),
         of="IIIB.1 IIIB.3",
     )
+    chambers = [
+        {"V_i": p.Vi, "V_t": p.Vt, "signs": len(c.sign_vectors), "rays": 2 * (c.distinct or 0)}
+        for p, c in zip(squares, counts, strict=True)
+    ]
     script.state(
         "IIIA.7",
         "Section III A, after Eq. (B distinct)",
@@ -294,19 +315,38 @@ def _chambers(script: Script) -> None:
         code="CreasePattern.without_rigid_parts",
         rests="IIC.7",
     )
-    script.state(
+    script.formula(
         "IIIB.1",
         "Section III B",
-        r"2^{V_i-V_t}\text{ sign patterns, }2^{V_i-V_t-1}\text{ up to sign; a 4-fold vertex has "
-        r"one "
-        r"and two branches}",
+        r"\text{``there are therefore }2^{V_i-V_t}\text{ choices of vertex sign patterns'' \dots\ "
+        r"``we are left with only }2^{V_i-V_t-1}\text{ equivalence classes''}",
+        over=[{**names, "values": (2 * names["signs"], names["signs"])} for names in chambers],
+        note="a vertex of degree 4 has one class and two branches. Here counted as those of "
+        "branches: every sign vector occurs",
         code="BranchCount.sign_vectors",
     )
-    script.state(
+    script.formula(
         "IIIB.3",
         "Section III B, chambers; Fig. (chambers)",
-        r"2^{V_i-V_t+1}\text{ rays, two in each chamber; four wedges for }V_i=2",
+        r"\text{``the }2^{V_i-V_t+1}\text{ distinct rays of the branches always seem to be "
+        r"distributed so that two rays lie in each of these chambers''}",
+        over=[{**names, "values": (names["rays"],)} for names in chambers],
     )
+
+
+def _freedoms(system: BranchSystem) -> dict[str, Any]:
+    """Numbers of a sheet, with D by the lengths of a folded one: 3 V - 6 - E."""
+    p = system.pattern
+    D = 3 * len(p.vertices) - 6 - len(p.edges)
+    return {"V_i": p.Vi, "V_e": p.Ve, "D": D}
+
+
+def _share(pattern: CreasePattern) -> dict[str, Any]:
+    """The share of all assignments, up to reflection, that are those of branches."""
+    count = count_branches(pattern)
+    found = (count.distinct or 0) - count.repeated_assignments
+    share = Fraction(found, 2 ** len(pattern.without_rigid_parts()[0].folds) // 2)
+    return {"V_i": pattern.Vi, "V_t": pattern.Vt, "values": (share,)}
 
 
 def _squares() -> list[dict[str, Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,17 @@ from sympy.polys.rings import ring
 
 from exactfold.rigidity import curvature_form, stress_form, wheel_stress
 from proofs.framework import Proof, Script, run
-from proofs.spokes import equation, wheel
+from proofs.raised import (
+    Change,
+    between,
+    change_by,
+    chords,
+    elevated,
+    raised,
+    slopes,
+    triangle,
+)
+from proofs.spokes import Vector, drawn, equation, wheel
 from proofs.wheel_stress import Angle, free_wheel
 
 NAME = "curvature_expansion"
@@ -31,9 +42,9 @@ def prove(change: str | None = None) -> Proof:
     )
     script = Script(NAME, TITLE, hypotheses, change)
     _law_of_cosines(script)
-    _expansion(script)
-    _deficit(script)
-    _heights(script)
+    second = _expansion(script)
+    _deficit(script, second)
+    _heights(script, second)
     _constraint(script)
     _curvature_form(script)
     return script.proof()
@@ -43,26 +54,26 @@ def _law_of_cosines(script: Script) -> None:
     """Unit vectors at polar angles psi, psi' and azimuths phi, phi + beta."""
     _, p, q, f, b = field("p q f b", QQ)
     psi, psi1, phi, beta = map(Angle.twice_arctan, (p, q, f, b))
-    fold = (psi.sin * phi.cos, psi.sin * phi.sin, psi.cos)
-    turned = phi + beta
-    fold1 = (psi1.sin * turned.cos, psi1.sin * turned.sin, psi1.cos)
-    cos_alpha = sum(x * y for x, y in zip(fold, fold1, strict=True))
+    cos_alpha = between(psi, psi1, phi, beta)
     sign = script.alter("law of cosines with the sign of the dual law", 1, -1)
     script.identity(
         "e_i . e_{i+1} = cos psi_i cos psi_{i+1} + sin psi_i sin psi_{i+1} cos beta",
         cos_alpha - (sign * psi.cos * psi1.cos + psi.sin * psi1.sin * beta.cos),
         of="A.2",
     )
-    script.state(
+    numbers = [Angle.twice_arctan(Fraction(k, 7)) for k in (3, 5, 9, 11)]
+    script.formula(
         "A.2",
         "Appendix A, spherical law of cosines",
         r"\cos\alpha_{i,i+1}=\cos\psi_i\cos\psi_{i+1}+\sin\psi_i\sin\psi_{i+1}\cos\beta_{i,i+1}",
+        over=[triangle(psi, psi1, phi, beta)],
+        at=[triangle(*numbers)],
         note="alpha is a side of the spherical triangle, beta its angle at the z axis",
         equation="A2",
     )
 
 
-def _expansion(script: Script) -> None:
+def _expansion(script: Script) -> Change:
     """Insert psi = pi/2 + t p and beta = alpha + t b1 + t^2 b2, and compare powers of t."""
     _, t, C, S, p, q, b1, b2, x = ring("t C S p q b1 b2 x", QQ)
 
@@ -81,10 +92,28 @@ def _expansion(script: Script) -> None:
         *up_to_second(sine(t * x) - slope * t * x),
         of="A.1",
     )
-    script.state(
+    _, P, small, h0, h1, L = field("P t h0 h1 L", QQ)
+    height = small * (h1 - h0) / L
+    arc = height + height**3 / 6
+    script.identity(
+        "the angle x + x^3/6 has the sine x, up to and including x^4",
+        *up_to_second(sine(t * x + (t * x) ** 3 / 6) - slope * t * x),
+        of="A.1",
+    )
+    script.formula(
         "A.1",
         "Appendix A, the angle psi_i",
         r"\psi_i=\frac{\pi}{2}-\frac{h_i-h_0}{L_i}",
+        over=[
+            {
+                "i": 1,
+                "psi": {1: P / 2 - arc}.__getitem__,
+                "h": {0: small * h0, 1: small * h1}.__getitem__,
+                "L": {1: L}.__getitem__,
+                "pi": P,
+                "zero": lambda d: (d / small**3).denom.degree(1) <= 0,
+            }
+        ],
         note="to second order in the heights; exactly, cos psi_i = (h_i - h_0)/L_i, because L_i is "
         "the length of the fold in space as well",
         equation="A1",
@@ -104,17 +133,23 @@ def _expansion(script: Script) -> None:
         (2 * order2 + 2 * S * b2).subs(b1, 0) - printed,
         of="A.3",
     )
-    script.state(
+    change = change_by(order2.subs(b1, 0), {"C": C, "S": S, "p": p, "q": q, "b": b2})
+    free = field("C S p q", QQ)[1:]
+    numbers = [Fraction(k, 7) for k in (3, 5, 9, 11)]
+    script.formula(
         "A.3",
         "Appendix A, expansion of the law of cosines",
-        r"\delta\beta_{i,i+1}=\frac{2\,\delta\psi_i\,\delta\psi_{i+1}-\delta\psi_i^2"
+        r"\delta\beta_{i,i+1}=\frac{2\delta\psi_i\delta\psi_{i+1}-\delta\psi_i^2"
         r"\cos\alpha_{i,i+1}-\delta\psi_{i+1}^2\cos\alpha_{i,i+1}}{2\sin\alpha_{i,i+1}}",
+        over=[slopes(change, *free)],
+        at=[slopes(change, *numbers)],
         note="no term of first order, since sin alpha is not 0",
         equation="A3",
     )
+    return change
 
 
-def _deficit(script: Script) -> None:
+def _deficit(script: Script, change: Change) -> None:
     """The angles beta close up around the z axis; the angles alpha lack K."""
     _, *g = ring("a b c d e f", QQ)
     z0, z1, z2 = (g[0], g[1]), (g[2], g[3]), (g[4], g[5])
@@ -150,15 +185,15 @@ def _deficit(script: Script) -> None:
         "that the trace is a graph over the equator",
         rests="A.4",
     )
-    _, turn_, K = ring("P K", QQ)  # P stands for 2 pi
-    sum_alpha = turn_ + script.alter("excess in place of deficit", -1, 1) * K
-    script.identity("sum delta beta = sum beta - sum alpha = K", (turn_ - sum_alpha) - K, of="A.5")
-    script.state(
+    script.formula(
         "A.5",
         "Appendix A, sum of the delta beta",
-        r"\sum_i\alpha_{i,i+1}=2\pi-K,\qquad\sum_i\delta\beta_{i,i+1}=K",
-        note="an exact identity; K small is needed for the expansion of delta beta only. For a "
-        "sheet cut from the plane K = 0, and the sum of the delta beta must vanish",
+        r"\sum_i\alpha_{i,i+1}=2\pi-K,\quad \sum_i\delta\beta_{i,i+1}=K",
+        over=[raised(wheel(3), change)],
+        at=[raised(names, change) for names in drawn(3, 5)],
+        note="to second order here, K = K_v(h); the sum of the delta beta is exactly K. K small is "
+        "needed for the expansion of delta beta only. For a sheet cut from the plane K = 0, and "
+        "the sum of the delta beta must vanish",
         equation="A4",
     )
 
@@ -169,7 +204,7 @@ def _sector(angle: Angle, L: Any, L1: Any, x: Any, x1: Any) -> Any:
     return (2 * d * d1 - (d * d + d1 * d1) * angle.cos) / (2 * angle.sin)
 
 
-def _heights(script: Script) -> None:
+def _heights(script: Script, change: Change) -> None:
     """One sector between spokes of lengths L, L', with x = h_i - h_0 and x' = h_{i+1} - h_0."""
     _, p, L, L1, x, x1 = field("p L L1 x x1", QQ)
     a = Angle.twice_arctan(p)
@@ -183,14 +218,17 @@ def _heights(script: Script) -> None:
     script.identity(
         "delta beta in the heights, as printed (Delta L cancels)", delta - printed, of="A.6"
     )
-    script.state(
+    free, numbers = wheel(3), drawn(3, 4)
+    bent = [{**names, "delta beta": raised(names, change)["delta beta"]} for names in numbers]
+    script.formula(
         "A.6",
         "Appendix A, delta beta in terms of the heights",
         r"\delta\beta_{i,i+1}=-\csc\alpha_{i,i+1}\frac{\Delta L_{i,i+1}}{L_iL_{i+1}}"
-        r"\frac{(h_i-h_{i+1})^2}{2\Delta L_{i,i+1}}+\left(\frac{\csc\alpha_{i,i+1}}{L_{i+1}}"
-        r"-\frac{\cot\alpha_{i,i+1}}{L_i}\right)\frac{(h_i-h_0)^2}{2L_i}+\left("
-        r"\frac{\csc\alpha_{i,i+1}}{L_i}-\frac{\cot\alpha_{i,i+1}}{L_{i+1}}\right)"
-        r"\frac{(h_{i+1}-h_0)^2}{2L_{i+1}}",
+        r"\frac{(h_i-h_{i+1})^2}{2\Delta L_{i,i+1}}+(\frac{\csc\alpha_{i,i+1}}{L_{i+1}}"
+        r"-\frac{\cot\alpha_{i,i+1}}{L_i})\frac{(h_i-h_0)^2}{2L_i}+(\frac{\csc\alpha_{i,i+1}}{L_i}"
+        r"-\frac{\cot\alpha_{i,i+1}}{L_{i+1}})\frac{(h_{i+1}-h_0)^2}{2L_{i+1}}",
+        over=[{**free, "delta beta": raised(free, change)["delta beta"]}],
+        at=bent,
         equation="A5",
     )
     half = script.alter("summand without its one half", 2, 1)
@@ -200,20 +238,35 @@ def _heights(script: Script) -> None:
         delta - main,
         of="IIB.1 IIB.2",
     )
-    script.state(
+    script.formula(
         "IIB.1",
         "Section II B, curvature constraint (before Eq. wheelstress)",
-        r"0=\sum_I\left\{\frac{\psi_I\psi_{I+1}}{\sin\alpha_{I,I+1}}-\frac12\cot\alpha_{I,I+1}"
-        r"\left[\psi_I^2+\psi_{I+1}^2\right]\right\}",
+        r"0=\sum_I\{\frac{\psi_I\psi_{I+1}}{\sin\alpha_{I,I+1}}-\frac{1}{2}\cot\alpha_{I,I+1}"
+        r"[\psi_I^2+\psi_{I+1}^2]\}",
+        over=[elevated(free)],
+        at=map(elevated, numbers),
         note="psi_I is measured from the xy-plane here and from the z axis in Appendix A; "
         "psi_I = -delta psi_I, and the form is even. The sum is K up to third order",
         code="curvature_form",
         equation="6",
     )
-    script.state(
+    _, t, hn, hm, ax, ay, bx, by, size = field("t hn hm ax ay bx by size", QQ)
+    rise = t * (hn - hm) / size
+    sizes = {(ax - bx, ay - by): size}
+    script.formula(
         "IIB.2",
         "Section II B, psi to lowest order",
-        r"\psi_{(n,m)}=(h_n-h_m)/|\mathbf U_n-\mathbf U_m|",
+        r"\psi_{(n,m)}=(h_n-h_m)/|\mathbf{U}_n-\mathbf{U}_m|",
+        over=[
+            {
+                "n": 1,
+                "m": 2,
+                "psi": {(1, 2): rise + rise**3 / 6}.__getitem__,
+                "h": {1: t * hn, 2: t * hm}.__getitem__,
+                "U": {1: Vector((ax, ay), sizes), 2: Vector((bx, by), sizes)}.__getitem__,
+                "zero": lambda d: (d / t**3).denom.degree(0) <= 0,
+            }
+        ],
         note="n the far end, m the hub; exactly sin psi = (h_n - h_m)/L",
     )
     sign = script.alter("scalar product with the wrong sign", 1, -1)
@@ -230,10 +283,12 @@ def _heights(script: Script) -> None:
         chord - (L**2 + L1**2 + sign * L * L1 * a.cos),
         of="A.7",
     )
-    script.state(
+    script.formula(
         "A.7",
-        "Appendix A and Section II B, Delta L",
-        r"\Delta L_{i,i+1}^2=L_i^2+L_{i+1}^2-2L_iL_{i+1}\cos\alpha_{i,i+1}",
+        "Section II B, and Appendix A with a root, Delta L",
+        r"\Delta L_{I,I+1}^2=L_I^2+L_{I+1}^2-2L_IL_{I+1}\cos\alpha_{I,I+1}",
+        over=[chords(free)],
+        at=map(chords, numbers),
     )
 
 
@@ -261,6 +316,7 @@ def _constraint(script: Script) -> None:
         r"_{i+1}}+\frac{\csc\alpha_{i-1,i}}{L_{i-1}}-\frac{\cot\alpha_{i,i+1}}{L"
         r"_i}-\frac{\cot\alpha_{i-1,i}}{L_i})\frac{(h_i-h_0)^2}{2L_i}\right]",
         over=[equation(wheel(3), 1)],
+        at=[equation(names, 1) for names in drawn(3, 4)],
         note="the sum extends over all lines of the display; its right-hand side is K_v(h)",
         code="curvature_form",
         equation="A6",

@@ -21,7 +21,8 @@ from exactfold.exact import QuadraticForm
 from exactfold.exact.linalg import from_fmpq, inertia, nullspace, rank, to_flint
 from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
+from proofs.statements import Severity
 from proofs.vertex_forms import star
 
 NAME = "discussion_counts"

@@ -23,7 +23,8 @@ from exactfold.exact.linalg import inertia, nullspace
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity import curvature_form, wheel_stress
 from exactfold.rigidity.timelike import round_cone
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
+from proofs.statements import Severity
 from proofs.vertex_forms import cot, cross, csc, star, symbols, unit
 
 NAME = "eigenvector"

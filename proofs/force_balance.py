@@ -15,8 +15,9 @@ from sympy.polys.fields import field
 
 from exactfold import CreasePattern, families
 from exactfold.rigidity import wheel_stress
-from proofs.framework import Proof, Script, Severity, run
-from proofs.spokes import wheel
+from proofs.framework import Proof, Script, run
+from proofs.spokes import drawn, ladder, wheel
+from proofs.statements import Severity
 from proofs.wheel_stress import Angle, cross, dot, with_vertices
 
 NAME = "force_balance"
@@ -68,18 +69,24 @@ def _stresses(script: Script) -> None:
         *differences,
         of="IIB.4 B.1 B.2",
     )
-    both = (
-        r"\tilde\sigma_{I,I+1}=-\csc\alpha_{I,I+1}\frac{\Delta L_{I,I+1}}{L_IL_{I+1}},\quad "
-        r"\tilde\sigma_I=L_{I+1}^{-1}\csc\alpha_{I,I+1}+L_{I-1}^{-1}\csc\alpha_{I-1,I}"
-        r"-L_I^{-1}(\cot\alpha_{I,I+1}+\cot\alpha_{I-1,I})"
-    )
     code, read = "wheel_stress", "read off A.8: coefficient of (h_i - h_j)^2 / (2 length)"
-    script.state("IIB.4", "Section II B, Eq. (wheelstress)", both, code=code, equation="7")
+    script.formula(
+        "IIB.4",
+        "Section II B, Eq. (wheelstress)",
+        r"\tilde{\sigma}_{I,I+1}=-\csc\alpha_{I,I+1}\frac{\Delta L_{I,I+1}}{L_IL_{I+1}},\quad "
+        r"\tilde{\sigma}_I=L_{I+1}^{-1}\csc\alpha_{I,I+1}+L_{I-1}^{-1}\csc\alpha_{I-1,I}"
+        r"-L_I^{-1}(\cot\alpha_{I,I+1}+\cot\alpha_{I-1,I})",
+        over=[wheel(4)],
+        at=drawn(4, 5),
+        code=code,
+        equation="7",
+    )
     script.formula(
         "B.1",
         "Appendix B, Eq. (outer)",
         r"\sigma_{i,i+1}=-\csc\alpha_{i,i+1}\frac{\Delta L_{i,i+1}}{L_iL_{i+1}}",
         over=[wheel(4), wheel(5)],
+        at=drawn(4, 5),
         note=read,
         code=code,
         equation="B1",
@@ -90,6 +97,7 @@ def _stresses(script: Script) -> None:
         r"\sigma_i=\frac{\csc\alpha_{i,i+1}}{L_{i+1}}+\frac{\csc\alpha_{i-1,i}}{"
         r"L_{i-1}}-\frac{\cot\alpha_{i,i+1}}{L_i}-\frac{\cot\alpha_{i-1,i}}{L_i}",
         over=[wheel(4), wheel(5)],
+        at=drawn(4, 5),
         note=read,
         code=code,
         equation="B2",
@@ -121,6 +129,7 @@ def _rim(script: Script) -> None:
         "Appendix B, Eq. (outer2)",
         r"\sigma_{i,i+1}=-\csc\eta_{i,i+1}/L_i",
         over=[wheel(4), wheel(5)],
+        at=drawn(4, 5),
         equation="B3",
     )
     script.formula(
@@ -128,6 +137,7 @@ def _rim(script: Script) -> None:
         "Appendix B, Eq. (outer3)",
         r"\sigma_{i-1,i}=-\csc\eta_{i-1,i}/L_i",
         over=[wheel(4), wheel(5)],
+        at=drawn(4, 5),
         note="notation: both eta are angles at vertex i, so Eq. (outer3) is not Eq. (outer2) with "
         "i - 1 for i, whose eta_{i-1,i} would be the other angle, at vertex i - 1",
         equation="B4",
@@ -160,6 +170,7 @@ def _rim(script: Script) -> None:
         r"\sigma_{i,i+1}\sin\eta_{i,i+1}=-\sigma_{i-1,i}\sin\eta_{i-1,i}",
         r"\sigma_{i,i+1}\sin\eta_{i,i+1}=\sigma_{i-1,i}\sin\eta_{i-1,i}=-1/L_i",
         over=[wheel(4), wheel(5)],
+        at=drawn(4, 5),
         note="the edges leave on opposite sides of the spoke, so equal magnitudes balance; "
         "also the "
         "subscript of the second eta has slipped to the line. Example: cross of unit spokes",
@@ -171,12 +182,16 @@ def _rim(script: Script) -> None:
     script.identity(
         "F_rim parallel to the spoke", along + (cot_last + total * cot_next) / L, of="B.7"
     )
-    script.state(
+    script.formula(
         "B.7",
         "Appendix B, F_rim parallel, in two parts, Eq. (spokepar)",
         r"F_{rim,\parallel}=-(\cot\eta_{i-1,i}+\cot\eta_{i,i+1})/L_i,\quad "
+        r"F_{rim,\parallel}=F_{rim,\parallel,-}+F_{rim,\parallel,+},\quad "
         r"F_{rim,\parallel,-}=-\cot\eta_{i-1,i}/L_i,\quad "
         r"F_{rim,\parallel,+}=-\cot\eta_{i,i+1}/L_i",
+        over=[_rim_forces(wheel(4))],
+        at=map(_rim_forces, drawn(4, 5)),
+        functions=[rf"F_{{rim,\parallel{side}}}" for side in ("", ",-", ",+")],
         equation="B5 to B7",
     )
     sign = script.alter("first piece with the cotangent added", 1, -1)
@@ -194,6 +209,7 @@ def _rim(script: Script) -> None:
         "Appendix B, Eq. (firstpiece) and the cancellation of both pieces",
         r"\csc\alpha_{i-1,i}/L_{i-1}-\cot\alpha_{i-1,i}/L_i=\cot\eta_{i-1,i}/L_i",
         over=[wheel(4), wheel(5)],
+        at=drawn(4, 5),
         note="Eq. (firstpiece) is minus F_{rim,-} = -cot(eta_{i-1,i})/L_i; for acute, right "
         "and obtuse angles. The second piece is its mirror image",
         equation="B8",
@@ -220,10 +236,12 @@ def _crossed_ladders(script: Script) -> None:
         eta.cot / L + alpha.cot / L - 1 / (length * alpha.sin),
         of="B.10",
     )
-    script.state(
+    script.formula(
         "B.9",
         "Appendix B, crossed ladders, Fig. (crossedladder)",
         r"1/A+1/B=1/h",
+        over=[_without_values(ladder(wheel(4)))],
+        at=[_without_values(ladder(names)) for names in drawn(4, 5)],
         note="for signed lengths, hence also for an obtuse angle; at a right angle 1/A or 1/B is 0",
     )
     obtuse = Angle(Fraction(script.alter("obtuse angle taken acute", -3, 3), 5), Fraction(4, 5))
@@ -232,14 +250,31 @@ def _crossed_ladders(script: Script) -> None:
         1 / obtuse.cot == Fraction(-4, 3),
         of="B.10",
     )
-    script.state(
+    script.formula(
         "B.10",
-        "Appendix B, A and B as sides of right triangles",
-        r"A=L_i\tan\eta_{i-1,i},\ B=L_i\tan\alpha_{i-1,i}\text{ are side lengths of right "
-        r"triangles with leg }L_i",
+        "Appendix B, A, B and h as sides of right triangles",
+        r"\text{``}L_i\tan\eta_{i-1,i}\text{ which is the side length }A\text{ of a certain right "
+        r"triangle'' \dots\ ``}L_i\tan\alpha_{i-1,i}\text{ which is the side length }B\text{'' "
+        r"\dots\ ``}L_{i-1}\sin\alpha_{i-1,i}\text{, which is the side length }h\text{''}",
+        over=[ladder(wheel(4))],
+        at=map(ladder, drawn(4, 5)),
         note="as in the figure, for acute angles; A and B are signed, negative for an obtuse angle "
         "and infinite for a right one. With these signs the cancellation B.8 holds always",
     )
+
+
+def _without_values(names: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in names.items() if name != "values"}
+
+
+def _rim_forces(names: dict[str, Any]) -> dict[str, Any]:
+    """The same names with the forces of the rim at spoke vertex 2 along its spoke, outwards."""
+    ends, forces = names["ends"], {}
+    for side, (i, j) in {"-": (1, 2), "+": (2, 3)}.items():
+        a, b = ends[1], ends[j - 1] if i == 2 else ends[i - 1]
+        away = dot((a[0] - b[0], a[1] - b[1]), a) / (names["Delta L"](i, j) * names["L"](2))
+        forces[rf"F_{{rim,\parallel,{side}}}"] = names["sigma"](i, j) * away
+    return {**names, **forces, r"F_{rim,\parallel}": sum(forces.values())}
 
 
 def _telescope(script: Script) -> None:

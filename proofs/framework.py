@@ -5,116 +5,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from enum import Enum
 from typing import Any, TypeVar
 
-from proofs.formulas import Formula, Names, latex, parse
+from proofs.claims import Claim, is_zero
+from proofs.formulas import Names
+from proofs.reading import read
+from proofs.statements import How, Ruling, Statement, Step
 
 T = TypeVar("T")
-
-
-class Ruling(Enum):
-    """What became of a statement; it follows from the steps that speak against it."""
-
-    AS_PRINTED = "holds as printed"
-    CORRECTED = "holds when corrected"
-    FALSE = "false"
-
-
-class Severity(Enum):
-    """How much is wrong with a statement that does not hold as printed."""
-
-    TYPO = "typo"
-    """A sign, an index or a word that the rest of the paper shows to be a slip."""
-    CONSTANT = "wrong constant"
-    """A number, a range or a label that is wrong and changes what is computed."""
-    CONDITION = "missing condition"
-    """True under a condition that is not stated."""
-    CLAIM = "wrong claim"
-    """Not true in the sense in which it is used."""
-
-
-class How(Enum):
-    """How a step is established. Only the first three establish it in general."""
-
-    IDENTITY = "identity"
-    """A rational function of the geometry vanishes identically."""
-    CERTIFICATE = "certificate"
-    """An explicit certificate: sign-definite factorisation, sum of squares, finite enumeration."""
-    COUNTEREXAMPLE = "counterexample"
-    """An exact rational example, evaluated exactly."""
-    CASES = "exact cases"
-    """Tested on a stated number of exact cases; evidence, not proof."""
-
-
-@dataclass(frozen=True)
-class Statement:
-    """One formula or claim: where it stands, as printed (LaTeX), the ruling, and the correction.
-
-    `key` numbers it within the paper, as in "C.4" for the fourth statement of Appendix C;
-    `corrected` is empty if it holds as printed, or cannot be mended; `code` names what in exactfold
-    implements it, `equation` is its number in the paper. What it rests on besides the steps that
-    name it: `rests` (keys of other statements), `cited` (a theorem of others) and `words` (where a
-    proof is written out that is not run). The ruling is set when a proof is finished.
-    """
-
-    key: str
-    place: str
-    printed: str
-    corrected: str = ""
-    note: str = ""
-    code: str = ""
-    equation: str = ""
-    severity: Severity | None = None
-    rests: str = ""
-    cited: str = ""
-    words: str = ""
-    ruling: Ruling = Ruling.AS_PRINTED
-
-    @property
-    def is_own(self) -> bool:
-        """Whether it is a statement of exactfold and not of the paper."""
-        return self.key.startswith("T.")
-
-
-@dataclass(frozen=True)
-class Step:
-    """A checked step; `cases` counts the exact cases where `how` is CASES."""
-
-    text: str
-    how: How
-    holds: bool
-    cases: int = 0
-    of: tuple[str, ...] = ()
-    """Keys of the statements that it establishes, in part or in whole."""
-    against: tuple[str, ...] = ()
-    """Keys of the statements whose printed form it refutes."""
-    formula: bool = False
-    """Whether it evaluates the expressions of a statement (`Claim`)."""
-
-
-@dataclass(frozen=True)
-class Claim:
-    """The expressions of a statement and where they are evaluated.
-
-    `right` (as printed, or as corrected) vanishes identically in each of `over`; if it is a
-    correction, `printed` does not hold in one of `at`.
-    """
-
-    key: str
-    printed: Formula
-    right: Formula
-    over: tuple[Names, ...]
-    at: tuple[Names, ...]
-
-    def holds(self, formula: Formula) -> bool:
-        """Whether all sides are equal in every environment of `over`."""
-        return all(is_true(formula, names) for names in self.over)
-
-    @property
-    def is_refuted(self) -> bool:
-        """Whether the printed form fails in some environment of `at`."""
-        return not all(is_true(self.printed, names) for names in self.at)
 
 
 @dataclass(frozen=True)
@@ -279,30 +177,35 @@ class Script:
         over: Iterable[Names],
         at: Iterable[Names] = (),
         functions: Iterable[str] = (),
+        mentions: bool = False,
         **fields: Any,
     ) -> None:
-        """State a formula, and evaluate it: as it stands, or as corrected, and then as printed.
+        """State formulas, and evaluate them: as they stand, or as corrected, and then as printed.
 
-        `over` and `at` say what the names mean: free geometries, in which it has to hold
-        identically, and one in which the printed form fails (`over` if none is given).
+        `over` and `at` say what the names mean: free geometries, in which they have to hold
+        identically, and such with numbers, where the printed form fails (`over` if none is given).
+        With `mentions` single names and numbers among the words are evaluated, too.
         """
         names = tuple(functions)
-        first = parse(printed, names)
-        right = parse(corrected, names) if corrected else first
+        first = read(printed, names, mentions)
+        right = read(corrected, names, mentions) if corrected else first
+        if first.formulas and first.expressions != right.expressions:
+            raise ValueError(f"{key}: as many expressions are needed in both forms")
         free = tuple(over)
         claim = Claim(key, first, right, free, tuple(at) or free)
         self.claims.append(claim)
         which = "corrected" if corrected else "printed"
+        number = len({id(names) for names in (*claim.over, *claim.at)})
         self.steps.append(
             Step(
-                f"{key} as {which}, evaluated in {len(claim.over)} free geometries or systems",
+                f"{key} as {which}, evaluated in {number} geometries or systems",
                 How.IDENTITY,
-                bool(claim.over) and claim.holds(right),
+                bool(number) and claim.holds(right),
                 of=(key,),
                 formula=True,
             )
         )
-        if corrected:
+        if corrected and first.formulas:
             self.steps.append(
                 Step(
                     f"{key} as printed does not hold",
@@ -312,8 +215,7 @@ class Script:
                     formula=True,
                 )
             )
-        shown = latex(right) if corrected else ""
-        self.state(key, place, latex(first), shown, **fields)
+        self.state(key, place, first.latex, right.latex if corrected else "", **fields)
 
     def proof(self) -> Proof:
         """The finished proof. Raises `ValueError` if the change asked for does not exist."""
@@ -341,34 +243,6 @@ class Script:
         if not refuted:
             return statement
         return replace(statement, ruling=Ruling.CORRECTED if statement.corrected else Ruling.FALSE)
-
-
-def is_true(formula: Formula, names: Names) -> bool:
-    """Whether all sides of a formula are equal; False also where a name or an index has no value.
-
-    `names["zero"]`, if there is one, decides whether a difference is zero.
-    """
-    zero = names.get("zero", is_zero)
-    try:
-        return all(zero(difference) for difference in formula.differences(names))
-    except (LookupError, ZeroDivisionError, TypeError):
-        return False
-
-
-def is_zero(value: Any) -> bool:
-    """Whether a number, a SymPy ring or field element, or a SymPy expression is identically 0.
-
-    Ring and field elements are in normal form, so `== 0` decides; an expression is first brought
-    over one denominator and expanded, which decides for rational functions of its symbols.
-    """
-    if hasattr(value, "is_Matrix") and value.is_Matrix:
-        return all(is_zero(entry) for entry in value)
-    if hasattr(value, "free_symbols"):
-        import sympy
-
-        numerator, _ = sympy.fraction(sympy.together(value))
-        return bool(sympy.expand(numerator) == 0)
-    return bool(value == 0)
 
 
 def report(proof: Proof) -> str:

@@ -44,8 +44,9 @@ import sympy
 from exactfold import CreasePattern, count_branches, families, random_square
 from exactfold.branches.result import BranchCount
 from proofs.butterfly import DART, FAN, KITE, quadratic
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
 from proofs.mountain_valley import sector
+from proofs.statements import Severity
 
 NAME = "h1_doubling"
 TITLE = "The H1 move doubles the branches"

@@ -21,7 +21,8 @@ if not __package__:  # run as a file
 import networkx as nx
 
 from exactfold import families
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
+from proofs.statements import Severity
 
 NAME = "h1_triangulations"
 TITLE = "H1 triangulations: counts, and all of them with few vertices"
@@ -224,7 +225,7 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
     script.example(
         "each move adds two triangles and one interior vertex to the two triangles of the seed: "
         "Vi + 1 butterflies",
-        all(2 + 2 * n == 2 * (n + extra) for n in range(20)),
+        all(len(p.triangles) == 2 * (p.Vi + extra) for p in map(families.h1_sequence, (3, 5, 8))),
         against="IV.12",
     )
     script.example(
@@ -262,13 +263,18 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         r"\text{a reverse H1 move deletes one boundary vertex and converts one internal vertex}",
         note="when the middle neighbour is interior, that is, without chords",
     )
-    script.state(
+    script.formula(
         "IV.12",
         "Section IV",
         r"\text{``can be decomposed into a sequence of }V_i\text{ butterflies''}",
-        r"\text{of }V_i+1\text{ butterflies, the seed included}",
-        note="2 Vi + 2 triangles, two a butterfly. The figure counts so: (1) to (4) and the seed "
-        "(5) for Vi = 4",
+        r"\text{can be decomposed into a sequence of }V_i+1\text{ butterflies}",
+        over=[
+            {"V_i": p.Vi, "values": (len(p.triangles) // 2,)}
+            for p in map(families.h1_sequence, (3, 5, 8))
+        ],
+        mentions=True,
+        note="the seed included: 2 Vi + 2 triangles, two a butterfly. The figure counts so: (1) to "
+        "(4) and the seed (5) for Vi = 4",
         severity=Severity.CONSTANT,
     )
     script.state(

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import random
 import sys
 from fractions import Fraction
 from itertools import pairwise
+from math import atan2
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +19,9 @@ from sympy.polys.rings import ring
 
 from exactfold.rigidity import wheel_stress
 from proofs.force_balance import spoke, star
-from proofs.framework import Proof, Script, Severity, run
-from proofs.spokes import wheel, without
+from proofs.framework import Proof, Script, run
+from proofs.spokes import drawn, forces, wheel, without
+from proofs.statements import Severity
 from proofs.wheel_stress import Angle, cross
 
 NAME = "hub_balance"
@@ -55,17 +58,20 @@ def _base_case(script: Script) -> None:
     script.identity(
         "-csc alpha_31 = csc(alpha_12 + alpha_23)", sign * c.csc + (a + b).csc, of="B.12"
     )
-    script.state(
+    script.formula(
         "B.11",
         "Appendix B, Eq. (simpletrig)",
         r"\csc a\csc b=\csc(a+b)(\cot a+\cot b)",
+        over=[{"a": a, "b": b}],
         note="wherever sin a, sin b, sin(a + b) are not 0",
         equation="B13",
     )
-    script.state(
+    script.formula(
         "B.12",
         "Appendix B, after Eq. (simpletrig)",
         r"-\csc\alpha_{3,1}=\csc(\alpha_{1,2}+\alpha_{2,3})",
+        over=[wheel(3)],
+        at=drawn(3),
     )
     stress = [spoke(L3, L1, L2, c, a), spoke(L1, L2, L3, a, b), spoke(L2, L3, L1, b, c)]
     ratio = stress[0] / b.sin
@@ -90,6 +96,7 @@ def _base_case(script: Script) -> None:
         r"L_3}+\frac{\csc\alpha_{3,1}\csc\alpha_{1,2}}{L_1}+\frac{-\csc\alpha_{3"
         r",1}(\cot\alpha_{2,3}+\cot\alpha_{1,2})}{L_2}",
         over=[wheel(3)],
+        at=drawn(3),
         note="its second line needs Eq. (simpletrig) twice and is sigma_2/sin(alpha_31) already; "
         "display B.14 is the first line multiplied out and belongs between the two",
         equation="B11 and B12",
@@ -117,6 +124,7 @@ def _base_case(script: Script) -> None:
         r"3}}{L_3}+\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{3,1})}{L"
         r"_1}+\frac{\csc\alpha_{2,3}\csc\alpha_{1,2}}{L_2}",
         over=[wheel(3)],
+        at=drawn(3),
         note="index: cot alpha_31, not cot alpha_23. Example: cosines -3/5, -4/5, 0 of alpha_12, "
         "alpha_23, alpha_31, where the coefficients of 1/L_1 differ by csc(alpha_23) 4/3",
         equation="B14",
@@ -135,6 +143,7 @@ def _base_case(script: Script) -> None:
         "Appendix B, base case, law of sines",
         r"\sigma_1/\sin\alpha_{2,3}=\sigma_2/\sin\alpha_{3,1}=\sigma_3/\sin" r"\alpha_{1,2}",
         over=[wheel(3)],
+        at=drawn(3),
         equation="B10",
     )
     u = [(K(1), K(0)), (a.cos, a.sin), ((a + b).cos, (a + b).sin)]
@@ -144,13 +153,15 @@ def _base_case(script: Script) -> None:
     script.identity(
         "sin alpha_23 u_1 + sin alpha_31 u_2 + sin alpha_12 u_3 = 0", *closed, of="B.16"
     )
-    script.state(
+    script.formula(
         "B.16",
         "Appendix B, base case",
-        r"\sum_{j=1}^3\sigma_j\mathbf u_j=\mathbf 0\text{; turning angles }\alpha\text{, the angle "
-        r"opposite }\sigma_1\text{ is }\pi-\alpha_{2,3}",
-        note="with three spokes all sigma_j are positive, so the sides have lengths sigma_j. With "
-        "four or more a sigma_j can be negative, and its side is traversed backwards",
+        r"\sum_{j=1}^3\sigma_j\mathbf{u}_j=\mathbf{0}",
+        over=forces(wheel(3)),
+        at=forces(wheel(3, numbers=True)),
+        note="turning angles alpha; the angle opposite sigma_1 is pi - alpha_23: with three spokes "
+        "all sigma_j are positive, so the sides have lengths sigma_j. With four or more a sigma_j "
+        "can be negative, and its side is traversed backwards",
         code="wheel_stress",
         equation="B9",
     )
@@ -183,6 +194,7 @@ def _induction_formulas(script: Script) -> None:
         r"\alpha_{i-2,i-1}}{L_{i-2}}+\frac{\cot(\alpha_{i-1,i}+\alpha_{i,i+1})+"
         r"\cot\alpha_{i-2,i-1}}{L_{i-1}}",
         over=[without(5)],
+        at=[without(5, numbers=True)],
         note="with Delta sigma_{i-1} = sigma_{i-1} - sigma^0_{i-1} and Eq. (spokes) for sigma_i",
         equation="B17",
     )
@@ -193,6 +205,7 @@ def _induction_formulas(script: Script) -> None:
         r"-1,i}+\alpha_{i,i+1})}{L_{i+1}}-\frac{\cot\alpha_{i-1,i}-\cot(\alpha_{"
         r"i-1,i}+\alpha_{i,i+1})}{L_{i-1}}",
         over=[without(5)],
+        at=[without(5, numbers=True)],
         note="and its mirror image Delta sigma_{i+1}; defined unless alpha_{i-1,i} + "
         "alpha_{i,i+1} = pi",
         equation="B18 and B19",
@@ -247,10 +260,12 @@ def _induction_step(script: Script) -> None:
         and rise / Fraction(3, 5) == Fraction(-25, 36),
         against="B.20",
     )
-    script.state(
+    script.formula(
         "B.19",
         "Appendix B, induction, angle of the small triangle",
         r"\beta_i=\pi-\alpha_{i-1,i}-\alpha_{i,i+1}",
+        over=[without(5)],
+        at=[without(5, numbers=True)],
         note="a triangle if this is positive; for its sides and the law of sines see B.20",
     )
     script.formula(
@@ -260,6 +275,7 @@ def _induction_step(script: Script) -> None:
         r"\sigma_i/\sin\beta_i=-\Delta\sigma_{i-1}/\sin\alpha_{i,i+1}=-\Delta"
         r"\sigma_{i+1}/\sin\alpha_{i-1,i}",
         over=[without(5)],
+        at=[without(5, numbers=True)],
         note="sin(beta_i) is +sin(alpha_{i-1,i} + alpha_{i,i+1}); in the last display only the "
         "leftmost "
         "side needs the sign. (Or beta_i = alpha_{i-1,i} + alpha_{i,i+1} - pi, which mends both.) "
@@ -290,12 +306,19 @@ def _last_display(script: Script) -> None:
     script.identity(
         "each further line equals the next", *(x - y for x, y in pairwise(lines)), of="B.21"
     )
-    script.state(
+    script.formula(
         "B.21",
-        "Appendix B, last display",
-        r"-\csc(\alpha_{i-1,i}+\alpha_{i,i+1})\left(\frac{\csc\alpha_{i,i+1}}{L_{i+1}}+"
-        r"\frac{\csc\alpha_{i-1,i}}{L_{i-1}}-\frac{\cot\alpha_{i,i+1}+\cot\alpha_{i-1,i}}{L_i}"
-        r"\right)=\dots=\frac{\Delta\sigma_{i-1}}{\sin\alpha_{i,i+1}}",
+        "Appendix B, last display, right-hand sides",
+        r"-\csc(\alpha_{i-1,i}+\alpha_{i,i+1})(\frac{\csc\alpha_{i,i+1}}{L_{i+1}}"
+        r"+\frac{\csc\alpha_{i-1,i}}{L_{i-1}}-\frac{\cot\alpha_{i,i+1}+\cot\alpha_{i-1,i}}{L_i})"
+        r"=-\csc(\alpha_{i-1,i}+\alpha_{i,i+1})(\frac{\csc\alpha_{i,i+1}}{L_{i+1}}"
+        r"+\frac{\csc\alpha_{i-1,i}}{L_{i-1}})+\frac{\csc\alpha_{i,i+1}\csc\alpha_{i-1,i}}{L_i}"
+        r"=\csc\alpha_{i,i+1}(\frac{-\csc(\alpha_{i-1,i}+\alpha_{i,i+1})}{L_{i+1}}"
+        r"+\frac{\csc\alpha_{i-1,i}}{L_i})-\frac{\csc\alpha_{i,i+1}(\cot\alpha_{i-1,i}"
+        r"-\cot(\alpha_{i-1,i}+\alpha_{i,i+1}))}{L_{i-1}}"
+        r"=\frac{\Delta\sigma_{i-1}}{\sin\alpha_{i,i+1}}",
+        over=[without(5)],
+        at=[without(5, numbers=True)],
         note="as far as the four right-hand sides go, which are equal; the left-hand side needs "
         "the sign of B.20",
         equation="B20 to B23",
@@ -311,12 +334,28 @@ def _choice_of_spoke(script: Script) -> None:
         all(cross(straight[i - 1], straight[(i + step) % 4]) == 0 for i in range(4)),
         against="B.22",
     )
-    _, w, x, y, z = ring("w x y z", QQ)  # angles of four spokes
-    script.identity(
-        "four spokes: the sums at opposite spokes add up to 2 pi, so one is < pi, or all are pi",
-        (w + x) + (y + z) - ((x + y) + (z + script.alter("sums that share an angle", w, y))),
-        (w + x) - (x + y) - (w - y),
-        (x + y) - (y + z) - (x - z),
+    for size in (4, 5, 6, 7, 8):
+        _, *angles = ring([f"a{k}" for k in range(size)], QQ)
+        sums = [angles[k - 1] + angles[k] for k in range(size)]
+        every = sums[:: script.alter("sums at every spoke of four", 2, 1)] if size == 4 else sums
+        script.identity(
+            "four spokes: the sums at opposite spokes add up to all angles, 2 pi, so one is < pi, "
+            "or all are pi"
+            if size == 4
+            else f"{size} spokes: the {size} sums add up to twice all angles, 4 pi, so one is at "
+            f"most 4 pi/{size} < pi",
+            sum(every) - (1 if size == 4 else script.alter(f"once, {size}", 2, 1)) * sum(angles),
+            of="B.22",
+        )
+    wide = script.alter("spokes with a wide pair beside them", 1, -1)
+    script.cases(
+        "random stars of 4 to 8 spokes have a spoke between two others less than pi apart, unless "
+        "they are two straight lines",
+        (
+            any(wide * cross(d[k - 1], d[(k + 1) % len(d)]) > 0 for k in range(len(d)))
+            or (len(d) == 4 and all(cross(d[k], d[k - 2]) == 0 for k in range(4)))
+            for d in _random_stars()
+        ),
         of="B.22",
     )
     _, p, *L = field("p L1 L2 L3 L4", QQ)
@@ -326,12 +365,6 @@ def _choice_of_spoke(script: Script) -> None:
     s = [spoke(L[j - 1], L[j], L[(j + 1) % 4], angles[j - 1], angles[j]) for j in range(4)]
     script.identity(
         "all sums pi: sigma_1 = sigma_3, sigma_2 = sigma_4", s[0] - s[2], s[1] - s[3], of="B.22"
-    )
-    _, n = ring("N", QQ)
-    script.identity(
-        "N >= 5 spokes: N pi - 4 pi = pi ((N - 5) + 1) > 0, so the mean 4 pi/N of the sums is < pi",
-        n - script.alter("sums of three angles", 4, 6) - ((n - 5) + 1),
-        of="B.22",
     )
     script.state(
         "B.22",
@@ -345,14 +378,29 @@ def _choice_of_spoke(script: Script) -> None:
         "and sigma_2 = sigma_4 directly",
         severity=Severity.CONDITION,
     )
-    script.state(
+    script.formula(
         "B.23",
         "Appendix B, force balance at the hub",
-        r"\sum_{j=1}^N\sigma_j\mathbf u_j=\mathbf 0",
-        note="by the corrected induction, and by B.24 without induction",
+        r"\sum_{j=1}^N\sigma_j\mathbf{u}_j=\mathbf{0}",
+        over=forces(wheel(4)),
+        at=[names for drawing in drawn(4, 5, 6) for names in forces(drawing)],
+        note="by the corrected induction, and by B.24 without induction; printed for N = 3 (B.16)",
         code="wheel_stress",
         rests="B.24",
     )
+
+
+def _random_stars() -> list[list[tuple[int, int]]]:
+    """Integer spokes in counter-clockwise order, angles below pi; most are nearly a cross."""
+    source, found = random.Random(1), [[(2, 1), (-1, 2), (-4, -2), (1, -2)]]
+    while len(found) < 60:
+        near = [(9, 0), (0, 9), (-9, 0), (0, -9), (9, 9), (-9, 9), (-9, -9), (9, -9)]
+        chosen = near[: 4 + len(found) % 5]
+        spokes = [(x + source.randint(-2, 2), y + source.randint(-2, 2)) for x, y in chosen]
+        spokes.sort(key=lambda d: atan2(d[1], d[0]))
+        if all(cross(spokes[k - 1], spokes[k]) > 0 for k in range(len(spokes))):
+            found.append(spokes)
+    return found
 
 
 if __name__ == "__main__":

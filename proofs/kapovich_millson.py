@@ -23,8 +23,10 @@ import sympy
 
 from exactfold.exact.linalg import rank
 from exactfold.rigidity.kapovich_millson import kapovich_millson
-from proofs.framework import Proof, Script, Severity, run
-from proofs.spokes import wheel
+from proofs.formulas import Names
+from proofs.framework import Proof, Script, run
+from proofs.spokes import drawn, wheel
+from proofs.statements import Severity
 from proofs.vertex_forms import cross, csc, dot, symbols, unit
 
 NAME = "kapovich_millson"
@@ -79,6 +81,7 @@ def _minors(script: Script) -> None:
         r"\Delta_j=\chi(j)",
         r"\Delta_j=\chi(j+2)",
         over=[{**wheel(5), "j": j} for j in (1, 2, 3)],
+        at=[{**names, "j": j} for names in drawn(6) for j in (0, 1, 2, 3)],
         functions=["chi"],
         note="chi(n) is the determinant on h_2, ..., h_{n-1}: Delta_0 = chi(2) = 1, and the last "
         "minor is Delta_{N-2} = chi(N)",
@@ -95,6 +98,7 @@ def _minors(script: Script) -> None:
         r"\frac{\sin(\sum_{n=1}^{j}\alpha_{n,n+1})}{\sin(\sum_{n=1}^{j-1}\alpha_"
         r"{n,n+1})},\quad j=2,\dots,N-1",
         over=[wheel(4), wheel(5)],
+        at=drawn(4, 5, 6),
         functions=["chi"],
         note="the cosecant is that of the last angle of the numerator, also in 'negative iff "
         "alpha_{j-1,j} < 0'; the ratios use the angles 23 to N-1,N only, not 12 and N1",
@@ -158,19 +162,43 @@ def _crossings(script: Script) -> None:
         and net_crossings(BACK_FIRST) == net,
         against="C.15",
     )
-    script.state(
+    turned = [d[k:] + d[:k] for d in (BACK_FIRST, PENTAGRAM, TWICE_BACK) for k in range(3)]
+    stars = [d for d in (*turned, *_samples()) if all(cross(d[0], e) for e in d[1:])]
+    script.formula(
         "C.15",
         "Appendix C, proof of Theorem KM",
-        r"C_f-C_b=2w-1\text{ is the net number of crossings; }b-C_b\text{ back-tracks do not "
-        r"cross}",
-        r"\text{from }\alpha_{12}\text{ to }2\pi w-\alpha_{N1}:\ "
-        r"C_f-C_b=2w-1+[\alpha_{12}<0]+[\alpha_{N1}<0],\text{ and "
-        r"}b-[\alpha_{12}<0]-[\alpha_{N1}<0]-C_b\text{ back-tracks do not cross}",
+        r"\text{``}2w-1\text{ is the net number of times }C_f-C_b\text{'' \dots\ ``this occurs "
+        r"}b-C_b\text{ times''}",
+        r"2w-1+[\alpha_{1,2}<0]+[\alpha_{N,1}<0]\text{ is the net number of times }C_f-C_b\text{ "
+        r"that the angles but the first and the last cross; back-tracks among them do not cross }"
+        r"b-[\alpha_{1,2}<0]-[\alpha_{N,1}<0]-C_b\text{ times}",
+        over=map(_crossed, stars),
         note="the two gaps cancel, and the sum b + 2w - 1 is right. As printed both counts fail "
         "when the first or the last angle is a back-track: spokes (1,0), (2,-1), (0,1), (-1,-1)",
         code="kapovich_millson",
         severity=Severity.CONSTANT,
     )
+
+
+def _crossed(d: Spokes) -> Names:
+    """The names of a star, with the crossings counted along its partial sums; angles by signs."""
+    found, n = kapovich_millson(d), len(d)
+    half = Fraction(1, 2)
+    signs = [half if cross(d[k], d[(k + 1) % n]) > 0 else -half for k in range(n)]
+    crossed = [cross(d[0], a) * cross(d[0], b) < 0 for a, b in pairwise(d[1:])]
+    inner = list(zip(signs[1:-1], crossed, strict=True))
+    forward, back = inner.count((half, True)), inner.count((-half, True))
+    net = net_crossings(d)
+    return {
+        "N": n,
+        "w": found.winding,
+        "b": found.back,
+        "C_f": forward,
+        "C_b": back,
+        "pi": sympy.pi,
+        "alpha": lambda i, j: {(1, 2): signs[0], (n, 1): signs[-1]}[i, j],
+        "values": (net, net, inner.count((-half, False))),
+    }
 
 
 def net_crossings(d: Spokes) -> int:

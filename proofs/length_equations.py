@@ -5,16 +5,24 @@ from __future__ import annotations
 import sys
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import sympy
+from sympy import QQ
+from sympy.polys.fields import field
 
 from exactfold import CreasePattern, families
 from exactfold.exact.linalg import rank
 from exactfold.rigidity import curvature_form, rigidity_matrix, self_stresses
-from proofs.framework import Proof, Script, Severity, run
+from proofs.claims import is_zero
+from proofs.formulas import Names
+from proofs.framework import Proof, Script, run
+from proofs.spokes import Vector, drawn, wheel
+from proofs.statements import Severity
+from proofs.wheel_stress import TRIANGLE, with_vertices
 
 NAME = "length_equations"
 TITLE = "The expansion of the length equations"
@@ -57,10 +65,11 @@ def _expansion(script: Script) -> None:
         two * a.dot(b) - a.dot(a) - b.dot(b) + (a - b).dot(a - b),
         of="IIA.1",
     )
-    tilt = U + t * script.alter("an in-plane displacement of first order", 0, 1) * u
+    order = script.alter("heights that count in the first order", 2, 1)
+    tilt = U + t * u
     script.identity(
-        "with u = 0 the squared length has no term of first order in t",
-        sympy.diff(tilt.dot(tilt) + (t * h) ** 2, t).subs(t, 0),
+        "to first order in t the squared length changes by 2 U.u, which is 0 where u is",
+        sympy.diff(tilt.dot(tilt) + t**order * h**2, t).subs(t, 0) - 2 * U.dot(u),
         of="IIA.3",
     )
     script.state(
@@ -71,10 +80,12 @@ def _expansion(script: Script) -> None:
         code="CreasePattern.edges",
         equation="1",
     )
-    script.state(
+    script.formula(
         "IIA.2",
         "Section II A, Eq. (expanded)",
-        r"2\frac{U_n-U_m}{|U_n-U_m|}\cdot(u_n-u_m)+\frac{(h_n-h_m)^2}{|U_n-U_m|}\approx 0",
+        r"2\frac{\mathbf{U}_n-\mathbf{U}_m}{|\mathbf{U}_n-\mathbf{U}_m|}\cdot(\mathbf{u}_n"
+        r"-\mathbf{u}_m)+\frac{(h_n-h_m)^2}{|\mathbf{U}_n-\mathbf{U}_m|}\approx 0",
+        over=[_edge(*field("t U1 V1 U2 V2 u1 v1 u2 v2 h1 h2 length", QQ)[1:])],
         note="to lowest order in t, with in-plane displacements of order t^2; exact remainder "
         "t^4 |u_n - u_m|^2 / |U_n - U_m|",
         code="BranchSystem",
@@ -85,6 +96,50 @@ def _expansion(script: Script) -> None:
         "Section II A, after Eq. (expanded)",
         r"\mathbf u_n=0\text{ for all }n\text{ preserves lengths to first order}",
     )
+
+
+def _edge(t: Any, *free: Any) -> Names:
+    """The names of one edge whose ends move by t^2 u in the plane and by t h out of it.
+
+    The left side of Eq. (expanded) stands for what the length equation, divided by the length,
+    has of order t^2.
+    """
+    coordinates, length = free[:8], free[10]
+    h = {1: free[8], 2: free[9]}
+    side = (coordinates[0] - coordinates[2], coordinates[1] - coordinates[3])
+    ends = {k: Vector(coordinates[2 * k - 2 : 2 * k], {side: length}) for k in (1, 2)}
+    moves = {k: Vector(coordinates[2 * k + 2 : 2 * k + 4]) for k in (1, 2)}
+    drift, rise = moves[1] - moves[2], t * (h[1] - h[2])
+    bar = Vector(side) + t**2 * drift
+    squared = bar * bar + rise * rise - Vector(side) * Vector(side)
+    leading = (squared / t**2 - t**2 * (drift * drift)) / length
+    return {
+        "n": 1,
+        "m": 2,
+        "U": ends.__getitem__,
+        "u": moves.__getitem__,
+        "h": h.__getitem__,
+        "zero": lambda difference: is_zero(difference + leading),
+    }
+
+
+def _sheet(names: Names) -> Names:
+    """The names of a wheel whose vertices also move by u = (k^2, 3 - k) in the plane; hub 0."""
+    n, ends = names["N"], [(0, 0), *names["ends"]]
+    edges = [(k, 0) for k in range(1, n + 1)] + [(k, k % n + 1) for k in range(1, n + 1)]
+    sides = {(i, j): Vector(ends[i]) - Vector(ends[j]) for i, j in edges}
+    lengths = {(i, j): names["Delta L"](i, j) if j else names["L"](i) for i, j in edges}
+    sizes = {sides[e].coordinates: lengths[e] for e in edges}
+    moves = [Vector((k * k, 3 - k)) for k in range(n + 1)]
+    stretch = {e: sides[e] * (moves[e[0]] - moves[e[1]]) / lengths[e] for e in edges}
+    return {
+        **names,
+        "all": edges,
+        "U": lambda k: Vector(ends[k], sizes),
+        "u": moves.__getitem__,
+        "sigma": lambda e: names["sigma"](*e) if e[1] else names["sigma"](e[0]),
+        "stretch": lambda e: stretch[e],
+    }
 
 
 def _in_plane(script: Script) -> None:
@@ -156,11 +211,12 @@ def _in_plane(script: Script) -> None:
 
 def _stresses(script: Script) -> None:
     """Rows of C are edges, not folds; Eq. (compat) and what it says."""
-    s, length, h, cu = sympy.symbols("sigma ell h Cu")
-    half = script.alter("Eq. (compat) with the in-plane term left in", 0, 1)
+    free = _sheet(wheel(3))
+    one = script.alter("a rim without its stress", 0, 1)
     script.identity(
-        "sigma . (2 C u + h^2/|U|), with sigma C = 0, is the sum of sigma h^2 / |U|",
-        s * (2 * half * cu + h**2 / length) - s * h**2 / length,
+        "sigma . C u = 0 for the wheel stress of a free wheel and any u: of sigma . (2 C u + "
+        "h^2/|U|) the sum of sigma h^2/|U| is left",
+        sum(free["sigma"](e) * free["stretch"](e) for e in free["all"][: len(free["all"]) - one]),
         of="IIA.8",
     )
     kept = script.alter("rows for all edges", CROSS.folds, CROSS.edges)
@@ -219,17 +275,21 @@ def _stresses(script: Script) -> None:
         equation="3",
         severity=Severity.TYPO,
     )
-    script.state(
+    script.formula(
         "IIA.7",
         "Section II A, Eq. (expanded2)",
-        r"2[\mathbf C\mathbf u]_{(n,m)}+\frac{(h_n-h_m)^2}{|U_n-U_m|}\approx 0",
+        r"2[\mathbf{C}\cdot\mathbf{u}]_{(n,m)}+\frac{(h_n-h_m)^2}{|\mathbf{U}_n-\mathbf{U}_m|}"
+        r"\approx 0",
+        over=[_by_rows(_edge(*field("t U1 V1 U2 V2 u1 v1 u2 v2 h1 h2 length", QQ)[1:]))],
+        functions=[r"[\mathbf{C}\cdot\mathbf{u}]_{(n,m)}"],
         equation="4",
     )
-    script.state(
+    script.formula(
         "IIA.8",
         "Section II A, Eq. (compat)",
-        r"\sum_{(n,m)}\frac{\sigma_{(n,m)}}{|U_n-U_m|}(h_n-h_m)^2=0",
-        note="with boundary edges among the folds (IIA.6)",
+        r"\sum_{(n,m)}\frac{\sigma_{(n,m)}}{|\mathbf{U}_n-\mathbf{U}_m|}(h_n-h_m)^2=0",
+        over=[_compatible(names) for names in (free, *map(_sheet, drawn(4, 5)))],
+        note="with boundary edges among the folds (IIA.6). For the wheel stress the sum is 2 K_v",
         code="stress_form",
         equation="5",
     )
@@ -246,6 +306,21 @@ def _stresses(script: Script) -> None:
         code="BranchSystem",
         cited="Fredholm: b is in the image iff every left null vector annihilates it",
     )
+
+
+def _by_rows(names: Names) -> Names:
+    """The same names with the row of the rigidity matrix of exactfold, divided by the length."""
+    ends, moves = ([names[x](k).coordinates for k in (1, 2)] for x in "Uu")
+    triangle = with_vertices(TRIANGLE, [*ends, (0 * ends[0][0], 0 * ends[0][0])])
+    row = rigidity_matrix(triangle)[triangle.edges.index((0, 1))]
+    stretch = sum(a * b for a, b in zip(row, [*moves[0], *moves[1]], strict=False))
+    length = abs(names["U"](1) - names["U"](2))
+    return {**names, r"[\mathbf{C}\cdot\mathbf{u}]_{(n,m)}": stretch / length}
+
+
+def _compatible(names: Names) -> Names:
+    """The same names where the right side 0 stands for 2 K_v(h) = 0."""
+    return {**names, "zero": lambda d: is_zero(d + 2 * names["K"]())}
 
 
 def _solvable(pattern: CreasePattern, heights: Heights, power: int) -> bool:

@@ -32,7 +32,8 @@ import sympy
 from exactfold import CreasePattern, count_branches, families
 from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
+from proofs.statements import Severity
 from proofs.vertex_forms import star
 
 NAME = "mountain_valley"
@@ -141,15 +142,50 @@ def _inequality(script: Script) -> None:
         half_bend(0, slope, t) - 1,
         of="IIIC.1",
     )
-    # b |y| = b y for y >= 0, and b |y| = b y + 2 b |y| for y < 0, where b <= 0
-    b, w = sympy.symbols("b w", positive=True)
-    up = script.alter("a valley below the line", -1, 1)
-    script.example(
-        "sum b|y| = sum b y + 2 sum_(y < 0) b |y| and sum b y = 0: with all valleys in y >= 0, "
-        "2 K(g, h) = sum b |y| <= 0, while K(g, h) >= 0 if h is popped down; so h = c g",
-        bool(((up * b) * w - (up * b) * (-w)).is_negative),
+    outcomes = []
+    for pattern, hub, heights in _null_vectors():
+        form = curvature_form(pattern, hub)
+        for nx, ny in ((0, 1), (1, 0), (1, 2), (3, -1)):
+            sides = {
+                j: nx * x + ny * y
+                for j in pattern.star(hub)
+                for x, y in [_direction(pattern, hub, j)]
+            }
+            fold = {hub: Fraction(0), **{j: abs(y) for j, y in sides.items()}}
+            bends = {j: _bend(pattern, hub, j, heights) for j in sides}
+            fault = script.alter(f"half the mountains, {nx} {ny}", 2, 1) if not outcomes else 2
+            below = sum(b * abs(sides[j]) for j, b in bends.items() if sides[j] < 0)
+            outcomes += [
+                2 * form.polar(fold, heights) == sum(b * fold[j] for j, b in bends.items()),
+                sum(b * sides[j] for j, b in bends.items()) == 0,
+                2 * form.polar(fold, heights) == fault * below,
+            ]
+    script.cases(
+        "2 K(g, h) = sum b|y| = sum b y + 2 sum_(y < 0) b |y| and sum b y = 0 for the line fold g "
+        "= |y|, b the bends over the lengths of the folds, on four null vectors and four lines: "
+        "with all valleys in y >= 0 it is <= 0, while K(g, h) >= 0 if h is popped down; so h = c g",
+        outcomes,
         of="IIIC.1",
     )
+
+
+def _null_vectors() -> list[tuple[CreasePattern, int, dict[int, Fraction]]]:
+    """The waterbomb and the vertex with a cross, popped up and down."""
+    wheel = CreasePattern([*CROSS_SPOKES, (0, 0)], [(k, (k + 1) % 7, 7) for k in range(7)])
+    found = [(families.waterbomb(), 6, h) for h in WATERBOMB.values()]
+    crossed = [(wheel, 7, dict(enumerate(h))) for h in CROSS.values()]
+    return [(p, v, {j: Fraction(x) for j, x in h.items()}) for p, v, h in (*found, *crossed)]
+
+
+def _bend(pattern: CreasePattern, hub: int, j: int, heights: Mapping[int, Fraction]) -> Fraction:
+    """b_j / L_j, which is rational, from the two sectors at a spoke."""
+    ring, d = pattern.star(hub), {k: _direction(pattern, hub, k) for k in pattern.star(hub)}
+    x = {k: heights[k] - heights[hub] for k in ring}
+    size, total, at = d[j][0] ** 2 + d[j][1] ** 2, Fraction(0), ring.index(j)
+    for k in (ring[at - 1], ring[(at + 1) % len(ring)]):
+        turn = abs(d[j][0] * d[k][1] - d[j][1] * d[k][0])
+        total += (x[k] - x[j] * (d[j][0] * d[k][0] + d[j][1] * d[k][1]) / size) / turn
+    return total
 
 
 def _directions(script: Script) -> None:
@@ -169,14 +205,11 @@ def _directions(script: Script) -> None:
         fails == 0,
         of="IIIC.2",
     )
-    a, b, c, d = sympy.symbols("a b c d")
-    side = script.alter("half-plane bounded by another line", 1, -1)
-    script.identity(
-        "two directions e, e' lie in the closed half-plane bounded by the line of e on the side of "
-        "e' (Je . e = 0, Je . e' of either sign): valleys and mountains in no closed half-plane "
-        "are at least 3 + 3 folds",
-        -b * a + side * a * b,
-        (-b * c + a * d) - sympy.Matrix([[a, b], [c, d]]).det(),
+    most = script.alter("three directions", 2, 3)
+    script.certificate(
+        "any two directions lie in a closed half-plane (all pairs of 12): valleys and mountains "
+        "in no closed half-plane are at least 3 + 3 folds",
+        all(_in_half_plane(pair, size) for pair in combinations(range(size), most)),
         of="IIIC.1",
     )
 

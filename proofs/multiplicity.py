@@ -27,7 +27,7 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import CreasePattern, families
+from exactfold import CreasePattern, count_branches, families
 from exactfold.algebra import groebner
 from exactfold.algebra.exact_solution import ExactSolution, RootClass
 from exactfold.exact.linalg import inertia, nullspace
@@ -38,9 +38,11 @@ from exactfold.rigidity.definite_stresses import disk_multipliers
 from proofs.branch_counts import OCTAHEDRON, SQUARE, TWISTED, gram, inner_points, restricted
 from proofs.chambers import jacobian
 from proofs.dual_space import dual_space, taylor_expansions, unit_rank
-from proofs.framework import Proof, Script, Severity, run
+from proofs.formulas import Names
+from proofs.framework import Proof, Script, run
 from proofs.patterns import degenerate_patterns, grid_quadrilaterals
 from proofs.potential import corner_polar
+from proofs.statements import Severity
 
 NAME = "multiplicity"
 TITLE = "Multiplicities and the number of distinct branches"
@@ -110,16 +112,25 @@ def _multiplicity(script: Script) -> None:
         of="IIIA.13",
         against="IIIA.12",
     )
-    script.state(
+    script.formula(
         "IIIA.12",
         "Section III A, Eq. (B distinct)",
         r"B_{distinct}=2^{V_i-V_t}",
-        r"\sum_{branches}2^{|F|}=2^{V_i},\ F\text{ the vertices that are flat on the branch; "
-        r"}B_{distinct}\le2^{V_i-V_t},\text{ equality iff }|F|=V_t\text{ on every branch}",
-        "called conjectural in the paper, and not restricted to generic patterns. Square with "
+        r"\sum_b2^{|F_b|}=2^{V_i},\quad B_{distinct}\le2^{V_i-V_t}\text{, where }b\text{ are the "
+        r"distinct branches and }F_b\text{ the vertices that are flat on }b\text{; equality iff "
+        r"these are those in triangulated triangles on every branch}",
+        over=map(
+            _with_flat_vertices,
+            (
+                families.two_vertex(),
+                families.flat_octahedron_in_square(),
+                families.flat_vertex_square(),
+            ),
+        ),
+        note="called conjectural in the paper, and not restricted to generic patterns. Square with "
         "inner vertices (1/2,1/2), (7/10,1/5), triangles 015, 125, 245, 405, 234, 304: Vt = 0 "
         "and 3 branches. A straight crease path is the usual cause",
-        "BranchCount.distinct",
+        code="BranchCount.distinct",
         equation="10",
         severity=Severity.CONDITION,
         rests="T.3",
@@ -134,6 +145,19 @@ def _multiplicity(script: Script) -> None:
         "has multiplicities 2, 2, 4",
         code="Branch.multiplicity",
     )
+
+
+def _with_flat_vertices(pattern: CreasePattern) -> Names:
+    """The names in the count of distinct branches; `F_b` is a number of vertices."""
+    branches = count_branches(pattern, method="groebner").branches
+    flat = [list(branch.vertex_signs.values()).count(0) for branch in branches]
+    return {
+        "V_i": pattern.Vi,
+        "V_t": pattern.Vt,
+        "B_distinct": len(branches),
+        "all": range(len(branches)),
+        "F": flat.__getitem__,
+    }
 
 
 def _multiplicities(pattern: CreasePattern) -> list[int]:

@@ -7,6 +7,10 @@ that a formula is compared with what the library computes and not with another f
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+from dataclasses import field as field_
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
@@ -16,23 +20,60 @@ from sympy.polys.fields import field
 
 from exactfold import families
 from exactfold.rigidity import curvature_form, wheel_stress
-from proofs.framework import is_zero
+from proofs.claims import is_zero
 from proofs.wheel_stress import Angle, cross, dot, with_vertices
 
 
+@dataclass(frozen=True)
+class Vector:
+    """A vector, and the lengths of those vectors that are asked for: square roots are free."""
+
+    coordinates: tuple[Any, ...]
+    sizes: Mapping[tuple[Any, ...], Any] = field_(default_factory=dict, compare=False)
+
+    def __sub__(self, other: Vector) -> Vector:
+        pairs = zip(self.coordinates, other.coordinates, strict=True)
+        return Vector(tuple(a - b for a, b in pairs), self.sizes)
+
+    def __add__(self, other: Vector) -> Vector:
+        pairs = zip(self.coordinates, other.coordinates, strict=True)
+        return Vector(tuple(a + b for a, b in pairs), self.sizes)
+
+    def __neg__(self) -> Vector:
+        return Vector(tuple(-a for a in self.coordinates), self.sizes)
+
+    def __mul__(self, other: Vector) -> Any:
+        pairs = zip(self.coordinates, other.coordinates, strict=True)
+        return sum(a * b for a, b in pairs)
+
+    def __rmul__(self, factor: Any) -> Vector:
+        return Vector(tuple(factor * a for a in self.coordinates), self.sizes)
+
+    def __truediv__(self, divisor: Any) -> Vector:
+        return Vector(tuple(a / divisor for a in self.coordinates), self.sizes)
+
+    def __abs__(self) -> Any:
+        found = self.sizes.get(self.coordinates)
+        return self.sizes[(-self).coordinates] if found is None else found
+
+
 @cache
-def wheel(n: int, pinned: bool = False) -> dict[str, Any]:
+def wheel(n: int, pinned: bool = False, numbers: bool = False) -> dict[str, Any]:
     """The names of a flat vertex with n free spokes; indices are taken modulo n, the hub is 0.
 
     "alpha" are angles (over one or more sectors), "eta" those at spoke vertex 2, "L" and "Delta L"
     lengths, "h" heights, "sigma" stresses of the wheel stress of exactfold, "f", "g", "A" entries
     of -2 K_v, "K" computes K_v(h). The lengths of the rim, which are square roots, are free as
     well: a formula that holds does not depend on them, or uses "Delta L squared". `pinned`: heights
-    that are 0 at the hub and at spokes 1 and n.
+    that are 0 at the hub and at spokes 1 and n. `numbers`: rational numbers for all that is free.
     """
     letters = [f"p{k}" for k in range(1, n)]
     letters += [f"{x}{k}" for x in "LDh" for k in range(1, n + 1)] + ["h0"]
-    one, *free = field(letters, QQ)
+    if numbers:
+        primes = [sympy.prime(k) for k in range(2, len(letters) + 9)]
+        one, free = Fraction, [Fraction(primes[k], primes[k + 4]) for k in range(len(letters))]
+    else:
+        one, *free = field(letters, QQ)
     p, rest = free[: n - 1], free[n - 1 :]
     lengths, rim, heights = rest[:n], rest[n : 2 * n], rest[2 * n : 3 * n]
     sectors = [Angle.twice_arctan(t) for t in p]
@@ -106,6 +147,7 @@ def wheel(n: int, pinned: bool = False) -> dict[str, Any]:
         "all": range(1, n + 1),
         "N": n,
         "i": 2,
+        "I": 2,
         "n": 2,
         "alpha": alpha,
         "L": lambda i: lengths[spoke(i)],
@@ -120,6 +162,7 @@ def wheel(n: int, pinned: bool = False) -> dict[str, Any]:
         "chi": minor,
         "Delta": lambda j: minor(j + 2),
         "K": value,
+        "ends": ends,
     }
 
 
@@ -141,13 +184,38 @@ def equation(names: dict[str, Any], factor: int) -> dict[str, Any]:
     return {**names, "zero": lambda difference: is_zero(difference - target)}
 
 
-def without(n: int, i: int = 2) -> dict[str, Any]:
+def drawn(*sizes: int) -> list[dict[str, Any]]:
+    """Wheels with numbers, where a mistake in a formula shows quickly."""
+    return [wheel(n, numbers=True) for n in sizes]
+
+
+def forces(names: dict[str, Any]) -> list[dict[str, Any]]:
+    """The same names twice, where u are the first and the second coordinates of the unit spokes."""
+    ends, length = names["ends"], names["L"]
+    return [{**names, "u": lambda i, k=k: ends[(i - 1) % len(ends)][k] / length(i)} for k in (0, 1)]
+
+
+def ladder(names: dict[str, Any]) -> dict[str, Any]:
+    """The same names with the three parallel segments of the crossed ladders at spoke 2.
+
+    All are perpendicular to it: A at the hub up to the line of the rim from spoke 1, B at its end
+    up to the line of spoke 1, h between the ends of both. Signed: positive on the side of spoke 1.
+    """
+    ends, length = names["ends"], names["L"](2)
+    spoke, other = ends[1], ends[0]
+    along, up = dot(other, spoke) / length, cross(other, spoke) / length
+    high = {"A": up * length / (length - along), "B": up * length / along, "h": up}
+    return {**names, **high, "values": tuple(high.values())}
+
+
+def without(n: int, i: int = 2, numbers: bool = False) -> dict[str, Any]:
     """Names of a wheel of n spokes for the induction of Appendix B, spoke i being taken out.
 
-    "sigma0" are the stresses without it; "Delta sigma" is the change at its two neighbours.
+    "sigma0" are the stresses without it; "Delta sigma" is the change at its two neighbours; "beta"
+    is the angle between spoke i + 1 and the line of spoke i - 1 drawn on through the hub.
     """
-    names = dict(wheel(n))
-    a, length = names["alpha"], names["L"]
+    names = dict(wheel(n, numbers=numbers))
+    a, length, ends = names["alpha"], names["L"], names["ends"]
 
     def spokes(before: int, at: int, after: int) -> Any:
         """Eq. (spokes) for a spoke between two others."""
@@ -159,11 +227,14 @@ def without(n: int, i: int = 2) -> dict[str, Any]:
         i - 1: names["sigma"](i - 1) - spokes(i - 2, i - 1, i + 1),
         i + 1: names["sigma"](i + 1) - spokes(i - 1, i + 1, i + 2),
     }
+    before, after = ends[i - 2], ends[i % n]
+    size = length(i - 1) * length(i + 1)
+    beta = Angle(-dot(before, after) / size, cross(before, after) / size)
     half_turn = Angle(a(1, 2).cos * 0 - 1, a(1, 2).cos * 0)
     names |= {
         "i": i,
         "Delta sigma": lambda j: changes[j],
-        "beta": lambda j: {i: half_turn + -(a(i - 1, i) + a(i, i + 1))}[j],
+        "beta": lambda j: {i: beta}[j],
         "pi": half_turn,
     }
     return names

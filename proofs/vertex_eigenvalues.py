@@ -18,8 +18,9 @@ from exactfold.exact.linalg import inertia, rank
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity import curvature_form, rigidity_matrix, wheel_stress
 from exactfold.rigidity.kapovich_millson import kapovich_millson
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
 from proofs.spokes import equal_angles
+from proofs.statements import Severity
 from proofs.vertex_forms import cross, dot, symbols, unit
 from proofs.wheel_stress import free_wheel
 

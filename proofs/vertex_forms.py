@@ -26,8 +26,9 @@ from exactfold.exact.linalg import from_fmpq, to_flint
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity import curvature_form, stress_form, wheel_stress
 from exactfold.rigidity.kapovich_millson import kapovich_millson
-from proofs.framework import Proof, Script, Severity, run
-from proofs.spokes import equation, wheel
+from proofs.framework import Proof, Script, run
+from proofs.spokes import drawn, equation, wheel
+from proofs.statements import Severity
 
 NAME = "vertex_forms"
 TITLE = "The quadratic form of one vertex: sign, factor, null directions, determinant"
@@ -127,6 +128,7 @@ def _forms(script: Script) -> None:
         r"Appendix C, 'Eq. (constraint) then reads'",
         r"0=\sum_{n=1}^N(g_{n,n+1}2h_nh_{n+1}+f_nh_n^2+A_n2h_0h_n)-h_0^2\sum_{n=" r"1}^NA_n",
         over=[equation(wheel(3), -2)],
+        at=[equation(names, -2) for names in drawn(4, 5)],
         note="as an equation. As a form it is -2 K_v, where Eq. (constraint) is K_v and Eq. "
         "(compat) with the wheel stress (wheelstress) is 2 K_v: the sign is reversed on the way",
         code="curvature_form, stress_form, kapovich_millson",
@@ -136,6 +138,7 @@ def _forms(script: Script) -> None:
         "Appendix C, definitions of f_n, g_{n,n+1}, A_n",
         r"A_n=-f_n-g_{n,n+1}-g_{n-1,n}=\frac{\sigma_n}{L_n}",
         over=[wheel(5)],
+        at=drawn(4, 5),
         note="sigma_n is the stress of Eq. (spokes); rationally f_n = (d_{n-1} x "
         "d_{n+1})/(c_{n-1} c_n), g_{n,n+1} = -1/c_n with c_n = d_n x d_{n+1}",
         code="wheel_stress",
@@ -242,6 +245,7 @@ def _null_directions(script: Script) -> None:
         "Appendix C, Eq. (form)",
         r"0=\sum_{n=2}^{N-1}(g_{n,n+1}2h_nh_{n+1}+f_nh_n^2)",
         over=[equation(wheel(4, True), -2)],
+        at=[equation(wheel(n, True, True), -2) for n in (4, 5)],
         note="with h_N = 0: the term g_{N-1,N} h_{N-1} h_N drops out; the matrix is (N-2) x (N-2)",
         equation="C4",
     )
@@ -322,6 +326,7 @@ def _determinant(script: Script) -> None:
         r"\chi(N)=\frac{\prod_{n=1}^{N-1}\csc\alpha_{n,n+1}}{\prod_{n=2}^{N-1}L_"
         r"n^2}\sin(\sum_{n=1}^{N-1}\alpha_{n,n+1})",
         over=[wheel(3), wheel(4)],
+        at=drawn(3, 4, 5),
         functions=["chi"],
         note="chi(n) is the determinant on h_2, ..., h_{n-1}, of size n - 2; rationally "
         "(d_1 x d_n)/(c_1 ... c_{n-1})",
@@ -334,6 +339,7 @@ def _determinant(script: Script) -> None:
         r"\chi(N+2)=f_{N+2}\chi(N+1)-g_{N+1,N+2}^2\chi(N)",
         r"\chi(N+2)=f_{N+1}\chi(N+1)-g_{N,N+1}^2\chi(N)",
         over=[{**wheel(4), "N": 2}, {**wheel(5), "N": 3}],
+        at=[{**names, "N": n} for names in drawn(6) for n in (2, 3, 4)],
         functions=["chi"],
         note=(
             "indices one too large. chi(2) = 1, chi(3) = f_2; for spokes (4,0), (3,3), (0,4), "

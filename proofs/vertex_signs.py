@@ -16,8 +16,9 @@ from exactfold.exact.linalg import rank
 from exactfold.pattern.families import flat_octahedron_in_square
 from exactfold.rigidity import definite_stress
 from exactfold.rigidity.functionals import vertex_sign_functional
-from proofs.framework import Proof, Script, Severity, run
+from proofs.framework import Proof, Script, run
 from proofs.patterns import SPIKY
+from proofs.statements import Severity
 from proofs.vertex_forms import cot, csc, dot, star, symbols, unit
 
 NAME = "vertex_signs"

@@ -45,6 +45,9 @@ class Angle:
     def __neg__(self) -> Angle:
         return Angle(self.cos, -self.sin)
 
+    def __sub__(self, other: Angle) -> Angle:
+        return self + -other
+
     @property
     def csc(self) -> Any:
         """Cosecant."""

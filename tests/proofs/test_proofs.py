@@ -12,8 +12,9 @@ import pytest
 
 from proofs import MODULES
 from proofs.__main__ import load, main
-from proofs.formulas import latex, mutants, parse
-from proofs.framework import Ruling
+from proofs.formulas import latex, parse
+from proofs.mutation import mutants
+from proofs.statements import Ruling
 
 ROOT = Path(__file__).parent.parent.parent
 
