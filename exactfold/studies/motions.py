@@ -41,9 +41,8 @@ def row(recipe: Recipe) -> dict[str, Any]:
     `flipped`, how many `nodes` it passes and how many `stars` are flat at them, bounds of its
     `length` in sides of the square, how many folds wind (`winding`), and how many of these are at
     the vertex that flipped, if it is one vertex (`winding_there`); None if that is not proved.
-    `contacts`: for each branch,
-    named by its `signs`, what ends its motion (`ENDS`), bounds of its length until then (`time`),
-    and how many corners the two faces share that meet (`shared`).
+    `contacts`: for each branch, named by its `signs`, what ends its motion (`ENDS`), bounds of its
+    length until then (`time`), and how many corners the two faces share that meet (`shared`).
     """
     pattern = square_of(recipe)
     found = find_loops(pattern)
