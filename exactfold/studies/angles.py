@@ -1,40 +1,40 @@
 """Appendix D of the paper: how the branches of random squares lie in the space of fold angles.
 
 A row is one random square: its pairs of branches by their angle, as lines, in bins of pi / 128.
-What the paper says of these angles is tested with numbers. Pairs of one square are not
-independent, but squares are: intervals come from squares drawn again with replacement (bootstrap),
-and the test of two sizes from squares exchanged between them (permutation), with a fixed seed.
+What the paper says of these angles is tested with numbers (`exactfold.studies.angle_statistics`).
 """
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
 
 from exactfold.arrays import FloatArray
+from exactfold.studies.angle_statistics import (
+    WIDTH,
+    AnglesOfSize,
+    angles_by_size,
+    distance,
+    ends_of,
+    permuted,
+    tail_power,
+    uniform,
+)
 from exactfold.studies.lines import Lines
 from exactfold.studies.pair_angles import BINS, pair_angles
 from exactfold.studies.squares import square_of, square_recipes
+from exactfold.studies.statistics import verdict
 from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
 from exactfold.studies.table1 import PAPER
 from exactfold.verdict import PROVED
 
-RESAMPLED: Final = 400
-"""Bootstrap samples, and permutations."""
-
-_WIDTH = np.pi / 2 / BINS
 _CENTRE = BINS // 8
 """Bins next to a right angle that are called orthogonal here: up to pi / 16 from it."""
 _TAIL = BINS // 4
 """Bins next to 0 that are called a tail: up to pi / 8."""
-_FIT = 3 * BINS // 4
-"""Bins whose shape is fitted: from 0 to 3 pi / 8."""
-_POWERS = np.arange(0.05, 4.0001, 0.05)
 
 
 def row(recipe: Recipe) -> dict[str, Any]:
@@ -59,81 +59,21 @@ def row(recipe: Recipe) -> dict[str, Any]:
     return found
 
 
-@dataclass(frozen=True)
-class _Size:
-    """The squares of one size: the share of pairs in each bin, one line a square."""
-
-    size: int
-    shares: FloatArray
-    squares: FloatArray
-    pairs: int
-    unclear: int
-
-    @property
-    def mean(self) -> FloatArray:
-        """The distribution: squares count alike."""
-        return np.asarray(self.shares.mean(axis=0))
-
-    def resampled(self, values: FloatArray) -> FloatArray:
-        """Means of values of the squares, over squares drawn again with replacement."""
-        number = len(values)
-        source = np.random.default_rng([self.size, number])
-        weights = source.multinomial(number, np.full(number, 1 / number), size=RESAMPLED)
-        return np.asarray(weights @ values / number)
-
-
-def _sizes(rows: Iterable[Row]) -> list[_Size]:
-    groups: dict[int, list[Row]] = defaultdict(list)
-    for found in rows:
-        if found["angles"] is not None and sum(found["angles"]):
-            groups[found["interior"]].append(found)
-    return [
-        _Size(
-            size,
-            np.array([np.array(r["angles"]) / sum(r["angles"]) for r in group]),
-            np.array([r["mean_square"] for r in group]),
-            sum(sum(r["angles"]) for r in group),
-            sum(r["unclear"] for r in group),
-        )
-        for size, group in sorted(groups.items())
-    ]
-
-
-def uniform(size: int) -> FloatArray:
-    """The share of each bin for independent uniform lines in `size` + 1 dimensions.
-
-    The density of the angle is proportional to sin^(size - 1) (Cai, Fan and Jiang, Distributions of
-    angles in random packing on spheres, JMLR 14 (2013), Lemma 12).
-
-    >>> [round(float(x), 6) for x in uniform(1)[:2]], round(float(uniform(6).sum()), 12)
-    ([0.015625, 0.015625], 1.0)
-    """
-    from scipy.special import betainc
-
-    ends = np.sin(np.arange(BINS + 1) * _WIDTH) ** 2
-    return np.asarray(np.diff(betainc(size / 2, 0.5, ends)))
-
-
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """Orthogonality, tails, neighbouring sizes, and what the paper says of them."""
-    sizes = _sizes(rows)
+    sizes = angles_by_size(rows)
     if not sizes:
         return []
     made = (_orthogonal, _parts, _powers, _neighbours, _sentences)
     return [make(sizes) for make in made]
 
 
-def _ends(values: FloatArray) -> tuple[float, float]:
-    low, high = np.quantile(values, [0.025, 0.975])
-    return float(low), float(high)
-
-
 def _between(values: FloatArray, digits: int = 3) -> str:
-    low, high = _ends(values)
+    low, high = ends_of(values)
     return f"{low:.{digits}f} to {high:.{digits}f}"
 
 
-def _orthogonal(sizes: list[_Size]) -> StudyTable:
+def _orthogonal(sizes: list[AnglesOfSize]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
     for s in sizes:
         factor = (s.size + 1) * s.squares.mean()
@@ -161,27 +101,7 @@ def _orthogonal(sizes: list[_Size]) -> StudyTable:
     )
 
 
-def _tail_power(means: FloatArray) -> FloatArray:
-    """For each distribution the p for which log share = a - b x^p fits best, x from pi / 2.
-
-    Least squares in the bins from 0 to 3 pi / 8, weighted by the shares, for p from 0.05 to 4 in
-    steps of 0.05. 1 is an exponential tail, 2 that of a Gaussian.
-    """
-    x = np.pi / 2 - (np.arange(_FIT) + 0.5) * _WIDTH
-    shares = np.maximum(means[:, :_FIT], 1e-12)
-    target, misfits = np.log(shares), []
-    for power in _POWERS:
-        z = x**power
-        total = shares.sum(axis=1)
-        mz, mt = (shares @ z) / total, (shares * target).sum(axis=1) / total
-        var = (shares @ z**2) / total - mz**2
-        cov = (shares * target * z).sum(axis=1) / total - mz * mt
-        spread = (shares * target**2).sum(axis=1) / total - mt**2
-        misfits.append(spread - cov**2 / var)
-    return np.asarray(_POWERS[np.argmin(misfits, axis=0)])
-
-
-def _parts(sizes: list[_Size]) -> StudyTable:
+def _parts(sizes: list[AnglesOfSize]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
     for s in sizes:
         flat, again = uniform(s.size), s.resampled(s.shares)
@@ -202,11 +122,11 @@ def _parts(sizes: list[_Size]) -> StudyTable:
     )
 
 
-def _powers(sizes: list[_Size]) -> StudyTable:
+def _powers(sizes: list[AnglesOfSize]) -> StudyTable:
     lines = []
     for s in sizes:
-        power, expected = (_tail_power(x[None])[0] for x in (s.mean, uniform(s.size)))
-        ends = _between(_tail_power(s.resampled(s.shares)), 2)
+        power, expected = (tail_power(x[None])[0] for x in (s.mean, uniform(s.size)))
+        ends = _between(tail_power(s.resampled(s.shares)), 2)
         lines.append((s.size, f"{power:.2f}", ends, f"{expected:.2f}"))
     return StudyTable(
         "tails",
@@ -220,29 +140,11 @@ def _powers(sizes: list[_Size]) -> StudyTable:
     )
 
 
-def distance(first: FloatArray, second: FloatArray) -> FloatArray:
-    """The total variation distance of distributions, along the last axis."""
-    return np.asarray(np.abs(first - second).sum(axis=-1) / 2)
-
-
-def _permuted(first: _Size, second: _Size) -> float:
-    """The p-value of the distance of two sizes, squares exchanged at random."""
-    both, number = np.vstack([first.shares, second.shares]), len(first.shares)
-    source = np.random.default_rng([first.size, second.size])
-    seen = distance(first.mean, second.mean)
-    total, larger = both.sum(axis=0), 0
-    for _ in range(RESAMPLED):
-        some = both[source.permutation(len(both))[:number]].sum(axis=0)
-        other = (total - some) / (len(both) - number)
-        larger += bool(distance(some / number, other) >= seen)
-    return (larger + 1) / (RESAMPLED + 1)
-
-
-def _pairs(sizes: list[_Size]) -> list[tuple[_Size, _Size]]:
+def _pairs(sizes: list[AnglesOfSize]) -> list[tuple[AnglesOfSize, AnglesOfSize]]:
     return [(a, b) for a, b in pairwise(sizes) if b.size == a.size + 1]
 
 
-def _neighbours(sizes: list[_Size]) -> StudyTable:
+def _neighbours(sizes: list[AnglesOfSize]) -> StudyTable:
     lines = []
     for a, b in _pairs(sizes):
         apart = distance(a.resampled(a.shares), b.resampled(b.shares))
@@ -252,7 +154,7 @@ def _neighbours(sizes: list[_Size]) -> StudyTable:
                 f"{a.size} and {b.size}",
                 f"{distance(a.mean, b.mean):.4f}",
                 _between(apart, 4),
-                f"{_permuted(a, b):.3f}",
+                f"{permuted(a, b):.3f}",
                 f"{expected:.4f}",
             )
         )
@@ -269,7 +171,7 @@ def _neighbours(sizes: list[_Size]) -> StudyTable:
     )
 
 
-def _sentences(sizes: list[_Size]) -> StudyTable:
+def _sentences(sizes: list[AnglesOfSize]) -> StudyTable:
     """What Appendix D and the Discussion say, with a number for each."""
     by_size = {s.size: s for s in sizes}
     lines: list[tuple[Cell, ...]] = [_less_orthogonal(sizes)]
@@ -277,12 +179,17 @@ def _sentences(sizes: list[_Size]) -> StudyTable:
         lines += _six(by_size[6])
     for first, second, differ in ((6, 7, False), (7, 8, True)):
         if first in by_size and second in by_size:
-            p = _permuted(by_size[first], by_size[second])
+            p = permuted(by_size[first], by_size[second])
             words = "differ significantly" if differ else "very nearly coincide"
             apart = distance(by_size[first].mean, by_size[second].mean)
             number = f"distance {apart:.3f}, p = {p:.3f}"
             sentence = f"Vi = {first} and {second} {words}"
-            lines.append((sentence, number, _VERDICTS[(p < 0.01) == differ]))
+            lines.append((sentence, number, verdict((p < 0.01) == differ)))
+    if 7 in by_size and 8 in by_size:
+        ratio = by_size[8].pairs / by_size[7].pairs
+        sentence = "Vi = 7 and 8 have comparable numbers of pairs"
+        lines.append((sentence, f"{ratio:.2f} as many", verdict(0.5 <= ratio <= 2)))
+    lines.append(_with_itself(sizes))
     return StudyTable(
         "sentences",
         "What the paper says",
@@ -295,48 +202,61 @@ def _sentences(sizes: list[_Size]) -> StudyTable:
     )
 
 
-_VERDICTS = {True: "agreed", False: "not agreed", None: "not decided"}
-
-
-def _less_orthogonal(sizes: list[_Size]) -> tuple[Cell, ...]:
-    ends = {s.size: _ends((s.size + 1) * s.resampled(s.squares)) for s in sizes}
+def _less_orthogonal(sizes: list[AnglesOfSize]) -> tuple[Cell, ...]:
+    ends = {s.size: ends_of((s.size + 1) * s.resampled(s.squares)) for s in sizes}
     less = [size for size, (low, _) in ends.items() if low > 1]
     more = [size for size, (_, high) in ends.items() if high < 1]
     holds = None if not (less or more) else not more
-    verdict = "agreed in part" if less and more else _VERDICTS[holds]
+    said = "agreed in part" if less and more else verdict(holds)
     number = f"less for Vi = {_listed(less)}; more for {_listed(more)}"
-    return "branches are less orthogonal than uniform ones", number, verdict
+    return "branches are less orthogonal than uniform ones", number, said
 
 
-def _six(six: _Size) -> list[tuple[Cell, ...]]:
+def _with_itself(sizes: list[AnglesOfSize]) -> tuple[Cell, ...]:
+    """Lines in both directions: a branch has the angles 0 and pi with itself, where pairs count."""
+    own, others = [], []
+    for s in sizes:
+        branches = len(s.shares) * (1 << s.size)
+        own.append(branches / (branches + 2 * s.pairs))
+        others.append(2 * s.pairs * float(s.mean[0]) / (branches + 2 * s.pairs))
+    first, last = sizes[0].size, sizes[-1].size
+    number = (
+        f"Vi = {first}: {100 * own[0]:.2g} % of pairs, others there {100 * others[0]:.2g} %; "
+        f"Vi = {last}: {100 * own[-1]:.2g} % and {100 * others[-1]:.2g} %"
+    )
+    holds = all(a > b for a, b in pairwise(own)) and own[0] > others[0]
+    return "small Vi: angles near 0 and pi, of each branch with itself", number, verdict(holds)
+
+
+def _six(six: AnglesOfSize) -> list[tuple[Cell, ...]]:
     again, flat = six.resampled(six.shares), uniform(6)
     centre, tail = (
-        _ends(again[:, part].sum(axis=1) / flat[part].sum())
+        ends_of(again[:, part].sum(axis=1) / flat[part].sum())
         for part in (slice(BINS - _CENTRE, BINS), slice(0, _TAIL))
     )
-    low, high = _ends(_tail_power(again))
+    low, high = ends_of(tail_power(again))
     prominent = None if tail[0] <= centre[1] and tail[1] >= centre[0] else tail[0] > centre[1]
     exponential = low <= 1 <= high
     return [
         (
             "Vi = 6: slightly more orthogonal branches than uniform",
             f"{centre[0]:.3f} to {centre[1]:.3f} times as many",
-            _VERDICTS[_above(centre, 1.0)],
+            verdict(_above(centre, 1.0)),
         ),
         (
             "Vi = 6: a more prominent enhancement at the tails",
             f"{tail[0]:.1f} to {tail[1]:.1f} times as many",
-            _VERDICTS[prominent],
+            verdict(prominent),
         ),
         (
             "Vi = 6: tails do not decay as a Gaussian",
             f"power {low:.2f} to {high:.2f}",
-            _VERDICTS[_above((-high, -low), -2.0)],
+            verdict(_above((-high, -low), -2.0)),
         ),
         (
             "Vi = 6: tails decay exponentially",
             f"power {low:.2f} to {high:.2f}",
-            _VERDICTS[exponential if high - low < 1 or not exponential else None],
+            verdict(exponential if high - low < 1 or not exponential else None),
         ),
     ]
 
@@ -354,15 +274,15 @@ def _listed(sizes: list[int]) -> str:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The distributions of all sizes, and that of six vertices beside the uniform one."""
-    sizes = _sizes(rows)
+    sizes = angles_by_size(rows)
     if not sizes:
         return []
-    edges = np.arange(2 * BINS + 1) * _WIDTH
+    edges = np.arange(2 * BINS + 1) * WIDTH
     middles = (edges[:-1] + edges[1:]) / 2
 
     def density(shares: FloatArray) -> FloatArray:
         both = np.concatenate([shares, shares[::-1]]) / 2
-        return np.where(both > 0, both / _WIDTH, np.nan)
+        return np.where(both > 0, both / WIDTH, np.nan)
 
     def everything(axes: Any) -> None:
         for s in sizes:

@@ -1,7 +1,8 @@
 """How often a random square is an exception: a vertex outside triangulated triangles can stay flat.
 
 For almost all positions of the vertices there is none (docs/generic.md, Theorem 11); on a grid of
-multiples of 1/denominator some squares are exceptions. A row is one random square on one grid.
+multiples of 1/denominator some squares are exceptions. A row is one random square on one grid. Of
+some squares it has how far at most the nearest exception is (`exactfold.studies.nearest`).
 """
 
 from __future__ import annotations
@@ -9,32 +10,42 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import ceil
 from typing import Any, Final
 
 import networkx as nx
 import numpy as np
 
+from exactfold.count.collect import count_branches
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import collinear_folds
 from exactfold.studies.lines import Lines, SignArray
+from exactfold.studies.nearest import nearest_exception
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.statistics import interval_text
 from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
-from exactfold.studies.tallies import draw_shares, tallied
+from exactfold.studies.tallies import draw_distribution, draw_shares, tallied
 from exactfold.verdict import PROVED
 
 DENOMINATORS: Final = (16, 64, 256, 1024)
 """Of the grids."""
 
+MEASURED: Final = 50
+"""Of so many squares on the finest grid the nearest exception to one is looked for."""
+
 
 def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
     """Random squares in their order, on each grid in turn.
 
-    >>> [(r["seed"], r["denominator"]) for r in recipes(0, {2: 5})][3:]
-    [(20000003, 1024), (20000004, 16)]
+    >>> [(r["seed"], r["denominator"], r["measured"]) for r in recipes(0, {2: 5})][3:]
+    [(20000003, 1024, 1), (20000004, 16, 0)]
     """
-    for place, recipe in enumerate(square_recipes(seed, numbers)):
-        yield {**recipe, "denominator": DENOMINATORS[place % len(DENOMINATORS)]}
+    grids = len(DENOMINATORS)
+    for size, number in numbers.items():
+        for place, recipe in enumerate(square_recipes(seed, {size: number})):
+            turn, grid = divmod(place, grids)
+            measured = int(grid == grids - 1 and not turn % MEASURED)
+            yield {**recipe, "denominator": DENOMINATORS[grid], "measured": measured}
 
 
 def row(recipe: Recipe) -> dict[str, Any]:
@@ -42,16 +53,29 @@ def row(recipe: Recipe) -> dict[str, Any]:
 
     `flat`: the sets of such vertices that are joined by folds, each once, as the folds at its
     vertices (those inside triangulated triangles left out): [[4]] is one vertex of degree four.
-    `straight`: whether at some interior vertex two folds continue each other.
+    `straight`: whether at some interior vertex two folds continue each other. `path`: whether folds
+    make a straight path from border to border. Of a measured square, `distance`: there is an
+    exception at most so far, in sides of the square, 0 if it is one; and `distance_straight`:
+    whether that one may have straight folds. None where none was found.
     """
-    lines = Lines.of(square_of(recipe))
+    pattern = square_of(recipe)
+    lines = Lines.of(pattern)
     proved = lines.status is PROVED
-    return {
+    found: dict[str, Any] = {
         "status": str(lines.status),
         "distinct": lines.distinct,
-        "flat": clusters(lines.pattern, lines.signs) if proved else None,
-        "straight": has_straight_folds(lines.pattern),
+        "flat": clusters(pattern, lines.signs) if proved else None,
+        "straight": has_straight_folds(pattern),
+        "path": has_straight_path(pattern),
+        "distance": None,
+        "distance_straight": None,
     }
+    if recipe["measured"] and proved:
+        if found["flat"]:
+            found["distance"], found["distance_straight"] = 0.0, found["straight"]
+        elif near := nearest_exception(count_branches(pattern.without_rigid_parts()[0])):
+            found["distance"], found["distance_straight"] = near.distance, near.straight
+    return found
 
 
 def has_straight_folds(pattern: CreasePattern) -> bool:
@@ -62,6 +86,29 @@ def has_straight_folds(pattern: CreasePattern) -> bool:
     (True, False)
     """
     return bool(collinear_folds(pattern.without_rigid_parts()[0]))
+
+
+def has_straight_path(pattern: CreasePattern) -> bool:
+    """Whether folds outside triangulated triangles make a straight path from border to border.
+
+    The sheet folded along it and nowhere else is a branch, on which all vertices off it are flat.
+
+    >>> from exactfold.pattern.families import flat_vertex_square, two_vertex
+    >>> has_straight_path(flat_vertex_square()), has_straight_path(two_vertex())
+    (True, False)
+    """
+    reduced = pattern.without_rigid_parts()[0]
+    rim = set(reduced.boundary)
+    after = {
+        way for i, v, j in collinear_folds(reduced) for way in (((i, v), (v, j)), ((j, v), (v, i)))
+    }
+    steps = nx.DiGraph(after)
+    return any(
+        last[1] in rim
+        for first in steps
+        if first[0] in rim
+        for last in nx.descendants(steps, first)
+    )
 
 
 def clusters(pattern: CreasePattern, signs: SignArray) -> list[list[int]]:
@@ -91,6 +138,11 @@ class _Tally:
     exceptions: int = 0
     straight: int = 0
     exceptions_straight: int = 0
+    paths: int = 0
+    exceptions_path: int = 0
+    measured: int = 0
+    distances: list[float] = field(default_factory=list)
+    free: list[float] = field(default_factory=list)
     causes: Counter[str] = field(default_factory=Counter)
     first: int | None = None
 
@@ -101,9 +153,16 @@ class _Tally:
             self.undecided += 1
             return
         self.straight += row["straight"]
+        self.paths += row["path"]
+        self.measured += row["measured"]
+        if row["distance"] is not None:
+            self.distances.append(row["distance"])
+            if not row["distance_straight"]:
+                self.free.append(row["distance"])
         if row["flat"]:
             self.exceptions += 1
             self.exceptions_straight += row["straight"]
+            self.exceptions_path += row["path"]
             self.causes.update("+".join(map(str, part)) for part in row["flat"])
             seed = row["seed"]
             self.first = seed if self.first is None else min(self.first, seed)
@@ -157,20 +216,26 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
         ),
         StudyTable(
             "straight",
-            "Squares on which two folds continue each other at an interior vertex",
-            ("grid", "squares", "straight", "exceptions", "of these straight"),
+            "Squares with straight folds, and the exceptions among them",
+            ("grid", "squares", "exceptions", "paths", "exceptions", "straight", "exceptions"),
             tuple(
                 (
                     d,
                     sum(t.proved for t in found),
-                    sum(t.straight for t in found),
                     sum(t.exceptions for t in found),
+                    sum(t.paths for t in found),
+                    sum(t.exceptions_path for t in found),
+                    sum(t.straight for t in found),
                     sum(t.exceptions_straight for t in found),
                 )
                 for d in sorted({d for _, d in tallies})
                 for found in [[t for (_, e), t in tallies.items() if e == d]]
             ),
-            ("straight: with such folds, outside triangulated triangles.",),
+            (
+                "paths: with folds that make a straight path from corner to corner; straight: with "
+                "two folds that continue each other at an interior vertex, outside triangulated "
+                "triangles. Behind each how many of these are exceptions.",
+            ),
         ),
         StudyTable(
             "stars",
@@ -182,12 +247,70 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
             ),
             ("degree 4+5: two vertices joined by a fold, with four and five folds.",),
         ),
+        *_distances(tallies),
     ]
 
 
+def _distances(tallies: dict[tuple[int, int], _Tally]) -> list[StudyTable]:
+    lines = tuple(
+        (
+            n,
+            t.measured,
+            len(t.distances),
+            *(_quantile(t.distances, part) for part in (0, 0.25, 0.5, 0.75)),
+            len(t.free),
+            _quantile(t.free, 0),
+        )
+        for (n, _), t in tallies.items()
+        if t.measured
+    )
+    if not lines:
+        return []
+    return [
+        StudyTable(
+            "distances",
+            "How far the nearest exception is at most, in sides of the square",
+            (
+                "Vi",
+                "squares",
+                "found",
+                "least",
+                "quarter",
+                "half",
+                "3 quarters",
+                "not straight",
+                "least",
+            ),
+            lines,
+            (
+                "Proved upper bounds of the root of the sum of the squares of the ways of all "
+                "vertices, rounded; nearer exceptions are not excluded. quarter, half, 3 quarters: "
+                "of the squares for which one was found. not straight: the exception is proved to "
+                "have no two folds that continue each other.",
+            ),
+        )
+    ]
+
+
+def _quantile(values: Sequence[float], part: float) -> str | None:
+    """The least value with at least this part of all values up to it; None if there are none."""
+    if not values:
+        return None
+    return f"{sorted(values)[max(0, ceil(part * len(values)) - 1)]:.2g}"
+
+
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
-    """The share of exceptions against the grid."""
+    """The share of exceptions against the grid, and how far the nearest ones are."""
     tallies = tallied(rows, _Tally, _key)
+    near = {n: t.distances for (n, _), t in tallies.items() if any(t.distances)}
+
+    def distances(axes: Any) -> None:
+        for n, found in near.items():
+            draw_distribution(axes, [d for d in found if d], label=f"$V_i = {n}$", **of_size(n))
+        axes.set_xscale("log")
+        axes.set_xlabel("distance of an exception, sides of the square")
+        axes.set_ylabel("squares for which one is found (%)")
+        axes.legend()
 
     def shares(axes: Any) -> None:
         for n in sorted({n for n, _ in tallies}):
@@ -201,7 +324,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         axes.set_ylabel("share of exceptions")
         axes.legend()
 
-    return [
+    found = [
         StudyFigure(
             "exceptions",
             "Exceptions become rare on fine grids",
@@ -210,12 +333,23 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             shares,
         )
     ]
+    if near:
+        found.append(
+            StudyFigure(
+                "distances",
+                "How far the nearest exception is at most",
+                "The share of random squares with an exception that is proved to be at most so "
+                "far, of those for which one was found.",
+                distances,
+            )
+        )
+    return found
 
 
 STUDY: Final = Study(
     "flat",
     "How often a random square has a multiple branch, by the grid of its coordinates",
-    1,
+    2,
     dict.fromkeys(range(2, 7), 40_000),
     {7: 40_000, 8: 40_000},
     recipes,

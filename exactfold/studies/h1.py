@@ -14,11 +14,15 @@ from typing import Any, Final
 
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.statistics import (
+    AGREE,
     agreement,
     decay,
     interval,
     interval_text,
+    one_share,
+    p_text,
     same_probability,
+    verdict,
 )
 from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
 from exactfold.studies.triangulations import (
@@ -142,13 +146,15 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """Shares beside the paper's, how they fall off, and all types."""
     tallies, every = _sorted(rows)
     found = [_types(every)] if every else []
-    return [_shares(tallies), _moves(tallies), _decay(tallies), *found] if tallies else found
+    if not tallies:
+        return found
+    return [_shares(tallies), _moves(tallies), _decay(tallies), *found, _sentences(tallies, every)]
 
 
 def _shares(tallies: dict[int, _Tally]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
     for name, key, paper in (
-        ("no corner of degree 3", "irreducible", PAPER_IRREDUCIBLE),
+        ("irreducible", "irreducible", PAPER_IRREDUCIBLE),
         ("H1", "h1", PAPER_H1),
     ):
         for size, tally in tallies.items():
@@ -158,16 +164,17 @@ def _shares(tallies: dict[int, _Tally]) -> StudyTable:
             line += (interval_text(count, tally.number),)
             if size in paper:
                 p = same_probability((paper[size], PAPER_NUMBER), (count, tally.number))
-                line += (f"{100 * paper[size] / PAPER_NUMBER:g}", f"{p:.2g}", agreement(p))
+                line += (f"{100 * paper[size] / PAPER_NUMBER:g}", p_text(p), agreement(p))
             else:
                 line += (None, None, None)
             lines.append(line)
     return StudyTable(
         "shares",
-        "Random squares that can be reduced, and those that are H1",
+        "Random squares that cannot be reduced, and those that are H1",
         ("", "Vi", "here", "%", "interval, %", "paper, %", "p", ""),
         tuple(lines),
         (
+            "irreducible: no boundary vertex has degree 3, so that there is no reverse H1 move.",
             "Exact 95 % intervals (Clopper and Pearson). The paper gives figures for Vi = 3 and 8 "
             "only, of 20,000 triangulations each; p is that of Fisher's exact test, and samples "
             "differ if it is below 0.01.",
@@ -203,8 +210,7 @@ def _decay(tallies: dict[int, _Tally]) -> StudyTable:
         said = "one factor does not fit" if fit.p < 0.01 else "one factor fits"
         notes.append(
             "Exactly exponential, with the share 1 at Vi = 3: the factor would be "
-            f"{fit.ratio:.3f}; a likelihood-ratio test gives p = {fit.p:.2g}: {said}. The "
-            "paper says that the share decreases roughly exponentially."
+            f"{fit.ratio:.3f}; a likelihood-ratio test gives p {_equals(fit.p)}: {said}."
         )
     return StudyTable(
         "decay",
@@ -212,6 +218,72 @@ def _decay(tallies: dict[int, _Tally]) -> StudyTable:
         ("Vi", "factor"),
         tuple(lines),
         tuple(notes),
+    )
+
+
+def _equals(p: float) -> str:
+    text = p_text(p)
+    return text if text.startswith("<") else f"= {text}"
+
+
+def _factors(values: Sequence[float]) -> str:
+    return ", ".join(f"{b / a:.2f}" for a, b in pairwise(values) if a)
+
+
+def _sentences(tallies: dict[int, _Tally], every: list[Row]) -> StudyTable:
+    """What Section IV says of these numbers."""
+    lines: list[tuple[Cell, ...]] = []
+    small = [found for found in every if found["interior"] <= 3]
+    if small:
+        kept, h1 = (sum(found[key] for found in small) for key in ("kept", "kept_h1"))
+        sentence = "up to Vi = 3 all types without chords are H1"
+        lines.append((sentence, f"{h1} of {kept}", verdict(h1 == kept)))
+    sizes = [size for size in tallies if size >= 3]
+    steps = [(tallies[a], tallies[b]) for a, b in pairwise(sizes)]
+    if steps:
+        worst = max(
+            same_probability((a.irreducible, a.number), (b.irreducible, b.number)) for a, b in steps
+        )
+        grows = all(a.irreducible * b.number < b.irreducible * a.number for a, b in steps)
+        lines.append(
+            (
+                "more and more squares are irreducible",
+                f"from each size to the next p {_equals(worst)}" + " or less" * (worst >= 1e-15),
+                verdict(grows if worst < AGREE else None),
+            )
+        )
+    fit = decay({size - 3: (tallies[size].h1, tallies[size].number) for size in sizes})
+    if fit is not None:
+        shares = [tallies[size].h1 / tallies[size].number for size in sizes]
+        lines.append(
+            (
+                "the share of H1 squares falls exponentially",
+                f"from size to size by {_factors(shares)}; p {_equals(fit.p)}",
+                verdict(fit.p >= AGREE),
+            )
+        )
+    for size in sizes:
+        tally = tallies[size]
+        left = [tally.at_least(k) for k in range(size - 2)]  # with three vertices all are H1
+        if len(left) > 2:
+            p = one_share(zip(left[1:], left, strict=False))
+            lines.append(
+                (
+                    f"Vi = {size}: the share with more moves falls exponentially",
+                    f"from move to move by {_factors(left)}; p {_equals(p)}",
+                    verdict(p >= AGREE),
+                )
+            )
+    return StudyTable(
+        "sentences",
+        "What the paper says",
+        ("", "number", "verdict"),
+        tuple(lines),
+        (
+            "The paper says of both decays that they are roughly exponential, or seem so. p: of "
+            "one factor throughout. Moves are counted until three vertices are left: then the rest "
+            "is H1, unless it has a chord.",
+        ),
     )
 
 

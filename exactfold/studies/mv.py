@@ -6,15 +6,19 @@ letters, the vertex signs and the boundary saddle.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import combinations
 from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
-from exactfold.studies.lines import UNKNOWN, Lines
+from exactfold.studies.lines import UNKNOWN, Lines, SignArray
 from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.statistics import AGREE, interval, p_text, trend, verdict
+from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
 from exactfold.studies.table1 import same_side
 from exactfold.studies.tallies import interior_of, tallied
 from exactfold.verdict import PROVED
@@ -25,7 +29,9 @@ def row(recipe: Recipe) -> dict[str, Any]:
 
     `assignments` of its `distinct` branches differ. `with_letters` and `with_signs` branches share
     their letters, and their vertex signs too, with another. `separated`: no two branches have the
-    same vertex signs on the side where the boundary saddle is positive. None: not decided.
+    same vertex signs on the side where the boundary saddle is positive. `differing`: for pairs of
+    branches with equal letters how many vertex signs differ, and how many pairs there are;
+    `least_degree` of a vertex whose signs differ. None: not decided, or no such vertex.
     """
     lines = Lines.of(square_of(recipe))
     found: dict[str, Any] = {
@@ -37,6 +43,8 @@ def row(recipe: Recipe) -> dict[str, Any]:
         "with_letters": None,
         "with_signs": None,
         "separated": None,
+        "differing": None,
+        "least_degree": None,
     }
     if lines.status is not PROVED:
         return found
@@ -48,7 +56,21 @@ def row(recipe: Recipe) -> dict[str, Any]:
         counts = np.unique(kinds, axis=0, return_counts=True)[1]
         found[name] = int(counts[counts > 1].sum())
     found["assignments"] = len(np.unique(letters, axis=0))
+    pairs = _differing(letters, signs)
+    numbers = Counter(int(differ.sum()) for differ in pairs)
+    found["differing"] = [list(item) for item in sorted(numbers.items())]
+    reduced, labels = lines.pattern.without_rigid_parts()
+    degrees = {v: reduced.degree(k) for k, v in enumerate(labels)}
+    which = np.flatnonzero(np.any(pairs, axis=0)) if pairs else []
+    found["least_degree"] = min((degrees[lines.pattern.interior[k]] for k in which), default=None)
     return found
+
+
+def _differing(letters: SignArray, signs: SignArray) -> list[npt.NDArray[np.bool_]]:
+    """For each pair of branches with equal letters, at which vertices their signs differ."""
+    names, counts = np.unique(letters, axis=0, return_inverse=True, return_counts=True)[1:]
+    groups = [np.flatnonzero(names.ravel() == k) for k in np.flatnonzero(counts > 1)]
+    return [signs[i] != signs[j] for group in groups for i, j in combinations(group, 2)]
 
 
 @dataclass
@@ -66,6 +88,8 @@ class _Tally:
     separated: int = 0
     first_letters: int | None = None
     first_signs: int | None = None
+    differing: Counter[int] = field(default_factory=Counter)
+    least_degree: int | None = None
 
     def add(self, row: Row) -> None:
         """One more row."""
@@ -80,6 +104,9 @@ class _Tally:
         self.assignments += row["assignments"]
         self.branches += row["distinct"]
         self.share += row["assignments"] / 2.0 ** (row["folds"] - 1)
+        self.differing.update(dict(row["differing"]))
+        if row["least_degree"] is not None:
+            self.least_degree = _first(self.least_degree, row["least_degree"])
         if row["with_letters"]:
             self.letters += 1
             self.first_letters = _first(self.first_letters, row["seed"])
@@ -98,8 +125,8 @@ class _Tally:
         return self.proved - self.unclear
 
 
-def _first(seed: int | None, other: int) -> int:
-    return other if seed is None else min(seed, other)
+def _first(known: int | None, other: int) -> int:
+    return other if known is None else min(known, other)
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
@@ -159,7 +186,83 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
                 "side on which the boundary saddle is positive.",
             ),
         ),
+        _pairs(tallies),
+        _sentences(tallies),
     ]
+
+
+def _pairs(tallies: dict[int, _Tally]) -> StudyTable:
+    return StudyTable(
+        "pairs",
+        "Pairs of branches with equal letters, by how many vertex signs differ",
+        ("Vi", "pairs", "none", "one", "two", "more", "least degree"),
+        tuple(
+            (
+                size,
+                sum(t.differing.values()),
+                *(t.differing[k] for k in range(3)),
+                sum(number for k, number in t.differing.items() if k > 2),
+                t.least_degree,
+            )
+            for size, t in tallies.items()
+        ),
+        (
+            "least degree: of a vertex whose signs differ, folds in triangulated triangles left "
+            "out.",
+        ),
+    )
+
+
+def _sentences(tallies: dict[int, _Tally]) -> StudyTable:
+    """What Sections III.A and III.C say of these numbers."""
+    shares = {size: (t.letters, t.known) for size, t in tallies.items() if size >= 5 and t.known}
+    z, p = trend(shares)
+    lines: list[tuple[Cell, ...]] = []
+    if len(shares) > 1:
+        holds = None if p >= AGREE else z > 0
+        number = f"from Vi = {min(shares)} to {max(shares)}: z = {z:.2f}, p = {p_text(p)}"
+        lines.append(("more and more squares have branches with equal letters", number))
+        lines[-1] += (verdict(holds),)
+    numbers: Counter[int] = Counter()
+    for tally in tallies.values():
+        numbers.update(tally.differing)
+    total = sum(numbers.values())
+    if total:
+        low, high = interval(numbers[1], total)
+        usual = True if low > 0.5 else False if high < 0.5 else None
+        lines.append(
+            (
+                "usually exactly one vertex sign differs",
+                f"{numbers[1]} of {total} pairs",
+                verdict(usual),
+            )
+        )
+        lines.append(
+            (
+                "exactly one vertex sign differs, or none",
+                f"{numbers[0] + numbers[1]} of {total} pairs",
+                verdict(max(numbers) <= 1),
+            )
+        )
+    degrees = [t.least_degree for t in tallies.values() if t.least_degree is not None]
+    if degrees:
+        lines.append(
+            (
+                "the vertex has a degree of at least 6",
+                f"at least {min(degrees)}",
+                verdict(min(degrees) >= 6),
+            )
+        )
+    return StudyTable(
+        "sentences",
+        "What the paper says",
+        ("", "number", "verdict"),
+        tuple(lines),
+        (
+            "z and p: test of Cochran and Armitage. Pairs of one square are not independent, so "
+            "that intervals of shares of pairs are too narrow.",
+        ),
+    )
 
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
@@ -190,7 +293,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
 STUDY: Final = Study(
     "mv",
     "Mountain-valley assignments: how many occur, and which branches share them",
-    1,
+    2,
     dict.fromkeys(range(2, 9), 2000),
     dict.fromkeys(range(9, 13), 500),
     square_recipes,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 LEVEL = 0.95
@@ -83,6 +83,63 @@ def decay(samples: Mapping[int, tuple[int, int]]) -> Decay | None:
     least = sum(surprise(found / number, found, number) for found, number in used.values())
     twice = max(0.0, 2 * (float(best.fun) - least))
     return Decay(float(best.x), float(chi2.sf(twice, len(used) - 1)))
+
+
+def one_share(samples: Iterable[tuple[int, int]]) -> float:
+    """Pearson's chi-squared test that samples (found, number) have one share: the p-value.
+
+    1 where there is nothing to compare: fewer than two samples, or a share of 0 or 1 throughout.
+
+    >>> round(one_share([(50, 100), (60, 100), (70, 100)]), 3), one_share([(0, 10), (0, 20)])
+    (0.016, 1.0)
+    """
+    from scipy.stats import chi2_contingency
+
+    table = [[found, number - found] for found, number in samples if number]
+    if len(table) < 2 or not all(map(sum, zip(*table, strict=True))):
+        return 1.0
+    return float(chi2_contingency(table, correction=False).pvalue)
+
+
+def trend(samples: Mapping[int, tuple[int, int]]) -> tuple[float, float]:
+    """The test of Cochran and Armitage for shares that change with a number: z and its p-value.
+
+    z is positive if samples (found, number) of larger keys have larger shares; the p-value is
+    two-sided, of the normal distribution. (0, 1) where nothing changes.
+
+    >>> z, p = trend({5: (12, 1000), 6: (33, 1000), 7: (43, 1000)})
+    >>> round(z, 2), f"{p:.1e}"
+    (4.09, '4.4e-05')
+    """
+    from scipy.stats import norm
+
+    total = sum(number for _, number in samples.values())
+    share = sum(found for found, _ in samples.values()) / total if total else 0.0
+    mean = sum(k * number for k, (_, number) in samples.items()) / total if total else 0.0
+    spread = sum(number * (k - mean) ** 2 for k, (_, number) in samples.items())
+    variance = share * (1 - share) * spread
+    if not variance:
+        return 0.0, 1.0
+    z = sum(found * (k - mean) for k, (found, _) in samples.items()) / variance**0.5
+    return float(z), float(2 * norm.sf(abs(z)))
+
+
+def p_text(p: float) -> str:
+    """A p-value with two digits that count.
+
+    >>> p_text(0.4519), p_text(0.0), p_text(1.0)
+    ('0.45', '< 1e-15', '1')
+    """
+    return f"{p:.2g}" if p >= 1e-15 else "< 1e-15"
+
+
+def verdict(holds: bool | None) -> str:
+    """What a number says of a sentence; None where it does not tell.
+
+    >>> verdict(True), verdict(False), verdict(None)
+    ('agreed', 'not agreed', 'not decided')
+    """
+    return {True: "agreed", False: "not agreed", None: "not decided"}[holds]
 
 
 def percent(part: float) -> str:

@@ -25,10 +25,11 @@ from collections import Counter
 
 import numpy as np
 from loops import Loop, LostError, Tracker
-from matching_rule import fan, is_h1
+from matching_rule import is_h1
 
 from exactfold import CreasePattern, count_branches, random_square
 from exactfold.pattern.families import h1_sequence
+from exactfold.studies.fans import fan
 
 COLUMNS = (
     "sheets", "H1", "loops", "lost", "clash", "nodes", "other", "1", "2", "3", "4+", "plain >1",

@@ -8,7 +8,7 @@ from math import pi, prod
 import numpy as np
 import pytest
 from loops import Loop, Tracker
-from matching_rule import FourBar, fan, is_h1, last_functional, sectors, without
+from matching_rule import FourBar, is_h1, last_functional, sectors, without
 from sheets import random_wheel, wheel
 
 from exactfold import CreasePattern, count_branches, random_square
@@ -16,6 +16,7 @@ from exactfold.exact.linalg import to_flint
 from exactfold.pattern.families import h1_sequence, two_vertex
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import vertex_sign_functional
+from exactfold.studies.fans import fan
 
 KITE = wheel([(2, 0), (0, 3), (-1, 0), (0, -3)], ("1/2", 0))
 """Symmetric about a fold: opposite sectors add up to pi, and two folds are in one line."""

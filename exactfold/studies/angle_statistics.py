@@ -1,0 +1,129 @@
+"""Statistics of the angles between branches: distributions of sizes, resampled, and compared.
+
+Pairs of one square are not independent, but squares are: intervals come from squares drawn again
+with replacement (bootstrap), and the test of two sizes from squares exchanged between them
+(permutation), with a fixed seed.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from exactfold.arrays import FloatArray
+from exactfold.studies.pair_angles import BINS
+from exactfold.studies.study import Row
+
+RESAMPLED: Final = 400
+"""Bootstrap samples, and permutations."""
+
+WIDTH: Final = np.pi / 2 / BINS
+"""Of a bin."""
+
+_FIT = 3 * BINS // 4
+"""Bins whose shape is fitted: from 0 to 3 pi / 8."""
+_POWERS = np.arange(0.05, 4.0001, 0.05)
+
+
+@dataclass(frozen=True)
+class AnglesOfSize:
+    """The squares of one size: the share of pairs in each bin, one line a square."""
+
+    size: int
+    shares: FloatArray
+    squares: FloatArray
+    pairs: int
+    unclear: int
+
+    @property
+    def mean(self) -> FloatArray:
+        """The distribution: squares count alike."""
+        return np.asarray(self.shares.mean(axis=0))
+
+    def resampled(self, values: FloatArray) -> FloatArray:
+        """Means of values of the squares, over squares drawn again with replacement."""
+        number = len(values)
+        source = np.random.default_rng([self.size, number])
+        weights = source.multinomial(number, np.full(number, 1 / number), size=RESAMPLED)
+        return np.asarray(weights @ values / number)
+
+
+def angles_by_size(rows: Iterable[Row]) -> list[AnglesOfSize]:
+    """The rows with pairs of branches, by size."""
+    groups: dict[int, list[Row]] = defaultdict(list)
+    for found in rows:
+        if found["angles"] is not None and sum(found["angles"]):
+            groups[found["interior"]].append(found)
+    return [
+        AnglesOfSize(
+            size,
+            np.array([np.array(r["angles"]) / sum(r["angles"]) for r in group]),
+            np.array([r["mean_square"] for r in group]),
+            sum(sum(r["angles"]) for r in group),
+            sum(r["unclear"] for r in group),
+        )
+        for size, group in sorted(groups.items())
+    ]
+
+
+def uniform(size: int) -> FloatArray:
+    """The share of each bin for independent uniform lines in `size` + 1 dimensions.
+
+    The density of the angle is proportional to sin^(size - 1) (Cai, Fan and Jiang, Distributions of
+    angles in random packing on spheres, JMLR 14 (2013), Lemma 12).
+
+    >>> [round(float(x), 6) for x in uniform(1)[:2]], round(float(uniform(6).sum()), 12)
+    ([0.015625, 0.015625], 1.0)
+    """
+    from scipy.special import betainc
+
+    ends = np.sin(np.arange(BINS + 1) * WIDTH) ** 2
+    return np.asarray(np.diff(betainc(size / 2, 0.5, ends)))
+
+
+def ends_of(values: FloatArray) -> tuple[float, float]:
+    """The ends of the middle 95 % of values."""
+    low, high = np.quantile(values, [0.025, 0.975])
+    return float(low), float(high)
+
+
+def tail_power(means: FloatArray) -> FloatArray:
+    """For each distribution the p for which log share = a - b x^p fits best, x from pi / 2.
+
+    Least squares in the bins from 0 to 3 pi / 8, weighted by the shares, for p from 0.05 to 4 in
+    steps of 0.05. 1 is an exponential tail, 2 that of a Gaussian.
+    """
+    x = np.pi / 2 - (np.arange(_FIT) + 0.5) * WIDTH
+    shares = np.maximum(means[:, :_FIT], 1e-12)
+    target, misfits = np.log(shares), []
+    for power in _POWERS:
+        z = x**power
+        total = shares.sum(axis=1)
+        mz, mt = (shares @ z) / total, (shares * target).sum(axis=1) / total
+        var = (shares @ z**2) / total - mz**2
+        cov = (shares * target * z).sum(axis=1) / total - mz * mt
+        spread = (shares * target**2).sum(axis=1) / total - mt**2
+        misfits.append(spread - cov**2 / var)
+    return np.asarray(_POWERS[np.argmin(misfits, axis=0)])
+
+
+def distance(first: FloatArray, second: FloatArray) -> FloatArray:
+    """The total variation distance of distributions, along the last axis."""
+    return np.asarray(np.abs(first - second).sum(axis=-1) / 2)
+
+
+def permuted(first: AnglesOfSize, second: AnglesOfSize) -> float:
+    """The p-value of the distance of two sizes, squares exchanged at random."""
+    both, number = np.vstack([first.shares, second.shares]), len(first.shares)
+    source = np.random.default_rng([first.size, second.size])
+    seen = distance(first.mean, second.mean)
+    total, larger = both.sum(axis=0), 0
+    for _ in range(RESAMPLED):
+        some = both[source.permutation(len(both))[:number]].sum(axis=0)
+        other = (total - some) / (len(both) - number)
+        larger += bool(distance(some / number, other) >= seen)
+    return (larger + 1) / (RESAMPLED + 1)
