@@ -34,10 +34,12 @@ def flat_star_in(framework: Framework, piece: Piece) -> tuple[float, float] | No
     ends = np.array([0.0, piece.reach])
     angles = fold_angles_of(framework.positions(piece.at(ends)), framework.hinges)
     turned = (angles[0] * angles[1] < 0) & (np.abs(angles) < 1).all(axis=0)
+    other = np.zeros(len(framework.points), dtype=bool)
+    other[framework.hinges[~turned, :2]] = True
     for v in framework.sheet.interior:
-        at = np.flatnonzero((framework.hinges[:, :2] == v).any(axis=1))
-        if not turned[at].all():
+        if other[v]:
             continue
+        at = np.flatnonzero((framework.hinges[:, :2] == v).any(axis=1))
         fold = at[int(np.argmax(np.abs(angles[1, at] - angles[0, at])))]
         hinge = framework.hinges[fold : fold + 1]
 

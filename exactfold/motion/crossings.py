@@ -12,6 +12,8 @@ from exactfold.motion.boxes import BoxTree, meeting
 from exactfold.motion.framework import Framework
 
 _ALL_PAIRS = 40_000
+_AT_ONCE = 100_000
+"""Pairs of sides and times that are looked at together: more take more memory and no less time."""
 _NOISE = 1e-13
 """Of a volume, in cubic units of the sheet: below it the side of a plane is not known."""
 
@@ -95,16 +97,27 @@ class Crossings:
         plane = positions[..., :2]
         a, b, c = (plane[:, v] for v in self.framework.triangles.T)
         upright = _turn(a, b, c).min(axis=1) > _NOISE
-        rim = self.framework.sheet.boundary
-        sides = list(zip(rim, (*rim[1:], rim[0]), strict=True))
-        for k, (p, q) in enumerate(sides):
-            for r, s in sides[k + 2 : len(sides) - (k == 0)]:
-                p_, q_, r_, s_ = (plane[:, v] for v in (p, q, r, s))
-                apart = (_turn(p_, q_, r_) * _turn(p_, q_, s_) > _NOISE) | (
-                    _turn(r_, s_, p_) * _turn(r_, s_, q_) > _NOISE
-                )
-                upright &= apart
+        sides = self._sides
+        for pairs in np.array_split(sides, 1 + len(sides) * len(plane) // _AT_ONCE):
+            left = np.flatnonzero(upright)
+            p, q, r, s = (plane[left[:, None], v] for v in pairs.T)
+            apart = (_turn(p, q, r) * _turn(p, q, s) > _NOISE) | (
+                _turn(r, s, p) * _turn(r, s, q) > _NOISE
+            )
+            # Sides on one line are told apart by their boxes.
+            one, two = np.minimum(p, q) - np.maximum(r, s), np.minimum(r, s) - np.maximum(p, q)
+            apart |= (np.maximum(one, two) > _NOISE).any(axis=-1)
+            upright[left] = apart.all(axis=1)
         return np.asarray(upright)
+
+    @cached_property
+    def _sides(self) -> IndexArray:
+        """All pairs of sides pq and rs of the rim without a common corner, shape (pairs, 4)."""
+        rim = self.framework.sheet.boundary
+        ends = np.array([rim, (*rim[1:], rim[0])], dtype=np.intp).T
+        one, two = np.triu_indices(len(rim), 2)
+        apart = two - one < len(rim) - 1
+        return np.hstack([ends[one[apart]], ends[two[apart]]])
 
     def named(self, pair: IndexArray) -> Crossing:
         """A pair (edge, face) by its vertices."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ _SAMPLES = 8
 _NEAR_FLAT = 0.3
 _FLAT = 1e-5
 _STILL = 1e-9
+_HINGE = np.arange(4)[None]
 
 
 @dataclass(frozen=True)
@@ -121,24 +122,21 @@ class Watch:
         for goal, kind in goals:
             beyond = np.abs(angles) >= goal
             for k, e in np.argwhere(beyond[1:] & ~beyond[:-1]):
-                fold = self.framework.hinges[e]
+                fold = _FoldOnPiece.of(self.framework, piece, e)
 
                 def excess(
-                    s: float, e: int = e, near: float = angles[k + 1, e], goal: float = goal
+                    s: float,
+                    fold: _FoldOnPiece = fold,
+                    near: float = angles[k + 1, e],
+                    goal: float = goal,
                 ) -> float:
-                    return abs(self._angle(piece, s, e, near)) - goal
+                    return abs(fold.angle(s, near)) - goal
 
                 low, high = _bracket(excess, grid[k], grid[k + 1])
-                i, j, left, right = (int(v) for v in fold)
+                i, j, left, right = (int(v) for v in self.framework.hinges[e])
                 faces = ((i, j, left), (i, right, j)) if kind == FLAT_FOLD else ()
                 found.append(self._event(piece, kind, low, high, faces=faces, folds=((i, j),)))
         return found
-
-    def _angle(self, piece: Piece, s: float, e: int, near: float) -> float:
-        """The angle of a hinge, continued to one that is near."""
-        positions = self.framework.positions(piece.at(s))
-        raw = float(fold_angles_of(positions, self.framework.hinges[e : e + 1])[0])
-        return raw + 2 * np.pi * round((near - raw) / (2 * np.pi))
 
     def _turnings(
         self, piece: Piece, grid: FloatArray, positions: FloatArray, angles: FloatArray
@@ -150,19 +148,10 @@ class Watch:
         sizes = np.abs(rates)
         moving = np.maximum(sizes[1:], sizes[:-1]) > _STILL * sizes.max(initial=0.0)
         for k, e in np.argwhere((rates[1:] * rates[:-1] < 0) & moving):
-
-            def rate(s: float, e: int = e) -> float:
-                return float(
-                    angle_rates(
-                        framework.positions(piece.at(s)),
-                        framework.displacement(piece.speed(s)),
-                        framework.hinges[e : e + 1],
-                    )[0]
-                )
-
-            low, high = _bracket(rate, grid[k], grid[k + 1])
+            fold = _FoldOnPiece.of(framework, piece, e)
+            low, high = _bracket(fold.rate, grid[k], grid[k + 1])
             i, j = (int(v) for v in framework.hinges[e, :2])
-            size = abs(np.degrees(self._angle(piece, high, e, angles[k + 1, e])))
+            size = abs(np.degrees(fold.angle(high, angles[k + 1, e])))
             found.append(
                 self._event(
                     piece, TURNING, low, high, folds=((i, j),), detail=f"at {size:.4g} degrees"
@@ -228,6 +217,40 @@ class Watch:
         """A face with the edge, if possible one that shares no corner with the other face."""
         faces = [t for t in self.framework.sheet.triangles if set(edge) <= set(t)]
         return min(faces, key=lambda t: len(set(t) & set(other)))
+
+
+@dataclass(frozen=True)
+class _FoldOnPiece:
+    """One fold on a piece of a curve, of which only the four corners are computed.
+
+    `corners`: the piece with their displacements as its twelve unknowns. `flat`: their places in
+    the flat sheet, shape (4, 3).
+    """
+
+    corners: Piece
+    flat: FloatArray
+
+    @classmethod
+    def of(cls, framework: Framework, piece: Piece, fold: int) -> _FoldOnPiece:
+        """The fold with a number of a framework."""
+        hinge = framework.hinges[fold]
+        rows = framework.displacement(piece.coefficients)[:, hinge].reshape(-1, 12)
+        return cls(
+            replace(piece, coefficients=rows), np.pad(framework.flat[hinge], ((0, 0), (0, 1)))
+        )
+
+    def _positions(self, s: float) -> FloatArray:
+        return np.asarray(self.corners.at(s).reshape(4, 3) + self.flat)
+
+    def angle(self, s: float, near: float) -> float:
+        """The angle of the fold, continued to one that is near."""
+        raw = float(fold_angles_of(self._positions(s), _HINGE)[0])
+        return raw + 2 * np.pi * round((near - raw) / (2 * np.pi))
+
+    def rate(self, s: float) -> float:
+        """How fast the angle changes."""
+        speed = self.corners.speed(s).reshape(4, 3)
+        return float(angle_rates(self._positions(s), speed, _HINGE)[0])
 
 
 def _bracket(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:

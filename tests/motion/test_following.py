@@ -13,6 +13,7 @@ from exactfold import CreasePattern, count_branches, find_branch, follow, random
 from exactfold.data import example_path
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.motion.crossings import Crossings
+from exactfold.motion.framework import Framework
 from exactfold.motion.motion import Motion
 from exactfold.pattern import read_fold
 
@@ -442,6 +443,24 @@ def test_the_tree_of_boxes_finds_what_all_pairs_find():
             seen.append((bool(with_tree.graphs(x[None])[0]), len(crossing) > 0))
     assert (True, False) in seen
     assert (False, True) in seen
+
+
+def test_a_sheet_over_the_plane_whose_rim_does_not_cross_itself_meets_nothing():
+    """A strip: with many corners on a line; rolled up until its ends overlap; face down."""
+    cells = 14
+    flat = [(k, y) for k in range(cells + 1) for y in (0, 1)]
+    faces = [
+        face for k in range(0, 2 * cells, 2) for face in ((k, k + 2, k + 1), (k + 1, k + 2, k + 3))
+    ]
+    crossings = Crossings(Framework.of(CreasePattern(flat, faces)))
+    turn = np.repeat(np.arange(cells + 1), 2)[:, None] * np.pi / 6
+    radius = 2 + turn / 50 - np.array(flat)[:, 1:]
+    rolled = radius * np.hstack([np.cos(turn), np.sin(turn)])
+    places = np.array([flat, rolled, rolled[:, ::-1]])
+    positions = np.concatenate([places, np.zeros((*places.shape[:2], 1))], axis=2)
+    short = Crossings(Framework.of(CreasePattern(flat[:18], faces[:16])))
+    assert crossings.graphs(positions).tolist() == [True, False, False]
+    assert short.graphs(positions[:, :18]).tolist() == [True, True, False]
 
 
 def test_the_last_frame_of_a_return_is_the_flat_sheet():
