@@ -15,6 +15,7 @@ from typing import Any
 
 from .formats import MOST_TUBES, MOST_WORK, MOTION, MOTION_BITS, MOTION_VERSION, NODE_WORK
 from .motion_contacts import check_contacts, said
+from .motion_drive import Drive, driven_of
 from .motion_equations import SPARE, LengthEquations
 from .motion_names import names
 from .motion_nodes import NodeTube
@@ -59,7 +60,10 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch closed.
     With `rim`, heights of the boundary vertices of a convex border in order, these stay on the
     curve in the ratio of the rim (`Rim`), above the face `pinned` that is held, which is returned;
-    `side` is the sign of the factor near the flat state.
+    `side` is the sign of the factor near the flat state. With `drive`, instead, the curve leaves
+    the flat state along a simple solution with these signs, on which its folds are valleys or
+    mountains by the signs of the `squares` q, and all along sin(a / 2)^2 of their angles a is in
+    the ratio of |q|; then `side` is 1.
     With `clear`, no two faces touch beyond what they share before this length of the motion; with
     `contact`, some do between two lengths (docs/contacts.md). With `node` the motion ends at a
     configuration in which the stars of the vertices `flat` are flat; all before it are regular. If
@@ -80,12 +84,12 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     more = ["clear", "contact"] if "contact" in claims else more
     ends = ["node"] if "node" in claims else []
     through = ["through"] if "through" in claims else []
-    rim = ["rim"] if "rim" in claims else []
+    rim = ["rim"] if "rim" in claims else ["drive"] if "drive" in claims else []
     keys(claims, " ".join(["vertex_signs side length", *more, *ends, *through, *rim]), "claims")
     found = ["contacts"] if more else []
     keys(evidence, " ".join(["emptied pinned bits start tubes", *found, *ends]), "evidence")
-    heights = Rim(given, claims["rim"]) if rim else None
-    equations, removed = framework(given, evidence, heights)
+    heights = Rim(given, claims["rim"]) if "rim" in claims else None
+    equations, removed = framework(given, evidence, heights, claims.get("drive"))
     tubes = items(evidence["tubes"], "tubes")
     check_steps(equations, tubes, len(ends))
     start, tau = first_piece(equations, evidence["start"])
@@ -104,7 +108,7 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
         given_end = (evidence["contacts"]["tube"], evidence["contacts"]["clear"]) if more else None
         shown_to_be = given_end == (len(tubes) + 1, 0)
         require(shown_to_be, "the motion is not shown to be clear up to its node")
-    above = {"pinned": equations.pinned} if rim else {}
+    above = {"pinned": equations.pinned} if heights else {}
     return {"sha256": digest, "tubes": len(tubes), **above, **claims}
 
 
@@ -175,17 +179,18 @@ def _parameter(value: Any) -> Fraction:
 
 
 def framework(
-    given: Sheet, evidence: Any, rim: Rim | None = None
+    given: Sheet, evidence: Any, rim: Rim | None = None, driven: Any = None
 ) -> tuple[LengthEquations, set[int]]:
     """The equations of what can fold, and the vertices that were removed."""
     sheet, removed = emptied_sheet(given, dict(given.points), evidence["emptied"])
     four = len(sheet.boundary) == 4
-    require(four or rim is not None, "there are not four boundary vertices")
+    drive = None if driven is None or four else Drive(sheet, driven)
+    require(four or rim or drive, "there are not four boundary vertices")
     require(sheet.interior, "nothing can fold")
     bits = natural(evidence["bits"], "bits")
     require(bits <= MOTION_BITS, "bits are out of range")
     pinned = [natural(v, "pinned vertex") for v in items(evidence["pinned"], "pinned", 3)]
-    return LengthEquations(sheet, pinned, bits, rim), removed
+    return LengthEquations(sheet, pinned, bits, rim, drive), removed
 
 
 def check_steps(equations: LengthEquations, entries: list[Any], more: int = 0) -> None:
@@ -212,6 +217,7 @@ def tube_of(equations: LengthEquations, entry: Any) -> Tube:
 def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> NodeTube:
     """An arc through a node at which some vertices are flat, of its keys."""
     size, bits = equations.size, equations.bits
+    require(equations.drive is None, "a driven motion has a node")
     patch = Patch(equations, [natural(v, "flat vertex") for v in items(flat, "flat")])
     return NodeTube(
         patch,
@@ -277,7 +283,7 @@ def summary(claims: dict[str, Any]) -> str:
     return (
         f"VALID: the motion along the half-branch {letters} ({len(signs)}), side {side}, is one "
         f"curve without a gap of length {shown(claims['length'])} or more{_nodes(claims)}"
-        f"{border_of(claims)}{said(claims)}; {tubes}; "
+        f"{border_of(claims)}{driven_of(claims)}{said(claims)}; {tubes}; "
         f"sha256 {claims['sha256']}"
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import asin, copysign, cos, degrees, gcd, radians, sqrt
@@ -101,6 +101,17 @@ class Drive:
                 whole = integer_row(row)
                 rows.append(tuple(c // gcd(*whole) for c in whole))
         return Coupling(tuple(diagonals), _alike(rows))
+
+    def ways(self, labels: Sequence[int]) -> tuple[tuple[Edge, int], ...]:
+        """The folds by vertices of the sheet of a framework, 1 for a valley and -1 for a mountain.
+
+        `labels[v]` is the vertex of the pattern that vertex v of that sheet is.
+        """
+        place = {label: v for v, label in enumerate(labels)}
+        return tuple(
+            ((min(place[v], place[w]), max(place[v], place[w])), 1 if q > 0 else -1)
+            for (v, w), q in zip(self.folds, self.squares, strict=True)
+        )
 
     def __repr__(self) -> str:
         return f"<Drive: {self.text}>"

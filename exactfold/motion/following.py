@@ -121,12 +121,8 @@ def follow(
 
 def _goals(problem: Problem, drive: Drive) -> tuple[tuple[Edge, float], ...]:
     """The folds of the sheet that are driven, and the sizes of their goals in radians."""
-    place = {label: v for v, label in enumerate(problem.labels)}
-    found = []
-    for (v, w), angle in drive.angles.items():
-        i, j = sorted((place[v], place[w]))
-        found.append(((i, j), radians(abs(angle))))
-    return tuple(found)
+    folds = (fold for fold, _ in drive.ways(problem.labels))
+    return tuple((f, radians(abs(a))) for f, a in zip(folds, drive.angles.values(), strict=True))
 
 
 @dataclass(frozen=True)

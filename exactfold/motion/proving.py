@@ -215,7 +215,8 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
     (<Verdict.PROVED: 'proved'>, 'flat-fold', True)
     """
     try:
-        if motion.end == RETURN and not motion.curve.framework.ties:
+        framework = motion.curve.framework
+        if motion.end == RETURN and not framework.ties and not framework.coupling.rows:
             return _returning(motion, bits, progress)
         return _tracked(motion, bits, progress)
     except NotProvedAtTheFlatStateError as error:
@@ -298,7 +299,7 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
 
     until = None if to_contact or to_node else motion.duration
     pinned = motion.curve.framework.pinned
-    so_far = half_branch(motion.branch, motion.side, pinned, bits=bits)
+    so_far = half_branch(motion.branch, motion.side, pinned, bits=bits, drive=motion.drive)
     track = follow_proved(
         motion.branch,
         motion.side,
@@ -307,6 +308,7 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
         through_nodes=_passes_nodes(motion),
         pinned=pinned,
         bits=bits,
+        drive=motion.drive,
     )
     contact = watch.result(track) if found is None else found
     status, reason = _judged(motion, track, contact)

@@ -32,7 +32,12 @@ from exactfold.motion.rim_path import factor_functional
 from exactfold.motion.start import Start
 from exactfold.motion.tube import longest
 from exactfold.problem.gauge import RIM, Gauge
-from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functional
+from exactfold.pattern.crease_pattern import Edge
+from exactfold.rigidity.functionals import (
+    fold_functional,
+    saddle_functional,
+    vertex_sign_functional,
+)
 
 ROOT_BITS = PARAMETER_BITS // 2
 """The parameter tau of a start tube, whose square is s, is an integer over 2^ROOT_BITS."""
@@ -48,7 +53,7 @@ class StartTube(Piece):
     the half-branch tau > 0 (docs/motion.md, Theorem 3): the proved signs of the heights at tau = 0
     at every interior vertex of the sheet of the framework, and the sign `side` of the boundary
     saddle or, with a reflex corner, of this corner in the closed sheet, or, with more than four
-    corners, of the factor of the rim.
+    corners, of the factor of the rim; 1 with driven folds, which go the way they are driven.
     """
 
     halvings: int
@@ -185,8 +190,11 @@ def prove_start(
     order: int = 8,
     bits: int = 64,
     thickness: float = 1e-8,
+    ways: Sequence[tuple[Edge, int]] = (),
 ) -> StartTube:
     """The start tube of the half-branch with these approximate heights of the framework's sheet.
+
+    `ways`: with a coupling the folds that are driven, each with 1 if it is to be a valley, else -1.
 
     Raises `NotProvedAtTheFlatStateError`, which does not say that there is no such motion.
     """
@@ -232,14 +240,17 @@ def prove_start(
             "simple, or ill-conditioned"
         )
     found = StartTube(framework, equations.bits, curve, weights, proof, reach, m, held, (), 0)
-    signs, side = names_at(gauge, framework, found.enclosure(0))
+    signs, side = names_at(gauge, framework, found.enclosure(0), ways)
     return replace(found, vertex_signs=signs, side=side)
 
 
-def names_at(gauge: Gauge, framework: Framework, box: Ball) -> tuple[tuple[int, ...], int]:
+def names_at(
+    gauge: Gauge, framework: Framework, box: Ball, ways: Sequence[tuple[Edge, int]] = ()
+) -> tuple[tuple[int, ...], int]:
     """The signs of all interior vertices on a box of (u, h), and the side of the gauge.
 
-    Raises `NotProvedAtTheFlatStateError` where one is not certain.
+    With driven folds the side is 1: all of them go the way they are to. Raises
+    `NotProvedAtTheFlatStateError` where one is not certain.
     """
     rows = {int(v): 3 * k + 2 for k, v in enumerate(framework.free)}
 
@@ -252,6 +263,11 @@ def names_at(gauge: Gauge, framework: Framework, box: Ball) -> tuple[tuple[int, 
 
     sheet = framework.sheet
     signs = tuple(sign(vertex_sign_functional(sheet, v), f"vertex {v}") for v in sheet.interior)
+    if ways:
+        for fold, way in ways:
+            if sign(fold_functional(sheet, fold), f"fold {fold[0]}-{fold[1]}") != way:
+                raise NotProvedAtTheFlatStateError("a driven fold starts the other way")
+        return signs, 1
     if gauge.kind == RIM:
         return signs, sign(factor_functional(sheet, gauge.rim), "the border")
     if gauge.corner is None:
