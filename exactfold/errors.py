@@ -151,7 +151,7 @@ class RimHeightError(BadRimError, NumberError):
     """A height of a boundary vertex that is not a number."""
 
 
-class BadDriveError(UsageError):
+class BadDriveError(InputError):
     """Folds or angles that cannot be driven; `folds` are those to blame."""
 
     def __init__(self, message: str, folds: Sequence[tuple[int, int]] = ()) -> None:

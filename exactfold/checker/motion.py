@@ -21,6 +21,7 @@ from .motion_names import names
 from .motion_nodes import NodeTube
 from .motion_patches import Patch
 from .motion_paths import Path
+from .motion_reached import check_reached
 from .motion_rim import Rim, border_of
 from .motion_stretches import Arc, Link, Step
 from .motion_tubes import Start, Tube
@@ -63,7 +64,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     `side` is the sign of the factor near the flat state. With `drive`, instead, the curve leaves
     the flat state along a simple solution with these signs, on which its folds are valleys or
     mountains by the signs of the `squares` q, and all along sin(a / 2)^2 of their angles a is in
-    the ratio of |q|; then `side` is 1.
+    the ratio of |q|; then `side` is 1. If it is `reached`, these are |q| themselves at one of them.
     With `clear`, no two faces touch beyond what they share before this length of the motion; with
     `contact`, some do between two lengths (docs/contacts.md). With `node` the motion ends at a
     configuration in which the stars of the vertices `flat` are flat; all before it are regular. If
@@ -98,6 +99,8 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     steps = walked(equations, path, tubes, leaves=not ends)
     if through or any(map(is_node, tubes)):
         _check_passed(claims, [entry["flat"] for entry in tubes if is_node(entry)])
+    if equations.drive is not None and equations.drive.reached:
+        check_reached(equations, equations.drive, path.here)
     if ends:
         steps.append(_to_the_node(equations, path, claims["node"], evidence["node"]))
     claimed = parse_rational(claims["length"])

@@ -23,7 +23,9 @@ class Drive:
     """
 
     def __init__(self, sheet: Sheet, claim: Any) -> None:
-        keys(claim, "folds squares", "drive")
+        keys(claim, "folds squares reached", "drive")
+        require(type(claim["reached"]) is bool, "reached is not true or false")
+        self.reached: bool = claim["reached"]
         number = len(sheet.boundary) - 3
         self.folds: list[Edge] = []
         for fold in items(claim["folds"], "driven folds", number):
@@ -42,7 +44,8 @@ class Drive:
             square = (b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2
             self.diagonals.append((left, right))
             weights.append(abs(q) * turn(a, b, c) * turn(b, a, d) / square)
-        most = weights.index(max(weights))
+        most = self.most = weights.index(max(weights))
+        self.weight = weights[most]
         rows = [self._row(weights, k, most) for k in range(number) if k != most]
         self.bits = max(_length(row) for row in rows)
         self.rows = [[c << self.bits - _length(row) for c in row] for row in rows]
@@ -67,4 +70,5 @@ def driven_of(claims: dict[str, Any]) -> str:
     names = ", ".join(f"{i}-{j}" for i, j in drive["folds"])
     ratio = " : ".join(q.removeprefix("-") for q in drive["squares"])
     ways = ", ".join("mountain" if q.startswith("-") else "valley" for q in drive["squares"])
-    return f", driven by the folds {names} ({ways}), sin^2 of half of whose angles is as {ratio}"
+    reached = ", which it reaches" if drive["reached"] else ""
+    return f", driven by the folds {names} ({ways}), sin^2 of half the angle as {ratio}{reached}"

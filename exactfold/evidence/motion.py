@@ -22,7 +22,7 @@ def motion_certificate(
     tubes: Sequence[Document],
     ends_at_a_node: bool = False,
     rim: Mapping[int, Fraction] | None = None,
-    drive: tuple[Sequence[tuple[int, int]], Sequence[Fraction]] | None = None,
+    drive: tuple[Sequence[tuple[int, int]], Sequence[Fraction], bool] | None = None,
 ) -> Document:
     """The proof of a motion as a JSON object (docs/motion.md, The certificate).
 
@@ -31,7 +31,8 @@ def motion_certificate(
     Of `tubes` those with the key `flat` are arcs through nodes, at which these vertices are flat.
     With `ends_at_a_node` the motion ends at the node of the last one. The certificate does not
     claim that nothing touches up to there. `rim`: with more than four corners the heights of the
-    border, in the ratio of which it stays. `drive`: instead, driven folds and their squares.
+    border, in the ratio of which it stays. `drive`: instead, driven folds, their squares, and
+    whether the folds are beyond their angles at the end.
     """
     *steps, last = tubes if ends_at_a_node else [*tubes, {}]
     through = [step["flat"] for step in steps if "flat" in step]
@@ -55,10 +56,11 @@ def motion_certificate(
     if rim is not None:
         document["claims"]["rim"] = [format_rational(h) for _, h in sorted(rim.items())]
     if drive is not None:
-        folds, squares = drive
+        folds, squares, reached = drive
         document["claims"]["drive"] = {
             "folds": [list(fold) for fold in folds],
             "squares": [format_rational(q) for q in squares],
+            "reached": reached,
         }
     if through:
         document["claims"]["through"] = through

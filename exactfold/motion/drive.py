@@ -7,12 +7,16 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import asin, copysign, cos, degrees, gcd, radians, sqrt
 
+import numpy as np
+
+from exactfold.arrays import FloatArray
 from exactfold.errors import BadDriveError
 from exactfold.exact.numbers import format_rational, integer_row
 from exactfold.motion.coupling import NO_COUPLING, Coupling
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 _DENOMINATOR = 10**12
+_BEYOND = 1e-11
 
 
 @dataclass(frozen=True)
@@ -101,6 +105,11 @@ class Drive:
                 whole = integer_row(row)
                 rows.append(tuple(c // gcd(*whole) for c in whole))
         return Coupling(tuple(diagonals), _alike(rows))
+
+    def passed(self, angles: FloatArray) -> bool:
+        """Whether these angles of the folds, in radians, are clearly beyond their goals."""
+        sines = np.sin(angles / 2)
+        return bool((sines / np.array(self.sines) > 1 + _BEYOND).all())
 
     def ways(self, labels: Sequence[int]) -> tuple[tuple[Edge, int], ...]:
         """The folds by vertices of the sheet of a framework, 1 for a valley and -1 for a mountain.

@@ -152,6 +152,7 @@ class _Search:
     side: int | None
     rim_given: bool
     progress: Progress | None
+    farthest: FloatArray | None = None
 
     @property
     def pattern(self) -> CreasePattern:
@@ -238,12 +239,12 @@ class _Search:
         names = ", ".join(map(fold_text, self.folds))
         which = "any signs that were tried" if signs is None else "these signs"
         text = f"no branch with {which} was found on which the folds {names} start in this ratio"
-        if signs is not None:
-            branch = self.finder.find(signs)
-            if branch.approx_heights:
-                angles = branch.fold_angles.degrees(30.0)
-                there = ", ".join(f"{angles[fold]:.3g}" for fold in self.folds)
-                text += f"; on the one with the border heights given, or chosen, as {there}"
+        if signs is not None and self.farthest is not None:
+            largest = np.abs(self.farthest).max()
+            there = ", ".join(f"{x:.4g}" for x in (self.farthest / largest).tolist())
+            text += f"; the nearest that was met is {there}"
+        elif signs is not None and self.problem.sheet.Ve == 4:
+            text += ": the fold goes the other way, or stays flat"
         return NotDrivenError(text, self.folds)
 
     # --- four corners ----------------------------------------------------------------------------
@@ -390,6 +391,7 @@ class _Search:
         if y is None:
             return None
         signs, at, step = self._signs_at(y), 0.0, 0.25
+        self.farthest = there
         while at < 1.0:
             until = min(1.0, at + step)
             tried = self._solved(y, (1 - until) * there + until * wanted)
@@ -399,6 +401,7 @@ class _Search:
                     return None
                 continue
             y, at, step = tried, until, 2 * step
+            self.farthest = self._driven_rows @ y
         return y
 
     def _solved(self, y: FloatArray, goal: FloatArray) -> FloatArray | None:

@@ -16,7 +16,7 @@ from exactfold.motion.chain import Step
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import ContactWatch, FirstContact
 from exactfold.motion.enclosed import with_enclosed_frames
-from exactfold.motion.events import CONTACT, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
+from exactfold.motion.events import CONTACT, DRIVEN, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
 from exactfold.motion.framework import Framework
 from exactfold.motion.loop_file import LoopFile
 from exactfold.motion.loop_frames import frame_of
@@ -36,6 +36,8 @@ BITS = 64, 128
 _AT_ONCE = 1e-9
 _FARTHER = Fraction(1, 1000)
 """Of its time: what goes on so much longer than to the node that floats see meets none."""
+_BEYOND = 1e-8
+"""Of its time: so much longer a motion is followed, so that driven folds are beyond their goals."""
 _NAMED = 3
 _NO_NODE = "no node was met where floats see one"
 _STRAYED = "the frames in floats are not near the proved curve: floats have left the branch"
@@ -89,6 +91,14 @@ class MotionProof:
     def clear_to_the_end(self) -> bool:
         """Whether no two faces touch on all that is proved, nor in its last configuration."""
         return self.contact is not None and not self.passed and self.contact.clear_to_the_end
+
+    @property
+    def reached(self) -> bool | None:
+        """Whether driven folds are proved to reach the angles of the drive; None without a drive.
+
+        Of the one fold that is driven on a sheet with four corners nothing is said.
+        """
+        return None if self.track is None or self.track.drive is None else self.track.reached
 
     @property
     def through_text(self) -> str:
@@ -174,6 +184,7 @@ class MotionProof:
                 for node in self.through
             ],
             "node": None if self.node is None else self._node_dict(self.node),
+            "reached": self.reached,
             "to": None if loop is None or loop.target is None else loop.target.to_dict(),
         }
 
@@ -298,6 +309,8 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
         return None
 
     until = None if to_contact or to_node else motion.duration
+    if motion.end == DRIVEN:
+        until = motion.duration * (1 + _BEYOND)
     pinned = motion.curve.framework.pinned
     so_far = half_branch(motion.branch, motion.side, pinned, bits=bits, drive=motion.drive)
     track = follow_proved(

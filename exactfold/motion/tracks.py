@@ -14,6 +14,7 @@ from exactfold.branches.branch import Branch
 from exactfold.errors import FlatVertexError, UsageError
 from exactfold.evidence.entries import Document
 from exactfold.evidence.motion import motion_certificate
+from exactfold.motion.angles import fold_angles_of, hinges_of
 from exactfold.motion.arclength import Interval
 from exactfold.motion.chain import Chain, Step, chords, point_near, step_documents
 from exactfold.motion.drive import Drive
@@ -121,6 +122,20 @@ class Track:
         """Bounds of the time at the end, in the unit of the framework."""
         return self.steps[-1].left if self.steps else self.started
 
+    @cached_property
+    def reached(self) -> bool:
+        """Whether the driven folds are beyond the angles of the drive at the end, by far more than
+        the error there: so they have these angles at some configuration of the track."""
+        last = self.steps[-1] if self.steps else None
+        if self.drive is None or not isinstance(last, Link):
+            return False
+        ball = last.tube.enclosure(last.exit)
+        hinges = hinges_of(self.framework.sheet)
+        angles = fold_angles_of(self.framework.positions(ball.floats[0]), hinges)
+        folds = self.framework.sheet.folds
+        at = [folds.index(fold) for fold, _ in self.drive.ways(self.labels)]
+        return self.drive.passed(angles[at])
+
     @property
     def tubes(self) -> int:
         """How many pieces prove it."""
@@ -143,7 +158,7 @@ class Track:
         >>> checker.check(track.certificate())["vertex_signs"]
         [1]
         """
-        start = self.start
+        start, drive = self.start, self.drive
         pinned = [self.labels[v] for v in self.framework.pinned]
         held = self.labels[int(self.framework.free[start.held // 3])]
         return motion_certificate(
@@ -163,7 +178,7 @@ class Track:
             step_documents(self.steps, leaves=True),
             ends_at_a_node=self.node is not None,
             rim=self.rim,
-            drive=None if self.drive is None else (self.drive.folds, self.drive.squares),
+            drive=None if drive is None else (drive.folds, drive.squares, self.reached),
         )
 
     def frames(self, times: FloatArray | list[float]) -> list[Frame]:
