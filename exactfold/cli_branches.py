@@ -270,8 +270,8 @@ def fold(
     --signs, --up or --branch, else that on which all vertices pop up. With more
     corners it does if --signs, --up or --rim is given: its border then moves in
     the ratio of the rim; or if --drive is: chosen folds then drive it. Any other
-    sheet follows modes of rigid panels: --component or --modes. That the branch or mode exists is proved; what of
-    the motion is proved is said.
+    sheet follows modes of rigid panels: --component or --modes. That the branch or
+    mode exists is proved; what of the motion is proved is said.
     """
     from exactfold.commands.fold import Wanted
     from exactfold.commands.given import Given

@@ -17,7 +17,8 @@ def names(
 ) -> tuple[list[int], int]:
     """The vertex signs, 0 for vertices that were removed, and the side of a half-branch.
 
-    With a rim the side is the sign of its factor, with a drive 1. They are those of the heights at the flat state.
+    With a rim the side is the sign of its factor, with a drive 1. They are those of the heights at
+    the flat state.
     """
     box, place = start.enclosure(Fraction(0)), start.equations.place
 

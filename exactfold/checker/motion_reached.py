@@ -1,4 +1,4 @@
-"""That driven folds reach their angles: by the last configuration of a motion (docs/motion.md, 10)."""
+"""That driven folds reach their angles: they are beyond them at the end (docs/motion.md, 10)."""
 
 from __future__ import annotations
 

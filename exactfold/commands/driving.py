@@ -45,9 +45,7 @@ def _of_file(path: Path) -> Angles:
     return found
 
 
-def _add(
-    found: Angles, name: str, value: str | None, error: Callable[[str], Exception]
-) -> None:
+def _add(found: Angles, name: str, value: str | None, error: Callable[[str], Exception]) -> None:
     try:
         fold = fold_name(name)
     except typer.BadParameter as failure:

@@ -92,7 +92,7 @@ class Wanted:
                 try:
                     motion = self._along(begin, bar)
                 except UndecidedBranchError as error:
-                    say(f"not followed: {error}; {branch.reason}".rstrip("; "))
+                    say(f"not followed: {error}; {begin.branch.reason}".rstrip("; "))
                     return EXIT[UNDECIDED]
             else:
                 motion = self._panels(opened, bar)
@@ -146,9 +146,7 @@ class Wanted:
         if (self.signs, self.up) != (None, None):
             signs = given_signs(finder, self.signs, self.up)
         rim = None if self.given.rim is None else finder.rim
-        found = find_driven(
-            pattern, self.angles, signs, rim=rim, side=self.side, progress=bar
-        )
+        found = find_driven(pattern, self.angles, signs, rim=rim, side=self.side, progress=bar)
         if signs is None:
             say(
                 "no branch was named (--signs, --up): this is the first that was found on which "
@@ -233,7 +231,7 @@ class Wanted:
 
             bar("proving")
             return prove_panels(motion)
-        from exactfold.motion.proving import prove_persistently
+        from exactfold.motion.persistence import prove_persistently
 
         begin = _Begin(motion.branch, motion.side, motion.drive)
         return prove_persistently(motion, lambda held: self._along(begin, bar, held), progress=bar)

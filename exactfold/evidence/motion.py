@@ -23,6 +23,7 @@ def motion_certificate(
     ends_at_a_node: bool = False,
     rim: Mapping[int, Fraction] | None = None,
     drive: tuple[Sequence[tuple[int, int]], Sequence[Fraction], bool] | None = None,
+    returning: tuple[Document, Document] | None = None,
 ) -> Document:
     """The proof of a motion as a JSON object (docs/motion.md, The certificate).
 
@@ -32,7 +33,8 @@ def motion_certificate(
     With `ends_at_a_node` the motion ends at the node of the last one. The certificate does not
     claim that nothing touches up to there. `rim`: with more than four corners the heights of the
     border, in the ratio of which it stays. `drive`: instead, driven folds, their squares, and
-    whether the folds are beyond their angles at the end.
+    whether the folds are beyond their angles at the end. `returning`: the half-branch along which
+    the motion comes back to the flat state, and the landing there.
     """
     *steps, last = tubes if ends_at_a_node else [*tubes, {}]
     through = [step["flat"] for step in steps if "flat" in step]
@@ -55,6 +57,8 @@ def motion_certificate(
     }
     if rim is not None:
         document["claims"]["rim"] = [format_rational(h) for _, h in sorted(rim.items())]
+    if returning is not None:
+        document["claims"]["return"], document["evidence"]["landing"] = returning
     if drive is not None:
         folds, squares, reached = drive
         document["claims"]["drive"] = {

@@ -176,8 +176,8 @@ def contraction(
     `rows[k]` are the vectors of the bars of that of DH(p(s), s), of which the `coupling` makes
     equations, and `linear` its rows after these, for k = 0 only, integers over 2^`row_bits`. With
     the positive `weights` over 2^WEIGHT_BITS, `sums` holds w_i + w_j for the three places of every
-    bar (i, j), shape (bars, 3), and `squares[k]` bounds the coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over
-    2^(2 WEIGHT_BITS).
+    bar (i, j), shape (bars, 3), and `squares[k]` bounds the coefficient of s^k of D2H(y, z) for
+    |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
     """
     n = len(weights)
     p = _whole(inverse)
@@ -196,8 +196,8 @@ def contraction(
     coarse = _coarse(on_bars)
     off = _above(size, [int(x) for x in sums.sum(axis=1)])
     room = _WORD - _largest(coarse).bit_length() - places.most.bit_length()
-    linear = np.array(linear, dtype=object)
-    product = _product(on_bars, places, rows[0]) + _dot(p[:, n - len(linear) :], linear)
+    lines = np.array(linear, dtype=object)
+    product = _product(on_bars, places, rows[0]) + _dot(p[:, n - len(lines) :], lines)
     product[np.diag_indices(n)] -= 1 << INVERSE_BITS + row_bits
     mixed = _of_diagonals(coupling, rows, sums)
     slope = [

@@ -130,9 +130,7 @@ def _alike(rows: list[tuple[int, ...]]) -> tuple[tuple[int, ...], ...]:
     """Rows multiplied by powers of 2, so that their largest numbers have the same length."""
     lengths = [max(abs(c).bit_length() for c in row) for row in rows]
     most = max(lengths)
-    return tuple(
-        tuple(c << most - n for c in row) for row, n in zip(rows, lengths, strict=True)
-    )
+    return tuple(tuple(c << most - n for c in row) for row, n in zip(rows, lengths, strict=True))
 
 
 def square_of(angle: float) -> Fraction:

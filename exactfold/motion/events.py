@@ -122,7 +122,7 @@ class Watch:
         goals = [(np.pi, FLAT_FOLD)]
         if self.largest_angle is not None and self.largest_angle < np.pi:
             goals.append((self.largest_angle, ANGLE))
-        every = range(angles.shape[1])
+        every = list(range(angles.shape[1]))
         watched = [(goal, kind, every) for goal, kind in goals]
         if self.driven:
             # That of a fold that does not close there has a rate.

@@ -14,6 +14,8 @@ from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.errors import NotApplicableError, NotFollowedError, UndecidedBranchError, UsageError
 from exactfold.motion.curve import Curve, LostCurveError, Piece, continued, leaving_piece
+from exactfold.motion.drive import Drive
+from exactfold.motion.driven import require_driven
 from exactfold.motion.events import (
     ANGLE,
     CONTACT,
@@ -29,9 +31,7 @@ from exactfold.motion.events import (
 )
 from exactfold.motion.framework import Framework
 from exactfold.motion.motion import Motion, angles_at, in_space
-from exactfold.motion.drive import Drive
-from exactfold.motion.driven import framework_of, require_driven
-from exactfold.motion.rim_path import problem_of
+from exactfold.motion.rim_path import framework_of, problem_of
 from exactfold.motion.start import Start
 from exactfold.motion.straight_folds import straight_fold
 from exactfold.motion.zeros import zero_of

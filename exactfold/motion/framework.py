@@ -213,11 +213,11 @@ class Framework:
             e = np.flatnonzero(at >= 0)
             for axis in range(3):
                 parts.append((e, 3 * at[e] + axis, 3 * e + axis, np.full(len(e), sign)))
-        for (k, m), factor in np.ndenumerate(self.coupling.floats):
+        for (k, m), c in np.ndenumerate(self.coupling.floats):
             for v, sign in zip(self.coupling.diagonals[m], (1.0, -1.0), strict=True):
                 if place[v] >= 0:
                     axes = np.arange(3)
-                    entry = np.full(3, len(self.edges) + k), np.full(3, sign * factor)
+                    entry = np.full(3, len(self.edges) + k), np.full(3, sign * c)
                     source = 3 * (len(self.edges) + m) + axes
                     parts.append((entry[0], 3 * place[v] + axes, source, entry[1]))
         k, at = np.nonzero(self.tie_rows)

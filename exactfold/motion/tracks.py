@@ -18,12 +18,11 @@ from exactfold.motion.angles import fold_angles_of, hinges_of
 from exactfold.motion.arclength import Interval
 from exactfold.motion.chain import Chain, Step, chords, point_near, step_documents
 from exactfold.motion.drive import Drive
-from exactfold.motion.driven import framework_of
 from exactfold.motion.framework import Framework
 from exactfold.motion.links import Link
 from exactfold.motion.passages import Passage
 from exactfold.motion.piece import Ball
-from exactfold.motion.rim_path import problem_of
+from exactfold.motion.rim_path import framework_of, problem_of
 from exactfold.motion.straight_folds import straight_fold
 from exactfold.motion.tube_start import StartTube, prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
@@ -279,11 +278,11 @@ def follow_proved(
     """The proved motion along a branch, until a time, or until `stop` says so.
 
     The time is the length of the curve in the unknowns of the framework, in the unit of the sheet.
-    `side`, `pinned` and `drive` as in `half_branch`, whose errors are raised. Where tubes become shorter
-    than 1e-7 of the sheet, and a node ahead is proved, the track goes straight on `through_nodes`,
-    and else ends at it (`Track.node`): PROVED if no time was asked for. It is UNDECIDED if it ends
-    before what was asked for: at a node, near another configuration where several curves meet, or
-    after `most` tubes.
+    `side`, `pinned` and `drive` as in `half_branch`, whose errors are raised. Where tubes become
+    shorter than 1e-7 of the sheet, and a node ahead is proved, the track goes straight on
+    `through_nodes`, and else ends at it (`Track.node`): PROVED if no time was asked for. It is
+    UNDECIDED if it ends before what was asked for: at a node, near another configuration where
+    several curves meet, or after `most` tubes.
 
     >>> from exactfold.count.find import find_branch
     >>> from exactfold.pattern.random_squares import random_square

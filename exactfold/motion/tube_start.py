@@ -31,8 +31,8 @@ from exactfold.motion.piece import PARAMETER_BITS, Ball, Piece
 from exactfold.motion.rim_path import factor_functional
 from exactfold.motion.start import Start
 from exactfold.motion.tube import longest
-from exactfold.problem.gauge import RIM, Gauge
 from exactfold.pattern.crease_pattern import Edge
+from exactfold.problem.gauge import RIM, Gauge
 from exactfold.rigidity.functionals import (
     fold_functional,
     saddle_functional,
@@ -291,7 +291,10 @@ def _halvings(series: FloatArray) -> int:
 
 
 def _residuals(equations: LengthEquations, curve: Sequence[Row], m: int) -> list[list[int]]:
-    """The coefficients of 2 [U . u + h^2 / 2 + s |u|^2 / 2; ties; 0], over 2^(2 bits + 2 m + `more`)."""
+    """The coefficients of 2 [U . u + h^2 / 2 + s |u|^2 / 2; ties; 0].
+
+    Over 2^(2 bits + 2 m + `more`).
+    """
     e = equations.along(curve)
     heights, plane = squared(e[:, :, 2:]), squared(e[:, :, :2])
     found = []

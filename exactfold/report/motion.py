@@ -113,8 +113,8 @@ def _proof(proof: MotionProof | PanelProof) -> RenderableType:
         parts.append(f"no two faces touch {'before it, nor at it' if proof.end_text else 'on it'}")
     elif contact is not None and contact.event is not None:
         parts.append(_enclosed(contact.event, passed=proof.passed))
-    elif proof.loop is not None:
-        parts.append(f"it comes back along {proof.loop.target}")
+    elif proof.back_text:
+        parts.append(f"it comes back along {proof.back_text}")
     return Text.assemble(status_text(proof.status), "; ".join(parts))
 
 
