@@ -152,6 +152,11 @@ class Wanted:
                 "no branch was named (--signs, --up): this is the first that was found on which "
                 f"the folds start so: {found.branch.sign_text}"
             )
+        if found.others:
+            say(
+                f"{counted(found.others, 'more branch')} with these signs on which the folds start "
+                "so: this is the one that bends least; --rim FILE starts from other border heights"
+            )
         return _Begin(found.branch, found.side, found.drive)
 
     def _branch(self, pattern: CreasePattern, bar: Bar) -> Branch:

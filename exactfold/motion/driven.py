@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from itertools import product
 
 import numpy as np
 
+from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.count.find import BranchFinder, Rim, Signs, branch_finder
 from exactfold.errors import BadDriveError, NotDrivenError
@@ -19,11 +19,15 @@ from exactfold.motion.rim_path import problem_of
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.problem.problem import Problem
+from exactfold.problem.rims import saddle_rims
 from exactfold.progress import Progress
 from exactfold.wording import counted
 
 _TRIED = 8
 """Vertices up to which all signs are tried where none are given."""
+_SMALL = 200
+"""Unknowns up to which several starts are tried."""
+_SAME = 1e-6
 _OFF = 1e-6
 """How far first-order angles of a branch may be from the ratio of a drive, of the largest."""
 
@@ -33,12 +37,14 @@ class Driven:
     """A branch on which driven folds start in their ratio, and the side on which they do.
 
     `branch` is proved. With more than four corners its border has the heights of the way the driven
-    motion starts, rounded: it shows this start with an error of about 1e-12.
+    motion starts, rounded: it shows this start with an error of about 1e-12. `others`: how many
+    more with the same signs were found, on which folds bend more.
     """
 
     branch: Branch
     side: int
     drive: Drive
+    others: int = 0
 
     def __repr__(self) -> str:
         return f"<Driven: branch {self.branch.sign_text}, {self.drive.text}>"
@@ -60,8 +66,10 @@ def find_driven(
     sines of half of these (`Drive`). None for an angle: the one that the fold has beside the others
     on the branch with the border heights `rim`, by default those of `find_branch`. `signs`: as in
     `find_branch`, of the branch as it is driven; if not given, the first found. With more than four
-    corners the branch is found from that with the rim, by Newton's method; others with these signs
-    and this ratio are not looked for. With four corners there is one fold to drive, and `side` may
+    corners the branch is found from that with the rim, by Newton's method. There may be several
+    with these signs and this ratio, as a line meets a cone in two points: without a `rim` (and up
+    to 200 unknowns) they are looked for from eight, and that is taken on which all folds together
+    bend least, by the sum of squares. With four corners there is one fold to drive, and `side` may
     be asked for as in `follow`.
 
     Raises `BadDriveError` for folds or angles that cannot be driven, `NotDrivenError` where no
@@ -172,39 +180,51 @@ class _Search:
         """The branch with these signs, if it is found."""
         if self.problem.sheet.Ve == 4:
             return self._of_two_sides(signs)
+        solutions: list[FloatArray] = []
+        drive: Drive | None = None
         for start in self._starts:
-            found = self._from(start, signs)
-            if found is not None:
-                return found
-        return None
+            found = self._from(start, signs, drive)
+            if found is None:
+                continue
+            drive, y = found
+            if all(np.abs(y - x).max() > _SAME * np.abs(x).max() for x in solutions):
+                solutions.append(y)
+            if self.on.framework.size > _SMALL:
+                break
+        if drive is None:
+            return None
+        best = min(solutions, key=self.on.bending)
+        near = BranchFinder(self.pattern, self.on.rim_of(best)).find(signs, progress=self.progress)
+        if not near.approx_heights or off_the_ratio(near, 1, drive) > _OFF:
+            return None
+        return Driven(near, 1, drive, len(solutions) - 1)
 
-    @property
-    def _starts(self) -> Iterator[BranchFinder]:
-        """With the rim that is given, or with the one that was chosen and with its mirror image."""
-        yield self.finder
-        if not self.rim_given and self.finder.rim is not None:
-            opposite = {v: -Fraction(h) for v, h in self.problem.gauge.rim.items()}
-            yield BranchFinder(self.pattern, opposite)
+    @cached_property
+    def _starts(self) -> list[BranchFinder]:
+        """With the rim that is given; else with the default one, and others."""
+        if self.rim_given:
+            return [self.finder]
+        return [self.finder] + [
+            BranchFinder(self.pattern, rim) for rim in saddle_rims(self.pattern)[1:]
+        ]
 
-    def _from(self, finder: BranchFinder, signs: Mapping[int, int]) -> Driven | None:
-        """The branch found from that of a finder."""
+    def _from(
+        self, finder: BranchFinder, signs: Mapping[int, int], drive: Drive | None
+    ) -> tuple[Drive, FloatArray] | None:
+        """The drive, if it is not known, and a solution found from the branch of a finder."""
         branch = finder.find(signs, progress=self.progress)
         if not branch.approx_heights:
             return None
         heights = branch.approx_heights
         start = self.on.unknowns(np.array([heights[v] for v in self.problem.labels]))
         self.on.require_independent(start)
-        drive = self.on.completed(start)
+        drive = drive or self.on.completed(start)
         if drive is None:
             return None
         reached = self.on.reached(start, np.array(drive.sines))
         if reached is None or self.on.signs_at(reached) != self.on.signs_of(signs):
             return None
-        rim = self.on.rim_of(reached)
-        near = BranchFinder(self.pattern, rim).find(signs, progress=self.progress)
-        if not near.approx_heights or off_the_ratio(near, 1, drive) > _OFF:
-            return None
-        return Driven(near, 1, drive)
+        return drive, reached
 
     def failure(self, signs: Mapping[int, int] | None) -> NotDrivenError:
         """Why nothing was found, with what the branch of the rim does."""

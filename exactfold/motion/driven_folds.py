@@ -84,6 +84,10 @@ class DrivenFolds:
         pairs = [sorted((place[i], place[j])) for i, j in self.folds]
         return np.asarray(self.bends[[folds.index((i, j)) for i, j in pairs]])
 
+    def bending(self, y: FloatArray) -> float:
+        """The sum of the squares of all first-order angles."""
+        return float(np.square(self.bends @ y).sum())
+
     def unknowns(self, heights: FloatArray) -> FloatArray:
         """(u, h) for heights of all vertices, u not yet solved for."""
         framework = self.framework

@@ -94,9 +94,10 @@ def follow(
     problem = problem_of(branch)
     if by is not None and by not in branch.pattern.folds:
         raise UsageError(f"there is no fold {by[0]}-{by[1]} to make equal steps of")
-    framework = framework_of(problem, pinned, drive)
     if drive is not None:
         require_driven(branch, side, drive)
+    framework = framework_of(problem, pinned, drive)
+    if drive is not None:
         goal = replace(goal, driven=_goals(problem, drive))
     curve, events, end = _followed(framework, _start(framework, problem, branch), goal, progress)
     unit = float(framework.unit)
