@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from exactfold.commands.driving import driven_angles
 from exactfold.commands.parameters import (
     Curvature,
     Json,
@@ -185,6 +186,16 @@ def fold(
     place: Place = None,
     rim: Rim = None,
     side: Side = None,
+    drive: Annotated[
+        Any,
+        typer.Option(
+            parser=driven_angles,
+            metavar="I-J=DEG,...",
+            help="Drive folds: their angles grow together to these, 90deg a valley, -90deg a "
+            "mountain; a fold without one goes along as on the branch. FILE.json reads them. As "
+            "many as the sheet has degrees of freedom.",
+        ),
+    ] = None,
     through_nodes: Annotated[
         bool,
         flag("--through-nodes", text="Of a branch: go straight on where another motion crosses."),
@@ -258,9 +269,9 @@ def fold(
     A triangulated sheet with four corners follows a branch: the one named by
     --signs, --up or --branch, else that on which all vertices pop up. With more
     corners it does if --signs, --up or --rim is given: its border then moves in
-    the ratio of the rim. Any other sheet follows modes of rigid panels:
-    --component or --modes. That the branch or mode exists is proved; what of
-    the motion is proved is said.
+    the ratio of the rim; or if --drive is: chosen folds then drive it. Any other
+    sheet follows modes of rigid panels: --component or --modes. That the branch or
+    mode exists is proved; what of the motion is proved is said.
     """
     from exactfold.commands.fold import Wanted
     from exactfold.commands.given import Given
@@ -269,6 +280,8 @@ def fold(
         raise UsageError("give one of --signs, --up and --branch")
     if rim is not None and place is not None:
         raise UsageError("--rim goes with --signs or --up")
+    if drive is not None and place is not None:
+        raise UsageError("--drive goes with --signs or --up")
     if component is not None and modes is not None:
         raise UsageError("give one of --component and --modes")
     apart(output, pattern, rim, plot, picture, certificate)
@@ -295,6 +308,7 @@ def fold(
         certificate,
         as_json,
         Given(rim),
+        drive,
     )
     raise typer.Exit(asked.answer())
 

@@ -151,6 +151,14 @@ class RimHeightError(BadRimError, NumberError):
     """A height of a boundary vertex that is not a number."""
 
 
+class BadDriveError(InputError):
+    """Folds or angles that cannot be driven; `folds` are those to blame."""
+
+    def __init__(self, message: str, folds: Sequence[tuple[int, int]] = ()) -> None:
+        super().__init__(message)
+        self.folds = tuple(folds)
+
+
 class BadCurvatureError(InputError):
     """Angle deficits that cannot be taken; `vertices` are those to blame."""
 
@@ -315,6 +323,14 @@ class UnprovedRivalsError(NotCountedError):
 
 class NotFollowedError(NotApplicableError):
     """A sheet that is not followed: a branch that is not simple, or no mode that truly folds."""
+
+
+class NotDrivenError(NotFollowedError):
+    """No branch was found on which the driven folds `folds` start in their ratio."""
+
+    def __init__(self, message: str, folds: Sequence[tuple[int, int]] = ()) -> None:
+        super().__init__(message)
+        self.folds = tuple(folds)
 
 
 class UndecidedBranchError(ExactfoldError):

@@ -15,20 +15,20 @@ from typing import Any
 
 from .formats import MOST_TUBES, MOST_WORK, MOTION, MOTION_BITS, MOTION_VERSION, NODE_WORK
 from .motion_contacts import check_contacts, said
-from .motion_equations import SPARE, LengthEquations
+from .motion_drive import Drive, driven_of
+from .motion_equations import LengthEquations
 from .motion_names import names
-from .motion_nodes import NodeTube
-from .motion_patches import Patch
 from .motion_paths import Path
+from .motion_pieces import arc_of, first_piece, land, parameter_of, tube_of
+from .motion_reached import check_reached
 from .motion_rim import Rim, border_of
 from .motion_stretches import Arc, Link, Step
-from .motion_tubes import Start, Tube
+from .motion_tubes import Start
 from .reading import (
     MALFORMED,
     CertificateError,
     counted,
     document,
-    integer,
     items,
     keys,
     natural,
@@ -38,10 +38,6 @@ from .reading import (
 )
 from .reduced import emptied_sheet
 from .sheet import Sheet, read_sheet
-
-REACH_BITS = 6
-PARAMETER_BITS = 40
-ROOT_BITS = 20
 
 
 def read(data: Any) -> dict[str, Any]:
@@ -59,13 +55,17 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch closed.
     With `rim`, heights of the boundary vertices of a convex border in order, these stay on the
     curve in the ratio of the rim (`Rim`), above the face `pinned` that is held, which is returned;
-    `side` is the sign of the factor near the flat state.
+    `side` is the sign of the factor near the flat state. With `drive`, instead, the curve leaves
+    the flat state along a simple solution with these signs, on which its folds are valleys or
+    mountains by the signs of the `squares` q, and all along sin(a / 2)^2 of their angles a is in
+    the ratio of |q|; then `side` is 1. If it is `reached`, these are |q| themselves at one of them.
     With `clear`, no two faces touch beyond what they share before this length of the motion; with
     `contact`, some do between two lengths (docs/contacts.md). With `node` the motion ends at a
     configuration in which the stars of the vertices `flat` are flat; all before it are regular. If
     `clear` is true there, no two faces touch up to it, nor in it. With `through` the curve goes
     through such configurations, where the vertices listed are flat, in this order; it is regular
-    but for them.
+    but for them. With `return` it ends in the flat state, along the half-branch with these vertex
+    signs and this side.
     """
     try:
         return _check(data)
@@ -80,31 +80,42 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     more = ["clear", "contact"] if "contact" in claims else more
     ends = ["node"] if "node" in claims else []
     through = ["through"] if "through" in claims else []
-    rim = ["rim"] if "rim" in claims else []
-    keys(claims, " ".join(["vertex_signs side length", *more, *ends, *through, *rim]), "claims")
-    found = ["contacts"] if more else []
+    back = ["return"] if "return" in claims else []
+    rim = ["rim"] if "rim" in claims else ["drive"] if "drive" in claims else []
+    names_of = ["vertex_signs side length", *more, *ends, *through, *back, *rim]
+    keys(claims, " ".join(names_of), "claims")
+    found = [*(["contacts"] if more else []), *(["landing"] if back else [])]
     keys(evidence, " ".join(["emptied pinned bits start tubes", *found, *ends]), "evidence")
-    heights = Rim(given, claims["rim"]) if rim else None
-    equations, removed = framework(given, evidence, heights)
+    require(not (back and (ends or more)), "a motion that returns claims a node, or contacts")
+    heights = Rim(given, claims["rim"]) if "rim" in claims else None
+    equations, removed = framework(given, evidence, heights, claims.get("drive"))
     tubes = items(evidence["tubes"], "tubes")
     check_steps(equations, tubes, len(ends))
     start, tau = first_piece(equations, evidence["start"])
     _check_names(given, removed, start, claims, heights)
     path = Path(start.configuration(tau), equations.bits)
-    steps = walked(equations, path, tubes, leaves=not ends)
+    steps = walked(equations, path, tubes, leaves=not (ends or back))
     if through or any(map(is_node, tubes)):
         _check_passed(claims, [entry["flat"] for entry in tubes if is_node(entry)])
+    if equations.drive is not None and equations.drive.reached:
+        check_reached(equations, equations.drive, path.here)
     if ends:
         steps.append(_to_the_node(equations, path, claims["node"], evidence["node"]))
+    length = path.length
+    if back:
+        keys(claims["return"], "vertex_signs side", "return")
+        end, side = land(equations, path, evidence["landing"])
+        length = path.land()
+        _check_names(given, removed, end, claims["return"], heights, side)
     claimed = parse_rational(claims["length"])
-    require(claimed <= path.length * equations.unit, "the motion is shorter than claimed")
+    require(claimed <= length * equations.unit, "the motion is shorter than claimed")
     if more:
         check_contacts(start, tau, steps, claims, evidence["contacts"])
     if ends and claims["node"]["clear"]:
         given_end = (evidence["contacts"]["tube"], evidence["contacts"]["clear"]) if more else None
         shown_to_be = given_end == (len(tubes) + 1, 0)
         require(shown_to_be, "the motion is not shown to be clear up to its node")
-    above = {"pinned": equations.pinned} if rim else {}
+    above = {"pinned": equations.pinned} if heights else {}
     return {"sha256": digest, "tubes": len(tubes), **above, **claims}
 
 
@@ -114,7 +125,7 @@ def _to_the_node(equations: LengthEquations, path: Path, claim: Any, entry: Any)
     require(type(claim["clear"]) is bool, "clear is not true or false")
     keys(entry, "node centre row reach entry", "node")
     arc = arc_of(equations, claim["flat"], entry)
-    begin, end = _parameter(entry["entry"]), Fraction(0)
+    begin, end = parameter_of(entry["entry"]), Fraction(0)
     path.meet(*arc.configuration(begin))
     # Only after another node or with a rim can it be otherwise: docs/motion.md, Theorem 6.
     require(begin < end, "an arc does not lead to its node")
@@ -147,7 +158,7 @@ def walked(equations: LengthEquations, path: Path, entries: list[Any], leaves: b
         tube, here, end = tube_of(equations, entry), path.here, None
         path.enter(tube)
         if onwards:
-            end = _parameter(entry["exit"])
+            end = parameter_of(entry["exit"])
             path.leave(end)
         steps.append(Link(tube, here, end))
     return steps
@@ -157,7 +168,7 @@ def through_a_node(equations: LengthEquations, path: Path, entry: Any) -> Arc:
     """An arc through a node, from before it until after it."""
     keys(entry, "flat node centre row reach entry exit", "node")
     arc = arc_of(equations, entry["flat"], entry)
-    begin, end = _parameter(entry["entry"]), _parameter(entry["exit"])
+    begin, end = parameter_of(entry["entry"]), parameter_of(entry["exit"])
     require(begin < 0 < end, "an arc does not go through its node")
     path.meet(*arc.configuration(begin))
     path.go(*arc.configuration(Fraction(0)))
@@ -170,22 +181,19 @@ def is_node(step: Any) -> bool:
     return isinstance(step, dict) and "flat" in step
 
 
-def _parameter(value: Any) -> Fraction:
-    return Fraction(integer(value), 1 << PARAMETER_BITS)
-
-
 def framework(
-    given: Sheet, evidence: Any, rim: Rim | None = None
+    given: Sheet, evidence: Any, rim: Rim | None = None, driven: Any = None
 ) -> tuple[LengthEquations, set[int]]:
     """The equations of what can fold, and the vertices that were removed."""
     sheet, removed = emptied_sheet(given, dict(given.points), evidence["emptied"])
     four = len(sheet.boundary) == 4
-    require(four or rim is not None, "there are not four boundary vertices")
+    drive = None if driven is None or four else Drive(sheet, driven)
+    require(four or rim or drive, "there are not four boundary vertices")
     require(sheet.interior, "nothing can fold")
     bits = natural(evidence["bits"], "bits")
     require(bits <= MOTION_BITS, "bits are out of range")
     pinned = [natural(v, "pinned vertex") for v in items(evidence["pinned"], "pinned", 3)]
-    return LengthEquations(sheet, pinned, bits, rim), removed
+    return LengthEquations(sheet, pinned, bits, rim, drive), removed
 
 
 def check_steps(equations: LengthEquations, entries: list[Any], more: int = 0) -> None:
@@ -198,96 +206,49 @@ def check_steps(equations: LengthEquations, entries: list[Any], more: int = 0) -
     require(work <= MOST_WORK, "the work is out of range")
 
 
-def tube_of(equations: LengthEquations, entry: Any) -> Tube:
-    """A tube of its keys."""
-    size = equations.size
-    return Tube(
-        equations,
-        vector(entry["centre"], "centre", size, equations.bits),
-        vector(entry["row"], "row", size, 0),
-        reach_of(entry["reach"]),
-    )
-
-
-def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> NodeTube:
-    """An arc through a node at which some vertices are flat, of its keys."""
-    size, bits = equations.size, equations.bits
-    patch = Patch(equations, [natural(v, "flat vertex") for v in items(flat, "flat")])
-    return NodeTube(
-        patch,
-        patch.node(vector(entry["node"], "node", size, bits)),
-        vector(entry["centre"], "centre", size, bits),
-        vector(entry["row"], "row", size, 0),
-        reach_of(entry["reach"]),
-    )
-
-
-def vector(value: Any, what: str, size: int, bits: int) -> list[int]:
-    """Integers over 2^bits that are not too large."""
-    found = [integer(x) for x in items(value, what, size)]
-    small = all(abs(x) >> bits + SPARE == 0 for x in found)
-    require(small, f"a number of the {what} is out of range")
-    return found
-
-
-def reach_of(value: Any) -> Fraction:
-    """How far a piece reaches."""
-    reach = Fraction(natural(value, "reach"), 1 << REACH_BITS)
-    require(0 < reach <= 16, "the reach is out of range")
-    return reach
-
-
-def first_piece(equations: LengthEquations, entry: Any) -> tuple[Start, Fraction]:
-    """The first piece, and where the motion leaves it."""
-    keys(entry, "centre halvings held reach exit", "start")
-    start = start_of(equations, entry)
-    tau = Fraction(natural(entry["exit"], "exit"), 1 << ROOT_BITS)
-    require(tau > 0, "the motion does not leave the flat state")
-    return start, tau
-
-
-def start_of(equations: LengthEquations, entry: Any) -> Start:
-    """A start tube of its keys."""
-    centre = vector(entry["centre"], "centre", equations.size, equations.bits)
-    halvings = natural(entry["halvings"], "halvings")
-    require(halvings <= MOTION_BITS, "halvings are out of range")
-    held = natural(entry["held"], "held vertex")
-    require(held in equations.place, "the vertex held at its height is pinned, or none")
-    place = equations.place[held] + 2
-    return Start(equations, centre, halvings, place, reach_of(entry["reach"]))
-
-
 def _check_names(
-    given: Sheet, removed: set[int], start: Start, claims: Any, rim: Rim | None = None
+    given: Sheet, removed: set[int], start: Start, claims: Any, rim: Rim | None = None, way: int = 1
 ) -> None:
-    """The vertex signs and the side of the heights at the flat state are those claimed."""
+    """The vertex signs and the side of the heights at the flat state are those claimed.
+
+    For a `way` of -1 those of the mirror image.
+    """
     signs, side = names(given, removed, start, rim)
     values = items(claims["vertex_signs"], "vertex_signs", len(given.interior))
     for v, value, expected in zip(given.interior, values, signs, strict=True):
-        require(type(value) is int and value == expected, f"vertex {v} has another sign")
-    require(type(claims["side"]) is int and claims["side"] == side, "the side is another")
+        require(type(value) is int and value == way * expected, f"vertex {v} has another sign")
+    right = type(claims["side"]) is int and claims["side"] == way * side
+    require(right, "the side is another")
 
 
 def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
-    letters = signs if len(signs) <= 60 else signs[:60] + "..."
     side = "+" if claims["side"] > 0 else "-"
     tubes = counted(claims["tubes"], "tube", "tubes")
     return (
-        f"VALID: the motion along the half-branch {letters} ({len(signs)}), side {side}, is one "
-        f"curve without a gap of length {shown(claims['length'])} or more{_nodes(claims)}"
-        f"{border_of(claims)}{said(claims)}; {tubes}; "
+        f"VALID: the motion along the half-branch {shortened(signs)} ({len(signs)}), side {side}, "
+        f"is one curve without a gap of length {shown(claims['length'])} or more{_nodes(claims)}"
+        f"{border_of(claims)}{driven_of(claims)}{said(claims)}; {tubes}; "
         f"sha256 {claims['sha256']}"
     )
 
 
 def _nodes(claims: dict[str, Any]) -> str:
-    """Which nodes a motion passes, and whether it is claimed to end at one."""
+    """Which nodes a motion passes, and whether it is claimed to end at one, or to come back."""
     text = "".join(f", through a node where {_flat(flat)}" for flat in claims.get("through", []))
     if "node" in claims:
         text += f", to a node where {_flat(claims['node']['flat'])}"
+    if "return" in claims:
+        signs = "".join("-0+"[s + 1] for s in claims["return"]["vertex_signs"])
+        side = "+" if claims["return"]["side"] > 0 else "-"
+        text += f", and back to the flat state along {shortened(signs)}, side {side}"
     return text
+
+
+def shortened(signs: str) -> str:
+    """Signs, cut where there are many."""
+    return signs if len(signs) <= 60 else signs[:60] + "..."
 
 
 def _flat(flat: list[int]) -> str:

@@ -11,23 +11,16 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterator
 from contextlib import closing
-from fractions import Fraction
 from typing import Any
 
 from .compact import Engine, Share, on_processes
 from .compact_lines import read_object
 from .formats import LOOPS, LOOPS_VERSION
-from .motion import (
-    ROOT_BITS,
-    check_steps,
-    first_piece,
-    framework,
-    start_of,
-    walked,
-)
+from .motion import check_steps, framework, walked
 from .motion_names import names
 from .motion_paths import Path
-from .motion_tubes import Ball, Start
+from .motion_pieces import first_piece, land
+from .motion_tubes import Start
 from .reading import (
     MALFORMED,
     CertificateError,
@@ -87,17 +80,7 @@ class LoopSheet:
         require(self._named(start) == self.half_branch(entry["from"]), "it begins along another")
         path = Path(start.configuration(tau), self.equations.bits)
         walked(self.equations, path, steps, leaves=False)
-        landing = evidence["landing"]
-        keys(landing, "centre halvings held reach tau", "landing")
-        end, side = start_of(self.equations, landing), 1
-        tau = Fraction(integer(landing["tau"]), 1 << ROOT_BITS)
-        require(tau, "a loop does not land before the flat state")
-        point, velocity = end.configuration(tau)
-        if tau > 0:
-            velocity = Ball([-x for x in velocity.centre], velocity.radii)
-        else:
-            side = -1
-        path.meet(point, velocity)
+        end, side = land(self.equations, path, evidence["landing"])
         signs, saddle = self._named(end)
         target = tuple(side * s for s in signs), side * saddle
         require(target == self.half_branch(entry["to"]), "it ends along another")

@@ -17,7 +17,8 @@ def names(
 ) -> tuple[list[int], int]:
     """The vertex signs, 0 for vertices that were removed, and the side of a half-branch.
 
-    With a rim the side is the sign of its factor. They are those of the heights at the flat state.
+    With a rim the side is the sign of its factor, with a drive 1. They are those of the heights at
+    the flat state.
     """
     box, place = start.enclosure(Fraction(0)), start.equations.place
 
@@ -32,6 +33,12 @@ def names(
     signs = [0 if v in removed else sign(sheet.sign_of_vertex(v)) for v in given.interior]
     for v, found in zip(given.interior, signs, strict=True):
         require(found or v in removed, f"vertex {v} may be flat")
+    drive = start.equations.drive
+    if drive is not None:
+        for fold, q in zip(drive.folds, drive.squares, strict=True):
+            right = sign(sheet.bend(fold)) * q > 0
+            require(right, f"the driven fold {fold} may start the other way")
+        return signs, 1
     if rim is not None:
         side = sign(rim.factor)
     else:

@@ -79,8 +79,8 @@ class Start(Piece):
         p = equations.approximate_inverse(columns, bits + 2 * halvings)
 
         def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
-            """That of s^k, over 2^(2 bits + 2 halvings + 1)."""
-            total = [0] * len(equations.edges)
+            """That of s^k, over 2^(2 bits + 2 halvings + more + 1)."""
+            total = [0] * len(equations.bars)
             if k < len(curve):
                 total = [
                     2 * (x * a + y * b)
@@ -96,7 +96,7 @@ class Start(Piece):
             here = curve[k][held] if 0 < k < len(curve) else 0
             ties = equations.tied(curve[k] if k < len(curve) else none)
             ties = [x << 2 * halvings + 1 for x in ties]
-            return [*total, *ties, here << bits + 2 * halvings + 1]
+            return equations.stacked(total, [*ties, here << bits + 2 * halvings + 1])
 
         curve = extended(equations, centre, p, coefficient, bits + 2 * halvings + 1)
         parts = [equations.along(row) for row in curve]
@@ -106,16 +106,16 @@ class Start(Piece):
             heights = [e[2] * up for e in parts[k]] if k < len(curve) else [0] * len(plane)
             rows = [(x, y, z) for (x, y), z in zip(plane, heights, strict=True)]
             matrices.append(product(p, equations.columns(rows)))
-        weights = weights_of(slopes(matrices, bits + 2 * halvings))
+        weights = weights_of(slopes(matrices, bits + 2 * halvings + equations.more))
         sums = equations.weight_sums(weights)
         squares = [[z * z for _, _, z in sums], [(x * x + y * y) // up + 1 for x, y, _ in sums]]
         proof = bounds(
             p,
             [coefficient(curve, parts, k) for k in range(2 * len(curve))],
-            2 * (bits + halvings) + 1,
+            2 * (bits + halvings) + equations.more + 1,
             matrices,
-            bits + 2 * halvings,
-            squares,
+            bits + 2 * halvings + equations.more,
+            [equations.largest(square) for square in squares],
             weights,
         )
         Piece.__init__(self, equations, curve, weights, proof, reach)
@@ -155,7 +155,7 @@ class Tube(Piece):
         p = equations.approximate_inverse(columns, bits)
 
         def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
-            """That of s^k, over 2^(2 bits + 1)."""
+            """That of s^k, over 2^(2 bits + more + 1)."""
             total = convolved(parts, slice(0, 3), k)
             last = 0
             if k < len(curve):
@@ -165,21 +165,21 @@ class Tube(Piece):
                     last = dot(row, curve[k])
             last -= int(k == 1) << bits + ROW_BITS
             ties = [2 * x for x in equations.tied(curve[k] if k < len(curve) else none)]
-            return [*total, *ties, last << bits - ROW_BITS + 1]
+            return equations.stacked(total, [*ties, last << bits - ROW_BITS + 1])
 
         curve = extended(equations, centre, p, coefficient, bits + 1)
         parts = [equations.along(a) for a in curve]
         matrices = [product(p, columns)]
         matrices += [product(p, equations.columns(part)) for part in parts[1:]]
-        weights = weights_of(slopes(matrices, bits))
+        weights = weights_of(slopes(matrices, bits + equations.more))
         squares = [[sum(x * x for x in e) for e in equations.weight_sums(weights)]]
         proof = bounds(
             p,
             [coefficient(curve, parts, k) for k in range(2 * len(curve) - 1)],
-            2 * bits + 1,
+            2 * bits + equations.more + 1,
             matrices,
-            bits,
-            squares,
+            bits + equations.more,
+            [equations.largest(square) for square in squares],
             weights,
         )
         Piece.__init__(self, equations, curve, weights, proof, reach)

@@ -9,12 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exactfold.branches.branch import Branch
-from exactfold.commands.branch import chosen
+from exactfold.commands.branch import chosen, given_signs
+from exactfold.commands.driving import Angles
 from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.motion.drive import Drive
 from exactfold.motion.following import Goal, follow
 from exactfold.motion.motion import Motion
 from exactfold.motion.writing import checked_ending, write_motion
@@ -30,6 +32,15 @@ if TYPE_CHECKING:  # branches are followed without what panels need
     from exactfold.motion.panel_motion import PanelMotion
     from exactfold.motion.panel_proving import PanelProof
     from exactfold.motion.proving import MotionProof
+
+
+@dataclass(frozen=True)
+class _Begin:
+    """A half-branch, and the folds that are driven along it."""
+
+    branch: Branch
+    side: int
+    drive: Drive | None = None
 
 
 @dataclass(frozen=True)
@@ -58,6 +69,7 @@ class Wanted:
     certificate: Path | None
     as_json: bool
     given: Given = NOTHING
+    angles: Angles | None = None
 
     def answer(self) -> int:
         """Follow the sheet, write what was asked for and print; the exit code.
@@ -76,11 +88,11 @@ class Wanted:
             sheet = opened.sheet
             motion: Motion | PanelMotion
             if isinstance(sheet, CreasePattern) and (self._named or has_branches(sheet)):
-                branch = self._branch(sheet, bar)
+                begin = self._begin(sheet, bar)
                 try:
-                    motion = self._along(branch, bar)
+                    motion = self._along(begin, bar)
                 except UndecidedBranchError as error:
-                    say(f"not followed: {error}; {branch.reason}".rstrip("; "))
+                    say(f"not followed: {error}; {begin.branch.reason}".rstrip("; "))
                     return EXIT[UNDECIDED]
             else:
                 motion = self._panels(opened, bar)
@@ -117,7 +129,35 @@ class Wanted:
     @property
     def _named(self) -> bool:
         """Whether a branch was asked for, which a sheet with more corners has with a rim only."""
-        return (self.signs or self.up) is not None or bool(self.given)
+        return (self.signs or self.up or self.angles) is not None or bool(self.given)
+
+    def _begin(self, pattern: CreasePattern, bar: Bar) -> _Begin:
+        """The half-branch to follow, and what is driven."""
+        if self.angles is None:
+            return _Begin(self._branch(pattern, bar), self.side or 1)
+        Goal.of(self.until)  # before the work
+        if self.side is not None and pattern.Ve > 4:
+            raise UsageError("--side: with --drive the angles say to which side the sheet folds")
+        from exactfold.motion.driven import find_driven
+
+        finder = self.given.finder(pattern)
+        bar("setting up")
+        signs = None
+        if (self.signs, self.up) != (None, None):
+            signs = given_signs(finder, self.signs, self.up)
+        rim = None if self.given.rim is None else finder.rim
+        found = find_driven(pattern, self.angles, signs, rim=rim, side=self.side, progress=bar)
+        if signs is None:
+            say(
+                "no branch was named (--signs, --up): this is the first that was found on which "
+                f"the folds start so: {found.branch.sign_text}"
+            )
+        if found.others:
+            say(
+                f"{counted(found.others, 'more branch')} with these signs on which the folds start "
+                "so: this is the one that bends least; --rim FILE starts from other border heights"
+            )
+        return _Begin(found.branch, found.side, found.drive)
 
     def _branch(self, pattern: CreasePattern, bar: Bar) -> Branch:
         given = {"--component": self.component, "--modes": self.modes}
@@ -137,15 +177,16 @@ class Wanted:
         )
         return branch
 
-    def _along(self, branch: Branch, bar: Bar, pinned: Triangle | None = None) -> Motion:
+    def _along(self, begin: _Begin, bar: Bar, pinned: Triangle | None = None) -> Motion:
         return follow(
-            branch,
-            side=self.side or 1,
+            begin.branch,
+            side=begin.side,
             until=self.until,
             frames=self.frames,
             by=self.by,
             through_nodes=self.through_nodes,
             pinned=pinned,
+            drive=begin.drive,
             progress=bar,
         )
 
@@ -161,6 +202,7 @@ class Wanted:
             "--branch": self.place,
             "--side": self.side,
             "--rim": self.given.rim,
+            "--drive": self.angles,
             "--through-nodes": self.through_nodes or None,
         }
         _refuse(
@@ -194,10 +236,10 @@ class Wanted:
 
             bar("proving")
             return prove_panels(motion)
-        from exactfold.motion.proving import prove_persistently
+        from exactfold.motion.persistence import prove_persistently
 
-        branch = motion.branch
-        return prove_persistently(motion, lambda held: self._along(branch, bar, held), progress=bar)
+        begin = _Begin(motion.branch, motion.side, motion.drive)
+        return prove_persistently(motion, lambda held: self._along(begin, bar, held), progress=bar)
 
     # --- files -----------------------------------------------------------------------------------
 

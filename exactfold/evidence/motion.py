@@ -22,6 +22,8 @@ def motion_certificate(
     tubes: Sequence[Document],
     ends_at_a_node: bool = False,
     rim: Mapping[int, Fraction] | None = None,
+    drive: tuple[Sequence[tuple[int, int]], Sequence[Fraction], bool] | None = None,
+    returning: tuple[Document, Document] | None = None,
 ) -> Document:
     """The proof of a motion as a JSON object (docs/motion.md, The certificate).
 
@@ -30,7 +32,9 @@ def motion_certificate(
     Of `tubes` those with the key `flat` are arcs through nodes, at which these vertices are flat.
     With `ends_at_a_node` the motion ends at the node of the last one. The certificate does not
     claim that nothing touches up to there. `rim`: with more than four corners the heights of the
-    border, in the ratio of which it stays.
+    border, in the ratio of which it stays. `drive`: instead, driven folds, their squares, and
+    whether the folds are beyond their angles at the end. `returning`: the half-branch along which
+    the motion comes back to the flat state, and the landing there.
     """
     *steps, last = tubes if ends_at_a_node else [*tubes, {}]
     through = [step["flat"] for step in steps if "flat" in step]
@@ -53,6 +57,15 @@ def motion_certificate(
     }
     if rim is not None:
         document["claims"]["rim"] = [format_rational(h) for _, h in sorted(rim.items())]
+    if returning is not None:
+        document["claims"]["return"], document["evidence"]["landing"] = returning
+    if drive is not None:
+        folds, squares, reached = drive
+        document["claims"]["drive"] = {
+            "folds": [list(fold) for fold in folds],
+            "squares": [format_rational(q) for q in squares],
+            "reached": reached,
+        }
     if through:
         document["claims"]["through"] = through
     if ends_at_a_node:

@@ -7,6 +7,9 @@ from exactfold.motion.contact_claims import (
 )
 from exactfold.motion.contacts import FirstContact as FirstContact
 from exactfold.motion.contacts import first_contact as first_contact
+from exactfold.motion.drive import Drive as Drive
+from exactfold.motion.driven import Driven as Driven
+from exactfold.motion.driven import find_driven as find_driven
 from exactfold.motion.events import Event as Event
 from exactfold.motion.followable import PanelComponent as PanelComponent
 from exactfold.motion.followable import PanelMode as PanelMode

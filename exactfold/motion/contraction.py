@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from exactfold.arrays import BigArray, FloatArray, IndexArray, IntArray
+from exactfold.motion.coupling import Coupling
 
 SCALE = 128
 """Numbers of a `Contraction`, and all arguments, are integers over 2^SCALE."""
@@ -161,6 +162,7 @@ def contraction(
     residuals: Sequence[Sequence[int]],
     residual_bits: int,
     places: Places,
+    coupling: Coupling,
     rows: Sequence[BigArray],
     linear: Sequence[Sequence[int]],
     row_bits: int,
@@ -171,15 +173,17 @@ def contraction(
     """The bounds for P, which is `inverse` rounded. Everything is exact or rounded upwards.
 
     `residuals[k]` is the coefficient of s^k of H(p(s), s), integers over 2^`residual_bits`.
-    `rows[k]` are the edge vectors of that of DH(p(s), s) and `linear` its rows after those of the
-    edges, for k = 0 only, integers over 2^`row_bits`. With the positive `weights` over
-    2^WEIGHT_BITS, `sums` holds w_i + w_j for the three places of every edge (i, j), shape
-    (edges, 3), and `squares[k]` bounds the coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over
-    2^(2 WEIGHT_BITS).
+    `rows[k]` are the vectors of the bars of that of DH(p(s), s), of which the `coupling` makes
+    equations, and `linear` its rows after these, for k = 0 only, integers over 2^`row_bits`. With
+    the positive `weights` over 2^WEIGHT_BITS, `sums` holds w_i + w_j for the three places of every
+    bar (i, j), shape (bars, 3), and `squares[k]` bounds the coefficient of s^k of D2H(y, z) for
+    |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
     """
     n = len(weights)
     p = _whole(inverse)
-    size = np.asarray(abs(p))
+    on_bars = _on_bars(p, coupling, len(sums))
+    size = np.asarray(abs(on_bars))
+    size[:, len(sums) - len(coupling.diagonals) :] += 1
 
     def norm(rows: Sequence[int], bits: int) -> int:
         """max rows_i / w_i, where the rows are over 2^bits, over 2^SCALE."""
@@ -189,13 +193,19 @@ def contraction(
 
     # The first product nearly cancels and is exact. In the others P and the rows are rounded to
     # what machine words hold; `off` and `spread` are what half a unit in the rows, and in P, does.
-    coarse = (p + (1 << (_COARSE - 1))) >> _COARSE
-    edges = len(sums)
-    off = _above(size[:, :edges], [int(x) for x in sums.sum(axis=1)])
+    coarse = _coarse(on_bars)
+    off = _above(size, [int(x) for x in sums.sum(axis=1)])
     room = _WORD - _largest(coarse).bit_length() - places.most.bit_length()
-    product = _product(p, places, rows[0]) + _dot(p[:, edges:], np.array(linear, dtype=object))
+    lines = np.array(linear, dtype=object)
+    product = _product(on_bars, places, rows[0]) + _dot(p[:, n - len(lines) :], lines)
     product[np.diag_indices(n)] -= 1 << INVERSE_BITS + row_bits
-    slope = [norm(_above(np.asarray(abs(product)), weights), INVERSE_BITS + row_bits + WEIGHT_BITS)]
+    mixed = _of_diagonals(coupling, rows, sums)
+    slope = [
+        norm(
+            [x + mixed[0] for x in _above(np.asarray(abs(product)), weights)],
+            INVERSE_BITS + row_bits + WEIGHT_BITS,
+        )
+    ]
     if len(rows) > 1:
         drops = [max(0, _largest(v).bit_length() - room) if room > _SHORTEST else 0 for v in rows]
         nearest = np.array(
@@ -206,16 +216,15 @@ def contraction(
         whole = _above(images.reshape(-1, n), weights)
         above = [whole[k : k + n] for k in range(0, len(whole), n)]
         spreads = (abs(nearest) * sums).sum(axis=(1, 2)).tolist()
-        for image, spread, drop in zip(above, spreads, drops[1:], strict=True):
+        for image, spread, drop, more in zip(above, spreads, drops[1:], mixed[1:], strict=True):
             sizes = [
-                ((2 * x + int(spread)) << drop + _COARSE) + (y << drop if drop else 0)
+                ((2 * x + int(spread)) << drop + _COARSE) + (y << drop if drop else 0) + 2 * more
                 for x, y in zip(image, off, strict=True)
             ]
             slope.append(norm(sizes, INVERSE_BITS + row_bits + WEIGHT_BITS + 1))
-    quadratic = [
-        norm(_above(size[:, :edges], square), INVERSE_BITS + 2 * WEIGHT_BITS) for square in squares
-    ]
+    quadratic = [norm(_above(size, square), INVERSE_BITS + 2 * WEIGHT_BITS) for square in squares]
     # Residuals likewise: floor instead of the nearest, and P to _COARSE bits less.
+    coarse, size = _coarse(p), np.asarray(abs(p))
     spare = max(_WORD - _largest(coarse).bit_length() - n.bit_length(), _SHORTEST)
     shifts = [max(0, max(map(int.bit_length, g)) - spare) for g in residuals]
     short = [[x >> shift for x in g] for g, shift in zip(residuals, shifts, strict=True)]
@@ -230,6 +239,31 @@ def contraction(
         ]
         residual.append(norm(bounds, INVERSE_BITS + residual_bits + 1))
     return Contraction(tuple(residual), tuple(slope), tuple(quadratic))
+
+
+def _on_bars(p: Whole, coupling: Coupling, bars: int) -> Whole:
+    """The columns of P for the bars: those of edges, and of diagonals through the coupling.
+
+    The latter are off by less than a unit, as they are rounded.
+    """
+    if not coupling.diagonals:
+        return p[:, :bars]
+    edges = bars - len(coupling.diagonals)
+    own = p[:, edges : edges + len(coupling.rows)].astype(object)
+    mixed = (own @ np.array(coupling.rows, dtype=object)) >> coupling.bits
+    if _largest(mixed) < 1 << _WORD:
+        mixed = mixed.astype(p.dtype)
+    return np.concatenate([p[:, :edges], mixed], axis=1)
+
+
+def _of_diagonals(coupling: Coupling, rows: Sequence[BigArray], sums: BigArray) -> list[int]:
+    """What a unit in the columns of P for diagonals does to the product, one for each of `rows`."""
+    at = len(sums) - len(coupling.diagonals)
+    return [int((abs(row[at:]) * sums[at:]).sum()) for row in rows]
+
+
+def _coarse(p: Whole) -> Whole:
+    return (p + (1 << (_COARSE - 1))) >> _COARSE
 
 
 def _whole(inverse: FloatArray) -> Whole:

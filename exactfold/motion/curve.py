@@ -162,7 +162,7 @@ def leaving_piece(start: Start, tolerance: float = TOLERANCE) -> Piece:
     reach = _radius(coefficients, tolerance)
     for _ in range(60):
         piece = Piece(coefficients, reach, 0.0)
-        error = float(np.max(np.abs(framework.stretch(piece.at(reach))), initial=0.0))
+        error = float(np.max(np.abs(framework.residual(piece.at(reach))), initial=0.0))
         if error <= tolerance * reach:
             return piece
         reach *= 0.8
@@ -214,12 +214,13 @@ def expansion(
         tangent = -tangent
     series = np.zeros((order + 1, framework.size))
     series[0], series[1] = x, tangent
-    along = np.zeros((order + 1, len(framework.edges), 3))
+    along = np.zeros((order + 1, len(framework.bars), 3))
     along[1] = framework.along(tangent)
     none = np.zeros(len(framework.ties) + 1)
     for k in range(2, order + 1):
         products = np.einsum("mec,mec->e", along[1:k], along[k - 1 : 0 : -1])
-        row = factors.solve(np.append(-0.5 * products, none))
+        right = framework.coupling.combined(-0.5 * products)
+        row = factors.solve(np.append(right, none))
         series[k] = row - (tangent @ row) * tangent
         along[k] = framework.along(series[k])
     if not np.isfinite(series).all():

@@ -19,6 +19,7 @@ from exactfold.pattern.crease_pattern import Edge, Triangle
 CONTACT, FLAT_FOLD, TURNING = "contact", "flat-fold", "turning"
 NODE, SINGULAR, RETURN = "node", "singular", "return"
 ANGLE, LENGTH = "angle", "length"
+DRIVEN, DEAD_POINT = "driven", "dead-point"
 
 _SAMPLES = 8
 _NEAR_FLAT = 0.3
@@ -35,7 +36,8 @@ class Event:
     angle has a critical point, so that the crease turns back; "node", another curve of
     configurations crosses, often where the stars of `vertices` are flat; "singular", the curve
     could not be followed further; "return", the sheet is flat again; "angle", the angle that was
-    asked for is reached. `time`: of the motion, lower and upper bound. `faces`: by their corners.
+    asked for is reached; "driven", the driven folds have their angles; "dead-point", they turn back
+    before. `time`: of the motion, lower and upper bound. `faces`: by their corners.
     `detail` says more in words.
     """
 
@@ -63,12 +65,14 @@ class Watch:
     """Looks for events on one piece of a curve after the other.
 
     Vertices are those of the framework; times are its arclength. `angles` are the fold angles at
-    the end of the last piece, continued past +-pi.
+    the end of the last piece, continued past +-pi. `driven`: folds and the sizes of the angles in
+    radians to which they are driven, all of which are reached at once.
     """
 
     framework: Framework
     largest_angle: float | None = None
     look_for_contacts: bool = True
+    driven: tuple[tuple[Edge, float], ...] = ()
     angles: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
@@ -119,9 +123,17 @@ class Watch:
         goals = [(np.pi, FLAT_FOLD)]
         if self.largest_angle is not None and self.largest_angle < np.pi:
             goals.append((self.largest_angle, ANGLE))
-        for goal, kind in goals:
+        every = list(range(angles.shape[1]))
+        watched = [(goal, kind, every) for goal, kind in goals]
+        if self.driven:
+            # That of a fold that does not close there has a rate.
+            fold, goal = min(self.driven, key=lambda item: abs(item[1] - np.pi / 2))
+            watched.append((goal, DRIVEN, [self.framework.sheet.folds.index(fold)]))
+        for goal, kind, columns in watched:
             beyond = np.abs(angles) >= goal
             for k, e in np.argwhere(beyond[1:] & ~beyond[:-1]):
+                if e not in columns:
+                    continue
                 fold = _FoldOnPiece.of(self.framework, piece, e)
 
                 def excess(
@@ -135,7 +147,8 @@ class Watch:
                 low, high = _bracket(excess, grid[k], grid[k + 1])
                 i, j, left, right = (int(v) for v in self.framework.hinges[e])
                 faces = ((i, j, left), (i, right, j)) if kind == FLAT_FOLD else ()
-                found.append(self._event(piece, kind, low, high, faces=faces, folds=((i, j),)))
+                folds = tuple(f for f, _ in self.driven) if kind == DRIVEN else ((i, j),)
+                found.append(self._event(piece, kind, low, high, faces=faces, folds=folds))
         return found
 
     def _turnings(
@@ -157,6 +170,9 @@ class Watch:
                     piece, TURNING, low, high, folds=((i, j),), detail=f"at {size:.4g} degrees"
                 )
             )
+            if self.driven and (i, j) == self.driven[0][0]:
+                folds = tuple(fold for fold, _ in self.driven)
+                found.append(self._event(piece, DEAD_POINT, low, high, folds=folds))
         return found
 
     def _returns(

@@ -14,9 +14,13 @@ from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.errors import NotApplicableError, NotFollowedError, UndecidedBranchError, UsageError
 from exactfold.motion.curve import Curve, LostCurveError, Piece, continued, leaving_piece
+from exactfold.motion.drive import Drive
+from exactfold.motion.driven import require_driven
 from exactfold.motion.events import (
     ANGLE,
     CONTACT,
+    DEAD_POINT,
+    DRIVEN,
     FLAT_FOLD,
     LENGTH,
     NODE,
@@ -27,7 +31,7 @@ from exactfold.motion.events import (
 )
 from exactfold.motion.framework import Framework
 from exactfold.motion.motion import Motion, angles_at, in_space
-from exactfold.motion.rim_path import problem_of, ties_of
+from exactfold.motion.rim_path import framework_of, problem_of
 from exactfold.motion.start import Start
 from exactfold.motion.straight_folds import straight_fold
 from exactfold.motion.zeros import zero_of
@@ -49,6 +53,7 @@ def follow(
     by: Edge | None = None,
     through_nodes: bool = False,
     pinned: Triangle | None = None,
+    drive: Drive | None = None,
     progress: Progress | None = None,
 ) -> Motion:
     """The motion that continues a simple branch, from the flat sheet until something happens.
@@ -63,7 +68,10 @@ def follow(
     that is held, by vertices of the sheet without what stays flat (`Problem.sheet`), by default the
     largest; times depend on it. With more than four corners the branch has a rim: on the motion the
     heights of the border above the face that is held stay in the ratio of that rim, but for an
-    affine function of the flat sheet, so that the motion depends on `pinned` as well.
+    affine function of the flat sheet, so that the motion depends on `pinned` as well. With a
+    `drive` instead the angles of the driven folds keep their ratio (`find_driven` finds the
+    branch), and the motion ends where they have the angles of the drive, if nothing ends it before;
+    this one does not depend on `pinned`.
 
     Raises `UsageError` for options that make no sense, `NotFollowedError` for a branch that is not
     simple, or is a shape with angle deficits, `UndecidedBranchError` for a branch of which nothing
@@ -76,6 +84,8 @@ def follow(
     """
     began = clock.perf_counter()
     goal = Goal.of(until, through_nodes)
+    if drive is not None:
+        goal = replace(goal, kinds=goal.kinds | {DRIVEN, DEAD_POINT})
     if frames < 2:
         raise UsageError(f"{frames} frames: a motion has at least 2")
     if side not in (1, -1):
@@ -84,7 +94,11 @@ def follow(
     problem = problem_of(branch)
     if by is not None and by not in branch.pattern.folds:
         raise UsageError(f"there is no fold {by[0]}-{by[1]} to make equal steps of")
-    framework = Framework.of(problem.sheet, pinned, ties_of(problem))
+    if drive is not None:
+        require_driven(branch, side, drive)
+    framework = framework_of(problem, pinned, drive)
+    if drive is not None:
+        goal = replace(goal, driven=_goals(problem, drive))
     curve, events, end = _followed(framework, _start(framework, problem, branch), goal, progress)
     unit = float(framework.unit)
     times = np.linspace(0.0, curve.duration * unit, frames)
@@ -102,16 +116,27 @@ def follow(
         tuple(_named(event, problem, unit) for event in _in_order(events, end)),
         end,
         clock.perf_counter() - began,
+        drive=drive,
     )
+
+
+def _goals(problem: Problem, drive: Drive) -> tuple[tuple[Edge, float], ...]:
+    """The folds of the sheet that are driven, and the sizes of their goals in radians."""
+    folds = (fold for fold, _ in drive.ways(problem.labels))
+    return tuple((f, radians(abs(a))) for f, a in zip(folds, drive.angles.values(), strict=True))
 
 
 @dataclass(frozen=True)
 class Goal:
-    """Where a motion stops: the events that end it, an angle in radians, or a time."""
+    """Where a motion stops: the events that end it, an angle in radians, or a time.
+
+    `driven`: folds of the framework and the sizes of the angles to which they are driven.
+    """
 
     kinds: frozenset[str]
     angle: float | None = None
     time: float | None = None
+    driven: tuple[tuple[Edge, float], ...] = ()
 
     @classmethod
     def of(cls, until: str | float, through_nodes: bool = False) -> Goal:
@@ -177,7 +202,7 @@ def _followed(
     framework: Framework, start: Start, goal: Goal, progress: Progress | None
 ) -> tuple[Curve, list[Event], str]:
     """The curve up to the goal, the events on it, and what ended it."""
-    watch = Watch(framework, goal.angle)
+    watch = Watch(framework, goal.angle, driven=goal.driven)
     limit = None if goal.time is None else goal.time / float(framework.unit)
     pieces: list[Piece] = []
     events: list[Event] = []

@@ -11,6 +11,7 @@ import numpy as np
 
 from exactfold.arrays import FloatArray, IndexArray
 from exactfold.motion.angles import hinges_of
+from exactfold.motion.coupling import NO_COUPLING, Coupling
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 
 if TYPE_CHECKING:  # SciPy takes as long to load as a small sheet to follow
@@ -34,7 +35,9 @@ class Framework:
     The unknowns are the 3V - 9 coordinates of the `free` vertices, x, y, z of each in turn, and
     `edges` the edges with a free end. With four boundary vertices there are 3V - 10 of them, so
     that regular configurations form curves. With more there are 3V - 9 - D, D = Ve - 3; then D - 1
-    linear equations of the heights, the `ties`, cut a curve out (`rim_path.ties_of`).
+    linear equations of the heights, the `ties`, cut a curve out (`rim_path.ties_of`), or a
+    `coupling` of the angles of D driven folds (`drive.coupling_of`). `bars` are the edges and the
+    diagonals of the coupling.
 
     The flat coordinates are `points` / 2^`bits`, exact integers from the first pinned corner;
     `flat` are the nearest floats, and `unit` is the length 1 of these in the unit of `sheet`.
@@ -45,10 +48,15 @@ class Framework:
     points: Points
     bits: int
     ties: tuple[Tie, ...] = ()
+    coupling: Coupling = NO_COUPLING
 
     @classmethod
     def of(
-        cls, sheet: CreasePattern, pinned: Triangle | None = None, ties: tuple[Tie, ...] = ()
+        cls,
+        sheet: CreasePattern,
+        pinned: Triangle | None = None,
+        ties: tuple[Tie, ...] = (),
+        coupling: Coupling = NO_COUPLING,
     ) -> Framework:
         """The framework of a sheet, by default with its largest triangle pinned, the first such.
 
@@ -63,7 +71,7 @@ class Framework:
         x, y = whole[pinned[0]]
         points = tuple((a - x, b - y) for a, b in whole)
         largest = max(max(abs(a), abs(b)) for a, b in points)
-        return cls(sheet, pinned, points, largest.bit_length(), ties)
+        return cls(sheet, pinned, points, largest.bit_length(), ties, coupling)
 
     @cached_property
     def unit(self) -> Fraction:
@@ -87,6 +95,13 @@ class Framework:
         held = set(self.pinned)
         return np.array([e for e in self.sheet.edges if not held.issuperset(e)], dtype=np.intp)
 
+    @cached_property
+    def bars(self) -> IndexArray:
+        """The edges with a free end, then the diagonals of driven folds, shape (bars, 2)."""
+        if not self.coupling.diagonals:
+            return self.edges
+        return np.concatenate([self.edges, np.array(self.coupling.diagonals, dtype=np.intp)])
+
     @property
     def size(self) -> int:
         """The number of unknowns."""
@@ -94,8 +109,8 @@ class Framework:
 
     @cached_property
     def flat_edges(self) -> FloatArray:
-        """U_e, shape (edges, 3), with a third component of 0."""
-        i, j = self.edges.T
+        """U_e of all bars, shape (bars, 3), with a third component of 0."""
+        i, j = self.bars.T
         return np.column_stack([self.flat[i] - self.flat[j], np.zeros(len(i))])
 
     @cached_property
@@ -127,38 +142,48 @@ class Framework:
         return np.asarray(d[..., self.free, :].reshape(*d.shape[:-2], -1))
 
     def along(self, unknowns: FloatArray) -> FloatArray:
-        """d_e, shape (..., edges, 3)."""
+        """d_e of all bars, shape (..., bars, 3)."""
         d = self.displacement(unknowns)
-        return np.asarray(d[..., self.edges[:, 0], :] - d[..., self.edges[:, 1], :])
+        return np.asarray(d[..., self.bars[:, 0], :] - d[..., self.bars[:, 1], :])
 
     def stretch(self, unknowns: FloatArray) -> FloatArray:
-        """g_e, shape (edges,): 0 where the edge has its length."""
+        """g_e of all bars, shape (bars,): 0 where an edge has its length."""
         d = self.along(unknowns)
         return np.asarray(((self.flat_edges + 0.5 * d) * d).sum(axis=-1))
 
     def residual(self, unknowns: FloatArray) -> FloatArray:
-        """The left sides of all equations: `stretch`, then the ties."""
-        return np.concatenate([self.stretch(unknowns), self.tie_rows @ unknowns])
+        """The left sides of all equations: `stretch` of edges, the coupling, then the ties."""
+        stretch = self.coupling.combined(self.stretch(unknowns))
+        return np.concatenate([stretch, self.tie_rows @ unknowns])
 
     def length_error(self, unknowns: FloatArray) -> float:
         """The largest relative change of the length of an edge, to first order."""
-        squares = (self.flat_edges**2).sum(axis=1)
-        return float(np.max(np.abs(self.stretch(unknowns) / squares), initial=0.0))
+        number = len(self.edges)
+        squares = (self.flat_edges[:number] ** 2).sum(axis=1)
+        return float(np.max(np.abs(self.stretch(unknowns)[:number] / squares), initial=0.0))
 
     def jacobian(self, unknowns: FloatArray) -> csc_array:
-        """The derivative of `residual`, shape (edges + ties, unknowns), sparse."""
+        """The derivative of `residual`, one row for each equation, sparse."""
         return self.matrix(self.flat_edges + self.along(unknowns))
 
     def matrix(self, rows: FloatArray) -> csc_array:
-        """The matrix that takes d to rows_e . d_e, then the ties, sparse.
+        """The matrix that takes d to rows_e . d_e, coupled, then the ties, sparse.
 
-        `rows` has the shape (edges, 3).
+        `rows` has the shape (bars, 3).
         """
         from scipy.sparse import csc_array
 
         row, starts, _, _ = self._structure
-        shape = len(self.edges) + len(self.ties), self.size
-        return csc_array((self._entries(rows), row, starts), shape=shape)
+        entries, shape = self._entries(rows), (self._number, self.size)
+        found = csc_array((entries, row, starts), shape=shape, copy=bool(self.coupling.rows))
+        if self.coupling.rows:
+            found.sum_duplicates()  # diagonals may share vertices
+        return found
+
+    @property
+    def _number(self) -> int:
+        """Of equations."""
+        return len(self.edges) + len(self.coupling.rows) + len(self.ties)
 
     def _entries(self, rows: FloatArray) -> FloatArray:
         """The entries of `matrix` that may differ from 0, column by column."""
@@ -169,14 +194,14 @@ class Framework:
     def dense(self, rows: FloatArray) -> FloatArray:
         """The matrix of `matrix`, dense."""
         row, starts, _, _ = self._structure
-        found = np.zeros((len(self.edges) + len(self.ties), self.size))
+        found = np.zeros((self._number, self.size))
         columns = np.repeat(np.arange(self.size), np.diff(starts))
-        found[row, columns] = self._entries(rows)
+        np.add.at(found, (row, columns), self._entries(rows))
         return found
 
     @cached_property
     def _structure(self) -> tuple[IndexArray, IndexArray, IndexArray, FloatArray]:
-        """Row, place in the rows (edges, 3) and factor of every entry, column by column.
+        """Row, place in the rows (bars, 3) and factor of every entry, column by column.
 
         The place after all of them stands for 1. The second array says where the columns start.
         """
@@ -188,9 +213,16 @@ class Framework:
             e = np.flatnonzero(at >= 0)
             for axis in range(3):
                 parts.append((e, 3 * at[e] + axis, 3 * e + axis, np.full(len(e), sign)))
+        for (k, m), c in np.ndenumerate(self.coupling.floats):
+            for v, sign in zip(self.coupling.diagonals[m], (1.0, -1.0), strict=True):
+                if place[v] >= 0:
+                    axes = np.arange(3)
+                    entry = np.full(3, len(self.edges) + k), np.full(3, sign * c)
+                    source = 3 * (len(self.edges) + m) + axes
+                    parts.append((entry[0], 3 * place[v] + axes, source, entry[1]))
         k, at = np.nonzero(self.tie_rows)
-        one = np.full(len(k), 3 * len(self.edges))
-        parts.append((k + len(self.edges), at, one, self.tie_rows[k, at]))
+        one = np.full(len(k), 3 * len(self.bars))
+        parts.append((k + self._number - len(self.ties), at, one, self.tie_rows[k, at]))
         row, column, source, factor = (np.concatenate(part) for part in zip(*parts, strict=True))
         order = np.lexsort((row, column))
         starts = np.searchsorted(column[order], np.arange(self.size + 1))

@@ -37,11 +37,11 @@ class LengthEquations:
 
     @cached_property
     def flat_edges(self) -> BigArray:
-        """U_e over 2^bits, shape (edges, 3)."""
+        """U_e of all bars over 2^bits, shape (bars, 3)."""
         shift, points = self.bits - self.framework.bits, self.framework.points
         rows = [
             [(a - b) << shift for a, b in zip(points[i], points[j], strict=True)] + [0]
-            for i, j in self.framework.edges
+            for i, j in self.framework.bars
         ]
         return np.array(rows, dtype=object).reshape(-1, 3)
 
@@ -63,29 +63,39 @@ class LengthEquations:
         """The left sides of the ties for unknowns over 2^bits, over 2^(2 bits)."""
         return [sum(c * x for c, x in zip(row, unknowns, strict=True) if c) for row in self.ties]
 
+    def stacked(self, bars: Sequence[int], linear: Sequence[int]) -> list[int]:
+        """Values of bars, and of linear equations, as values of all equations times 2^`more`."""
+        return self.framework.coupling.stacked(bars, linear)
+
+    @property
+    def more(self) -> int:
+        """So many more bits have the values of the equations: those of the coupling."""
+        return self.framework.coupling.bits
+
     def matrix(self, rows: FloatArray, last: FloatArray) -> FloatArray:
         """The square matrix of edge vectors, then the ties and one more row, in floats."""
-        return np.vstack([self.places.dense(rows), self.framework.tie_rows, last])
+        coupled = self.framework.coupling.combined(self.places.dense(rows))
+        return np.vstack([coupled, self.framework.tie_rows, last])
 
     def inverse(self, rows: FloatArray, last: FloatArray) -> FloatArray:
         """The inverse of `matrix`; raises `numpy.linalg.LinAlgError`."""
         return np.asarray(np.linalg.inv(self.matrix(rows, last)), dtype=np.float64)
 
     def along(self, curve: Sequence[Sequence[int]]) -> BigArray:
-        """a_k,e for all coefficients of a curve, shape (coefficients, edges, 3)."""
+        """a_k,e for all coefficients of a curve, shape (coefficients, bars, 3)."""
         framework = self.framework
         d = np.zeros((len(curve), len(framework.points), 3), dtype=object)
         d[:, framework.free, :] = np.array(curve, dtype=object).reshape(len(curve), -1, 3)
-        return np.asarray(d[:, framework.edges[:, 0], :] - d[:, framework.edges[:, 1], :])
+        return np.asarray(d[:, framework.bars[:, 0], :] - d[:, framework.bars[:, 1], :])
 
     @cached_property
     def places(self) -> Places:
-        """Where the edges meet the unknowns."""
+        """Where the bars meet the unknowns."""
         framework = self.framework
         place = {int(v): k for k, v in enumerate(framework.free)}
         ends = sorted(
             (place[v], e, sign)
-            for e, pair in enumerate(framework.edges.tolist())
+            for e, pair in enumerate(framework.bars.tolist())
             for v, sign in zip(pair, (1, -1), strict=True)
             if v in place
         )
@@ -93,11 +103,11 @@ class LengthEquations:
         return Places(framework.size, vertex, edge, signs)
 
     def weight_sums(self, weights: Sequence[int]) -> BigArray:
-        """w_i + w_j in the three places of every edge, shape (edges, 3)."""
+        """w_i + w_j in the three places of every bar, shape (bars, 3)."""
         framework = self.framework
         w = np.zeros((len(framework.points), 3), dtype=object)
         w[framework.free] = np.array(weights, dtype=object).reshape(-1, 3)
-        return np.asarray(w[framework.edges[:, 0]] + w[framework.edges[:, 1]])
+        return np.asarray(w[framework.bars[:, 0]] + w[framework.bars[:, 1]])
 
     def nearest(self, vector: FloatArray) -> Row:
         """Floats as integers over 2^bits."""

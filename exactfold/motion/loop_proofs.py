@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -10,6 +11,7 @@ from itertools import zip_longest
 from exactfold.errors import NotCountedError
 from exactfold.evidence.entries import Document
 from exactfold.evidence.loops import loop_line
+from exactfold.evidence.motion import motion_certificate
 from exactfold.exact.numbers import format_rational
 from exactfold.motion.arclength import Interval, in_floats
 from exactfold.motion.chain import Step, chords, step_documents
@@ -175,6 +177,32 @@ class LoopProof:
                 "landing": {**self._flat_end(landing.start), "tau": landing.tau},
             },
             provenance_of(loop),
+        )
+
+    def certificate(self, rim: Mapping[int, Fraction]) -> Document:
+        """The proof of a motion along the rim path of `rim`, there and back (docs/motion.md, 9).
+
+        Unlike a loop it is a motion of its own kind, not one of those that all half-branches of the
+        sheet are matched by. Raises `NotCountedError` as `line`.
+        """
+        if self.landing is None:
+            raise NotCountedError(f"the motion is not proved to its end: {self.reason}")
+        landing, start, problem = self.landing, self.start, self.problem
+        length = chords(start, self.steps, leaves=False, landing=landing.ball)
+        return motion_certificate(
+            problem.pattern,
+            dict(zip(problem.foldable, start.vertex_signs, strict=True)),
+            start.side,
+            length * start.framework.unit,
+            [problem.labels[v] for v in start.framework.pinned],
+            start.bits,
+            {**self._flat_end(start), "exit": start.last},
+            step_documents(self.steps, leaves=False),
+            rim=rim,
+            returning=(
+                self._named(landing.to),
+                {**self._flat_end(landing.start), "tau": landing.tau},
+            ),
         )
 
     def _named(self, half_branch: HalfBranch) -> Document:

@@ -19,6 +19,7 @@ from exactfold.exact.numbers import format_rational
 from exactfold.motion import in_motion
 from exactfold.motion.angles import fold_angles_of, hinges_of
 from exactfold.motion.curve import Curve
+from exactfold.motion.drive import Drive
 from exactfold.motion.events import Event
 from exactfold.motion.rim_path import problem_of
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
@@ -68,6 +69,7 @@ class Motion(Picture):
     shape (frames, folds), in the order of `pattern.folds`, positive for a valley and continued past
     +-pi. `events`: in the order of time. `end`: the kind of event at which the motion stops, or
     "length". `side`: 1 for the ray of the branch that `branch` shows, -1 for its mirror image.
+    `drive`: the folds that are driven, None where there are none.
     """
 
     branch: Branch
@@ -80,6 +82,7 @@ class Motion(Picture):
     end: str
     seconds: float = field(default=0.0, compare=False)
     bounds: FrameBounds | None = None
+    drive: Drive | None = None
 
     def __post_init__(self) -> None:
         in_motion.fixed(self, "times", "coords", "angles")
@@ -92,8 +95,8 @@ class Motion(Picture):
         if not isinstance(other, Motion):
             return NotImplemented
         return (
-            (self.branch, self.side, self.events, self.end, self.bounds)
-            == (other.branch, other.side, other.events, other.end, other.bounds)
+            (self.branch, self.side, self.events, self.end, self.bounds, self.drive)
+            == (other.branch, other.side, other.events, other.end, other.bounds, other.drive)
             and np.array_equal(self.times, other.times)
             and np.array_equal(self.coords, other.coords)
             and np.array_equal(self.angles, other.angles)
@@ -232,6 +235,7 @@ class Motion(Picture):
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
             "side": self.side,
             "rim": self._rim_reported,
+            "drive": None if self.drive is None else self.drive.to_dict(),
             "modes": None,
             "component": None,
             **in_motion.frames_reported(self, written),
@@ -248,6 +252,7 @@ class Motion(Picture):
             "vertices": list(self.pattern.interior),
             "side": self.side,
             **({} if rim is None else {"rim": rim}),
+            **({} if self.drive is None else {"drive": self.drive.to_dict()}),
             **in_motion.facts_of_frames(self),
         }
 

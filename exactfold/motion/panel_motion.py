@@ -208,6 +208,7 @@ class PanelMotion(Picture):
             "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
             "side": None,
             "rim": None,
+            "drive": None,
             "modes": list(self.modes),
             "component": self.component,
             **in_motion.frames_reported(self, written),

@@ -86,6 +86,7 @@ class PanelProof:
             "contact": None if event is None else event.to_dict(),
             "through": [],
             "node": None,
+            "reached": None,
             "to": None,
         }
 

@@ -95,6 +95,8 @@ def passage_ahead(
 
     `labels[v]`: the vertex of the pattern that vertex v of the framework is. None proves nothing.
     """
+    if steps and steps[-1].tube.framework.coupling.rows:
+        return None  # the equations of a node have no driven folds
     # The links right before a node are too close to it for floats.
     back = [steps[-k] for k in _LOOK_BACK if k <= len(steps)]
     for link in (step for step in back if isinstance(step, Link)):

@@ -16,7 +16,7 @@ from exactfold.motion.chain import Step
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import ContactWatch, FirstContact
 from exactfold.motion.enclosed import with_enclosed_frames
-from exactfold.motion.events import CONTACT, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
+from exactfold.motion.events import CONTACT, DRIVEN, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
 from exactfold.motion.framework import Framework
 from exactfold.motion.loop_file import LoopFile
 from exactfold.motion.loop_frames import frame_of
@@ -24,9 +24,8 @@ from exactfold.motion.loop_proofs import Loop, LoopProof
 from exactfold.motion.loops import LoopFinder
 from exactfold.motion.motion import Motion
 from exactfold.motion.passages import Passage
+from exactfold.motion.rim_path import problem_of
 from exactfold.motion.tracks import Frame, Track, follow_proved, half_branch
-from exactfold.pattern.crease_pattern import Triangle
-from exactfold.problem.problem import Problem
 from exactfold.progress import Progress
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
 
@@ -36,6 +35,8 @@ BITS = 64, 128
 _AT_ONCE = 1e-9
 _FARTHER = Fraction(1, 1000)
 """Of its time: what goes on so much longer than to the node that floats see meets none."""
+_BEYOND = 1e-8
+"""Of its time: so much longer a motion is followed, so that driven folds are beyond their goals."""
 _NAMED = 3
 _NO_NODE = "no node was met where floats see one"
 _STRAYED = "the frames in floats are not near the proved curve: floats have left the branch"
@@ -91,6 +92,25 @@ class MotionProof:
         return self.contact is not None and not self.passed and self.contact.clear_to_the_end
 
     @property
+    def back_text(self) -> str:
+        """Along which half-branch the motion comes back, in words; empty if it does not."""
+        loop = self.loop
+        if loop is None or loop.target is None:
+            return ""
+        if self.motion.rim is None:
+            return str(loop.target)
+        way = "as given" if loop.target.saddle > 0 else "the other way up"
+        return f"{loop.target.sign_text}, with the border {way}"
+
+    @property
+    def reached(self) -> bool | None:
+        """Whether driven folds are proved to reach the angles of the drive; None without a drive.
+
+        Of the one fold that is driven on a sheet with four corners nothing is said.
+        """
+        return None if self.track is None or self.track.drive is None else self.track.reached
+
+    @property
     def through_text(self) -> str:
         """Which nodes the motion goes through, in words; empty if it meets none."""
         nodes = [
@@ -117,9 +137,12 @@ class MotionProof:
     def certificate(self) -> Document | None:
         """The evidence for `exactfold.checker`; None for a motion until its return.
 
-        That of a loop has lines: `write` writes it. Of a contact that the motion passes nothing is
-        claimed.
+        That of a loop has lines: `write` writes it. With more than four corners there are no loops,
+        and it is a certificate like others. Of a contact that the motion passes nothing is claimed.
         """
+        rim = self.motion.rim
+        if self.looped is not None and self.looped.landing is not None and rim is not None:
+            return self.looped.certificate(rim)
         if self.track is None:
             return None
         if self.contact is None or self.passed:
@@ -129,9 +152,9 @@ class MotionProof:
     def write(self, path: str | os.PathLike[str]) -> bool:
         """Write the evidence for `exactfold.checker`; False if there is nothing to write.
 
-        A motion until its return is one loop in a file of loops (docs/motions.md), if it is proved
-        to its end; any other one has a certificate of its own as far as it is proved. Raises
-        `UnwritableFileError`.
+        With four corners a motion until its return is one loop in a file of loops
+        (docs/motions.md), if it is proved to its end; any other one has a certificate of its own as
+        far as it is proved. Raises `UnwritableFileError`.
 
         >>> import os, tempfile
         >>> from exactfold.checker import summary, verify
@@ -174,6 +197,7 @@ class MotionProof:
                 for node in self.through
             ],
             "node": None if self.node is None else self._node_dict(self.node),
+            "reached": self.reached,
             "to": None if loop is None or loop.target is None else loop.target.to_dict(),
         }
 
@@ -201,10 +225,9 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
     (docs/motion.md), and separating planes show what does not touch (docs/contacts.md). A motion
     until its first contact is proved with that contact; any other one with how far it is clear.
     Through nodes that the motion passes the proof goes on along the same arc (docs/motions.md); a
-    motion that ends at a node is proved up to it. With more than four corners the return is not
-    proved, but the motion as far as tubes lead to it. The frames of the
-    motion that is returned are those of the proved curve, each in a box (`Motion.bounds`). `bits`:
-    after the point, of all numbers in the tubes.
+    motion that ends at a node is proved up to it. The frames of the motion that is returned are
+    those of the proved curve, each in a box (`Motion.bounds`). `bits`: after the point, of all
+    numbers in the tubes.
 
     Raises `UsageError` where the branch is not proved. UNDECIDED says nothing against the motion.
 
@@ -215,62 +238,11 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
     (<Verdict.PROVED: 'proved'>, 'flat-fold', True)
     """
     try:
-        if motion.end == RETURN and not motion.curve.framework.ties:
+        if motion.end == RETURN and not motion.curve.framework.coupling.rows:
             return _returning(motion, bits, progress)
         return _tracked(motion, bits, progress)
     except NotProvedAtTheFlatStateError as error:
         return MotionProof(UNDECIDED, str(error), motion, (Fraction(0), Fraction(0)), 0)
-
-
-def prove_persistently(
-    motion: Motion,
-    again: Callable[[Triangle], Motion],
-    *,
-    progress: Progress | None = None,
-) -> MotionProof:
-    """`prove`, and where tubes fail once more with more bits, then with another triangle held.
-
-    `again` follows the same motion with a triangle of the framework held: times are others then,
-    and so is `MotionProof.motion`. Where floats found a node or a singular configuration at the
-    end nothing more is tried. What was tried is in `MotionProof.reason`. Raises as `prove`.
-
-    >>> from exactfold.count.find import find_branch
-    >>> from exactfold.motion.following import follow
-    >>> branch = find_branch("two-vertex", "+-")
-    >>> motion = follow(branch, until="30deg", frames=2)
-    >>> prove_persistently(motion, lambda held: follow(branch, until="30deg", pinned=held)).status
-    <Verdict.PROVED: 'proved'>
-    """
-    found = prove(motion, progress=progress)
-    if not found.may_succeed_otherwise:
-        return found
-    other = _another(motion.curve.framework)
-    held = [motion.pinned]
-    finer = prove(motion, bits=BITS[1], progress=progress)
-    if finer.may_succeed_otherwise and other is not None:
-        turned = again(other)
-        held.append(turned.pinned)
-        by_turning = prove(turned, bits=BITS[1], progress=progress)
-        if by_turning.status is PROVED:
-            return by_turning
-    if not finer.may_succeed_otherwise:
-        return finer
-    faces = " and ".join("-".join(map(str, face)) for face in held)
-    tried = f"tried: steps down to 1e-7, {BITS[0]} and {BITS[1]} bits, face {faces} held"
-    best = max(found, finer, key=lambda proof: proof.length[0])
-    return replace(best, reason=f"{best.reason} ({tried})")
-
-
-def _another(framework: Framework) -> Triangle | None:
-    """The triangle to hold instead: one with as few of the same corners as possible.
-
-    None where there is no other, and with a rim: the rim path with another one held is another.
-    """
-    if framework.ties:
-        return None
-    held = set(framework.pinned)
-    others = [t for t in framework.sheet.triangles if set(t) != held]
-    return min(others, key=lambda t: len(held & set(t)), default=None)
 
 
 def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProof:
@@ -297,8 +269,10 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
         return None
 
     until = None if to_contact or to_node else motion.duration
+    if motion.end == DRIVEN:
+        until = motion.duration * (1 + _BEYOND)
     pinned = motion.curve.framework.pinned
-    so_far = half_branch(motion.branch, motion.side, pinned, bits=bits)
+    so_far = half_branch(motion.branch, motion.side, pinned, bits=bits, drive=motion.drive)
     track = follow_proved(
         motion.branch,
         motion.side,
@@ -307,6 +281,7 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
         through_nodes=_passes_nodes(motion),
         pinned=pinned,
         bits=bits,
+        drive=motion.drive,
     )
     contact = watch.result(track) if found is None else found
     status, reason = _judged(motion, track, contact)
@@ -365,7 +340,7 @@ def _ends_at_the_first_contact(motion: Motion) -> bool:
 
 
 def _returning(motion: Motion, bits: int, progress: Progress | None) -> MotionProof:
-    looped = LoopFinder(Problem.of(motion.branch.pattern)).follow(
+    looped = LoopFinder(problem_of(motion.branch)).follow(
         motion.branch,
         motion.side,
         pinned=motion.curve.framework.pinned,

@@ -8,8 +8,9 @@ from math import gcd
 
 from exactfold.branches.branch import Branch
 from exactfold.exact.numbers import integer_row
-from exactfold.motion.framework import Tie
-from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.motion.drive import Drive
+from exactfold.motion.framework import Framework, Tie
+from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 from exactfold.problem.problem import Problem, barycentric
 
 
@@ -48,6 +49,17 @@ def ties_of(problem: Problem) -> tuple[Tie, ...]:
             row[w] = row.get(w, Fraction(0)) - slope * c
         found.append(_whole(row))
     return tuple(found)
+
+
+def framework_of(
+    problem: Problem, pinned: Triangle | None = None, drive: Drive | None = None
+) -> Framework:
+    """The framework of a problem, with a drive or else with the ties of the rim path."""
+    if drive is None:
+        return Framework.of(problem.sheet, pinned, ties_of(problem))
+    place = {label: v for v, label in enumerate(problem.labels)}
+    coupling = drive.coupling(problem.sheet, place)
+    return Framework.of(problem.sheet, pinned, coupling=coupling)
 
 
 def factor_functional(sheet: CreasePattern, rim: Mapping[int, Fraction]) -> dict[int, Fraction]:

@@ -100,6 +100,8 @@ def _dependent(framework: Framework, labels: Sequence[int], unknowns: FloatArray
         return ""
     stressed = np.abs(left[:, -1]) > _STRESSED * np.abs(left[:, -1]).max()
     edges = framework.edges[stressed[: len(framework.edges)]]
+    if framework.coupling.rows and stressed[len(framework.edges) :].any():
+        return "the angles of the driven folds come to depend on the lengths of edges"
     if stressed[len(framework.edges) :].any():
         return "the heights of the border come to depend on the lengths of edges"
     vertices = sorted({int(v) for edge in edges for v in edge})

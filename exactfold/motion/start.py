@@ -32,7 +32,7 @@ class Start:
 
         U_e . u_e + h_e^2 / 2 + t^2 |u_e|^2 / 2 = 0,
 
-    together with the ties of the framework, which hold for h, and one height held fixed, are
+    together with the coupling and the ties of the framework, and one height held fixed, are
     regular at t = 0 where the branch is simple. So their
     solution is an analytic curve in s = t^2, each coefficient of which solves a linear system with
     the same matrix. `coefficients[k]` is that of s^k, shape (order + 1, unknowns), each unknown
@@ -51,7 +51,7 @@ class Start:
         `NotFollowedError` where Newton's method does not converge: the branch is not simple, or
         the numbers leave the range of floats.
         """
-        first = _scaled(framework, _above_pinned(framework, heights))
+        first = _scaled(framework, heights_above_the_pin(framework, heights))
         guess = np.zeros((len(framework.free), 3))
         guess[:, 2] = first[framework.free]
         y = guess.reshape(-1)
@@ -61,15 +61,16 @@ class Start:
             y, factors = _newton(framework, y, held)
         series = np.zeros((order + 1, framework.size))
         series[0] = y
-        along = np.zeros((order + 1, len(framework.edges), 3))
+        along = np.zeros((order + 1, len(framework.bars), 3))
         along[0] = framework.along(y)
         none = np.zeros(len(framework.ties) + 1)
         for k in range(1, order + 1):
             right = sum(
                 (along[m, :, 2] * along[k - m, :, 2] for m in range(1, k)),
-                start=np.zeros(len(framework.edges)),
+                start=np.zeros(len(framework.bars)),
             ) + sum((along[m, :, :2] * along[k - 1 - m, :, :2]).sum(axis=1) for m in range(k))
-            series[k] = factors.solve(np.append(-0.5 * right, none))
+            right = framework.coupling.combined(-0.5 * right)
+            series[k] = factors.solve(np.append(right, none))
             along[k] = framework.along(series[k])
         if not np.isfinite(series).all():
             raise NotFollowedError("the series of the motion leaves the range of floats")
@@ -103,7 +104,7 @@ def blown_up(framework: Framework, y: FloatArray, s: float = 0.0) -> FloatArray:
     e = framework.along(y)
     flat = (framework.flat_edges[:, :2] * e[:, :2]).sum(axis=1)
     bent = flat + 0.5 * e[:, 2] ** 2 + 0.5 * s * (e[:, :2] ** 2).sum(axis=1)
-    return np.concatenate([bent, framework.tie_rows @ y])
+    return np.concatenate([framework.coupling.combined(bent), framework.tie_rows @ y])
 
 
 def blown_up_jacobian(framework: Framework, y: FloatArray, s: float = 0.0) -> csc_array:
@@ -188,7 +189,7 @@ def _newton(
     )
 
 
-def _above_pinned(framework: Framework, heights: FloatArray) -> FloatArray:
+def heights_above_the_pin(framework: Framework, heights: FloatArray) -> FloatArray:
     """The heights above the plane through the pinned triangle."""
     corners = list(framework.pinned)
     affine = np.column_stack([np.ones(len(framework.flat)), framework.flat])
@@ -212,7 +213,8 @@ def _with_plane(framework: Framework, y: FloatArray) -> FloatArray:
     e = framework.along(y)
     rows = framework.flat_edges
     columns = np.arange(framework.size) % 3 != 2
-    right = np.append(-0.5 * e[:, 2] ** 2, np.zeros(len(framework.ties)))
+    bent = framework.coupling.combined(-0.5 * e[:, 2] ** 2)
+    right = np.append(bent, np.zeros(len(framework.ties)))
     y = y.copy()
     if framework.size > _DENSE:
         y[columns] = least_squares(framework.matrix(rows)[:, columns], right)

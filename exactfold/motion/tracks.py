@@ -14,13 +14,15 @@ from exactfold.branches.branch import Branch
 from exactfold.errors import FlatVertexError, UsageError
 from exactfold.evidence.entries import Document
 from exactfold.evidence.motion import motion_certificate
+from exactfold.motion.angles import fold_angles_of, hinges_of
 from exactfold.motion.arclength import Interval
 from exactfold.motion.chain import Chain, Step, chords, point_near, step_documents
+from exactfold.motion.drive import Drive
 from exactfold.motion.framework import Framework
 from exactfold.motion.links import Link
 from exactfold.motion.passages import Passage
 from exactfold.motion.piece import Ball
-from exactfold.motion.rim_path import problem_of, ties_of
+from exactfold.motion.rim_path import framework_of, problem_of
 from exactfold.motion.straight_folds import straight_fold
 from exactfold.motion.tube_start import StartTube, prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
@@ -56,7 +58,8 @@ class Track:
     `vertex_signs` are those on the half-branch itself, by foldable vertex of `pattern`; `side` is
     1 or -1, the sign of the boundary saddle or, if `corner` is not None, the vertex sign of this
     reflex corner in the sheet with its notch closed. With more than four corners the border stays
-    in the ratio of the heights `rim`, and `side` is the sign of the factor (`rim_path`).
+    in the ratio of the heights `rim`, and `side` is the sign of the factor (`rim_path`); or it is
+    driven, and `side` is 1: the folds of the `drive` go the way it says.
     `labels[v]` is the vertex of `pattern` that vertex v of the framework is: what lies in
     triangulated triangles moves with them.
 
@@ -72,6 +75,7 @@ class Track:
     status: Verdict
     reason: str
     rim: Mapping[int, Fraction] | None = None
+    drive: Drive | None = None
 
     @property
     def framework(self) -> Framework:
@@ -117,6 +121,20 @@ class Track:
         """Bounds of the time at the end, in the unit of the framework."""
         return self.steps[-1].left if self.steps else self.started
 
+    @cached_property
+    def reached(self) -> bool:
+        """Whether the driven folds are beyond the angles of the drive at the end, by far more than
+        the error there: so they have these angles at some configuration of the track."""
+        last = self.steps[-1] if self.steps else None
+        if self.drive is None or not isinstance(last, Link):
+            return False
+        ball = last.tube.enclosure(last.exit)
+        hinges = hinges_of(self.framework.sheet)
+        angles = fold_angles_of(self.framework.positions(ball.floats[0]), hinges)
+        folds = self.framework.sheet.folds
+        at = [folds.index(fold) for fold, _ in self.drive.ways(self.labels)]
+        return self.drive.passed(angles[at])
+
     @property
     def tubes(self) -> int:
         """How many pieces prove it."""
@@ -139,7 +157,7 @@ class Track:
         >>> checker.check(track.certificate())["vertex_signs"]
         [1]
         """
-        start = self.start
+        start, drive = self.start, self.drive
         pinned = [self.labels[v] for v in self.framework.pinned]
         held = self.labels[int(self.framework.free[start.held // 3])]
         return motion_certificate(
@@ -159,6 +177,7 @@ class Track:
             step_documents(self.steps, leaves=True),
             ends_at_a_node=self.node is not None,
             rim=self.rim,
+            drive=None if drive is None else (drive.folds, drive.squares, self.reached),
         )
 
     def frames(self, times: FloatArray | list[float]) -> list[Frame]:
@@ -192,12 +211,19 @@ Stop = Callable[[Step], "str | None"]
 
 
 def half_branch(
-    branch: Branch, side: int = 1, pinned: Triangle | None = None, *, bits: int = 64
+    branch: Branch,
+    side: int = 1,
+    pinned: Triangle | None = None,
+    *,
+    bits: int = 64,
+    drive: Drive | None = None,
 ) -> Track:
     """The track of a half-branch as far as its start tube.
 
     `branch`: simple and proved; `side` 1 is the half-branch with its heights, -1 the opposite one.
     `pinned`: the triangle that does not move, by vertices of the sheet without rigid parts.
+    `drive`: with more than four corners, folds that are driven; the branch is one on which they
+    start in their ratio (`find_driven`).
 
     Raises `FlatVertexError` if a vertex is proved flat on the branch, `UsageError` if the branch
     is not proved, `NotProvedAtTheFlatStateError` where the curve is not enclosed.
@@ -221,17 +247,19 @@ def half_branch(
             )
         )
     heights = branch.approx_heights
-    framework = Framework.of(problem.sheet, pinned, ties_of(problem))
+    framework = framework_of(problem, pinned, drive)
+    drive = drive if framework.coupling.rows else None
     start = prove_start(
         framework,
         problem.gauge,
         side * np.array([heights[v] for v in problem.labels]),
         bits=bits,
+        ways=() if drive is None else drive.ways(problem.labels),
     )
     corner = None if problem.gauge.corner is None else problem.labels[problem.gauge.corner]
     rim = branch.rim if framework.ties else None
     return Track(
-        branch.pattern, problem.labels, corner, start, (), PROVED, "the start tube", rim=rim
+        branch.pattern, problem.labels, corner, start, (), PROVED, "the start tube", rim, drive
     )
 
 
@@ -245,15 +273,16 @@ def follow_proved(
     most: int = MOST_TUBES,
     pinned: Triangle | None = None,
     bits: int = 64,
+    drive: Drive | None = None,
 ) -> Track:
     """The proved motion along a branch, until a time, or until `stop` says so.
 
     The time is the length of the curve in the unknowns of the framework, in the unit of the sheet.
-    `side` and `pinned` as in `half_branch`, whose errors are raised. Where tubes become shorter
-    than 1e-7 of the sheet, and a node ahead is proved, the track goes straight on `through_nodes`,
-    and else ends at it (`Track.node`): PROVED if no time was asked for. It is UNDECIDED if it ends
-    before what was asked for: at a node, near another configuration where several curves meet, or
-    after `most` tubes.
+    `side`, `pinned` and `drive` as in `half_branch`, whose errors are raised. Where tubes become
+    shorter than 1e-7 of the sheet, and a node ahead is proved, the track goes straight on
+    `through_nodes`, and else ends at it (`Track.node`): PROVED if no time was asked for. It is
+    UNDECIDED if it ends before what was asked for: at a node, near another configuration where
+    several curves meet, or after `most` tubes.
 
     >>> from exactfold.count.find import find_branch
     >>> from exactfold.pattern.random_squares import random_square
@@ -261,7 +290,7 @@ def follow_proved(
     >>> track.status, track.vertex_signs, track.side
     (<Verdict.PROVED: 'proved'>, {4: 1, 5: -1}, 1)
     """
-    track = half_branch(branch, side, pinned, bits=bits)
+    track = half_branch(branch, side, pinned, bits=bits, drive=drive)
     goal = None if until is None else Fraction(until) / track.framework.unit
     if goal is not None and track.started[0] >= goal:
         return replace(track, reason=_FAR_ENOUGH)

@@ -143,7 +143,7 @@ class Tube(Piece):
 
 
 def _residuals(equations: LengthEquations, curve: Curve, row: Row) -> list[list[int]]:
-    """The coefficients of 2 [g(p(s)); ties; T(p(s) - c) - s], over 2^(2 bits)."""
+    """The coefficients of 2 [g(p(s)); ties; T(p(s) - c) - s], over 2^(2 bits + `more`)."""
     e = equations.along(curve)
     shift = equations.bits - ROW_BITS
     found = squared(e)
@@ -155,7 +155,10 @@ def _residuals(equations: LengthEquations, curve: Curve, row: Row) -> list[list[
     last += [0] * (len(found) - len(curve))
     ties = [[2 * x for x in equations.tied(a)] for a in curve]
     ties += [[0] * len(equations.ties)] * (len(found) - len(curve))
-    return [[*map(int, g), *t, x << (shift + 1)] for g, t, x in zip(found, ties, last, strict=True)]
+    return [
+        equations.stacked(g.tolist(), [*t, x << (shift + 1)])
+        for g, t, x in zip(found, ties, last, strict=True)
+    ]
 
 
 def _bounds(
@@ -172,8 +175,9 @@ def _bounds(
     return contraction(
         inverse,
         residuals,
-        2 * equations.bits + 1,
+        2 * equations.bits + equations.more + 1,
         equations.places,
+        equations.framework.coupling,
         [e[0] + equations.flat_edges, *e[1:]],
         [*equations.ties, [t << (equations.bits - ROW_BITS) for t in row]],
         equations.bits,
@@ -199,6 +203,7 @@ def prove_tube(
     coefficients and weights; then everything is verified in integers.
     """
     framework, bits = equations.framework, equations.bits
+    more = bits + equations.more + 1
     centre = equations.nearest(near) if isinstance(near, np.ndarray) else near
     try:
         edges = framework.flat_edges + framework.along(equations.floats(centre))
@@ -217,7 +222,7 @@ def prove_tube(
     if not np.abs(inverse).max() < 2.0**40:
         return None
     for _ in range(2):
-        (centre,) = corrected(inverse, [centre], [[*_stretch(equations, centre), 0]], bits + 1)
+        (centre,) = corrected(inverse, [centre], [_stretch(equations, centre, 0)], more)
     series = _taylor(framework, inverse, order)
     weights = weights_of(_slopes(equations, inverse, series))
     curve = (centre, *(equations.nearest(a) for a in series))
@@ -227,7 +232,7 @@ def prove_tube(
         reach = longest(proof, thickness)
         if reach:
             return Tube(framework, bits, curve, weights, proof, reach, row)
-        curve = (centre, *corrected(inverse, curve, residuals, bits + 1)[1:])
+        curve = (centre, *corrected(inverse, curve, residuals, more)[1:])
     return None
 
 
@@ -270,10 +275,10 @@ def sharpened(tube: Tube, parameter: int) -> Ball:
     def residual() -> list[int]:
         gaps = (x - c for x, c in zip(point, tube.coefficients[0], strict=True))
         last = sum(t * x for t, x in zip(tube.row, gaps, strict=True)) - value
-        return [*_stretch(equations, point), last << bits - ROW_BITS + 1]
+        return _stretch(equations, point, last << bits - ROW_BITS + 1)
 
     for _ in range(2):
-        (point,) = corrected(inverse, [point], [residual()], bits + 1)
+        (point,) = corrected(inverse, [point], [residual()], bits + equations.more + 1)
     proof = _bounds(equations, (point,), [residual()], tube.row, tube.weights, inverse)
     radius = proof.radius(0)
     if radius is None or not tube.unique_near(point, radius, whole.centre):
@@ -281,11 +286,11 @@ def sharpened(tube: Tube, parameter: int) -> Ball:
     return Ball(bits, point, tube.lengths(radius))
 
 
-def _stretch(equations: LengthEquations, centre: Row) -> list[int]:
-    """2 g_e(c), then twice the ties, over 2^(2 bits)."""
+def _stretch(equations: LengthEquations, centre: Row, last: int) -> list[int]:
+    """2 g_e(c), then twice the ties, and one more, over 2^(2 bits + `more`)."""
     e = equations.along([centre])[0]
     stretch = [int(x) for x in ((e + 2 * equations.flat_edges) * e).sum(axis=1)]
-    return [*stretch, *(2 * x for x in equations.tied(centre))]
+    return equations.stacked(stretch, [*(2 * x for x in equations.tied(centre)), last])
 
 
 def _taylor(framework: Framework, inverse: FloatArray, order: int) -> list[FloatArray]:
@@ -295,8 +300,9 @@ def _taylor(framework: Framework, inverse: FloatArray, order: int) -> list[Float
     for k in range(2, order + 1):
         right = sum(
             ((parts[i] * parts[k - 2 - i]).sum(axis=1) for i in range(k - 1)),
-            start=np.zeros(len(framework.edges)),
+            start=np.zeros(len(framework.bars)),
         )
+        right = framework.coupling.combined(right)
         found.append(-0.5 * (inverse[:, : len(right)] @ right))
         parts.append(framework.along(found[-1]))
     return found
@@ -306,8 +312,8 @@ def _slopes(
     equations: LengthEquations, inverse: FloatArray, curve: Sequence[FloatArray]
 ) -> FloatArray:
     """|P B(a_1)| + |P B(a_2)| / 2 + ..., in floats."""
-    total = np.zeros_like(inverse)
+    total, framework = np.zeros_like(inverse), equations.framework
+    on_bars = framework.coupling.on_bars(inverse, len(framework.edges))
     for k, row in enumerate(curve[:3]):
-        rows = equations.framework.along(row)
-        total += np.abs(equations.places.product(inverse[:, : len(rows)], rows)) / 2.0**k
+        total += np.abs(equations.places.product(on_bars, framework.along(row))) / 2.0**k
     return total

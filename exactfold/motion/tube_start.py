@@ -31,8 +31,13 @@ from exactfold.motion.piece import PARAMETER_BITS, Ball, Piece
 from exactfold.motion.rim_path import factor_functional
 from exactfold.motion.start import Start
 from exactfold.motion.tube import longest
+from exactfold.pattern.crease_pattern import Edge
 from exactfold.problem.gauge import RIM, Gauge
-from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functional
+from exactfold.rigidity.functionals import (
+    fold_functional,
+    saddle_functional,
+    vertex_sign_functional,
+)
 
 ROOT_BITS = PARAMETER_BITS // 2
 """The parameter tau of a start tube, whose square is s, is an integer over 2^ROOT_BITS."""
@@ -48,7 +53,7 @@ class StartTube(Piece):
     the half-branch tau > 0 (docs/motion.md, Theorem 3): the proved signs of the heights at tau = 0
     at every interior vertex of the sheet of the framework, and the sign `side` of the boundary
     saddle or, with a reflex corner, of this corner in the closed sheet, or, with more than four
-    corners, of the factor of the rim.
+    corners, of the factor of the rim; 1 with driven folds, which go the way they are driven.
     """
 
     halvings: int
@@ -78,9 +83,10 @@ class StartTube(Piece):
         whole, up_to = self.enclosure(tau * tau), PARAMETER_BITS + 2 * self.halvings
         equations = LengthEquations(self.framework, self.bits)
         point, s = whole.centre, tau * tau  # over 2^up_to, the factor of |u|^2
+        finer = self.bits + up_to + equations.more + 1
 
         def terms() -> tuple[BigArray, list[int]]:
-            """U + (s u, h) over 2^(bits + up_to), and the residual over 2^(2 bits + up_to + 1)."""
+            """U + (s u, h) over 2^(bits + up_to), and the residual over 2^(bits + finer)."""
             e = equations.along([point])[0]
             flat = equations.flat_edges
             bent = np.concatenate([s * e[:, :2], e[:, 2:] * (1 << up_to)], axis=1)
@@ -88,7 +94,7 @@ class StartTube(Piece):
             held = point[self.held] - self.coefficients[0][self.held]
             ties = [x << up_to + 1 for x in equations.tied(point)]
             last = held << self.bits + up_to + 1
-            return flat * (1 << up_to) + bent, [*(int(x) for x in residual), *ties, last]
+            return flat * (1 << up_to) + bent, equations.stacked(residual.tolist(), [*ties, last])
 
         rows, _ = terms()
         one = 1 << self.bits + up_to
@@ -100,14 +106,15 @@ class StartTube(Piece):
         except np.linalg.LinAlgError:
             return self._blown_down(whole, tau)
         for _ in range(2):
-            (point,) = corrected(inverse, [point], [terms()[1]], self.bits + up_to + 1)
+            (point,) = corrected(inverse, [point], [terms()[1]], finer)
         rows, residual = terms()
         sums = equations.weight_sums(self.weights)
         proof = contraction(
             inverse,
             [residual],
-            2 * self.bits + up_to + 1,
+            self.bits + finer,
             equations.places,
+            self.framework.coupling,
             [rows],
             [*_shifted(equations, up_to), [one * (i == self.held) for i in range(len(point))]],
             self.bits + up_to,
@@ -183,8 +190,11 @@ def prove_start(
     order: int = 8,
     bits: int = 64,
     thickness: float = 1e-8,
+    ways: Sequence[tuple[Edge, int]] = (),
 ) -> StartTube:
     """The start tube of the half-branch with these approximate heights of the framework's sheet.
+
+    `ways`: with a coupling the folds that are driven, each with 1 if it is to be a valley, else -1.
 
     Raises `NotProvedAtTheFlatStateError`, which does not say that there is no such motion.
     """
@@ -211,16 +221,16 @@ def prove_start(
     if not np.abs(inverse).max() < 2.0**40:
         raise NotProvedAtTheFlatStateError("the branch is not simple, or floats do not show it")
     for _ in range(2):
-        curve = corrected(
-            inverse, curve, _residuals(equations, curve, m), equations.bits + 2 * m + 1
-        )
+        finer = equations.bits + equations.more + 2 * m + 1
+        curve = corrected(inverse, curve, _residuals(equations, curve, m), finer)
         curve = _holding(curve, held)
     slopes = np.zeros_like(inverse)
     scaled = [series[k] * 2.0 ** (-2 * m * k) for k in range(len(series))]
+    on_bars = framework.coupling.on_bars(inverse, len(framework.edges))
     for k in (1, 2):
         rows = framework.along(scaled[k])
         rows[:, :2] = framework.along(scaled[k - 1])[:, :2] * 2.0 ** (-2 * m)
-        slopes += np.abs(equations.places.product(inverse[:, : len(rows)], rows)) / 2.0**k
+        slopes += np.abs(equations.places.product(on_bars, rows)) / 2.0**k
     weights = weights_of(slopes)
     proof = _bounds(equations, curve, held, m, weights, inverse)
     reach = longest(proof, thickness)
@@ -230,14 +240,17 @@ def prove_start(
             "simple, or ill-conditioned"
         )
     found = StartTube(framework, equations.bits, curve, weights, proof, reach, m, held, (), 0)
-    signs, side = names_at(gauge, framework, found.enclosure(0))
+    signs, side = names_at(gauge, framework, found.enclosure(0), ways)
     return replace(found, vertex_signs=signs, side=side)
 
 
-def names_at(gauge: Gauge, framework: Framework, box: Ball) -> tuple[tuple[int, ...], int]:
+def names_at(
+    gauge: Gauge, framework: Framework, box: Ball, ways: Sequence[tuple[Edge, int]] = ()
+) -> tuple[tuple[int, ...], int]:
     """The signs of all interior vertices on a box of (u, h), and the side of the gauge.
 
-    Raises `NotProvedAtTheFlatStateError` where one is not certain.
+    With driven folds the side is 1: all of them go the way they are to. Raises
+    `NotProvedAtTheFlatStateError` where one is not certain.
     """
     rows = {int(v): 3 * k + 2 for k, v in enumerate(framework.free)}
 
@@ -250,6 +263,11 @@ def names_at(gauge: Gauge, framework: Framework, box: Ball) -> tuple[tuple[int, 
 
     sheet = framework.sheet
     signs = tuple(sign(vertex_sign_functional(sheet, v), f"vertex {v}") for v in sheet.interior)
+    if ways:
+        for fold, way in ways:
+            if sign(fold_functional(sheet, fold), f"fold {fold[0]}-{fold[1]}") != way:
+                raise NotProvedAtTheFlatStateError("a driven fold starts the other way")
+        return signs, 1
     if gauge.kind == RIM:
         return signs, sign(factor_functional(sheet, gauge.rim), "the border")
     if gauge.corner is None:
@@ -273,7 +291,10 @@ def _halvings(series: FloatArray) -> int:
 
 
 def _residuals(equations: LengthEquations, curve: Sequence[Row], m: int) -> list[list[int]]:
-    """The coefficients of 2 [U . u + h^2 / 2 + s |u|^2 / 2; ties; 0], over 2^(2 bits + 2 m)."""
+    """The coefficients of 2 [U . u + h^2 / 2 + s |u|^2 / 2; ties; 0].
+
+    Over 2^(2 bits + 2 m + `more`).
+    """
     e = equations.along(curve)
     heights, plane = squared(e[:, :, 2:]), squared(e[:, :, :2])
     found = []
@@ -287,7 +308,7 @@ def _residuals(equations: LengthEquations, curve: Sequence[Row], m: int) -> list
         if k:
             total = total + plane[k - 1]
         ties = equations.tied(curve[k]) if k < len(curve) else [0] * len(equations.ties)
-        found.append([*map(int, total), *(x << 2 * m + 1 for x in ties), 0])
+        found.append(equations.stacked(total.tolist(), [*(x << 2 * m + 1 for x in ties), 0]))
     return found
 
 
@@ -312,8 +333,9 @@ def _bounds(
     return contraction(
         inverse,
         _residuals(equations, curve, m),
-        2 * (equations.bits + m) + 1,
+        2 * (equations.bits + m) + equations.more + 1,
         equations.places,
+        equations.framework.coupling,
         rows,
         [
             *_shifted(equations, 2 * m),

@@ -50,24 +50,51 @@ def default_rim(pattern: CreasePattern) -> dict[int, Fraction]:
     ['-1', '0', '0', '0', '11/20']
     """
     _require_convex(pattern)
-    boundary = pattern.boundary
-    if len(boundary) < 4:
+    if len(pattern.boundary) < 4:
         raise NotApplicableError("three boundary vertices lie in one plane: there is no other rim")
+    for form in _FORMS:
+        heights = _saddle(pattern, form)
+        if any(heights.values()):
+            return heights
+    raise NotApplicableError("no saddle was found that is not flat on the border")
+
+
+def saddle_rims(pattern: CreasePattern) -> list[dict[int, Fraction]]:
+    """Several rims as different as saddles are: the default one is the first.
+
+    Those of x^2 + x y - y^2, its mirror image, x^2 - y^2 and x y, as `default_rim` takes them, each
+    up and down. Raises as `default_rim`.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> rims = saddle_rims(single_vertex(5))
+    >>> len(rims), rims[0] == default_rim(single_vertex(5))
+    (8, True)
+    """
+    found = [default_rim(pattern)]
+    for form in (_FORMS[0], (1, -1, -1), *_FORMS[1:]):
+        for sign in (1, -1):
+            a, b, c = form
+            heights = _saddle(pattern, (sign * a, sign * b, sign * c))
+            if any(heights.values()) and heights not in found:
+                found.append(heights)
+    return found
+
+
+def _saddle(pattern: CreasePattern, form: tuple[int, int, int]) -> dict[int, Fraction]:
+    """The heights of a form above a plane, rounded; all 0 if they lie in one."""
+    boundary, (a, b, c) = pattern.boundary, form
     middle, half = [], []
     for axis in (0, 1):
         values = [pattern.vertices[v][axis] for v in boundary]
         middle.append((max(values) + min(values)) / 2)
         half.append((max(values) - min(values)) / 2)
-    for a, b, c in _FORMS:
-        heights = {}
-        for v in boundary:
-            x, y = ((pattern.vertices[v][k] - middle[k]) / half[k] for k in (0, 1))
-            heights[v] = a * x * x + b * x * y + c * y * y
-        level = above_plane(pattern, heights)
-        largest = max(map(abs, level.values()))
-        if largest:
-            return {v: Fraction(round(100 * h / largest), 100) for v, h in level.items()}
-    raise NotApplicableError("no saddle was found that is not flat on the border")
+    heights = {}
+    for v in boundary:
+        x, y = ((pattern.vertices[v][k] - middle[k]) / half[k] for k in (0, 1))
+        heights[v] = a * x * x + b * x * y + c * y * y
+    level = above_plane(pattern, heights)
+    largest = max(map(abs, level.values())) or Fraction(1)
+    return {v: Fraction(round(100 * h / largest), 100) for v, h in level.items()}
 
 
 def above_plane(pattern: CreasePattern, heights: Mapping[int, Fraction]) -> dict[int, Fraction]:

@@ -13,6 +13,8 @@ from rich.text import Text
 from exactfold.motion.events import (
     ANGLE,
     CONTACT,
+    DEAD_POINT,
+    DRIVEN,
     FLAT_FOLD,
     LENGTH,
     NODE,
@@ -82,6 +84,8 @@ def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
     ]
     if motion.rim is not None:
         rows.append(("border", f"in the ratio {cut(rim_text(motion.rim))}"))
+    if motion.drive is not None:
+        rows.append(("driven", cut(f"{motion.drive.text}, the sines of the halves in ratio")))
     return rows
 
 
@@ -100,6 +104,8 @@ def _proof(proof: MotionProof | PanelProof) -> RenderableType:
     parts = [f": one curve without a gap, {counted(proof.tubes, 'tube')}"]
     for text in filter(None, (proof.through_text, proof.end_text)):
         parts[0] += f", {text}"
+    if proof.reached:
+        parts[0] += ", on which the driven folds reach their angles"
     contact = proof.contact
     if contact is not None and contact.event is None and proof.passed:
         parts.append(f"no two faces touch before {float(contact.clear):.8g}, then some may")
@@ -107,8 +113,8 @@ def _proof(proof: MotionProof | PanelProof) -> RenderableType:
         parts.append(f"no two faces touch {'before it, nor at it' if proof.end_text else 'on it'}")
     elif contact is not None and contact.event is not None:
         parts.append(_enclosed(contact.event, passed=proof.passed))
-    elif proof.loop is not None:
-        parts.append(f"it comes back along {proof.loop.target}")
+    elif proof.back_text:
+        parts.append(f"it comes back along {proof.back_text}")
     return Text.assemble(status_text(proof.status), "; ".join(parts))
 
 
@@ -169,6 +175,8 @@ def event_text(event: Event) -> str:
         else f"{folds} closes: its two faces meet",
         TURNING: f"{folds} {'turn' if several else 'turns'} back{detail}",
         ANGLE: f"{folds} {'have' if several else 'has'} the angle that was asked for",
+        DRIVEN: f"{folds} {'have' if several else 'has'} the angles of the drive",
+        DEAD_POINT: f"{folds} {'turn' if several else 'turns'} back: they cannot be driven further",
         NODE: f"another motion crosses here{detail}",
         RETURN: "the sheet is flat again",
         SINGULAR: f"it could not be followed further{detail}",

@@ -17,13 +17,14 @@ from forge import Document, Lines, chained, given_lines
 from exactfold import checker
 from exactfold.checker import motion_loops, motion_nodes, motion_patches
 from exactfold.checker.compact_lines import lines
-from exactfold.checker.motion import PARAMETER_BITS, through_a_node, tube_of, vector
+from exactfold.checker.motion import through_a_node
 from exactfold.checker.motion_bounds import value as polynomial
 from exactfold.checker.motion_equations import LengthEquations, at
 from exactfold.checker.motion_loops import LoopSheet, Matching
 from exactfold.checker.motion_nodes import NodeTube, Stresses, independent
 from exactfold.checker.motion_patches import Patch, wheel_stress
 from exactfold.checker.motion_paths import Path
+from exactfold.checker.motion_pieces import PARAMETER_BITS, tube_of, vector
 from exactfold.checker.motion_tubes import Ball
 from exactfold.checker.reading import CertificateError, FormatError, UnfinishedError
 from exactfold.checker.sheet import read_sheet

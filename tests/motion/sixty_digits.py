@@ -8,6 +8,7 @@ from fractions import Fraction
 import mpmath
 from flint import arb, arb_mat, fmpq
 
+from exactfold.motion.drive import Drive
 from exactfold.motion.flat_patches import FlatPatch
 from exactfold.motion.framework import Framework
 from exactfold.motion.piece import PARAMETER_BITS, Ball
@@ -56,6 +57,55 @@ def newton(
         x = [(a - step[k, 0]).mid() for k, a in enumerate(x)]
     assert max(abs(float(step[k, 0])) for k in range(size)) < 1e-55
     return [Fraction(int(q.p), int(q.q)) for q in (a.mid().fmpq() for a in x[:n])]
+
+
+def driven_newton(framework: Framework, tube: Tube, parameter: int, drive: Drive) -> list[Fraction]:
+    """x(s) with 60 digits, of a driven motion: lengths, and cosines of angles between normals.
+
+    One more unknown is the factor m: the squares are in the ratio of the drive iff
+    cos a = 1 - 2 m |q| for all driven folds.
+    """
+    place = {int(v): 3 * k for k, v in enumerate(framework.free)}
+    scale = mpmath.mpf(1 << framework.bits)
+    flat = [
+        (mpmath.mpf(x) / scale, mpmath.mpf(y) / scale, mpmath.mpf(0)) for x, y in framework.points
+    ]
+    one = mpmath.mpf(1 << tube.bits)
+    centre = [c / one for c in map(mpmath.mpf, tube.coefficients[0])]
+    row = [mpmath.mpf(t) / (1 << ROW_BITS) for t in tube.row]
+    s = mpmath.mpf(parameter) / (1 << PARAMETER_BITS)
+    sheet = framework.sheet
+
+    def minus(a, b):
+        return [p - q for p, q in zip(a, b, strict=True)]
+
+    def normal(x, i, j, k):
+        (a, b, c), (p, q, r) = minus(x[j], x[i]), minus(x[k], x[i])
+        return [b * r - c * q, c * p - a * r, a * q - b * p]
+
+    def dot(a, b):
+        return sum((p * q for p, q in zip(a, b, strict=True)), mpmath.mpf(0))
+
+    def equations(*unknowns):
+        x = {v: flat[v] for v in framework.pinned}
+        x |= {v: tuple(flat[v][a] + unknowns[k + a] for a in range(3)) for v, k in place.items()}
+        found = [
+            dot(minus(x[i], x[j]), minus(x[i], x[j]))
+            - dot(minus(flat[i], flat[j]), minus(flat[i], flat[j]))
+            for i, j in framework.edges.tolist()
+        ]
+        for (i, j), q in zip(drive.folds, drive.squares, strict=True):
+            left, right = sheet.opposite((i, j))
+            one, two = normal(x, i, j, left), normal(x, j, i, right)
+            cosine = dot(one, two) / mpmath.sqrt(dot(one, one) * dot(two, two))
+            found.append(
+                cosine - 1 + 2 * unknowns[-1] * abs(mpmath.mpf(q.numerator) / q.denominator)
+            )
+        return [*found, dot(row, minus(unknowns[:-1], centre)) - s]
+
+    near = [c / one for c in map(mpmath.mpf, tube.enclosure(parameter).centre)]
+    root = mpmath.findroot(equations, [*near, mpmath.mpf("0.01")], tol=1e-100)
+    return [Fraction(int(mpmath.floor(x * 2**240)), 1 << 240) for x in list(root)[:-1]]
 
 
 def holds(ball: Ball, x: list[Fraction]) -> bool:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from exactfold import checker, find_branch, follow, random_square
-from exactfold.motion import prove, proving
+from exactfold.motion import persistence, prove
 from exactfold.motion.proving import MotionProof
 from exactfold.verdict import PROVED, UNDECIDED
 
@@ -111,8 +111,8 @@ def failing(until_attempt):
 def test_more_bits_and_another_triangle_are_tried(branch, succeeds, monkeypatch):
     motion = follow(branch, until="20deg", frames=2)
     attempt, made = failing(succeeds)
-    monkeypatch.setattr(proving, "prove", attempt)
-    proof = proving.prove_persistently(
+    monkeypatch.setattr(persistence, "prove", attempt)
+    proof = persistence.prove_persistently(
         motion, lambda held: follow(branch, until="20deg", frames=2, pinned=held)
     )
     assert [bits for bits, _ in made] == [64, 128, 128][:succeeds]
@@ -133,8 +133,8 @@ def test_more_bits_and_another_triangle_are_tried(branch, succeeds, monkeypatch)
 def test_nothing_more_is_tried_at_a_singular_place(branch, monkeypatch):
     motion = replace(follow(branch, until="20deg", frames=2), end="singular")
     attempt, made = failing(2)
-    monkeypatch.setattr(proving, "prove", attempt)
-    proof = proving.prove_persistently(motion, lambda held: motion)
+    monkeypatch.setattr(persistence, "prove", attempt)
+    proof = persistence.prove_persistently(motion, lambda held: motion)
     assert (proof.status, proof.reason, len(made)) == (UNDECIDED, "no tube", 1)
 
 

@@ -1,0 +1,144 @@
+"""Drives: folds whose angles grow together, in the ratio in which their goals are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import asin, copysign, cos, degrees, gcd, radians, sqrt
+
+import numpy as np
+
+from exactfold.arrays import FloatArray
+from exactfold.errors import BadDriveError
+from exactfold.exact.numbers import format_rational, integer_row
+from exactfold.motion.coupling import NO_COUPLING, Coupling
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+
+_DENOMINATOR = 10**12
+_BEYOND = 1e-11
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Folds that are driven from 0 to given angles: the sines of half of these keep their ratio.
+
+    With the fold angles a_k the numbers sin(a_k / 2) are in a fixed ratio all along, which is that
+    at the goal. `squares[k]` is sin(a_k / 2)^2 at the goal, exactly, with the sign of the angle:
+    positive for a valley. It is 1/2 for 90 degrees, and rational for all angles, but of most only
+    the nearest rational number with a denominator up to 10^12. `folds` are those of a pattern.
+
+    >>> Drive.of({(3, 7): 90, (4, 9): -45})
+    <Drive: 3-7 to 90, 4-9 to -45 degrees>
+    """
+
+    folds: tuple[Edge, ...]
+    squares: tuple[Fraction, ...]
+
+    @classmethod
+    def of(cls, angles: Mapping[Edge, float]) -> Drive:
+        """From angles in degrees by fold; raises `BadDriveError` for one that is no goal."""
+        for fold, angle in angles.items():
+            if not 0 < abs(angle) <= 180:
+                why = "a fold that stays flat is not driven" if not angle else "it is beyond 180"
+                raise BadDriveError(f"fold {fold_text(fold)}: the angle {angle:g}: {why}", [fold])
+        return cls(tuple(angles), tuple(square_of(angle) for angle in angles.values()))
+
+    @property
+    def angles(self) -> dict[Edge, float]:
+        """The goals in degrees."""
+        return {
+            fold: copysign(degrees(2 * asin(sqrt(abs(q)))), q)
+            for fold, q in zip(self.folds, self.squares, strict=True)
+        }
+
+    @property
+    def sines(self) -> tuple[float, ...]:
+        """sin(a_k / 2) at the goal: to first order the ratio of the angles near the flat sheet."""
+        return tuple(copysign(sqrt(abs(q)), q) for q in self.squares)
+
+    @property
+    def text(self) -> str:
+        """The folds and their goals, in words."""
+        goals = ", ".join(f"{fold_text(fold)} to {a:.6g}" for fold, a in self.angles.items())
+        return f"{goals} degrees"
+
+    def to_dict(self) -> dict[str, dict[str, object]]:
+        """By fold its goal in degrees, and its square, exactly."""
+        return {
+            fold_text(fold): {"angle": angle, "square": format_rational(q)}
+            for (fold, angle), q in zip(self.angles.items(), self.squares, strict=True)
+        }
+
+    def coupling(self, sheet: CreasePattern, place: Mapping[int, int]) -> Coupling:
+        """The equations of the drive in a sheet; `place[v]` is its vertex for v.
+
+        With the two faces at fold k of areas A, B and its length l, half the change of the square
+        of the distance of its two opposite vertices is g_k = -8 (A B / l^2) sin(a_k / 2)^2. So
+        these squares are in the ratio of q_k iff w_m g_k = w_k g_m, w_k = q_k A B / l^2, for one m
+        and all other k (docs/motion.md, 10). None are needed for one fold.
+
+        >>> from exactfold.pattern.families import single_vertex
+        >>> star = single_vertex(5)
+        >>> Drive.of({(0, 5): 90, (2, 5): 90}).coupling(star, range(6)).diagonals
+        ((1, 4), (3, 1))
+        """
+        if len(self.folds) < 2:
+            return NO_COUPLING
+        diagonals, weights = [], []
+        for (v, w), q in zip(self.folds, self.squares, strict=True):
+            i, j = sorted((place[v], place[w]))
+            left, right = sheet.opposite((i, j))
+            (ax, ay), (bx, by), (px, py), (rx, ry) = (
+                sheet.vertices[u] for u in (i, j, left, right)
+            )
+            ux, uy = bx - ax, by - ay
+            areas = (ux * (py - ay) - uy * (px - ax)) * (uy * (rx - ax) - ux * (ry - ay))
+            diagonals.append((left, right))
+            weights.append(abs(q) * areas / (ux * ux + uy * uy))
+        most = max(range(len(weights)), key=weights.__getitem__)
+        rows = []
+        for k, weight in enumerate(weights):
+            if k != most:
+                row = [Fraction(0)] * len(weights)
+                row[k], row[most] = weights[most], -weight
+                whole = integer_row(row)
+                rows.append(tuple(c // gcd(*whole) for c in whole))
+        return Coupling(tuple(diagonals), _alike(rows))
+
+    def passed(self, angles: FloatArray) -> bool:
+        """Whether these angles of the folds, in radians, are clearly beyond their goals."""
+        sines = np.sin(angles / 2)
+        return bool((sines / np.array(self.sines) > 1 + _BEYOND).all())
+
+    def ways(self, labels: Sequence[int]) -> tuple[tuple[Edge, int], ...]:
+        """The folds by vertices of the sheet of a framework, 1 for a valley and -1 for a mountain.
+
+        `labels[v]` is the vertex of the pattern that vertex v of that sheet is.
+        """
+        place = {label: v for v, label in enumerate(labels)}
+        return tuple(
+            ((min(place[v], place[w]), max(place[v], place[w])), 1 if q > 0 else -1)
+            for (v, w), q in zip(self.folds, self.squares, strict=True)
+        )
+
+    def __repr__(self) -> str:
+        return f"<Drive: {self.text}>"
+
+
+def _alike(rows: list[tuple[int, ...]]) -> tuple[tuple[int, ...], ...]:
+    """Rows multiplied by powers of 2, so that their largest numbers have the same length."""
+    lengths = [max(abs(c).bit_length() for c in row) for row in rows]
+    most = max(lengths)
+    return tuple(tuple(c << most - n for c in row) for row, n in zip(rows, lengths, strict=True))
+
+
+def square_of(angle: float) -> Fraction:
+    """sin(a / 2)^2 of an angle in degrees with its sign, to about 24 digits."""
+    square = Fraction((1 - cos(radians(abs(angle)))) / 2).limit_denominator(_DENOMINATOR)
+    return square if angle > 0 else -square
+
+
+def fold_text(fold: Edge) -> str:
+    """A fold as it is printed."""
+    return f"{fold[0]}-{fold[1]}"
