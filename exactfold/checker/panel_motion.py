@@ -85,7 +85,7 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
         end = _parameter(evidence["contact"]) if through else Fraction(1)
         require(time_of(end)[1] <= latest, "the contact may be later than claimed")
         if through:
-            _check_crossing(drive, panels, places, last, end, contact)
+            _check_crossing(panels, places, end, contact)
         else:
             _check_closing(drive, contact)
 
@@ -95,8 +95,7 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
             return "the panels"
         return panels.may_touch(piece, -1 << GRID, 1 << GRID, _NARROWEST)
 
-    message = "{} may touch where the motion is claimed to be clear"
-    places.each(Fraction(0), last, touching, message)
+    places.each(Fraction(0), last, touching)
     return {"sha256": digest, **claims}
 
 
@@ -129,23 +128,13 @@ class Panels(FacePairs):
         super().__init__(faces, names, [body[n] for n in names], {}, flat, place, MOST_TESTS)
 
 
-def _check_crossing(
-    drive: Drive, panels: Panels, places: Places, last: Fraction, end: Fraction, claim: Any
-) -> None:
+def _check_crossing(panels: Panels, places: Places, end: Fraction, claim: Any) -> None:
     """An edge of one of two panels runs through the other at the parameter `end`."""
     require(claim["folds"] == [], "a contact has no folds")
     touching = []
     for face in items(claim["faces"], "faces", 2):
         corners = frozenset(natural(v, "corner") for v in items(face, "face"))
-        require(corners in panels.triangles, "what touches is no panel")
-        touching.append(panels.triangles[corners])
-
-    def known(piece: Piece | None) -> str:
-        panels.spend(places.work)
-        return "" if piece else "the panels"
-
-    if not all(mode.linear for mode in drive.modes):
-        places.each(last, end, known, "{} may not come so far: a fold may close before")
+        touching.append(panels.triangles.get(corners, []))
     piece = places.piece(end - end / (1 << 20), end)
     through = piece is not None and any(
         panels.crossing(piece, end, a, b) for a in touching[0] for b in touching[1]

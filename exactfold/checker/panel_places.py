@@ -97,13 +97,11 @@ class Places:
                 found = [one if body == two else body for body in found]
         return found
 
-    def each(
-        self, first: Fraction, last: Fraction, said: Callable[[Piece | None], str], message: str
-    ) -> None:
+    def each(self, first: Fraction, last: Fraction, said: Callable[[Piece | None], str]) -> None:
         """Refuse unless `said` has nothing to say against pieces that reach from `first` to `last`.
 
-        It is given None where positions are not known well. Where it says something the piece is
-        halved; the message is about what was said at last.
+        It names what may touch, and is given None where positions are not known well. Where it says
+        something the piece is halved.
         """
         count = int((last - first) / _WIDEST) + 1
         ends = [first + (last - first) * k / count for k in range(count + 1)]
@@ -115,7 +113,7 @@ class Places:
                 middle = (low + high) / 2
                 stack += [(middle, high), (low, middle)]
             else:
-                require(not what, message.format(what))
+                require(not what, f"{what} may touch where the motion is claimed to be clear")
 
     def piece(self, low: Fraction, high: Fraction) -> Piece | None:
         """The positions for low <= x <= high, None if they are not known well."""
