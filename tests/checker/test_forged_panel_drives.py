@@ -5,7 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import product
 
-import pytest
 from forge import refused, verified
 from forge_panel_motions import at_rest, given, of_lines, stopped
 from forge_panels import bent
