@@ -9,6 +9,7 @@ all loops, fold until the first fold is closed (docs/panel_motion.md, 1 and 2).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from .intervals import Interval
@@ -167,14 +168,15 @@ class Drive:
 
     # --- fold angles -----------------------------------------------------------------------------
 
-    def tangents(self, c: Series, s: Series) -> dict[Edge, _Pair]:
-        """For each active fold (C, S) with S / C = tan(angle / 2), where the drivers have s / c.
+    def tangents(self, driven: Callable[[Edge], _Pair]) -> dict[Edge, _Pair]:
+        """For each active fold (C, S) with S / C = tan(angle / 2), from those of the drivers.
 
         Raises `ZeroDivisionError` where that is not certain: in modes that are not linear, where a
         fold may be closed.
         """
         found: dict[Edge, _Pair] = {}
         for mode in self.modes:
+            c, s = driven(mode.driver)
             start = s if self.letters[mode.driver] == "V" else Series([]) - s
             taus = {mode.driver: (c, start.times(_POINT / self._lengths[mode.driver]))}
             for v, u in mode.way:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from math import floor
 
@@ -16,6 +17,7 @@ from .motion_lengths import GRID
 from .panel_drive import Drive, length
 from .panel_series import BITS, DEGREE, ONE, Polynomial, Series, polynomial, scaled, thin, times
 from .panel_sheet import Edge, PanelSheet, pair
+from .panel_times import Clock
 from .reading import require
 
 _SHIFT = BITS - GRID
@@ -63,8 +65,8 @@ def shrunk(sheet: PanelSheet) -> None:
 class Places:
     """The positions of the vertices of a sheet that was shrunk, the first panel being held."""
 
-    def __init__(self, drive: Drive) -> None:
-        self.drive, sheet = drive, drive.sheet
+    def __init__(self, drive: Drive, clock: Clock) -> None:
+        self.drive, self.clock, sheet = drive, clock, drive.sheet
         ends = [[thin(c) for c in point] for point in sheet.points]
         self._flat = [[(c.low + c.high) >> 1 for c in point] for point in ends]
         self._blur = 1 + max(c.high - c.low for point in ends for c in point)
@@ -140,7 +142,8 @@ class Places:
         one = Interval(ONE, ONE, BITS)
         found = {}
         known: dict[tuple[int, ...], tuple[Series, Series]] = {}
-        for fold, (c, s) in self.drive.tangents(Series([one - x, -one]), Series([x, one])).items():
+        driven = partial(self.clock.driven, x)
+        for fold, (c, s) in self.drive.tangents(driven).items():
             key = (*c.ends, *s.ends)
             if key not in known:
                 square = s * s

@@ -203,7 +203,7 @@ def worth_running(before: str, after: str, every: bool = False) -> bool:
 
 
 def functions_of(names: list[str]) -> Functions:
-    """The functions and methods of modules, by `module:name`; those that call `super` keep theirs."""
+    """The functions and methods of modules, by `module:name`, but those that call `super`."""
     found = {}
     for module in names:
         loaded = import_module(f"exactfold.checker.{module}")

@@ -30,8 +30,21 @@ def strip(widths: list[int]) -> PanelPattern:
     return grid(len(widths), 1, lambda i, j: (Fraction(xs[i]), Fraction(2 * j)))
 
 
+def with_a_corner() -> PanelPattern:
+    """A vertex that is not linear, and a fold across the corner of the sheet."""
+    sheet = mesh(1, 1, 1)
+    points, edges = list(sheet.vertices), set(sheet.edges) - {(0, 1), (0, 3)}
+    for v in (1, 3):
+        points.append(tuple((a + 2 * b) / 3 for a, b in zip(points[0], points[v], strict=True)))
+    return PanelPattern(points, sorted(edges | {(0, 9), (1, 9), (0, 10), (3, 10), (9, 10)}))
+
+
 MOTIONS: dict[str, Callable[[], Any]] = {
     "flaps": lambda: follow_panels(strip([3, 1, 3]), frames=2),
+    "rated": lambda: follow_panels(strip([3, 1, 3]), amounts={(2, 3): 1.0, (4, 5): 0.5}, frames=2),
+    "mixed": lambda: follow_panels(
+        with_a_corner(), until="40deg", amounts={1: 0.625, (9, 10): -1.0}, frames=2
+    ),
     "closing": lambda: follow_panels(strip([1, 4]), frames=2),
     "vertex": lambda: follow_panels(panels(single_vertex(4)), until="60deg", frames=2),
     "bent": lambda: follow_panels(mesh(1, 1, 1), until="20deg", frames=2),

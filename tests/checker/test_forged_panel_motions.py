@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from fractions import Fraction
 from itertools import product
-from math import atan, pi
+from math import atan, pi, sin
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from forge import Document, refused, unreadable, verified
 from forge_panel_motions import MOTIONS, at_rest, forged, given, stopped, whole
 
 from exactfold import checker
-from exactfold.checker import panel_drive, panel_motion
+from exactfold.checker import panel_drive, panel_motion, panel_times
 from exactfold.checker.intervals import Interval
 from exactfold.checker.motion_lengths import GRID, ONE
 from exactfold.checker.panel_cut import cut
@@ -22,8 +22,9 @@ from exactfold.checker.panel_drive import Drive
 from exactfold.checker.panel_places import Places, shrunk
 from exactfold.checker.panel_series import BITS
 from exactfold.checker.panel_sheet import read_panels
+from exactfold.checker.panel_times import OneRate, Rates
 
-SLOW = "closing", "tiling", "vertex", "miura", "bent"
+SLOW = "mixed", "closing", "tiling", "vertex", "miura", "bent"
 
 
 # --- what is true --------------------------------------------------------------------------------
@@ -38,6 +39,7 @@ def test_what_is_claimed_is_proved(name: str) -> None:
     assert line.startswith("VALID: the panels fold, ")
     low = float(Fraction(claims["clear"]))
     ends = {"flaps": "0-2-3-1 and 4-6-7-5 do by ", "closing": "the folds are closed by 3.14159"}
+    ends["rated"] = ends["flaps"]
     assert ("contact" in claims) == (name in ends)
     if name in ends:
         high = Fraction(claims["contact"]["time"][1])
@@ -45,7 +47,7 @@ def test_what_is_claimed_is_proved(name: str) -> None:
         assert low < high < low + 1e-3
         assert ends[name] in line
     else:
-        until = {"vertex": pi / 3, "bent": pi / 9}.get(name, pi / 18)
+        until = {"vertex": pi / 3, "bent": pi / 9, "mixed": pi * 2 / 9}.get(name, pi / 18)
         assert low == pytest.approx(until)
 
 
@@ -68,6 +70,73 @@ def test_a_fold_that_is_not_named_closes_in_modes_that_are_not_linear() -> None:
     assert ", a fold is closed by 3.14159 (180 degrees)" in checker.summary(verified(document))
     document["claims"]["contact"]["folds"] = document["claims"]["drivers"]
     stopped(document, "a fold is not known to close")
+
+
+# --- rates of their own --------------------------------------------------------------------------
+
+
+def test_flaps_at_two_rates_meet_where_the_end_of_one_is_on_the_other() -> None:
+    """The end of the first, 3 (-cos t, sin t) from its fold at x = 3, on the second, from x = 4."""
+    document = whole("rated")
+    claims = verified(document)
+    assert claims["rates"] == ["1", "1/2"]
+    low, high = (float(Fraction(t)) for t in claims["contact"]["time"])
+    across = [sin(t / 2) + 3 * sin(1.5 * t) for t in (low - 1e-12, high + 1e-12)]
+    assert across[0] * across[1] < 0
+    assert high - low < 1e-5
+    assert ", driven by 2-3, 4-5 at rates of their own; no two" in checker.summary(claims)
+
+
+def test_rates() -> None:
+    message = "the rates are not positive with the largest 1"
+    for rates in (["1", "2"], ["1", "0"], ["1", "-1/2"], ["1/2", "1/2"]):
+        document = at_rest(given("rated"))
+        document["claims"]["rates"] = rates
+        stopped(document, message)
+    document["claims"]["rates"] = ["1"]
+    refused(document, "rates has not 2 entries")
+    document = at_rest(given("rated"))
+    del document["claims"]["rates"]
+    message = "claims: expected an object with the keys assignment drivers"
+    refused(document, f"{message} rates clear")
+    document = at_rest(given("rated"))
+    document["version"] = 1
+    refused(document, f"{message} clear")
+
+
+def test_slower_folds_are_not_closed() -> None:
+    document = at_rest(given("rated"))
+    closing = {"kind": "flat-fold", "time": ["0", "355/113"], "faces": [], "folds": [[2, 3]]}
+    document["claims"]["contact"] = closing
+    verified(document)
+    closing["folds"] = [[4, 5]]
+    stopped(document, "a fold is not known to close")
+    closing |= {"folds": [], "time": ["0", "314/100"]}
+    stopped(document, "the contact may be later than claimed")
+
+
+def test_no_driver_is_followed_beyond_180_degrees() -> None:
+    document = given("flaps")
+    document["version"] = 2
+    document["claims"]["rates"] = ["1", "1"]
+    document["evidence"]["contact"] = 15 << 36
+    document["claims"]["contact"]["time"][1] = "4"
+    stopped(document, "a parameter is out of range")
+
+
+def test_cosines_and_sines() -> None:
+    """Against those of 1 and 2 to 30 digits, and of an interval that holds both."""
+    known = {  # cosine and sine to 30 digits
+        1: ("0.54030230586813971740093660744298", "0.8414709848078965066525023216303"),
+        2: ("-0.41614683654714238699756822950076", "0.90929742682568169539601986591174"),
+    }
+    wide = panel_times.cosine_and_sine(Interval(1 << BITS, 2 << BITS, BITS))
+    for angle, values in known.items():
+        found = panel_times.cosine_and_sine(Interval.of(Fraction(angle), BITS))
+        for text, narrow, around in zip(values, found, wide, strict=True):
+            value = Fraction(text) * (1 << BITS)
+            assert narrow.low < value < narrow.high < narrow.low + (1 << 10)
+            assert around.low < value < around.high
 
 
 # --- false times and contacts --------------------------------------------------------------------
@@ -94,10 +163,10 @@ def test_times_that_are_too_late_or_too_early() -> None:
 
 def test_times_are_arc_tangents() -> None:
     for x in (0.0, 0.1, 0.25, 0.5, 0.625, 0.875, 1 - 2**-30):
-        low, high = panel_motion.time_of(Fraction(x))
+        low, high = panel_times.time_of(Fraction(x))
         assert high - low < Fraction(1, 10**24)
         assert abs(float(low) - 2 * atan(x / (1 - x))) < 1e-14
-    low, high = panel_motion.time_of(Fraction(1))
+    low, high = panel_times.time_of(Fraction(1))
     digits = Fraction(31415926535897932384626433832795, 10**31)  # of pi, known
     assert low < digits < digits + Fraction(1, 10**31) < high
 
@@ -217,8 +286,8 @@ def test_keys() -> None:
     document["claims"]["contact"]["more"] = 1
     refused(document, "contact: expected an object with the keys kind time faces folds")
     document = given("flaps")
-    document["version"] = 2
-    unreadable(json.dumps(document), "version 2 is not known to this checker")
+    document["version"] = 3
+    unreadable(json.dumps(document), "version 3 is not known to this checker")
     document = given("vertex")
     document["claims"]["drivers"] = [["a", "b"]]
     refused(document, "a vertex is not a natural number")
@@ -232,7 +301,9 @@ def test_the_work_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
 # --- where the panels are ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["flaps", "bent", pytest.param("tiling", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name", ["flaps", "bent", "rated", "mixed", pytest.param("tiling", marks=pytest.mark.slow)]
+)
 def test_positions_are_those_of_the_frames(name: str) -> None:
     """Against frames in floats, and the boxes against pieces that are a thousand times thinner."""
     motion = MOTIONS[name]()
@@ -247,9 +318,11 @@ def test_positions_are_those_of_the_frames(name: str) -> None:
     factor = sizes[0] / sizes[1]
     claims = document["claims"]
     drive = Drive(sheet, claims["assignment"], claims["drivers"], document["evidence"]["vertices"])
-    places = Places(drive)
+    rates = claims.get("rates")
+    clock = Rates(claims["drivers"], rates) if rates else OneRate()
+    places = Places(drive, clock)
     x = Fraction(document["evidence"]["clear"], 1 << 40)
-    pieces = [places.piece(x * (1 - Fraction(1, k)), x) for k in (6, 6000)]
+    pieces = [places.piece(x * (1 - Fraction(1, k)), x) for k in (12, 6000)]
     ends = []
     for piece in pieces:
         assert piece is not None
@@ -260,7 +333,7 @@ def test_positions_are_those_of_the_frames(name: str) -> None:
     off = np.abs(np.array(ends[0]) - ends[1]).max() * ONE
     assert off <= pieces[0].errors[0] + pieces[1].errors[0] + 64
     there = np.array(ends[1]).reshape(-1, 3) / factor
-    coords = motion.at(min(2 * atan(float(x / (1 - x))), motion.duration))
+    coords = motion.at(min(float(clock.time(x)[0]), motion.duration))
     held = sheet.panels[0]
     assert np.abs(distances(there) - distances(coords)).max() < 1e-8
     flat = np.array([[float(Fraction(c.parts[0])) for c in point] for point in before])
