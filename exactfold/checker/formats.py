@@ -32,6 +32,9 @@ MOTION, MOTION_VERSION = "exactfold motion", 1
 PANEL_MOTION, PANEL_MOTION_VERSION = "exactfold panel motion", 1
 """A motion of rigid panels, and what touches first (docs/panel_motion.md)."""
 
+RATED_VERSION = 2
+"""The same of modes and free folds that move at rates of their own."""
+
 LOOPS, LOOPS_VERSION = "exactfold loops", 1
 """The loops of true motions through the flat state, line by line (docs/motions.md)."""
 

@@ -9,6 +9,7 @@ all loops, fold until the first fold is closed (docs/panel_motion.md, 1 and 2).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from .intervals import Interval
@@ -77,32 +78,29 @@ class Drive:
 
     def _lines(self, near: Near, given: Any) -> dict[int, Line]:
         found: dict[int, Line] = {}
+        chosen = []
         for entry in items(given, "vertices"):
             keys(entry, "vertex radicand densities", "a vertex")
-            v = natural(entry["vertex"], "vertex")
-            require(v in near and v not in found, f"the vertex {v} has no active fold, or is twice")
+            chosen.append(natural(entry["vertex"], "vertex"))
+        message = "the vertices with densities are not those with active folds, each once"
+        require(sorted(chosen) == sorted(near), message)
+        for v, entry in zip(chosen, given, strict=True):
             tower, radicand = self.sheet.tower, None
             if entry["radicand"] is not None:
                 radicand = _number(tower, entry["radicand"])
-                above, _ = tower.adjoined(radicand)
-                require(above is not tower, f"the radicand at {v} is a square")
-                tower = above
+                tower, _ = tower.adjoined(radicand)
             densities: dict[int, Number] = {}
             for value in items(entry["densities"], "densities"):
                 u, parts = items(value, "a density", 2)
                 densities[natural(u, "vertex")] = _number(tower, parts)
-            require(
-                len(densities) == len(near[v]) and densities.keys() == set(near[v]),
-                f"the densities at {v} are not those of its active folds",
-            )
+            same = densities.keys() == set(near[v])
+            require(same, f"the densities at {v} are not those of its active folds")
             turns = {
                 densities[u].sign() * (1 if self.letters[pair(v, u)] == "V" else -1)
                 for u in near[v]
             }
             require(len(turns) == 1 and 0 not in turns, f"the letters at {v} are others")
             found[v] = Line(densities, radicand)
-        missing = sorted(set(near) - set(found))
-        require(not missing, f"the densities at {missing[:1]} are missing")
         return found
 
     def _driven(self, near: Near, active: list[Edge], drivers: list[Edge]) -> list[Mode]:
@@ -170,14 +168,15 @@ class Drive:
 
     # --- fold angles -----------------------------------------------------------------------------
 
-    def tangents(self, c: Series, s: Series) -> dict[Edge, _Pair]:
-        """For each active fold (C, S) with S / C = tan(angle / 2), where the drivers have s / c.
+    def tangents(self, driven: Callable[[Edge], _Pair]) -> dict[Edge, _Pair]:
+        """For each active fold (C, S) with S / C = tan(angle / 2), from those of the drivers.
 
         Raises `ZeroDivisionError` where that is not certain: in modes that are not linear, where a
         fold may be closed.
         """
         found: dict[Edge, _Pair] = {}
         for mode in self.modes:
+            c, s = driven(mode.driver)
             start = s if self.letters[mode.driver] == "V" else Series([]) - s
             taus = {mode.driver: (c, start.times(_POINT / self._lengths[mode.driver]))}
             for v, u in mode.way:
@@ -185,9 +184,9 @@ class Drive:
                 for w in mode.near[v]:
                     if pair(v, w) not in taus:
                         taus[pair(v, w)] = self._passed(mode, known, v, u, w)
+            if not mode.linear and any(map(may_be_closed, taus.values())):
+                raise ZeroDivisionError("a fold may be closed")
             for fold, (below, above) in taus.items():
-                if not mode.linear and below.coefficients[0].sign() <= 0:
-                    raise ZeroDivisionError("a fold may be closed")
                 found[fold] = below, above.times(self._lengths[fold])
         return found
 
@@ -204,8 +203,6 @@ class Drive:
         p, q, b = quadratic
         # Of the two roots that which is the gain where the fold is flat.
         side = (p * gain + p * gain + b).sign()
-        if not side:
-            raise ZeroDivisionError("two roots that are not told apart")
         last = -(gain * (p * gain + b))
         twice = last + last
         leading = (c * c).times(p) + (n * n).times(q)
@@ -231,6 +228,11 @@ class Drive:
                 quadratic = step.quadratic and tuple(map(thin, step.quadratic))
                 self._steps[key] = thin(step.gain), quadratic
         return self._steps[key]
+
+
+def may_be_closed(tangent: _Pair) -> bool:
+    """Whether C of a tangent S / C may be 0 or negative, as it is from where the fold is closed."""
+    return tangent[0].coefficients[0].sign() <= 0
 
 
 def length(sheet: PanelSheet, v: int, u: int) -> Interval:

@@ -1,9 +1,8 @@
 """Certificates of motions of rigid panels: how they fold, and what touches first.
 
-The drivers have the half-angle tangent x / (1 - x), so that x goes from 0, where the sheet is flat,
-to 1, where they are closed; time is their angle. All positions are analytic functions of x, and
-planes are found that part all panels until a parameter. At a later one an edge of a panel runs
-through another, or all folds are closed (docs/panel_motion.md, 5 and 6).
+All positions are analytic functions of a parameter x of the time (`panel_times`), and planes are
+found that part all panels until a parameter. At a later one an edge of a panel runs through
+another, or folds are closed (docs/panel_motion.md, 5 and 6).
 """
 
 from __future__ import annotations
@@ -12,15 +11,14 @@ from fractions import Fraction
 from math import degrees
 from typing import Any
 
-from .formats import MOST_TESTS, PANEL_MOTION, PANEL_MOTION_VERSION
-from .intervals import Interval
+from .formats import MOST_TESTS, PANEL_MOTION, PANEL_MOTION_VERSION, RATED_VERSION
 from .motion_faces import FacePairs
 from .motion_lengths import GRID
 from .panel_cut import Triangle, cut
 from .panel_drive import Drive
 from .panel_places import Piece, Places, shrunk
-from .panel_series import BITS
 from .panel_sheet import read_panels
+from .panel_times import Clock, OneRate, Rates, time_of
 from .reading import (
     MALFORMED,
     CertificateError,
@@ -37,14 +35,13 @@ _NARROWEST = 1 << GRID - 15
 _NAMED = 3
 _KINDS = "contact", "flat-fold"
 _PARAMETER_BITS = 40
-_HALVINGS = 4
-_TERMS = 12
 
 
 def read(data: Any) -> dict[str, Any]:
     """`data` if it is a certificate of a motion of panels; raises `FormatError`."""
     names = "format version pattern claims evidence"
-    return document(data, PANEL_MOTION, PANEL_MOTION_VERSION, names)
+    rated = isinstance(data, dict) and data.get("version") == RATED_VERSION
+    return document(data, PANEL_MOTION, RATED_VERSION if rated else PANEL_MOTION_VERSION, names)
 
 
 def check(data: dict[str, Any]) -> dict[str, Any]:
@@ -52,9 +49,9 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
     Returns the claims and the SHA-256 of the pattern. The claims are: from the flat sheet on the
     panels fold with the mountains and valleys of `assignment` and no other fold, the folds
-    `drivers` all having the same angle, which is the time, until a fold is closed; no two panels
-    touch beyond what they share at any time from 0 until before `clear`; with `contact`, some do
-    at or before its second time, and none before its first (docs/panel_motion.md, 6).
+    `drivers` having the angle t at the time t, or t times their `rates`, until a fold is closed; no
+    two panels touch beyond what they share at any time from 0 until before `clear`; with `contact`,
+    some do at or before its second time, and none before its first (docs/panel_motion.md, 6).
     """
     try:
         return _check(data)
@@ -66,28 +63,32 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     sheet, digest = read_panels(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
     more = " contact" if isinstance(claims, dict) and "contact" in claims else ""
-    keys(claims, "assignment drivers clear" + more, "claims")
+    rated = data["version"] == RATED_VERSION
+    keys(claims, f"assignment drivers{' rates' * rated} clear{more}", "claims")
     contact = claims.get("contact")
     through = contact is not None and contact["kind"] == "contact"
     keys(evidence, "vertices clear" + (" contact" if through else ""), "evidence")
     shrunk(sheet)
     drive = Drive(sheet, claims["assignment"], claims["drivers"], evidence["vertices"])
-    places = Places(drive)
-    last = _parameter(evidence["clear"])
+    clock = Rates(claims["drivers"], claims["rates"]) if rated else OneRate()
+    places = Places(drive, clock)
+    last = _parameter(clock, evidence["clear"])
     clear = parse_rational(claims["clear"])
-    require(clear <= time_of(last)[0], "what is clear is shorter than claimed")
+    require(clear <= clock.time(last)[0], "what is clear is shorter than claimed")
     panels = Panels(drive, places)
     if contact is not None:
         keys(contact, "kind time faces folds", "contact")
         require(contact["kind"] in _KINDS, "the contact is of no known kind")
         first, latest = map(parse_rational, items(contact["time"], "time", 2))
         require(first == clear, "a contact is not claimed from where the motion is clear")
-        end = _parameter(evidence["contact"]) if through else Fraction(1)
-        require(time_of(end)[1] <= latest, "the contact may be later than claimed")
         if through:
-            _check_crossing(drive, panels, places, last, end, contact)
+            end = _parameter(clock, evidence["contact"])
+            by = clock.time(end)[1]
+            _check_crossing(panels, places, end, contact)
         else:
-            _check_closing(drive, contact)
+            by = time_of(Fraction(1))[1]
+            _check_closing(drive, clock, contact)
+        require(by <= latest, "the contact may be later than claimed")
 
     def touching(piece: Piece | None) -> str:
         panels.spend(places.work)
@@ -95,21 +96,20 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
             return "the panels"
         return panels.may_touch(piece, -1 << GRID, 1 << GRID, _NARROWEST)
 
-    message = "{} may touch where the motion is claimed to be clear"
-    places.each(Fraction(0), last, touching, message)
+    places.each(Fraction(0), last, touching)
     return {"sha256": digest, **claims}
 
 
-def _parameter(value: Any) -> Fraction:
+def _parameter(clock: Clock, value: Any) -> Fraction:
     found = Fraction(natural(value, "a parameter"), 1 << _PARAMETER_BITS)
-    require(found < 1, "a parameter is out of range")
+    require(found < clock.last, "a parameter is out of range")
     return found
 
 
 class Panels(FacePairs):
     """The pairs of triangles of different panels, and which triangles a panel has.
 
-    Folds need no test: before x = 1 none is closed.
+    Folds need no test: before the time pi none is closed.
     """
 
     def __init__(self, drive: Drive, places: Places) -> None:
@@ -129,23 +129,13 @@ class Panels(FacePairs):
         super().__init__(faces, names, [body[n] for n in names], {}, flat, place, MOST_TESTS)
 
 
-def _check_crossing(
-    drive: Drive, panels: Panels, places: Places, last: Fraction, end: Fraction, claim: Any
-) -> None:
+def _check_crossing(panels: Panels, places: Places, end: Fraction, claim: Any) -> None:
     """An edge of one of two panels runs through the other at the parameter `end`."""
     require(claim["folds"] == [], "a contact has no folds")
     touching = []
     for face in items(claim["faces"], "faces", 2):
         corners = frozenset(natural(v, "corner") for v in items(face, "face"))
-        require(corners in panels.triangles, "what touches is no panel")
-        touching.append(panels.triangles[corners])
-
-    def known(piece: Piece | None) -> str:
-        panels.spend(places.work)
-        return "" if piece else "the panels"
-
-    if not all(mode.linear for mode in drive.modes):
-        places.each(last, end, known, "{} may not come so far: a fold may close before")
+        touching.append(panels.triangles.get(corners, []))
     piece = places.piece(end - end / (1 << 20), end)
     through = piece is not None and any(
         panels.crossing(piece, end, a, b) for a in touching[0] for b in touching[1]
@@ -153,40 +143,16 @@ def _check_crossing(
     require(through, "no side runs through the other panel")
 
 
-def _check_closing(drive: Drive, claim: Any) -> None:
+def _check_closing(drive: Drive, clock: Clock, claim: Any) -> None:
     """The folds named are closed when the drivers are; some fold is by then, in any motion."""
     require(claim["faces"] == [], "folds that close have no faces")
     folds = [
         tuple(natural(v, "vertex") for v in items(fold, "fold", 2))
         for fold in items(claim["folds"], "folds")
     ]
-    closed = {fold for mode in drive.modes if mode.linear for fold in mode.folds}
+    modes = [mode for mode in drive.modes if mode.linear and clock.closes(mode.driver)]
+    closed = {fold for mode in modes for fold in mode.folds}
     require(closed.issuperset(folds), "a fold is not known to close")
-
-
-def time_of(x: Fraction) -> tuple[Fraction, Fraction]:
-    """Bounds of the angle 2 arctan(x / (1 - x)), which is pi / 2 + 2 arctan(2 x - 1)."""
-    one = Interval.of(Fraction(1), BITS)
-    half = arctan(one) + arctan(Interval.of(2 * x - 1, BITS))
-    total = half + half
-    return Fraction(max(total.low, 0), 1 << BITS), Fraction(total.high, 1 << BITS)
-
-
-def arctan(z: Interval) -> Interval:
-    """The arc tangent of a number of size at most 1.
-
-    arctan z = 2 arctan(z / (1 + sqrt(1 + z^2))), four times, and then its series, the rest of
-    which is at most the first term left out.
-    """
-    one = Interval.of(Fraction(1), BITS)
-    for _ in range(_HALVINGS):
-        z = z / (one + (one + z * z).root())
-    total, power = Interval.of(Fraction(0), BITS), z
-    for k in range(_TERMS):
-        term = power * Interval.of(Fraction((-1) ** k, 2 * k + 1), BITS)
-        total = total + term
-        power = power * z * z
-    return Interval((total.low - 1) << _HALVINGS, (total.high + 1) << _HALVINGS, BITS)
 
 
 def summary(claims: dict[str, Any]) -> str:
@@ -195,6 +161,7 @@ def summary(claims: dict[str, Any]) -> str:
     number = counted(len(letters) - letters.count("F"), "fold moves", "folds move")
     drivers = ", ".join(f"{i}-{j}" for i, j in claims["drivers"][:_NAMED])
     more = f" and {len(claims['drivers']) - _NAMED} more" if claims["drivers"][_NAMED:] else ""
+    rates = " at rates of their own" if "rates" in claims else ""
     times = [
         float(parse_rational(t))
         for t in ([claims["clear"]] if contact is None else contact["time"])
@@ -204,7 +171,7 @@ def summary(claims: dict[str, Any]) -> str:
         for t, a in zip(_told_apart(times), _told_apart(list(map(degrees, times))), strict=True)
     ]
     text = (
-        f"VALID: the panels fold, {number} of {len(letters)}, driven by {drivers}{more}; "
+        f"VALID: the panels fold, {number} of {len(letters)}, driven by {drivers}{more}{rates}; "
         f"no two panels touch before the time {angles[0]}"
     )
     if contact is not None:

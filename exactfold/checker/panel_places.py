@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from math import floor
 
@@ -16,6 +17,7 @@ from .motion_lengths import GRID
 from .panel_drive import Drive, length
 from .panel_series import BITS, DEGREE, ONE, Polynomial, Series, polynomial, scaled, thin, times
 from .panel_sheet import Edge, PanelSheet, pair
+from .panel_times import Clock
 from .reading import require
 
 _SHIFT = BITS - GRID
@@ -63,8 +65,8 @@ def shrunk(sheet: PanelSheet) -> None:
 class Places:
     """The positions of the vertices of a sheet that was shrunk, the first panel being held."""
 
-    def __init__(self, drive: Drive) -> None:
-        self.drive, sheet = drive, drive.sheet
+    def __init__(self, drive: Drive, clock: Clock) -> None:
+        self.drive, self.clock, sheet = drive, clock, drive.sheet
         ends = [[thin(c) for c in point] for point in sheet.points]
         self._flat = [[(c.low + c.high) >> 1 for c in point] for point in ends]
         self._blur = 1 + max(c.high - c.low for point in ends for c in point)
@@ -97,13 +99,11 @@ class Places:
                 found = [one if body == two else body for body in found]
         return found
 
-    def each(
-        self, first: Fraction, last: Fraction, said: Callable[[Piece | None], str], message: str
-    ) -> None:
+    def each(self, first: Fraction, last: Fraction, said: Callable[[Piece | None], str]) -> None:
         """Refuse unless `said` has nothing to say against pieces that reach from `first` to `last`.
 
-        It is given None where positions are not known well. Where it says something the piece is
-        halved; the message is about what was said at last.
+        It names what may touch, and is given None where positions are not known well. Where it says
+        something the piece is halved.
         """
         count = int((last - first) / _WIDEST) + 1
         ends = [first + (last - first) * k / count for k in range(count + 1)]
@@ -115,7 +115,7 @@ class Places:
                 middle = (low + high) / 2
                 stack += [(middle, high), (low, middle)]
             else:
-                require(not what, message.format(what))
+                require(not what, f"{what} may touch where the motion is claimed to be clear")
 
     def piece(self, low: Fraction, high: Fraction) -> Piece | None:
         """The positions for low <= x <= high, None if they are not known well."""
@@ -142,7 +142,8 @@ class Places:
         one = Interval(ONE, ONE, BITS)
         found = {}
         known: dict[tuple[int, ...], tuple[Series, Series]] = {}
-        for fold, (c, s) in self.drive.tangents(Series([one - x, -one]), Series([x, one])).items():
+        driven = partial(self.clock.driven, x)
+        for fold, (c, s) in self.drive.tangents(driven).items():
             key = (*c.ends, *s.ends)
             if key not in known:
                 square = s * s

@@ -77,9 +77,7 @@ class Series:
     def root(self) -> Series:
         """The positive r with r^2 = a; raises `ZeroDivisionError` if a may be 0 or negative."""
         a = self.coefficients
-        if a[0].sign() <= 0:
-            raise ZeroDivisionError("the root of an interval that is not positive")
-        found = [a[0].root()]
+        found = [a[0].root()]  # from 0 on if a may be 0 or negative
         half = Interval(ONE, ONE, BITS) / (found[0] + found[0])
         for n in range(1, TERMS):
             rest = a[n]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil, cos, floor, sin
 
-from exactfold.checker.formats import PANEL_MOTION, PANEL_MOTION_VERSION
-from exactfold.checker.panel_motion import time_of
+from exactfold.checker.formats import PANEL_MOTION, PANEL_MOTION_VERSION, RATED_VERSION
+from exactfold.checker.panel_times import OneRate, Rates, time_of
 from exactfold.errors import NotApplicableError
 from exactfold.evidence.entries import Document
 from exactfold.evidence.panels import number_document, panels_document
@@ -32,8 +32,8 @@ def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -
     It claims that the panels fold so, and a time before which none touch; and by when some do, if
     that is proved. Times are those of `contacts` with a little room.
 
-    Raises `NotApplicableError` where the rates of modes and free folds differ in size, or a vertex
-    needs more than one square root beside those of the coordinates.
+    Raises `NotApplicableError` where a vertex needs more than one square root beside those of the
+    coordinates.
 
     >>> from exactfold import checker
     >>> from exactfold.motion.panel_clearance import prove_contacts
@@ -44,26 +44,28 @@ def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -
     >>> checker.check(certificate_of_panel_motion(motion, prove_contacts(motion)))["drivers"]
     [[0, 4]]
     """
-    if any(abs(rate) != 1.0 for rate in (*motion.rates, *motion.free_rates.values())):
-        raise NotApplicableError(
-            "a certificate is for modes and free folds that all have the same rate"
-        )
     pattern = motion.pattern
     letters = motion.assignment
-    drivers = [*motion.drivers, *motion.free_rates]
-    last = max(_at_most(contacts.clear) - _SLACK, Fraction(0))
+    drivers = [list(fold) for fold in (*motion.drivers, *motion.free_rates)]
+    sizes = [Fraction(abs(rate)) for rate in (*motion.rates, *motion.free_rates.values())]
+    rates = [format_rational(size) for size in sizes]
+    rated = min(sizes) < 1
+    clock = Rates(drivers, rates) if rated else OneRate()
+    parameter = _time_itself if rated else _tangent
+    last = max(_at_most(parameter(contacts.clear)) - _SLACK, Fraction(0))
     if contacts.clear >= motion.duration:
-        last = _at_least(motion.duration)
-        clear = min(Fraction(motion.duration), time_of(last)[0])
+        last = _at_least(parameter(motion.duration))
+        clear = min(Fraction(motion.duration), clock.time(last)[0])
     else:
-        clear = _rounded(time_of(last)[0], -1)
+        clear = _rounded(clock.time(last)[0], -1)
     document: Document = {
         "format": PANEL_MOTION,
-        "version": PANEL_MOTION_VERSION,
+        "version": RATED_VERSION if rated else PANEL_MOTION_VERSION,
         "pattern": panels_document(pattern),
         "claims": {
             "assignment": "".join(letters[fold] for fold in pattern.folds),
-            "drivers": [list(fold) for fold in drivers],
+            "drivers": drivers,
+            **({"rates": rates} if rated else {}),
             "clear": format_rational(clear),
         },
         "evidence": {
@@ -78,13 +80,14 @@ def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -
     event = contacts.event
     if event is None:
         return document
-    end = Fraction(1)
+    latest = time_of(Fraction(1))[1]
     if event.kind == CONTACT:
-        end = _at_least(event.time[1])
+        end = _at_least(parameter(event.time[1]))
+        latest = clock.time(end)[1]
         document["evidence"]["contact"] = _in_places(end)
     document["claims"]["contact"] = {
         "kind": event.kind,
-        "time": [format_rational(clear), format_rational(_rounded(time_of(end)[1], 1))],
+        "time": [format_rational(clear), format_rational(_rounded(latest, 1))],
         "faces": [list(face) for face in event.faces],
         "folds": [list(fold) for fold in event.folds],
     }
@@ -137,18 +140,23 @@ def _other(fold: Edge, v: int) -> int:
     return sum(fold) - v
 
 
-def _at_most(time: float) -> Fraction:
-    """A parameter x / (1 - x) = tan(time / 2), not above it and with few digits."""
-    return Fraction(floor(_parameter(time) * 2.0**_PARAMETER_BITS) - 1, 1 << _PARAMETER_BITS)
+def _at_most(x: float) -> Fraction:
+    """A number with few digits, not above a parameter."""
+    return Fraction(floor(x * 2.0**_PARAMETER_BITS) - 1, 1 << _PARAMETER_BITS)
 
 
-def _at_least(time: float) -> Fraction:
-    return Fraction(ceil(_parameter(time) * 2.0**_PARAMETER_BITS) + 1, 1 << _PARAMETER_BITS)
+def _at_least(x: float) -> Fraction:
+    return Fraction(ceil(x * 2.0**_PARAMETER_BITS) + 1, 1 << _PARAMETER_BITS)
 
 
-def _parameter(time: float) -> float:
+def _tangent(time: float) -> float:
+    """x / (1 - x) = tan(time / 2)."""
     s, c = sin(time / 2), cos(time / 2)
     return s / (s + c)
+
+
+def _time_itself(time: float) -> float:
+    return time / 4
 
 
 def _in_places(x: Fraction) -> int:

@@ -205,8 +205,6 @@ def _crossing(
             break
         other = _crossed(contacts, pieces, middle)
         found, good, bad = (found, good, middle) if other is None else (other, middle, bad)
-    if not pieces.reach(clear, good):
-        return None
     faces = tuple(contacts.pattern.faces[panel] for panel in found)
     return Event(CONTACT, (clear, good), faces=faces, detail="an edge runs through a face")
 

@@ -130,20 +130,12 @@ class PanelPieces:
             if low / (2 * width) % 1 == 0 and width < _WIDEST:
                 width *= 2
 
-    def reach(self, low: float, high: float) -> bool:
-        """Whether the motion is proved to go on from one time to another.
-
-        Modes that are not linear end where a fold is closed, and there are no pieces beyond.
-        """
-        if all(isinstance(curve, LinearCurve) for curve in self.motion.curves):
-            return True
-        last = low
-        for piece in self.between(low, high):
-            last = piece.middle + piece.half
-        return last >= high
-
     def around(self, time: float) -> PanelPiece | None:
-        """A piece with exactly this time in its middle, that is narrow."""
+        """A piece with exactly this time in its middle, that is narrow.
+
+        None where positions are not known, as beyond a fold that is closed: if there is one the
+        motion exists until then (docs/panel_motion.md, 5).
+        """
         return self._about(time, _NARROWEST)
 
     def _piece(self, low: float, width: float) -> PanelPiece | None:

@@ -203,7 +203,7 @@ def worth_running(before: str, after: str, every: bool = False) -> bool:
 
 
 def functions_of(names: list[str]) -> Functions:
-    """The functions and methods of modules, by `module:name`."""
+    """The functions and methods of modules, by `module:name`, but those that call `super`."""
     found = {}
     for module in names:
         loaded = import_module(f"exactfold.checker.{module}")
@@ -212,7 +212,8 @@ def functions_of(names: list[str]) -> Functions:
             value = inspect.getattr_static(getattr(loaded, owner) if owner else loaded, last)
             for inner in ("__func__", "fget", "func", "__wrapped__"):
                 value = getattr(value, inner, value)
-            found[f"{module}:{name}"] = value
+            if value.__closure__ is None:
+                found[f"{module}:{name}"] = value
     return found
 
 

@@ -185,7 +185,7 @@ def test_a_mode_that_is_not_linear_is_clear_until_its_first_fold_closes():
     assert found.event.folds == ()  # some fold is closed by then; floats say which
     [event] = [event for event in proved.events if event.kind == "flat-fold"]
     assert (event.time, event.folds) == (found.event.time, motion.drivers)
-    assert not PanelPieces(motion).reach(3.0, 3.15)
+    assert PanelPieces(motion).around(3.15) is None
 
 
 def test_strips_that_fold_up_together_meet_at_120_degrees():
