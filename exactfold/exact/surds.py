@@ -116,7 +116,11 @@ class Surd:
         return (self - other).sign() >= 0
 
     def __float__(self) -> float:
-        return float(self.ball(_GUARDED))
+        bits, ball = _GUARDED, self.ball(_GUARDED)
+        while self and ball.rel_accuracy_bits() < float_info.mant_dig:  # its terms nearly cancel
+            bits *= 2
+            ball = self.ball(bits)
+        return float(ball)
 
     def __repr__(self) -> str:
         terms = []

@@ -6,10 +6,9 @@ from collections.abc import Iterable, Mapping
 
 from exactfold.errors import TooManyModesError
 from exactfold.modes.cones import cone_motion, is_one_family
-from exactfold.modes.extension import extension
+from exactfold.modes.folding_modes import folding_mode, folding_modes
 from exactfold.modes.found import FoundComponent, found_components
-from exactfold.modes.kernel import Rows, entry, first_order, number
-from exactfold.modes.local import LocalMode
+from exactfold.modes.kernel import Rows, entry, first_order
 from exactfold.modes.regular import (
     Forms,
     in_balls,
@@ -21,7 +20,6 @@ from exactfold.modes.result import Part
 from exactfold.modes.stars import Star
 from exactfold.modes.subspaces import Leaf, independent_parts, leaves, reduced
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
-from exactfold.verdict import PROVED
 from exactfold.wording import counted
 
 MOST_DIMENSION = 16
@@ -53,7 +51,7 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
         )
         found, ended = _found(pattern, moving, small, left)
         if not ended:
-            return _partial(moving, size, small, found, reason)
+            return _partial(pattern, moving, size, (small, left), found, reason)
     try:
         most = MOST_STEPS if found is None else MOST_STEPS_BEYOND
         return _complete(pattern, moving, (rows, size), (small, left), most, found)
@@ -62,7 +60,7 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
             where = f"the part of {counted(len(moving), 'vertex')} with vertex"
             reason = f"{where} {next(iter(moving))}: {error}"
             found, _ = _found(pattern, moving, small, left)
-        return _partial(moving, size, small, found, reason)
+        return _partial(pattern, moving, size, (small, left), found, reason)
 
 
 def _complete(
@@ -140,9 +138,16 @@ def _found(
 
 
 def _partial(
-    moving: Mapping[int, Star], size: int, rows: Rows, found: list[FoundComponent], reason: str
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    size: int,
+    smaller: tuple[Rows, int],
+    found: list[FoundComponent],
+    reason: str,
 ) -> Part:
-    """What is proved of a part that is not decomposed."""
+    """What is proved of a part that is not decomposed: components, or else modes that fold."""
+    folds = any(one.folds for one in found)
+    modes = [] if folds else folding_modes(pattern, moving, *smaller, MOST_FOUND)
     return Part(
         tuple(moving),
         "subspaces",
@@ -150,7 +155,8 @@ def _partial(
         None,
         dimension=size,
         found=tuple(found),
-        still=_still(moving, rows),
+        modes=tuple(modes),
+        still=_still(moving, smaller[0]),
         reason=reason,
     )
 
@@ -179,11 +185,7 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
             continue
         if cones:
             return False
-        modes = [_local(star, rows) for star in moving.values() if set(star.folds) & set(rows)]
-        if size != 1 or any(len(mode.folds) > 4 for mode in modes):
-            return False
-        stars = {mode.vertex: moving[mode.vertex].only(mode.folds) for mode in modes}
-        if extension(pattern, stars, modes).verdict is not PROVED:
+        if size != 1 or folding_mode(pattern, moving, rows) is None:
             return False
     return True
 
@@ -198,13 +200,6 @@ def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -
     if leaf.size != 1 or leaf.vertices:
         return False
     return is_component(Forms(moving), in_balls(rows), size, point(leaf.rows, 1), 1)
-
-
-def _local(star: Star, rows: Rows) -> LocalMode:
-    """The motion of one vertex on a space with one parameter."""
-    folds = tuple(edge for edge in star.folds if edge in rows)
-    scale = rows[folds[0]][0]
-    return LocalMode(star.vertex, 0, folds, tuple(number(rows[edge][0] / scale) for edge in folds))
 
 
 def _entries(leaf: Leaf) -> Rows:

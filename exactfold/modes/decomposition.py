@@ -39,7 +39,8 @@ def decompose(
     left falls into independent parts. Where all vertices have at most four folds the structure
     theorem gives all components (docs/panels.md, Structure theorem); elsewhere linear spaces are
     split vertex by vertex (`leaves`), if the first-order motions have dimension 16 or less or the
-    spaces turn out to be few; else components are found one by one (`found_components`). A motion
+    spaces turn out to be few; else components are found one by one (`found_components`), or, where
+    none is known to fold, modes that do (`folding_modes`). A motion
     of true configurations has its lowest order in the second-order motions, so a sheet without
     these is rigid. `flat` holds folds flat that are in the drawing but are not to fold; up to
     `listed` modes are listed one by one.

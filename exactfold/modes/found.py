@@ -64,7 +64,7 @@ def found_components(
         work += (len(proposal.steps) + 1) * len(rows) * size
         if work > most:
             return found, False
-        leaf = _leaf(moving, rows, size, proposal)
+        leaf = exact_leaf(moving, rows, size, proposal)
         if leaf is None:
             continue
         dimension = leaf.size - len(leaf.vertices)
@@ -78,9 +78,11 @@ def found_components(
     return found, search.complete
 
 
-def _leaf(moving: Mapping[int, Star], rows: Rows, size: int, proposal: Proposal) -> Leaf | None:
+def exact_leaf(
+    moving: Mapping[int, Star], rows: Rows, size: int, proposal: Proposal
+) -> Leaf | None:
     """The exact space that the steps of a proposal lead to; None if they lead elsewhere."""
-    for v in proposal.steps:
+    for v, inside in proposal.steps:
         squares = squares_of(moving[v], rows, size)
         if not squares:
             continue
@@ -91,7 +93,8 @@ def _leaf(moving: Mapping[int, Star], rows: Rows, size: int, proposal: Proposal)
                 both = factors([squares], rows)
             except TooManyModesError:
                 return None
-            at = [proposal.densities[edge] for edge in parameter_folds(rows, size)]
+            near = proposal.densities if inside is None else inside
+            at = [near[edge] for edge in parameter_folds(rows, size)]
             rows, size = imposed(rows, size, min(both, key=lambda row: _relative(row, at)))
         else:
             return None

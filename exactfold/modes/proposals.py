@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
 
@@ -22,19 +22,26 @@ _MOST_ATTEMPTS: Final = 24
 _MOST_PROPOSALS: Final = 60
 
 
+Step: TypeAlias = tuple[int, Mapping[Edge, float] | None]
+
+
 @dataclass(frozen=True)
 class Proposal:
     """A motion that seems to be a regular point of a component, and how it was reached.
 
     `densities` gives each fold's density; `steps` are the vertices whose forms were made zero, in
-    order; `vertices` those whose forms do not vanish on the space that is left, of dimension
+    order, each with the densities of a motion of the space that it led to where a form split the
+    space; `vertices` those whose forms do not vanish on the space that is left, of dimension
     `size`.
     """
 
     densities: Mapping[Edge, float]
-    steps: tuple[int, ...]
+    steps: tuple[Step, ...]
     vertices: tuple[int, ...]
     size: int
+
+
+_Step: TypeAlias = tuple[int, FloatArray | None]
 
 
 @dataclass(frozen=True)
@@ -51,11 +58,15 @@ class Proposals:
 
     On each space of motions a semidefinite form leaves its kernel, a form of inertia (1, 1) splits
     the space, others stay; where nothing splits any more Newton's method looks for a motion in the
-    space. `complete` says, after the search, whether it came to its end.
+    space. `complete` says, after the search, whether it came to its end. Without `regular` motions
+    of linear spaces are proposed whether or not they seem to be regular points, and no others.
     """
 
-    def __init__(self, stars: Mapping[int, Star], rows: Rows, size: int) -> None:
+    def __init__(
+        self, stars: Mapping[int, Star], rows: Rows, size: int, *, regular: bool = True
+    ) -> None:
         self.complete = False
+        self._regular = regular
         self._edges = list(rows)
         place = {edge: k for k, edge in enumerate(self._edges)}
         basis = np.array([[float(x) for x in rows[edge]] for edge in self._edges])
@@ -94,13 +105,13 @@ class Proposals:
         """Proposals, each in no space of another before it."""
         known: list[tuple[FloatArray, FloatArray]] = []
         most = min(_MOST_NODES, _MOST_WORK // (len(self._edges) * self._size**2))
-        waiting: list[tuple[FloatArray, tuple[int, ...]]] = [(self._whole, ())]
+        waiting: list[tuple[FloatArray, tuple[_Step, ...]]] = [(self._whole, ())]
         for _ in range(most):
             if not waiting or len(known) == _MOST_PROPOSALS or self._visits > _MOST_VISITS:
                 break
             basis, steps = waiting.pop()
             basis, more, kinds = self._reduced(basis)
-            steps += more
+            steps += tuple((v, None) for v in more)
             if basis.shape[1] == 0:
                 continue
             if kinds.splits:
@@ -108,7 +119,9 @@ class Proposals:
                     yield proposal
                 v = self._chosen(kinds, steps)
                 for functional in reversed(kinds.splits[v]):
-                    waiting.append((_without(basis, functional[None, :]), (*steps, v)))
+                    half = _without(basis, functional[None, :])
+                    inside = half @ self._rng.standard_normal(half.shape[1])
+                    waiting.append((half, (*steps, (v, inside))))
                 continue
             if proposal := self._proposed(basis, steps, kinds, known):
                 yield proposal
@@ -117,25 +130,28 @@ class Proposals:
     def _proposed(
         self,
         basis: FloatArray,
-        steps: tuple[int, ...],
+        steps: Sequence[_Step],
         kinds: _Kinds,
         known: list[tuple[FloatArray, FloatArray]],
     ) -> Proposal | None:
         """A regular motion in the space, if it seems to belong to a component that is not known."""
         left = sorted([*kinds.left, *kinds.splits])
         dimension = basis.shape[1] - len(left)
-        if dimension < 1:
+        if dimension < 1 or (left and not self._regular):
             return None
         self._attempts += bool(left)
         if self._attempts > _MOST_ATTEMPTS or (w := self._point(basis, left)) is None:
             return None
         if any(_inside(w, b) and _inside(u, basis) for b, u in known):
             return None
-        if self._rank(w) < self._size - dimension:
+        if self._regular and self._rank(w) < self._size - dimension:
             return None
         known.append((basis, w))
-        densities = dict(zip(self._edges, map(float, w), strict=True))
-        return Proposal(densities, steps, tuple(left), basis.shape[1])
+        taken = tuple((v, None if w is None else self._densities(w)) for v, w in steps)
+        return Proposal(self._densities(w), taken, tuple(left), basis.shape[1])
+
+    def _densities(self, w: FloatArray) -> dict[Edge, float]:
+        return dict(zip(self._edges, map(float, w), strict=True))
 
     def _reduced(self, basis: FloatArray) -> tuple[FloatArray, tuple[int, ...], _Kinds]:
         steps: tuple[int, ...] = ()
@@ -168,9 +184,9 @@ class Proposals:
                     found.left.append(v)
         return found
 
-    def _chosen(self, kinds: _Kinds, steps: Sequence[int]) -> int:
+    def _chosen(self, kinds: _Kinds, steps: Sequence[_Step]) -> int:
         """The vertex to split at: with most neighbours that are done, so that loops close early."""
-        done = set(steps)
+        done = {v for v, _ in steps}
         return max(kinds.splits, key=lambda v: (sum(u in done for u in self._near[v]), -v))
 
     def _point(self, basis: FloatArray, left: Sequence[int]) -> FloatArray | None:

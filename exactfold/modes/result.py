@@ -59,7 +59,8 @@ class Decomposition(Page):
     border; `held` are those that were not to fold. `theory` is "modes" if all vertices have at most
     four folds, else "subspaces". Where `second_order` is None, `found` is {dimension: number} of
     components that were found and proved, so that there are at least so many. `found_true` is the
-    same for those that are known to fold truly, where `true` is None. `still` are folds that are
+    same for those that are known to fold truly, where `true` is None. `modes` are then modes that
+    truly fold, if no such component is known; there may be others. `still` are folds that are
     flat in every motion to second order, beside those in `flat`. `near_misses` are loops that
     nearly close.
     """

@@ -127,6 +127,8 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
         notes.append(_flat(result.still, "in every motion to second order", everything))
     if result.free:
         notes.append(f"{counted(len(result.free), 'fold')} from border to border, each free")
+    if result.second_order is None and result.modes:
+        notes.append("each mode listed below truly folds, and there may be others")
     if result.second_order is None and result.rigid is not PROVED:
         notes.append(
             "whether it starts to fold with given mountains and valleys is often known even so: "

@@ -86,6 +86,8 @@ def _title(result: BranchCount | Decomposition, ways: Sequence[DrawnWay], number
         return f"{counted(number, 'way')} to start folding, {known}"
     if number > len(ways):
         return counted(number, "mode")
+    if result.second_order is None and result.modes:
+        return f"{counted(number, 'mode')} known to truly fold; there may be others"
     folding, counts = sum(not way.note for way in ways), result.true or result.second_order or {}
     if not result.modes and {*counts} == {1} and folding == number < counts[1]:
         return f"{number} of {counts[1]} ways to fold, all known to truly fold"
