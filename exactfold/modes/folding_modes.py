@@ -18,6 +18,9 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.verdict import PROVED
 
 MOST_MODES: Final = 12
+_TRIES: Final = 5
+"""Proposals that are computed exactly before one of them has to give a mode."""
+_MOST_ROOTS: Final = 3
 
 
 def folding_modes(
@@ -34,11 +37,11 @@ def folding_modes(
     """
     found: dict[tuple[tuple[Edge, str], ...], Mode] = {}
     work = 0
-    for proposal in Proposals(moving, rows, size, regular=False):
+    for tried, proposal in enumerate(Proposals(moving, rows, size, regular=False)):
         work += (len(proposal.steps) + 1) * len(rows) * size
-        if work > most:
+        if work > most or (tried == _TRIES and not found):
             break
-        leaf = exact_leaf(moving, rows, size, proposal)
+        leaf = exact_leaf(moving, rows, size, proposal, _MOST_ROOTS)
         if leaf is None or leaf.vertices:
             continue
         lines: Rows = {edge: [entry(x) for x in row] for edge, row in leaf.rows.items()}

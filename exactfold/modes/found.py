@@ -19,7 +19,14 @@ from exactfold.modes.regular import (
     truly_folds,
 )
 from exactfold.modes.stars import Star
-from exactfold.modes.subspaces import Leaf, factors, is_semidefinite, made_leaf, squares_of
+from exactfold.modes.subspaces import (
+    MOST_ROOTS,
+    Leaf,
+    factors,
+    is_semidefinite,
+    made_leaf,
+    squares_of,
+)
 
 
 @dataclass(frozen=True)
@@ -79,10 +86,20 @@ def found_components(
 
 
 def exact_leaf(
-    moving: Mapping[int, Star], rows: Rows, size: int, proposal: Proposal
+    moving: Mapping[int, Star],
+    rows: Rows,
+    size: int,
+    proposal: Proposal,
+    most_roots: int = MOST_ROOTS,
 ) -> Leaf | None:
-    """The exact space that the steps of a proposal lead to; None if they lead elsewhere."""
+    """The exact space that the steps of a proposal lead to.
+
+    None if they lead elsewhere, or need more square roots.
+    """
     for v, inside in proposal.steps:
+        if isinstance(v, tuple):
+            rows, size = imposed(rows, size, rows[v]) if v in rows else (rows, size)
+            continue
         squares = squares_of(moving[v], rows, size)
         if not squares:
             continue
@@ -90,7 +107,7 @@ def exact_leaf(
             rows, size = imposed(rows, size, *(functional for _, functional in squares))
         elif len(squares) == 2:
             try:
-                both = factors([squares], rows)
+                both = factors([squares], rows, most_roots)
             except TooManyModesError:
                 return None
             near = proposal.densities if inside is None else inside

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
@@ -22,16 +22,16 @@ _MOST_ATTEMPTS: Final = 24
 _MOST_PROPOSALS: Final = 60
 
 
-Step: TypeAlias = tuple[int, Mapping[Edge, float] | None]
+Step: TypeAlias = tuple[int | Edge, Mapping[Edge, float] | None]
 
 
 @dataclass(frozen=True)
 class Proposal:
     """A motion that seems to be a regular point of a component, and how it was reached.
 
-    `densities` gives each fold's density; `steps` are the vertices whose forms were made zero, in
-    order, each with the densities of a motion of the space that it led to where a form split the
-    space; `vertices` those whose forms do not vanish on the space that is left, of dimension
+    `densities` gives each fold's density; `steps` are the vertices whose forms were made zero, and
+    the folds that were held flat, in order, with the densities of a motion of the space that
+    it led to where a form split the space; `vertices` those whose forms do not vanish on the space that is left, of dimension
     `size`.
     """
 
@@ -41,7 +41,7 @@ class Proposal:
     size: int
 
 
-_Step: TypeAlias = tuple[int, FloatArray | None]
+_Step: TypeAlias = tuple[int | Edge, FloatArray | None]
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,8 @@ class Proposals:
     On each space of motions a semidefinite form leaves its kernel, a form of inertia (1, 1) splits
     the space, others stay; where nothing splits any more Newton's method looks for a motion in the
     space. `complete` says, after the search, whether it came to its end. Without `regular` motions
-    of linear spaces are proposed whether or not they seem to be regular points, and no others.
+    of linear spaces are proposed whether or not they seem to be regular points, and no others:
+    where a form neither splits the space nor leaves its kernel, folds of the vertex are held flat.
     """
 
     def __init__(
@@ -117,11 +118,18 @@ class Proposals:
             if kinds.splits:
                 if not known and (proposal := self._proposed(basis, steps, kinds, known)):
                     yield proposal
-                v = self._chosen(kinds, steps)
+                v = self._nearest(kinds.splits, steps)
                 for functional in reversed(kinds.splits[v]):
                     half = _without(basis, functional[None, :])
                     inside = half @ self._rng.standard_normal(half.shape[1])
                     waiting.append((half, (*steps, (v, inside))))
+                continue
+            if kinds.left and not self._regular:
+                v = self._nearest(kinds.left, steps)
+                for k in self._folds[v]:
+                    if np.linalg.norm(basis[k]) > _TINY:
+                        less = _without(basis, basis[k][None, :])
+                        waiting.append((less, (*steps, (self._edges[k], None))))
                 continue
             if proposal := self._proposed(basis, steps, kinds, known):
                 yield proposal
@@ -184,10 +192,10 @@ class Proposals:
                     found.left.append(v)
         return found
 
-    def _chosen(self, kinds: _Kinds, steps: Sequence[_Step]) -> int:
-        """The vertex to split at: with most neighbours that are done, so that loops close early."""
+    def _nearest(self, vertices: Iterable[int], steps: Sequence[_Step]) -> int:
+        """The vertex to go on with: with most neighbours that are done, so that loops close early."""
         done = {v for v, _ in steps}
-        return max(kinds.splits, key=lambda v: (sum(u in done for u in self._near[v]), -v))
+        return max(vertices, key=lambda v: (sum(u in done for u in self._near[v]), -v))
 
     def _point(self, basis: FloatArray, left: Sequence[int]) -> FloatArray | None:
         """A motion in the space, by Newton's method where forms are left."""

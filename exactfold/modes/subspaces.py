@@ -21,7 +21,7 @@ from exactfold.wording import counted
 
 Vector: TypeAlias = list[Entry]
 Squares: TypeAlias = list[tuple[Entry, Vector]]
-_MOST_ROOTS: Final = 5
+MOST_ROOTS: Final = 5
 
 
 @dataclass(frozen=True)
@@ -133,11 +133,13 @@ def is_semidefinite(squares: Squares) -> bool:
     return len(signs) == 1
 
 
-def factors(products: Sequence[Squares], rows: Rows) -> tuple[Vector, Vector]:
+def factors(
+    products: Sequence[Squares], rows: Rows, most_roots: int = MOST_ROOTS
+) -> tuple[Vector, Vector]:
     """d1 l1^2 + d2 l2^2, signs apart, is d1 (l1 - r l2)(l1 + r l2) with r^2 = -d2 / d1.
 
     Of several forms one that needs no new root is taken. Raises `TooManyModesError` if there are
-    too many roots already.
+    `most_roots` roots already.
     """
     field = common_field(x for row in rows.values() for x in row)
     for squares in products:
@@ -145,9 +147,9 @@ def factors(products: Sequence[Squares], rows: Rows) -> tuple[Vector, Vector]:
         if field.square_root(field.number(square)) is not None:
             break
     else:
-        if len(field.radicands) >= _MOST_ROOTS:
+        if len(field.radicands) >= most_roots:
             raise TooManyModesError(
-                f"the spaces of motions need more than {_MOST_ROOTS} square roots"
+                f"the spaces of motions need more than {most_roots} square roots"
             )
     root = entry(real_root(square, field))
     pairs = list(zip(squares[0][1], squares[1][1], strict=True))
