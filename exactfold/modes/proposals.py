@@ -31,8 +31,8 @@ class Proposal:
 
     `densities` gives each fold's density; `steps` are the vertices whose forms were made zero, and
     the folds that were held flat, in order, with the densities of a motion of the space that
-    it led to where a form split the space; `vertices` those whose forms do not vanish on the space that is left, of dimension
-    `size`.
+    it led to where a form split the space; `vertices` those whose forms do not vanish on the space
+    that is left, of dimension `size`.
     """
 
     densities: Mapping[Edge, float]
@@ -193,7 +193,7 @@ class Proposals:
         return found
 
     def _nearest(self, vertices: Iterable[int], steps: Sequence[_Step]) -> int:
-        """The vertex to go on with: with most neighbours that are done, so that loops close early."""
+        """The vertex to go on with: one with most neighbours done, so that loops close early."""
         done = {v for v, _ in steps}
         return max(vertices, key=lambda v: (sum(u in done for u in self._near[v]), -v))
 
