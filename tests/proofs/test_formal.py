@@ -31,6 +31,7 @@ ASSUMED = {
     "exactly_2_to_the_n": CLASSICAL,
     "distance": REALS | {"ClassicalDedekindReals.sig_not_dec"},
     "branches": CLASSICAL,
+    "krawczyk": REALS | {"ClassicalDedekindReals.sig_not_dec"},
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""
