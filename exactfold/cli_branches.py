@@ -166,8 +166,8 @@ def export(
 
     The fold angles in it are in proportion to those of the branch, so that a
     simulator that is driven by them stays on it. A second frame shows the sheet
-    in space, to second order. With --coq no branch is named: the file states
-    what is proved of all branches of the sheet, and Coq verifies it.
+    in space, to second order. With --coq the file states what is proved of all
+    branches of the sheet, and of one if it is named, and Coq verifies it.
     """
     from exactfold.commands.export import Wanted, write_coq
     from exactfold.commands.given import Given

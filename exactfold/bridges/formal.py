@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from textwrap import fill
 
@@ -101,11 +102,11 @@ def to_coq(pattern: PatternLike) -> str:
     rim = _pinned_first(sheet)
     words = {
         "denominator": denominator,
-        "points": _wrapped("points", points, "%Z"),
-        "inside": _wrapped("inside", sheet.interior),
-        "border": _wrapped("border", rim),
-        "triangles": _wrapped("triangles", sheet.triangles),
-        "fans": _wrapped("fans_of", (_listed(_fan(sheet, v)) for v in range(len(points)))),
+        "points": wrapped("points", points, "%Z"),
+        "inside": wrapped("inside", sheet.interior),
+        "border": wrapped("border", rim),
+        "triangles": wrapped("triangles", sheet.triangles),
+        "fans": wrapped("fans_of", (listed(_fan(sheet, v)) for v in range(len(points)))),
         "n": sheet.Vi,
     }
     words |= dict(zip("abcd", rim, strict=False))
@@ -113,15 +114,23 @@ def to_coq(pattern: PatternLike) -> str:
     return "".join(part.format(**words) for part in [_HEAD, *parts])
 
 
-def _listed(items: Iterable[object]) -> str:
+def listed(items: Iterable[object]) -> str:
+    """A list as Coq writes it.
+
+    >>> listed([1, 2])
+    '[1; 2]'
+    """
     return f"[{'; '.join(map(str, items))}]"
 
 
-def _wrapped(name: str, items: Iterable[object], end: str = "") -> str:
+def wrapped(name: str, items: Iterable[object], end: str = "") -> str:
     """A field of the drawing, in lines of at most 100 characters."""
-    whole = (str(item).replace(" ", "\0") for item in items)
-    text = f"  {name} := {_listed(whole)}{end}"
-    return fill(text, 100, subsequent_indent="    ", break_on_hyphens=False).replace("\0", " ")
+    whole = (re.sub("(?<!;) ", "\0", str(item)) for item in items)
+    text = f"  {name} := {listed(whole)}{end}"
+    lines = fill(
+        text, 100, subsequent_indent="    ", break_on_hyphens=False, break_long_words=False
+    )
+    return lines.replace("\0", " ")
 
 
 def _fan(sheet: CreasePattern, vertex: int) -> tuple[int, ...]:

@@ -95,31 +95,42 @@ class Wanted:
 
 
 def write_coq(asked: Wanted) -> int:
-    """Write the sheet as a file for the formal proof; the exit code.
+    """Write the sheet, and a branch if one is named, as a file for the formal proof; the exit code.
 
-    Raises the errors of `read` and `to_coq`, and `UsageError` for a file that Coq could not
-    compile by its name, and for options that name or describe a branch.
+    Raises the errors of `read`, `chosen`, `to_coq` and `branch_to_coq`, and `UsageError` for a file
+    that Coq could not compile by its name, and for options that do not go with this.
     """
-    from exactfold.bridges.formal import to_coq
+    from exactfold.bridges import branch_to_coq, to_coq
+    from exactfold.evidence import branch_certificate
 
-    for name, value in (
-        ("--signs", asked.signs),
-        ("--up", asked.up),
-        ("--branch", asked.place),
-        ("--amount", asked.amount),
-        ("--force", asked.force or None),
-        ("--rim", asked.given.rim),
-        ("--json", asked.as_json or None),
+    for name, given in (
+        ("--branch", asked.place is not None),
+        ("--amount", asked.amount is not None),
+        ("--force", asked.force),
+        ("--json", asked.as_json),
     ):
-        if value is not None:
-            raise UsageError(f"--coq is about all branches of the sheet: leave {name} away")
+        if given:
+            raise UsageError(f"{name} does not go with --coq")
+    if asked.signs is not None and asked.up is not None:
+        raise UsageError("give one of --signs and --up")
+    named = asked.signs is not None or asked.up is not None
+    if asked.given.rim is not None and not named:
+        raise UsageError("--rim goes with --signs or --up")
     output = asked.written
     if output is not None and not _MODULE.match(output.name):
         raise UsageError(
             f"Coq takes the name of a file for that of a module, which {output.name} cannot be: "
             "a letter, then letters, digits and _, then .v"
         )
-    text = to_coq(read(asked.file, asked.snap, asked.sheet, "export").pattern)
+    with Bar("reading") as bar:
+        pattern = read(asked.file, asked.snap, asked.sheet, "export").pattern
+        text = to_coq(pattern)
+        if named:
+            branch = chosen(pattern, asked.signs, asked.up, None, bar, asked.given)
+            if branch.status is not PROVED:
+                say(f"not written: the branch is not proved; {branch.reason}".rstrip("; "))
+                return EXIT[UNDECIDED]
+            text = branch_to_coq(branch_certificate(branch))
     if output is None:
         sys.stdout.write(text)
     else:

@@ -1,6 +1,6 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Krawczyk
-  Drawing Example.
+  Drawing Rational Certificate Example BranchExample.
 
 Print Assumptions key_lemma.
 Print Assumptions one_solution_per_sign_vector.
@@ -9,6 +9,7 @@ Print Assumptions exactly_2_to_the_n.
 Print Assumptions distance.
 Print Assumptions branches.
 Print Assumptions krawczyk.
+Print Assumptions certified.
 
 (** The others together. *)
 Definition others :=
@@ -16,5 +17,6 @@ Definition others :=
    key_energy, no_zero_at_infinity, definite_stress, jacobian_nonsingular, jacobian_singular,
    simple_iff_no_flat_star, different_sign_vectors, list_of_solutions, rigid,
    every_solution_on_a_branch, branch_has_one_representative, at_most_2_to_the_n,
-   two_branches_per_pair, krawczyk_nonsingular, unique, cone_positive, sheet_of, shapes, at_most, exactly).
+   two_branches_per_pair, krawczyk_nonsingular, unique, cone_positive, sheet_of, Example.shapes, Example.at_most,
+   Example.exactly, the_branch).
 Print Assumptions others.

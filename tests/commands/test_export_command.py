@@ -9,11 +9,12 @@ import pytest
 from typer.testing import CliRunner
 
 from exactfold import count_branches, export_branch, find_branch
-from exactfold.bridges import to_coq
+from exactfold.bridges import branch_to_coq, to_coq
 from exactfold.bridges.fold_frames import BRANCH_KEY
 from exactfold.cli import app
 from exactfold.data import example_path
 from exactfold.errors import UndecidedBranchError
+from exactfold.evidence import branch_certificate
 from exactfold.pattern import load_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import ringed_square
@@ -200,6 +201,9 @@ def test_an_undecided_branch_is_refused_unless_forced(undecided, out):
     assert "not written" in result.stderr
     assert branch.reason in result.stderr
     assert not out.exists()
+    result = run(undecided, "--signs", signs, "--coq")
+    assert (result.exit_code, result.stdout) == (UNDECIDED, "")
+    assert f"not written: the branch is not proved; {branch.reason}" in result.stderr
     with pytest.raises(UndecidedBranchError, match="not proved"):
         export_branch(branch, out)
     assert not out.exists()
@@ -238,16 +242,23 @@ def test_a_sheet_is_written_for_coq(tmp_path):
     assert f"coqc -Q proofs/formal Exactfold {out}" in result.stdout
 
 
+def test_a_branch_is_written_for_coq():
+    branch = find_branch("two-vertex", "+-")
+    assert run("two-vertex", "--coq", "--up", "4").stdout == branch_to_coq(
+        branch_certificate(branch)
+    )
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["two-vertex", "--signs", "-+"], USAGE, "leave --signs away"),
-        (["two-vertex", "--up", "4"], USAGE, "leave --up away"),
-        (["two-vertex", "--branch", "1"], USAGE, "leave --branch away"),
-        (["two-vertex", "--amount", "20"], USAGE, "leave --amount away"),
-        (["two-vertex", "--force"], USAGE, "leave --force away"),
-        (["two-vertex", "--rim", "rim.json"], USAGE, "leave --rim away"),
-        (["two-vertex", "--json"], USAGE, "leave --json away"),
+        (["two-vertex", "--signs", "-+", "--up", "4"], USAGE, "give one of --signs and --up"),
+        (["two-vertex", "--branch", "1"], USAGE, "--branch does not go with --coq"),
+        (["two-vertex", "--amount", "20"], USAGE, "--amount does not go with --coq"),
+        (["two-vertex", "--force"], USAGE, "--force does not go with --coq"),
+        (["two-vertex", "--rim", "rim.json"], USAGE, "--rim goes with --signs or --up"),
+        (["two-vertex", "--json"], USAGE, "--json does not go with --coq"),
+        (["flat-vertex", "--signs", "++"], USAGE, "do not show that vertex 5 is bent"),
         (["two-vertex", "-o", "two-vertex.v"], USAGE, "which two-vertex.v cannot be"),
         (["two-vertex", "-o", "two_vertex.coq"], USAGE, "which two_vertex.coq cannot be"),
         (["miura"], UNDECIDED, "16 panels with more than three sides"),

@@ -1,22 +1,27 @@
 """The formal proof: nothing is left out of it, its page names what is there, and it builds."""
 
+import json
 import re
 import shutil
 import subprocess
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from exactfold.bridges import to_coq
+from exactfold import find_branch
+from exactfold.bridges import branch_to_coq, to_coq
 from exactfold.data import EXAMPLES, example_path
 from exactfold.errors import NotApplicableError, NotTriangulatedError
+from exactfold.evidence import branch_certificate
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import open_pattern, triangles
 from exactfold.pattern.random_squares import random_square
 
 ROOT = Path(__file__).parent.parent.parent
 FORMAL = ROOT / "proofs" / "formal"
+CERTIFICATES = ROOT / "tests" / "fixtures" / "certificates"
 SOURCES = {path.name: path.read_text(encoding="utf-8") for path in sorted(FORMAL.glob("*.v"))}
 
 REALS = {
@@ -32,6 +37,7 @@ ASSUMED = {
     "distance": REALS | {"ClassicalDedekindReals.sig_not_dec"},
     "branches": CLASSICAL,
     "krawczyk": REALS | {"ClassicalDedekindReals.sig_not_dec"},
+    "certified": CLASSICAL,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""
@@ -113,6 +119,47 @@ def test_a_reflex_corner_is_refused() -> None:
         to_coq(dart)
 
 
+def kept(name: str) -> dict[str, Any]:
+    """A certificate of the fixtures."""
+    found: dict[str, Any] = json.loads((CERTIFICATES / f"branch-{name}.json").read_text("utf-8"))
+    return found
+
+
+def test_the_example_of_a_branch_is_what_is_written_of_a_certificate() -> None:
+    assert branch_to_coq(kept("rim")) == SOURCES["BranchExample.v"]
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("dart", "vertex 1 is reflex"),
+        ("triangles", "triangulated triangles"),
+        ("deficits", "angle deficits"),
+        ("hypar-exact", "not that of vertex 4"),
+        ("flat-vertex", "vertex 5 is bent"),
+    ],
+)
+def test_certificates_that_the_proof_is_not_about(name: str, why: str) -> None:
+    with pytest.raises(NotApplicableError, match=why):
+        branch_to_coq(kept(name))
+
+
+FORGED = """
+Definition forged (c : certificate) : list certificate := [
+  Certificate (map (fun _ => 0%Q) (near c)) (ups c) (cones c) (centre c) (radius2 c) (distance2 c)
+    (letters c);
+  Certificate (near c) [] (cones c) (centre c) (radius2 c) (distance2 c) (letters c);
+  Certificate (near c) (ups c) (cones c) (centre c) (radius2 c) 0%Q (letters c);
+  Certificate (near c) (ups c) (cones c) (centre c) (radius2 c) (distance2 c)
+    (map (fun f => let '(i, j, l, m, valley) := f in (i, j, l, m, negb valley)) (letters c))
+].
+Lemma refused :
+  forallb (fun c => negb (check_branch sheet_drawing c)) (forged branch_certificate) = true.
+Proof. vm_compute. reflexivity. Qed.
+"""
+"""Curvature 0, other signs, a distance too small, reversed letters."""
+
+
 def in_scope() -> dict[str, CreasePattern]:
     """The shipped patterns that are triangulated, with rational coordinates."""
     found = {}
@@ -157,10 +204,12 @@ def test_it_builds_and_assumes_no_more_than_the_reals(tmp_path: Path) -> None:
     blocks = printed.split("Axioms:\n")[1:]
     axioms = [set(re.findall(r"^([\w.]+)(?= :|$)", block, flags=re.MULTILINE)) for block in blocks]
     assert dict(zip(ASSUMED, axioms, strict=True)) == ASSUMED
-    sheets = [*in_scope().values(), random_square(8, seed=2), random_square(20, seed=1), *SMALL]
+    sheets = [*in_scope().values(), random_square(20, seed=1), *SMALL]
     exported = [
         f"Module Sheet{k}.\n{to_coq(sheet)}\nEnd Sheet{k}.\n" for k, sheet in enumerate(sheets)
     ]
+    branch = branch_to_coq(branch_certificate(find_branch("two-vertex", "+-")))
+    exported += [branch, FORGED]
     (tmp_path / "Exported.v").write_text("".join(exported), encoding="utf-8")
     verified = subprocess.run(
         ["coqc", "-Q", ".", "Exactfold", "Exported.v"],

@@ -1,0 +1,160 @@
+"""Certificates of single branches as files of Coq, which proves what they claim."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from math import isqrt
+from typing import Any
+
+from exactfold.bridges.formal import listed, to_coq, wrapped
+from exactfold.errors import NotApplicableError
+from exactfold.exact.numbers import parse_rational
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.curvature import curvature_form
+
+Heights = Mapping[int, Fraction]
+Pair = tuple[Fraction, Fraction]
+
+_BRANCH = """
+(** One branch and its certificate (docs/branch.md). *)
+From Coq Require Import QArith.
+From Exactfold Require Import Rational Certificate.
+Open Scope nat_scope.
+
+Definition branch_certificate : certificate := {{|
+{near};
+{ups};
+{cones};
+  centre := {centre}%Q;
+  radius2 := {radius2}%Q;
+  distance2 := {distance2}%Q;
+{letters}
+|}}.
+
+Lemma branch_checked : check_branch sheet_drawing branch_certificate = true.
+Proof. vm_compute. reflexivity. Qed.
+
+(** Exactly one solution with this rim has these signs; it is near, and has these letters. *)
+Theorem the_branch :
+  let near_by := real_heights (height branch_certificate) in
+  let up := pops_up branch_certificate in
+  exists h, has_rim this_sheet near_by h /\\ solves this_sheet (fun _ => 0%R) h /\\
+  has_signs this_sheet up h /\\
+  (forall g, has_rim this_sheet near_by g -> solves this_sheet (fun _ => 0%R) g ->
+    in_nappes this_sheet up g -> g = h) /\\
+  (energy this_sheet (minus h near_by) <= Q2R (distance2 branch_certificate))%R /\\
+  (forall i j l m valley, In (i, j, l, m, valley) (letters branch_certificate) ->
+    (0 < sign valley * bend this_sheet i j l m h)%R).
+Proof. exact (certified sheet_drawing branch_certificate sheet_checked branch_checked). Qed.
+"""
+
+
+def branch_to_coq(certificate: Mapping[str, Any]) -> str:
+    """The file of `to_coq` with one branch more: its certificate, which Coq verifies.
+
+    `certificate` is an object as `exactfold.evidence.branch_certificate` returns it. Coq computes
+    with `check_branch` of `proofs/formal/Certificate.v`, which is proved to be right: exactly one
+    solution has these vertex signs and the rim of the heights, it is as near to them as claimed,
+    and its folds have the letters M and V that the distance decides. Flat folds are not claimed.
+    Raises `NotApplicableError` for what the test is not about: a reflex corner, triangulated
+    triangles, angle deficits, heights that solve the equations exactly, a vertex that may be flat.
+    """
+    claims, evidence = certificate["claims"], certificate["evidence"]
+    pattern = CreasePattern(
+        [tuple(map(parse_rational, point)) for point in certificate["pattern"]["vertices"]],
+        certificate["pattern"]["triangles"],
+    )
+    text = to_coq(pattern)
+    if evidence["emptied"]:
+        raise NotApplicableError("the formal proof takes no branch with triangulated triangles")
+    if "curvature" in claims:
+        raise NotApplicableError("the formal proof takes no branch with angle deficits")
+    denominator = int(evidence["denominator"])
+    heights = {v: Fraction(int(h), denominator) for v, h in enumerate(evidence["heights"])}
+    for v in pattern.interior:
+        if curvature_form(pattern, v)(heights) <= 0:
+            raise NotApplicableError(
+                f"the formal proof needs heights with positive curvatures, not that of vertex {v}"
+            )
+    points, _ = pattern.integer_vertices
+    distance = parse_rational(claims["squared_distance"])
+    letters = sorted(_letters(pattern, heights, claims["assignment"], distance))
+    if missing := set(pattern.interior) - {int(i) for i, *_ in letters}:
+        raise NotApplicableError(f"the letters do not show that vertex {min(missing)} is bent")
+    signs = zip(pattern.interior, claims["vertex_signs"], strict=True)
+    twice = [min(x) + max(x) for x in zip(*points, strict=True)]
+    far = [
+        sum((2 * x - m) ** 2 for x, m in zip(points[v], twice, strict=True))
+        for v in pattern.boundary
+    ]
+    inside = pattern.interior_set
+    cones = (_cone(pattern, v) if v in inside else () for v in range(len(points)))
+    words = {
+        "near": wrapped("near", map(_number, heights.values()), "%Q"),
+        "ups": wrapped("ups", (v for v, sign in signs if sign > 0)),
+        "cones": wrapped("cones", (listed(f"({j}, ({x})%Z)" for j, x in cone) for cone in cones)),
+        "centre": f"({', '.join(_number(Fraction(m, 2)) for m in twice)})",
+        "radius2": _number(Fraction(max(far), 4)),
+        "distance2": _number(distance),
+        "letters": wrapped("letters", (f"({', '.join(map(str, fold))})" for fold in letters)),
+    }
+    return text + _BRANCH.format(**words)
+
+
+def _number(x: Fraction) -> str:
+    return f"({x.numerator} # {x.denominator})"
+
+
+def _cone(pattern: CreasePattern, v: int) -> list[tuple[int, int]]:
+    """Integer heights of a mountain around a vertex with K_v > 0: lengths, rounded."""
+    points, _ = pattern.integer_vertices
+    form, bits = curvature_form(pattern, v), 8
+    while True:
+        cone = {v: 0}
+        for j in pattern.star(v):
+            square = sum((a - b) ** 2 for a, b in zip(points[j], points[v], strict=True))
+            cone[j] = -isqrt(square << 2 * bits)
+        if form({j: Fraction(x) for j, x in cone.items()}) > 0:
+            return [(j, x) for j, x in cone.items() if x]
+        bits *= 2
+
+
+def _letters(
+    pattern: CreasePattern, heights: Heights, letters: str, distance: Fraction
+) -> Iterator[tuple[int, int, int, int, str]]:
+    """The folds, from both ends, whose letter M or V the distance cannot undo."""
+    for (a, b), letter in zip(pattern.folds, letters, strict=True):
+        left, right = pattern.opposite((a, b))
+        if letter in "MV" and _is_far(pattern, heights, (a, b, left, right), distance):
+            valley = str(letter == "V").lower()
+            yield a, b, left, right, valley
+            yield b, a, right, left, valley
+
+
+def _is_far(
+    pattern: CreasePattern, heights: Heights, fold: tuple[int, int, int, int], distance: Fraction
+) -> bool:
+    """Whether the square of the bend times the length exceeds L^2 (2/c + 2/c') times `distance`."""
+    i, j, left, right = fold
+    along = _spoke(pattern, i, j)
+    c, g = _slope(pattern, heights, (i, j, left))
+    d, k = _slope(pattern, heights, (i, right, j))
+    bend = (g[1] - k[1]) * along[0] - (g[0] - k[0]) * along[1]
+    return bend**2 > (along[0] ** 2 + along[1] ** 2) * (2 / c + 2 / d) * distance
+
+
+def _spoke(pattern: CreasePattern, i: int, j: int) -> Pair:
+    (x, y), (z, w) = pattern.vertices[i], pattern.vertices[j]
+    return z - x, w - y
+
+
+def _slope(
+    pattern: CreasePattern, heights: Heights, corner: tuple[int, int, int]
+) -> tuple[Fraction, Pair]:
+    """Twice the area of a face, and the gradient on it."""
+    i, j, k = corner
+    a, b = _spoke(pattern, i, j), _spoke(pattern, i, k)
+    x, y = heights[j] - heights[i], heights[k] - heights[i]
+    c = a[0] * b[1] - a[1] * b[0]
+    return c, ((x * b[1] - y * a[1]) / c, (y * a[0] - x * b[0]) / c)
