@@ -155,6 +155,7 @@ def export(
         bool, flag("--force", text="Write a branch that is enclosed but not proved, too.")
     ] = False,
     rim: Rim = None,
+    everything: Annotated[bool, flag("--all", text="With --coq: certify all branches.")] = False,
     coq: Annotated[
         bool, flag("--coq", text="Instead: the sheet itself, for the Coq proof.")
     ] = False,
@@ -175,7 +176,9 @@ def export(
     apart(output, pattern, rim)
     given = Given(rim)
     asked = Wanted(pattern, snap, sheet, signs, up, place, output, amount, force, as_json, given)
-    raise typer.Exit(write_coq(asked) if coq else asked.answer())
+    if everything and not coq:
+        raise UsageError("--all goes with --coq")
+    raise typer.Exit(write_coq(asked, everything) if coq else asked.answer())
 
 
 @reported

@@ -7,6 +7,7 @@ from exactfold.bridges.export import to_singular as to_singular
 from exactfold.bridges.export import to_sympy as to_sympy
 from exactfold.bridges.formal import to_coq as to_coq
 from exactfold.bridges.formal_branch import branch_to_coq as branch_to_coq
+from exactfold.bridges.formal_branch import branches_to_coq as branches_to_coq
 from exactfold.bridges.frameworks import from_pyrigi as from_pyrigi
 from exactfold.bridges.frameworks import to_pyrigi as to_pyrigi
 from exactfold.bridges.graphs import to_networkx as to_networkx

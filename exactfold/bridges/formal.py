@@ -99,7 +99,7 @@ def to_coq(pattern: PatternLike) -> str:
             f"the formal proof is about a convex border: vertex {sheet.reflex_corner} is reflex"
         )
     points, denominator = sheet.integer_vertices
-    rim = _pinned_first(sheet)
+    rim = pinned_first(sheet)
     words = {
         "denominator": denominator,
         "points": wrapped("points", points, "%Z"),
@@ -139,9 +139,15 @@ def _fan(sheet: CreasePattern, vertex: int) -> tuple[int, ...]:
     return (*star, star[0]) if vertex in sheet.interior_set else star
 
 
-def _pinned_first(sheet: CreasePattern) -> tuple[int, ...]:
-    """The boundary from a vertex on that it forms a triangle with the next two."""
+def pinned_first(sheet: CreasePattern) -> tuple[int, ...]:
+    """The boundary, turned so that the first three vertices form a triangle.
+
+    With four, the last is the one that `BranchSystem` gives the height 1.
+
+    >>> pinned_first(as_pattern("two-vertex"))
+    (1, 2, 3, 0)
+    """
     points, _ = sheet.integer_vertices
     rim = sheet.boundary
-    turned = [rim[k:] + rim[:k] for k in range(len(rim))]
+    turned = [rim[k:] + rim[:k] for k in (*range(1, len(rim)), 0)]
     return next(r for r in turned if orientation(*(points[v] for v in r[:3])) > 0)

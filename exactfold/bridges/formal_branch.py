@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import product
 from math import isqrt
 from typing import Any
 
-from exactfold.bridges.formal import listed, to_coq, wrapped
+from exactfold.bridges.formal import listed, pinned_first, to_coq, wrapped
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import parse_rational
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -16,13 +17,8 @@ from exactfold.rigidity.curvature import curvature_form
 Heights = Mapping[int, Fraction]
 Pair = tuple[Fraction, Fraction]
 
-_BRANCH = """
-(** One branch and its certificate (docs/branch.md). *)
-From Coq Require Import QArith.
-From Exactfold Require Import Rational Certificate.
-Open Scope nat_scope.
-
-Definition branch_certificate : certificate := {{|
+_RECORD = """\
+Definition {name} : certificate := {{|
 {near};
 {ups};
 {cones};
@@ -31,7 +27,14 @@ Definition branch_certificate : certificate := {{|
   distance2 := {distance2}%Q;
 {letters}
 |}}.
+"""
+_BRANCH = """
+(** One branch and its certificate (docs/branch.md). *)
+From Coq Require Import QArith.
+From Exactfold Require Import Rational Certificate.
+Open Scope nat_scope.
 
+{definition}
 Lemma branch_checked : check_branch sheet_drawing branch_certificate = true.
 Proof. vm_compute. reflexivity. Qed.
 
@@ -50,6 +53,33 @@ Proof. exact (certified sheet_drawing branch_certificate sheet_checked branch_ch
 """
 
 
+_ALL = """
+(** All branches and their certificates (docs/branch.md), one for each sign vector. *)
+From Coq Require Import QArith.
+From Exactfold Require Import Rational Certificate Counted.
+Open Scope nat_scope.
+
+{definitions}
+Definition certificates : list certificate := {names}.
+Lemma all_checked : check_all sheet_drawing {d} certificates = true.
+Proof. vm_compute. reflexivity. Qed.
+
+(** Exactly 2^{n} branches, complex ones included; all are real, one for each sign vector. *)
+Theorem exactly_counted : exists l : list vec, length l = 2 ^ {n} /\\ NoDup l /\\
+  (forall h, In h l <-> representative this_sheet {d} h) /\\
+  (forall e, exists! h, In h l /\\ forall v, In v (inner this_sheet) ->
+    (0 < sign (e v) * K2 this_sheet v (cone this_sheet v) h)%R) /\\
+  (forall z, complex_solution this_sheet z -> complex_affine this_sheet z \\/
+    exists h, In h l /\\ (exists s, on_branch this_sheet z s h) /\\
+      forall h' s', In h' l -> on_branch this_sheet z s' h' -> h' = h).
+Proof.
+  pose proof (counted sheet_drawing {a} {b} {c} {d} certificates sheet_checked eq_refl corners
+    all_checked) as H.
+  change (sheet_of sheet_drawing sheet_checked) with this_sheet in H. rewrite size in H. exact H.
+Qed.
+"""
+
+
 def branch_to_coq(certificate: Mapping[str, Any]) -> str:
     """The file of `to_coq` with one branch more: its certificate, which Coq verifies.
 
@@ -60,12 +90,44 @@ def branch_to_coq(certificate: Mapping[str, Any]) -> str:
     Raises `NotApplicableError` for what the test is not about: a reflex corner, triangulated
     triangles, angle deficits, heights that solve the equations exactly, a vertex that may be flat.
     """
+    pattern = _pattern(certificate)
+    record = _record("branch_certificate", pattern, certificate)
+    return to_coq(pattern) + _BRANCH.format(definition=record)
+
+
+def branches_to_coq(certificates: Sequence[Mapping[str, Any]]) -> str:
+    """The file of `to_coq` for a sheet with four corners, with certificates of all branches.
+
+    They are those of `branch_to_coq`, one for each of the 2^n sign vectors, in the gauge "saddle".
+    Then no star is flat on any branch, and Coq proves that there are exactly 2^n: complex ones
+    included, all of them real. Raises `NotApplicableError` if a sign vector has no certificate, or
+    the sheet not four corners, and what `branch_to_coq` raises.
+    """
+    if not certificates:
+        raise NotApplicableError("branches are counted by their certificates, and there are none")
+    pattern = _pattern(certificates[0])
+    text, signs = to_coq(pattern), {tuple(c["claims"]["vertex_signs"]) for c in certificates}
+    if pattern.Ve != 4:
+        raise NotApplicableError(f"branches are counted with four corners, not {pattern.Ve}")
+    if missing := set(product((1, -1), repeat=pattern.Vi)) - signs:
+        shown = "".join("-+"[x > 0] for x in max(missing))
+        raise NotApplicableError(f"there is no certificate of the branch with the signs {shown}")
+    names = [f"branch_{k}" for k in range(len(certificates))]
+    records = zip(names, certificates, strict=True)
+    words = dict(zip("abcd", pinned_first(pattern), strict=True))
+    definitions = "\n".join(_record(name, pattern, c) for name, c in records)
+    return text + _ALL.format(definitions=definitions, names=listed(names), n=pattern.Vi, **words)
+
+
+def _pattern(certificate: Mapping[str, Any]) -> CreasePattern:
+    document = certificate["pattern"]
+    points = [tuple(map(parse_rational, point)) for point in document["vertices"]]
+    return CreasePattern(points, document["triangles"])
+
+
+def _record(name: str, pattern: CreasePattern, certificate: Mapping[str, Any]) -> str:
+    """The definition of a certificate. Raises what `branch_to_coq` raises."""
     claims, evidence = certificate["claims"], certificate["evidence"]
-    pattern = CreasePattern(
-        [tuple(map(parse_rational, point)) for point in certificate["pattern"]["vertices"]],
-        certificate["pattern"]["triangles"],
-    )
-    text = to_coq(pattern)
     if evidence["emptied"]:
         raise NotApplicableError("the formal proof takes no branch with triangulated triangles")
     if "curvature" in claims:
@@ -99,7 +161,7 @@ def branch_to_coq(certificate: Mapping[str, Any]) -> str:
         "distance2": _number(distance),
         "letters": wrapped("letters", (f"({', '.join(map(str, fold))})" for fold in letters)),
     }
-    return text + _BRANCH.format(**words)
+    return _RECORD.format(name=name, **words)
 
 
 def _number(x: Fraction) -> str:

@@ -10,6 +10,7 @@ import re
 import shlex
 import sys
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from exactfold.commands.branch import chosen
 from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import EXIT, Bar, name_of, say
+from exactfold.count.find import find_branches
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.pattern.described import described
@@ -94,13 +96,14 @@ class Wanted:
         return None if str(self.file) == "/dev/stdin" else self.file.stem
 
 
-def write_coq(asked: Wanted) -> int:
-    """Write the sheet, and a branch if one is named, as a file for the formal proof; the exit code.
+def write_coq(asked: Wanted, everything: bool) -> int:
+    """Write the sheet as a file for the formal proof, with the branches asked for; the exit code.
 
-    Raises the errors of `read`, `chosen`, `to_coq` and `branch_to_coq`, and `UsageError` for a file
-    that Coq could not compile by its name, and for options that do not go with this.
+    They are the one that is named, if any, or with `everything` all. Raises the errors of `read`,
+    `chosen`, `find_branches`, `to_coq`, `branch_to_coq` and `branches_to_coq`, and `UsageError` for
+    a file that Coq could not compile by its name, and for options that do not go with this.
     """
-    from exactfold.bridges import branch_to_coq, to_coq
+    from exactfold.bridges import branch_to_coq, branches_to_coq, to_coq
     from exactfold.evidence import branch_certificate
 
     for name, given in (
@@ -114,6 +117,8 @@ def write_coq(asked: Wanted) -> int:
     if asked.signs is not None and asked.up is not None:
         raise UsageError("give one of --signs and --up")
     named = asked.signs is not None or asked.up is not None
+    if named and everything:
+        raise UsageError("--all names all branches: leave --signs and --up away")
     if asked.given.rim is not None and not named:
         raise UsageError("--rim goes with --signs or --up")
     output = asked.written
@@ -125,12 +130,21 @@ def write_coq(asked: Wanted) -> int:
     with Bar("reading") as bar:
         pattern = read(asked.file, asked.snap, asked.sheet, "export").pattern
         text = to_coq(pattern)
+        branches = []
         if named:
-            branch = chosen(pattern, asked.signs, asked.up, None, bar, asked.given)
+            branches = [chosen(pattern, asked.signs, asked.up, None, bar, asked.given)]
+        elif everything:
+            every = map("".join, product("+-", repeat=pattern.Vi))
+            branches = list(find_branches(pattern, every, progress=bar))
+        for branch in branches:
             if branch.status is not PROVED:
                 say(f"not written: the branch is not proved; {branch.reason}".rstrip("; "))
                 return EXIT[UNDECIDED]
-            text = branch_to_coq(branch_certificate(branch))
+        certificates = [branch_certificate(branch) for branch in branches]
+        if everything:
+            text = branches_to_coq(certificates)
+        elif named:
+            text = branch_to_coq(certificates[0])
     if output is None:
         sys.stdout.write(text)
     else:

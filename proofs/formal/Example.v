@@ -8,7 +8,7 @@ Open Scope nat_scope.
 Definition sheet_drawing : drawing := {|
   points := [(0, 0); (840, 0); (840, 840); (0, 840); (280, 336); (525, 480)]%Z;
   inside := [4; 5];
-  border := [0; 1; 2; 3];
+  border := [1; 2; 3; 0];
   triangles := [(0, 1, 4); (1, 5, 4); (1, 2, 5); (2, 3, 5); (3, 4, 5); (0, 4, 3)];
   fans_of := [[1; 4; 3]; [2; 5; 4; 0]; [3; 5; 1]; [0; 4; 5; 2]; [0; 1; 5; 3; 0]; [1; 2; 3; 4; 1]]
 |}.
@@ -31,27 +31,27 @@ Proof.
     apply Once. intros h _ Hs v Hv. left. rewrite (Hs v Hv). apply P, Hv.
 Qed.
 
-Lemma corners : cross (sub (at_R sheet_drawing 1) (at_R sheet_drawing 0))
-  (sub (at_R sheet_drawing 2) (at_R sheet_drawing 0)) <> 0%R.
+Lemma corners : cross (sub (at_R sheet_drawing 2) (at_R sheet_drawing 1))
+  (sub (at_R sheet_drawing 3) (at_R sheet_drawing 1)) <> 0%R.
 Proof. rewrite cross_IZR. now apply (IZR_neq _ 0). Qed.
 
 (** At most 2^2 branches, all real; as many if no star is flat on any of them. *)
 Theorem at_most : exists l : list vec, length l = 2 ^ 2 /\
-  (forall h, In h l <-> representative this_sheet 3 h) /\
+  (forall h, In h l <-> representative this_sheet 0 h) /\
   forall z, complex_solution this_sheet z ->
     complex_affine this_sheet z \/ exists s h, In h l /\ on_branch this_sheet z s h.
 Proof.
-  pose proof (at_most_2_to_the_n this_sheet 0 1 2 3 eq_refl corners) as H.
+  pose proof (at_most_2_to_the_n this_sheet 1 2 3 0 eq_refl corners) as H.
   rewrite size in H. exact H.
 Qed.
 
 Theorem exactly :
-  (forall h, representative this_sheet 3 h ->
+  (forall h, representative this_sheet 0 h ->
     forall v, In v (inside sheet_drawing) -> ~ flat_star this_sheet v h) ->
   exists l : list vec, length l = 2 ^ 2 /\ NoDup l /\
-    forall h, In h l <-> representative this_sheet 3 h.
+    forall h, In h l <-> representative this_sheet 0 h.
 Proof.
-  intros NF. destruct (branches this_sheet 0 1 2 3 eq_refl corners NF)
+  intros NF. destruct (branches this_sheet 1 2 3 0 eq_refl corners NF)
     as (l & Len & Once & Sol & _).
   rewrite size in Len. exists l. exact (conj Len (conj Once Sol)).
 Qed.

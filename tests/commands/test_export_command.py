@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from exactfold import count_branches, export_branch, find_branch
-from exactfold.bridges import branch_to_coq, to_coq
+from exactfold.bridges import branch_to_coq, branches_to_coq, to_coq
 from exactfold.bridges.fold_frames import BRANCH_KEY
 from exactfold.cli import app
 from exactfold.data import example_path
@@ -242,6 +242,12 @@ def test_a_sheet_is_written_for_coq(tmp_path):
     assert f"coqc -Q proofs/formal Exactfold {out}" in result.stdout
 
 
+def test_all_branches_are_written_for_coq():
+    branches = [find_branch("two-vertex", signs) for signs in ("++", "+-", "-+", "--")]
+    every = branches_to_coq([branch_certificate(branch) for branch in branches])
+    assert run("two-vertex", "--coq", "--all").stdout == every
+
+
 def test_a_branch_is_written_for_coq():
     branch = find_branch("two-vertex", "+-")
     assert run("two-vertex", "--coq", "--up", "4").stdout == branch_to_coq(
@@ -253,6 +259,8 @@ def test_a_branch_is_written_for_coq():
     ("arguments", "code", "said"),
     [
         (["two-vertex", "--signs", "-+", "--up", "4"], USAGE, "give one of --signs and --up"),
+        (["two-vertex", "--all", "--up", "4"], USAGE, "leave --signs and --up away"),
+        (["waterbomb", "--all"], USAGE, "with four corners, not 6"),
         (["two-vertex", "--branch", "1"], USAGE, "--branch does not go with --coq"),
         (["two-vertex", "--amount", "20"], USAGE, "--amount does not go with --coq"),
         (["two-vertex", "--force"], USAGE, "--force does not go with --coq"),
@@ -269,6 +277,12 @@ def test_what_coq_does_not_take_is_refused(arguments, code, said):
     result = run(*arguments, "--coq")
     assert (result.exit_code, result.stdout.count("Theorem")) == (code, 0)
     assert said in result.stderr
+
+
+def test_all_branches_are_for_coq_alone():
+    result = run("two-vertex", "--signs", "++", "--all")
+    assert result.exit_code == USAGE
+    assert "--all goes with --coq" in result.stderr
 
 
 def test_a_reflex_corner_is_named_to_who_asks_for_coq(tmp_path):

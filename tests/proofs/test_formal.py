@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from exactfold import find_branch
-from exactfold.bridges import branch_to_coq, to_coq
+from exactfold.bridges import branch_to_coq, branches_to_coq, to_coq
 from exactfold.data import EXAMPLES, example_path
 from exactfold.errors import NotApplicableError, NotTriangulatedError
 from exactfold.evidence import branch_certificate
@@ -38,6 +38,7 @@ ASSUMED = {
     "branches": CLASSICAL,
     "krawczyk": REALS | {"ClassicalDedekindReals.sig_not_dec"},
     "certified": CLASSICAL,
+    "counted": CLASSICAL,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""
@@ -144,6 +145,14 @@ def test_certificates_that_the_proof_is_not_about(name: str, why: str) -> None:
         branch_to_coq(kept(name))
 
 
+def test_a_sign_vector_without_a_certificate_is_named() -> None:
+    found = [branch_certificate(find_branch("two-vertex", signs)) for signs in ("++", "-+", "--")]
+    with pytest.raises(NotApplicableError, match=r"the branch with the signs \+-"):
+        branches_to_coq(found)
+    with pytest.raises(NotApplicableError, match="there are none"):
+        branches_to_coq([])
+
+
 FORGED = """
 Definition forged (c : certificate) : list certificate := [
   Certificate (map (fun _ => 0%Q) (near c)) (ups c) (cones c) (centre c) (radius2 c) (distance2 c)
@@ -154,7 +163,7 @@ Definition forged (c : certificate) : list certificate := [
     (map (fun f => let '(i, j, l, m, valley) := f in (i, j, l, m, negb valley)) (letters c))
 ].
 Lemma refused :
-  forallb (fun c => negb (check_branch sheet_drawing c)) (forged branch_certificate) = true.
+  forallb (fun c => negb (check_branch sheet_drawing c)) (forged branch_1) = true.
 Proof. vm_compute. reflexivity. Qed.
 """
 """Curvature 0, other signs, a distance too small, reversed letters."""
@@ -208,8 +217,8 @@ def test_it_builds_and_assumes_no_more_than_the_reals(tmp_path: Path) -> None:
     exported = [
         f"Module Sheet{k}.\n{to_coq(sheet)}\nEnd Sheet{k}.\n" for k, sheet in enumerate(sheets)
     ]
-    branch = branch_to_coq(branch_certificate(find_branch("two-vertex", "+-")))
-    exported += [branch, FORGED]
+    every = [find_branch("two-vertex", signs) for signs in ("++", "+-", "-+", "--")]
+    exported += [branches_to_coq([branch_certificate(branch) for branch in every]), FORGED]
     (tmp_path / "Exported.v").write_text("".join(exported), encoding="utf-8")
     verified = subprocess.run(
         ["coqc", "-Q", ".", "Exactfold", "Exported.v"],
