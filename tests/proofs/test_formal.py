@@ -5,12 +5,13 @@ import re
 import shutil
 import subprocess
 from contextlib import suppress
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from exactfold import find_branch
+from exactfold import find_branch, load
 from exactfold.bridges import branch_to_coq, branches_to_coq, to_coq
 from exactfold.data import EXAMPLES, example_path
 from exactfold.errors import NotApplicableError, NotTriangulatedError
@@ -18,6 +19,7 @@ from exactfold.evidence import branch_certificate
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import open_pattern, triangles
 from exactfold.pattern.random_squares import random_square
+from exactfold.rigidity.curvature import curvature_form
 
 ROOT = Path(__file__).parent.parent.parent
 FORMAL = ROOT / "proofs" / "formal"
@@ -169,6 +171,41 @@ Proof. vm_compute. reflexivity. Qed.
 """Curvature 0, other signs, a distance too small, reversed letters."""
 
 
+BOXES = """
+From Coq Require Import List QArith Qabs.
+From Exactfold Require Import Drawing Rational Boxes.
+Import ListNotations.
+Definition box_about (x r : Q) : box :=
+  Box [1; 0; 0; 0; x]%Q r [[]; []; []; []; [0; 0; 0; 0; {Y}]]%Q ({F} * (x - (1 # 2)) ^ 2 + {G} *
+    Qabs.Qabs (x - (1 # 2)))%Q ({F} * 2 * Qabs.Qabs (x - (1 # 2)))%Q {F}.
+Lemma one_branch_in_a_box :
+  map (check_box Sheet{k}.sheet_drawing) [box_about (501 # 1000) (1 # 100);
+    box_about (501 # 1000) (1 # 2000); box_about (7 # 10) (1 # 100); box_about (1 # 2) 1] =
+  [true; false; false; false].
+Proof. vm_compute. reflexivity. Qed.
+"""
+
+
+def boxes(place: int) -> str:
+    """Boxes with and without the branch of `single-vertex-4` at which the vertex has height 1/2.
+
+    Not held: the branch is outside, or far, or the box is so large that it holds two of them.
+    """
+    pattern = load("single-vertex-4")
+    form, unit = curvature_form(pattern, 4), Fraction(1, pattern.integer_vertices[1] ** 2)
+    at, up = (
+        {0: Fraction(1), 1: Fraction(0), 2: Fraction(0), 3: Fraction(0), 4: Fraction(1, 2)},
+        {0: Fraction(0), 1: Fraction(0), 2: Fraction(0), 3: Fraction(0), 4: Fraction(1)},
+    )
+    assert form(at) == 0
+    slope, bend = 2 * form.polar(at, up), 2 * form(up)
+    inverse, ratio = 1 / (slope * unit), abs(bend / slope)
+    words = {"Y": inverse, "F": ratio, "G": Fraction(1)}
+    return BOXES.format(
+        k=place, **{name: f"({x.numerator} # {x.denominator})%Q" for name, x in words.items()}
+    )
+
+
 def in_scope() -> dict[str, CreasePattern]:
     """The shipped patterns that are triangulated, with rational coordinates."""
     found = {}
@@ -219,6 +256,7 @@ def test_it_builds_and_assumes_no_more_than_the_reals(tmp_path: Path) -> None:
     ]
     every = [find_branch("two-vertex", signs) for signs in ("++", "+-", "-+", "--")]
     exported += [branches_to_coq([branch_certificate(branch) for branch in every]), FORGED]
+    exported.append(boxes(list(in_scope()).index("single-vertex-4")))
     (tmp_path / "Exported.v").write_text("".join(exported), encoding="utf-8")
     verified = subprocess.run(
         ["coqc", "-Q", ".", "Exactfold", "Exported.v"],
