@@ -23,6 +23,7 @@ LONG = (
     "all_real",
     "branch_angles",
     "discussion_counts",
+    "exceptions",
     "force_balance",
     "generic",
     "hub_balance",
