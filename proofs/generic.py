@@ -73,8 +73,8 @@ def _projective(script: Script) -> None:
         of="T.10",
     )
     script.identity(
-        "the gradient jumps across the fold ac by omega_ac = [acyz]/([acy][caz]) times c - a, turned "
-        "by a right angle",
+        "across the fold ac the gradient jumps by omega_ac = [acyz]/([acy][caz]) times c - a, "
+        "turned by a right angle",
         *_jump_of_the_gradient(script.alter("turned the other way", 1, -1)),
         of="T.10",
     )
