@@ -328,7 +328,7 @@ def _straight_lines(script: Script) -> None:
         "a star of degree 5 inside a 4-cycle, vertex 5 with the ring 1, 2, 6, 7, 4, is flat with "
         "all stars inside 1, 2, 3, 4 where 4 is on the line 13",
         graph(disk).degree[5] == 5
-        and _exceptional(disk, {4: (1, script.alter("another line", 3, 5))}) == {5, 6, 7},
+        and _exceptional(disk, {4: script.alter("another line", (1, 3), (0, 5))}) == {5, 6, 7},
         of="T.12",
     )
 
