@@ -28,7 +28,7 @@ def test_undecided_stars_are_left_to_the_4_cycles_around_them() -> None:
     """Four interior vertices: three stars of degree 4, each alone inside a 4-cycle."""
     left = [(disk, v, case) for disk, v in stars(4) for case in cases(disk, v) if not case.lines]
     assert [(graph(disk).degree[v], case.flat) for disk, v, case in left] == [
-        (4, {v}) for _, v, _ in left
+        (4, frozenset({v})) for _, v, _ in left
     ]
     assert len(left) == 3
     assert all(frozenset({v}) in enclosed(disk, 4) and case.undecided for disk, v, case in left)
@@ -51,7 +51,7 @@ def singular(disk: Disk, v: int, seed: int) -> str:
     names = [f"h{w}" for w in point if w > 3]
     lines = ['LIB "elim.lib";', f"ring r={PRIME},(z,{','.join(names)},t),dp;", "ideal I; poly A=1;"]
     lines += [f"matrix U{w}[1][4]={at};" for w, at in point.items()]
-    area = {}
+    area: dict[tuple[int, int], str] = {}
     for k, (a, b, c) in enumerate(disk):
         rows = (f"U{w}[1,{j}]" for w in (a, b, c) for j in (1, 2, 3))
         lines.append(f"matrix M{k}[3][3]={','.join(rows)}; poly A{k}=det(M{k}); A=A*A{k};")
