@@ -9,6 +9,7 @@ from exactfold.modes.decomposition import decompose
 from exactfold.modes.elementary import ModeSearch
 from exactfold.modes.extension import Loops, extension
 from exactfold.modes.stars import stars
+from exactfold.modes.transmission import Transmission
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import REFUTED
 
@@ -54,3 +55,23 @@ def test_the_loop_named_is_one_of_the_mode_also_if_its_shape_was_seen_before() -
 def test_the_listed_modes_name_their_own_loops() -> None:
     for mode in decompose(bent()).modes:
         assert set(mode.extends.cycle) <= set(mode.active)
+
+
+def test_a_loop_with_two_nonlinear_transmissions_can_close_up_to_the_fourth_order() -> None:
+    """The bound 2^k + 1 is sharp for k = 2 (docs/panels.md, Order bound)."""
+    half = Fraction(1, 2)
+    face = [(0, 0), (6, 0), (5, half), (2, half)]
+    rim = [(-1, -half), (6, -1), (7, 3 * half), (5, 1), (Fraction(19, 4), 1)]
+    rim += [(Fraction(17, 8), 1), (2, 1), (1, Fraction(3, 4))]
+    border = [(4 + k, 4 + (k + 1) % 8) for k in range(8)]
+    outer = [(0, 4), (0, 11), (1, 5), (1, 6), (2, 7), (2, 8), (3, 9), (3, 10)]
+    pattern = PanelPattern([*face, *rim], [(0, 1), (1, 2), (2, 3), (3, 0), *border, *outer])
+    found = [mode.extends for mode in decompose(pattern).modes]
+    assert all(result.verdict is REFUTED for result in found)
+    assert sorted(result.order for result in found) == [3, 3, 5]
+    [last] = [mode for mode in decompose(pattern).modes if mode.extends.order == 5]
+    moving, linear = stars(pattern), []
+    for local in last.choice:
+        before, after = (fold for fold in local.folds if max(fold) < 4)
+        linear.append(Transmission(moving[local.vertex], local, before, after).is_linear)
+    assert sorted(linear) == [False, False, True, True]

@@ -3,6 +3,7 @@
 import random
 import shutil
 import subprocess
+from functools import cache
 
 import pytest
 
@@ -12,6 +13,7 @@ PRIME = 32003
 CORNERS = {0: "1,0,0,0", 1: "1,1,0,0", 2: "1,1,1,0", 3: "1,0,1,1"}
 
 
+@cache
 def stars(n: int) -> list[tuple[Disk, int]]:
     return [(disk, v) for disk in triangulations(n) for v in range(4, 4 + n)]
 
@@ -103,7 +105,7 @@ def test_flat_stars_of_codimension_one_are_inside_4_cycles(n: int, settled: int,
 
 
 def test_enclosed_sets_are_inside_4_cycles() -> None:
-    for disk in triangulations(4):
+    for disk in {disk for disk, _ in stars(4)}:
         edges = graph(disk)
         for part in enclosed(disk, 4):
             ring = edges.subgraph({w for v in part for w in edges[v]} - part)
