@@ -17,6 +17,7 @@ MODULES: tuple[str, ...] = (
     "kapovich_millson",
     "all_real",
     "generic",
+    "exceptions",
     "potential",
     "inertia",
     "inertia_cases",

@@ -14,6 +14,8 @@ if not __package__:  # run as a file
 
 import networkx as nx
 import sympy
+from sympy import QQ
+from sympy.polys.fields import field
 
 from exactfold import CreasePattern, count_branches, random_square
 from exactfold.pattern.crease_pattern import Triangle
@@ -70,6 +72,12 @@ def _projective(script: Script) -> None:
         (_stress_is_carried_over(rng, power) for _ in range(20)),
         of="T.10",
     )
+    script.identity(
+        "across the fold ac the gradient jumps by omega_ac = [acyz]/([acy][caz]) times c - a, "
+        "turned by a right angle",
+        *_jump_of_the_gradient(script.alter("turned the other way", 1, -1)),
+        of="T.10",
+    )
     w, mu, nu, h, k = sympy.symbols("omega mu nu h k")
     script.identity(
         "mu nu omega (k/nu - h/mu) = mu omega (k - h) - h omega (nu - mu): over the star the first "
@@ -79,6 +87,26 @@ def _projective(script: Script) -> None:
         + script.alter("sign of the moment", 1, -1) * h * w * (nu - mu),
         of="T.10",
     )
+
+
+def _jump_of_the_gradient(turn: int) -> list[Any]:
+    """At a = 0 with height 0, to which a translation and a plane lead: two coordinates, all 0."""
+    _, *z = field("c1 c2 c3 y1 y2 y3 z1 z2 z3", QQ)
+    c, y, z3 = z[:3], z[3:6], z[6:]
+
+    def cross(p: list[Any], q: list[Any]) -> Any:
+        return p[0] * q[1] - p[1] * q[0]
+
+    def gradient(p: list[Any], q: list[Any]) -> list[Any]:
+        return [
+            (p[2] * q[1] - q[2] * p[1]) / cross(p, q),
+            (p[0] * q[2] - q[0] * p[2]) / cross(p, q),
+        ]
+
+    volume = c[2] * cross(y, z3) + y[2] * cross(z3, c) + z3[2] * cross(c, y)
+    stress = volume / (cross(c, y) * cross(z3, c))
+    jump = [p - q for p, q in zip(gradient(c, y), gradient(z3, c), strict=True)]
+    return [jump[0] + turn * stress * c[1], jump[1] - turn * stress * c[0]]
 
 
 def _stress_is_carried_over(rng: random.Random, power: int) -> bool:

@@ -3,12 +3,14 @@
 from fractions import Fraction
 from itertools import pairwise
 
+import pytest
 from panel_sheets import grid
 
 from exactfold.modes.decomposition import decompose
 from exactfold.modes.elementary import ModeSearch
 from exactfold.modes.extension import Loops, extension
 from exactfold.modes.stars import stars
+from exactfold.modes.transmission import Transmission
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.verdict import REFUTED
 
@@ -54,3 +56,37 @@ def test_the_loop_named_is_one_of_the_mode_also_if_its_shape_was_seen_before() -
 def test_the_listed_modes_name_their_own_loops() -> None:
     for mode in decompose(bent()).modes:
         assert set(mode.extends.cycle) <= set(mode.active)
+
+
+TWO = (
+    "0,0 6,0 5,1/2 2,1/2 -1,-1/2 6,-1 7,3/2 5,1 19/4,1 17/8,1 2,1 1,3/4",
+    [(0, 4), (0, 11), (1, 5), (1, 6), (2, 7), (2, 8), (3, 9), (3, 10)],
+)
+THREE = (
+    "0,0 6,0 9/2,1 3,3/2 -1/4,1/10 1/10,-1/20 121/20,-1/20 117/20,1/4 89/20,23/20 17/4,11/8 "
+    "27/10,37/20 11/4,7/4",
+    [(0, 4), (0, 5), (1, 6), (1, 7), (2, 8), (2, 9), (3, 10), (3, 11)],
+)
+
+
+@pytest.mark.parametrize(
+    ("sheet", "nonlinear", "orders"), [(TWO, 2, [3, 3, 5]), (THREE, 3, [9])], ids=["two", "three"]
+)
+def test_the_order_bound_is_sharp(
+    sheet: tuple[str, list[tuple[int, int]]], nonlinear: int, orders: list[int]
+) -> None:
+    """Loops that close up to the order 2^k and fail at 2^k + 1 (docs/panels.md, Order bound)."""
+    points, outer = sheet
+    border = [(4 + k, 4 + (k + 1) % 8) for k in range(8)]
+    vertices = [tuple(map(Fraction, point.split(","))) for point in points.split()]
+    pattern = PanelPattern(vertices, [(0, 1), (1, 2), (2, 3), (3, 0), *border, *outer])
+    modes = decompose(pattern).modes
+    assert all(mode.extends.verdict is REFUTED for mode in modes)
+    assert sorted(mode.extends.order for mode in modes) == orders
+    assert orders[-1] == 2**nonlinear + 1
+    [last] = [mode for mode in modes if mode.extends.order == orders[-1]]
+    moving, linear = stars(pattern), []
+    for local in last.choice:
+        before, after = (fold for fold in local.folds if max(fold) < 4)
+        linear.append(Transmission(moving[local.vertex], local, before, after).is_linear)
+    assert sorted(linear) == [False] * nonlinear + [True] * (4 - nonlinear)

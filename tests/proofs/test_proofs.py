@@ -12,8 +12,9 @@ import pytest
 
 from proofs import MODULES
 from proofs.__main__ import load, main
-from proofs.formulas import latex, parse
+from proofs.formulas import latex
 from proofs.mutation import mutants
+from proofs.reading import parse
 from proofs.statements import Ruling
 
 ROOT = Path(__file__).parent.parent.parent
@@ -23,6 +24,7 @@ LONG = (
     "all_real",
     "branch_angles",
     "discussion_counts",
+    "exceptions",
     "force_balance",
     "generic",
     "hub_balance",

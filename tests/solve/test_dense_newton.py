@@ -158,3 +158,39 @@ def test_refinement_satisfies_the_quadrics_to_its_precision() -> None:
     values = system.chart.system.values_at([Fraction(m, 1 << 400) for m in end.point])
     scales = [max(abs(c) for row in s for c in row) for s in system.chart.system.matrices]
     assert all(abs(v) < c * Fraction(1, 1 << 380) for v, c in zip(values, scales, strict=True))
+
+
+def test_a_short_step_can_grow_from_a_round_cone_on_the_wrong_side() -> None:
+    """docs/mathematics.md, 12: A_v h = 0 and e_v l_v(h) < 0 at v = 4, and the rim as the cone."""
+    rim = [(-4, -4), (4, -4), (4, 4), (-4, 4)]
+    faces = [(0, 1, 4), (1, 5, 4), (1, 2, 5), (2, 3, 5), (3, 4, 5), (3, 0, 4)]
+    pattern = CreasePattern([*rim, (-3, -3), (-2, -3)], faces)
+    signs, lines, roots = {4: -1, 5: 1}, {}, {}
+    for v in signs:
+        form, cone = curvature_form(pattern, v), round_cone(pattern, v)
+        polar, total = form.functional(cone), form(cone)
+        lines[v] = np.array([float(polar.get(u, 0) / polar[v]) for u in range(6)])
+        squared = np.outer(lines[v], lines[v])
+        squared[np.ix_(form.labels, form.labels)] -= np.array(form.matrix, dtype=float) * float(
+            total / polar[v] ** 2
+        )
+        values, vectors = np.linalg.eigh(squared)
+        roots[v] = np.sqrt(np.maximum(values, 0))[:, None] * vectors.T
+    h = np.array([float(round_cone(pattern, 4).get(u, 5)) for u in range(6)])
+
+    def size(heights: np.ndarray) -> float:
+        gaps = [
+            lines[v] @ heights - e * np.linalg.norm(roots[v] @ heights) for v, e in signs.items()
+        ]
+        return float(np.hypot(*gaps))
+
+    assert np.linalg.norm(roots[4] @ h) < 1e-6 < lines[4] @ h
+    other = roots[5] @ h / np.linalg.norm(roots[5] @ h)
+    growth = []
+    for u in np.vstack([np.eye(6), -np.eye(6), np.zeros(6)]):
+        rows = np.array([lines[4] + u @ roots[4], lines[5] - other @ roots[5]])
+        step = np.zeros(6)
+        step[4:] = np.linalg.solve(rows[:, 4:], -rows @ h)
+        growth.append(size(h + 1e-4 * step) - size(h))
+    assert growth[-1] < -1e-5  # u = 0
+    assert max(growth) > 1e-5

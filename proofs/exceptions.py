@@ -1,0 +1,371 @@
+"""Which stars can be flat on exceptional sheets: docs/generic.md, Theorem 12."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from fractions import Fraction
+from itertools import combinations
+from pathlib import Path
+from typing import Any, NamedTuple
+
+if not __package__:  # run as a file
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+import networkx as nx
+import sympy
+
+from exactfold import CreasePattern, count_branches, find_branches
+from exactfold.pattern.crease_pattern import Edge, Triangle
+from exactfold.verdict import PROVED
+from proofs.framework import Proof, Script, run
+
+NAME = "exceptions"
+TITLE = "Exceptional sheets: flat stars and the 4-cycles around them"
+
+Disk = tuple[Triangle, ...]
+
+SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))
+RIM = frozenset(range(4))
+
+
+def prove(change: str | None = None) -> Proof:
+    """The case analysis behind docs/generic.md, Theorem 12, and its hypersurfaces on examples."""
+    script = Script(
+        NAME,
+        TITLE,
+        (
+            "a triangulated quadrilateral without reflex corner, with no vertex inside a triangle "
+            "of edges, given up to the positions of its interior vertices",
+        ),
+        change,
+    )
+    script.state(
+        "T.12",
+        "docs/generic.md, Theorem 12",
+        r"V_i\le 4:\text{ in codimension one, a star is flat on a branch only with all stars "
+        r"inside a 4-cycle other than the rim}",
+        note="a flat star of degree d > 4 alone is d - 3 conditions on the positions",
+        code="BranchCount.exceptional_vertices",
+        words="docs/generic.md, Theorem 12",
+    )
+    _few_folds(script)
+    _case_analysis(script)
+    _straight_lines(script)
+    _curved(script)
+    return script.proof()
+
+
+# --- triangulated disks --------------------------------------------------------------------------
+
+
+def graph(disk: Iterable[Triangle]) -> nx.Graph:
+    """The vertices and edges of a triangulated disk."""
+    found = nx.Graph()
+    for a, b, c in disk:
+        found.add_edges_from([(a, b), (b, c), (c, a)])
+    return found
+
+
+def enclosed(disk: Iterable[Triangle], size: int) -> set[frozenset[int]]:
+    """The sets of interior vertices that are all that is inside some cycle of 3 or 4 vertices.
+
+    A component without corners of what is left without `size` vertices, which are not the rim.
+    """
+    edges = graph(disk)
+    found: set[frozenset[int]] = set()
+    for ring in combinations(sorted(edges), size):
+        if set(ring) != RIM:
+            left = edges.subgraph(set(edges) - set(ring))
+            found |= {frozenset(part) for part in nx.connected_components(left) if not part & RIM}
+    return found
+
+
+def triangulations(n: int) -> list[Disk]:
+    """All triangulated disks with 4 corners and n inner vertices, none inside a triangle of edges.
+
+    The corners are 0 to 3 in their order; one of each class under renaming of the others and the
+    symmetries of the square. They are found by flips from one disk, and put in order.
+
+    >>> [len(triangulations(n)) for n in range(1, 5)]
+    [1, 1, 2, 6]
+    """
+    first: list[Triangle] = [(0, 1, 2), (0, 2, 3)]
+    for v in range(4, 4 + n):
+        a, b, c = first.pop(0)
+        first += [(a, b, v), (b, c, v), (c, a, v)]
+    found = {_renamed(first)}
+    left = list(found)
+    while left:
+        new = {_renamed(disk) for disk in _flips(left.pop())} - found
+        found |= new
+        left += new
+    return sorted(disk for disk in found if not enclosed(disk, 3))
+
+
+def _next(disk: Iterable[Triangle]) -> dict[tuple[int, int], int]:
+    """The third vertex of the face to the left of each directed edge."""
+    return {half: w for a, b, c in disk for half, w in (((a, b), c), ((b, c), a), ((c, a), b))}
+
+
+def _flips(disk: Disk) -> Iterator[list[Triangle]]:
+    third = _next(disk)
+    for (a, b), c in third.items():
+        d = third.get((b, a))
+        if a < b and d is not None and not {(c, d), (d, c)} & set(third):
+            yield [t for t in disk if not {a, b} <= set(t)] + [(c, d, b), (d, c, a)]
+
+
+def _renamed(disk: Iterable[Triangle]) -> Disk:
+    """The same for all disks that differ in names and by a symmetry of the square."""
+    left = _next(disk)
+    right = {(b, a): c for (a, b), c in left.items()}
+    return min(
+        _walk(third, [(k + side * i) % 4 for i in range(4)])
+        for side, third in ((1, left), (-1, right))
+        for k in range(4)
+    )
+
+
+def _walk(third: dict[tuple[int, int], int], corners: list[int]) -> Disk:
+    """The faces in names given in the order in which a walk from the rim meets the vertices."""
+    names = {corner: i for i, corner in enumerate(corners)}
+    queue = [(corners[i - 1], corners[i]) for i in range(4)]
+    faces: dict[frozenset[int], Triangle] = {}
+    for a, b in queue:
+        c = third.get((a, b))
+        if c is not None and frozenset((a, b, c)) not in faces:
+            face = names[a], names[b], names.setdefault(c, len(names))
+            k = face.index(min(face))
+            faces[frozenset((a, b, c))] = (face[k], face[k - 2], face[k - 1])
+            queue += [(a, c), (c, b)]
+    return tuple(sorted(faces.values()))
+
+
+# --- the case analysis ---------------------------------------------------------------------------
+
+
+class Case(NamedTuple):
+    """What a branch with a flat star is like: points on lines, flat stars, stars not decided.
+
+    Each of `lines` is an interior vertex w with two of its neighbours a < c: w lies on ac.
+    """
+
+    lines: frozenset[tuple[int, int, int]]
+    flat: frozenset[int]
+    undecided: frozenset[int]
+
+
+def cases(disk: Disk, v: int) -> set[Case]:
+    """All cases of a branch with a flat star of v, followed from star to star.
+
+    A star with one fold that is not yet flat is flat. One with two is flat or they form a line. One
+    with three is flat or two of them form a line and the third is flat. The four corners do not lie
+    in a plane, and no line is a side of a face.
+    """
+    faces = [frozenset(face) for face in disk]
+    third = _next(disk)
+    folds = [(a, b) for a, b in third if a < b and (b, a) in third]
+    spokes = {w: frozenset(e for e in folds if w in e) for w in {*sum(disk, ())} - RIM}
+    found: set[Case] = set()
+    seen: set[tuple[frozenset[Edge], frozenset[tuple[int, int, int]]]] = set()
+
+    def planar(flat: Collection[Edge]) -> bool:
+        """Whether faces that flat folds join hold all four corners."""
+        joined = nx.Graph()
+        joined.add_nodes_from(faces)
+        for a, b in flat:
+            joined.add_edge(frozenset((a, b, third[a, b])), frozenset((a, b, third[b, a])))
+        return any(frozenset().union(*part) >= RIM for part in nx.connected_components(joined))
+
+    def follow(flat: frozenset[Edge], lines: frozenset[tuple[int, int, int]]) -> None:
+        if (flat, lines) in seen or planar(flat):
+            return
+        seen.add((flat, lines))
+        bent = {w: spokes[w] - flat for w in spokes}
+        for open_folds in bent.values():
+            if len(open_folds) == 1:
+                return follow(flat | open_folds, lines)
+        for w, open_folds in bent.items():
+            choices = [
+                ((w, *sorted({*p[0], *p[1]} - {w})), open_folds - set(p))
+                for p in combinations(sorted(open_folds), 2)
+            ]
+            if len(open_folds) in (2, 3) and not any(line in lines for line, _ in choices):
+                follow(flat | open_folds, lines)
+                for line, rest in choices:
+                    if frozenset(line) not in faces:
+                        follow(flat | rest, lines | {(line[0], line[1], line[2])})
+                return None
+        found.add(
+            Case(
+                lines,
+                frozenset(w for w in bent if not bent[w]),
+                frozenset(w for w in bent if len(bent[w]) > 3),
+            )
+        )
+        return None
+
+    follow(spokes[v], frozenset())
+    return found
+
+
+def is_settled(disk: Disk, v: int, size: int = 4) -> bool:
+    """Whether every case of at most one line has all stars inside a 4-cycle around v flat."""
+    around = [part for part in enclosed(disk, size) if v in part]
+    return all(
+        len(case.lines) > 1 or any(part <= case.flat for part in around) for case in cases(disk, v)
+    )
+
+
+def _few_folds(script: Script) -> None:
+    d = sympy.symbols("x1:4 y1:4")
+    at = list(zip(d[:3], d[3:], strict=True))
+
+    def cross(i: int, j: int) -> Any:
+        return at[i][0] * at[j][1] - at[i][1] * at[j][0]
+
+    w = cross(1, 2), cross(2, 0), cross(0, 1)
+    form = (w[0] * w[1] * cross(0, 1) + w[0] * w[2] * cross(0, 2) + w[1] * w[2] * cross(1, 2)) / 2
+    script.identity(
+        "three folds with the directions d_1, d_2, d_3: the stresses in balance are multiples of "
+        "[d_2,d_3], [d_3,d_1], [d_1,d_2], and K = [d_1,d_2][d_2,d_3][d_3,d_1]/2: 0 only if two "
+        "directions are opposite, and then the third fold is flat",
+        *(sum(w[i] * at[i][k] for i in range(3)) for k in range(2)),
+        form - script.alter("one factor left out", w[0], 1) * w[1] * w[2] / 2,
+        of="T.12",
+    )
+    ratio, s, t = sympy.symbols("lambda s t")
+    at = [at[0], at[1], (-ratio * at[0][0], -ratio * at[0][1]), at[2]]
+    stress = ratio * t - s * cross(1, 3), s * cross(0, 3), t, -s * cross(0, 1)
+    form = sum(
+        stress[j] * stress[k] * cross(j, k) for j in range(4) for k in range(j + 1, 4)
+    ) / script.alter("the form doubled", 2, 1)
+    script.identity(
+        "four folds, the third opposite to the first, d_3 = -lambda d_1: the stresses in balance "
+        "are (lambda t - s [d_2,d_4], s [d_1,d_4], t, -s [d_1,d_2]), and K = s [d_1,d_2][d_1,d_4]"
+        "(2 lambda t - s [d_2,d_4])/2: one factor vanishes where the second and fourth are flat",
+        *(sum(stress[i] * at[i][k] for i in range(4)) for k in range(2)),
+        form - s * cross(0, 1) * cross(0, 3) * (2 * ratio * t - s * cross(1, 3)) / 2,
+        of="T.12",
+    )
+
+
+def _case_analysis(script: Script) -> None:
+    size = script.alter("triangles instead of 4-cycles", 4, 3)
+    least = script.alter("three lines needed", 1, 3)
+    stars = [(disk, v) for n in range(1, 5) for disk in triangulations(n) for v in range(4, 4 + n)]
+    script.certificate(
+        "up to 4 interior vertices, none inside a triangle of edges: if the star of a vertex is "
+        "flat on a branch, two or more vertices are on lines through two neighbours, or all stars "
+        "inside a 4-cycle around the vertex are flat",
+        len(stars) == 33 and all(is_settled(disk, v, size) for disk, v in stars),
+        of="T.12",
+    )
+    script.certificate(
+        "up to 3 interior vertices: some vertex is then on a line through two neighbours",
+        all(
+            len(case.lines) >= least
+            for disk, v in stars
+            if len(disk) < 10
+            for case in cases(disk, v)
+        ),
+        of="T.12",
+    )
+
+
+# --- sheets --------------------------------------------------------------------------------------
+
+
+def placed(disk: Disk, between: Mapping[int, tuple[int, int]]) -> CreasePattern:
+    """The disk in the unit square; vertices of `between` halfway between two neighbours.
+
+    Each of the others is a mean of its neighbours, with unequal weights (Tutte).
+    """
+    inner = sorted({*sum(disk, ())} - RIM)
+    edges = graph(disk)
+    rows, right = [], []
+    for v in inner:
+        near = between.get(v, tuple(sorted(edges[v])))
+        weight = {w: 1 if v in between else 1 + (3 * v + 5 * w) % 7 for w in near}
+        rows.append([sum(weight.values()) * (u == v) - weight.get(u, 0) for u in inner])
+        right.append([sum(weight.get(b, 0) * SQUARE[b][k] for b in RIM) for k in range(2)])
+    points = sympy.Matrix(rows).LUsolve(sympy.Matrix(right))
+    found = [(Fraction(str(x)), Fraction(str(y))) for x, y in points.tolist()]
+    return CreasePattern([*SQUARE, *found], disk)
+
+
+def _exceptional(disk: Disk, between: Mapping[int, tuple[int, int]]) -> set[int] | None:
+    result = count_branches(placed(disk, between))
+    return set(result.exceptional_vertices) if result.status is PROVED else None
+
+
+def _straight_lines(script: Script) -> None:
+    moved = script.alter("the vertex moved off the line", False, True)
+    script.cases(
+        "up to 3 interior vertices: if a vertex is halfway between two neighbours as in a case "
+        "with one line, the stars of that case are flat on a branch",
+        (
+            _exceptional(disk, {} if moved else {w: (a, c)}) == flat
+            for n in (2, 3)
+            for disk in triangulations(n)
+            for (w, a, c), flat in sorted(one_line(disk).items())
+        ),
+        of="T.12",
+    )
+    disk = triangulations(3)[0]
+    second = script.alter("the second vertex not on it", {6: (3, 5)}, {})
+    script.example(
+        "a star of degree 5 inside no 4-cycle, vertex 4 with the ring 0, 1, 5, 6, 3, is flat on a "
+        "branch of a sheet with 5 and 6 on the line 13; with 5 alone on the line 16 it is not",
+        graph(disk).degree[4] == 5
+        and 4 in (_exceptional(disk, {5: (1, 6), **second}) or ())
+        and _exceptional(disk, {5: (1, 6)}) == set(),
+        of="T.12",
+    )
+    disk = triangulations(4)[0]
+    script.example(
+        "a star of degree 5 inside a 4-cycle, vertex 5 with the ring 1, 2, 6, 7, 4, is flat with "
+        "all stars inside 1, 2, 3, 4 where 4 is on the line 13",
+        graph(disk).degree[5] == 5
+        and _exceptional(disk, {4: script.alter("another line", (1, 3), (0, 5))}) == {5, 6, 7},
+        of="T.12",
+    )
+
+
+def one_line(disk: Disk) -> dict[tuple[int, int, int], set[int]]:
+    """For each line that is the only one of some case, the stars that are flat then."""
+    found: dict[tuple[int, int, int], set[int]] = {}
+    for v in {*sum(disk, ())} - RIM:
+        for case in cases(disk, v):
+            if len(case.lines) == 1:
+                (line,) = case.lines
+                found.setdefault(line, set()).update(case.flat)
+    return found
+
+
+CURVED = ((0, 1, 4), (0, 4, 5), (0, 5, 3), (1, 2, 4), (2, 6, 4), (2, 3, 6), (3, 5, 6), (4, 6, 5))
+"""A disk with 4 interior vertices, the one inside the 4-cycle 1, 2, 6, 4 taken out."""
+
+
+def _curved(script: Script) -> None:
+    """The fold 24 of CURVED has different letters on branches with equal signs and saddles."""
+    shift = script.alter("the first sheet twice", 0, 1)
+    first = [("7/16", "41/64"), ("9/64", "37/64"), ("3/16", "13/16")]
+    second = [("15/32", "5/16"), ("13/64", "15/32"), ("7/16", "11/16")]
+    sheets = [CreasePattern([*SQUARE, *points], CURVED) for points in (first, second)]
+    letters = [
+        {branch.assignment[2, 4] for branch in find_branches(sheet, ("---", "--+"))}
+        for sheet in (sheets[0], sheets[1 - shift])
+    ]
+    script.example(
+        "4 interior vertices, 4 in the corner 1, 2, 6, 4 taken out: on two sheets the fold 24 has "
+        "different letters on the branches with equal signs and saddles, so that it is flat on a "
+        "sheet between them; the star inside the 4-cycle is flat there, with no folds on a line",
+        all(len(found) == 1 for found in letters) and letters[0] != letters[1],
+        of="T.12",
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(run(prove()))
