@@ -63,16 +63,20 @@ def shrunk(sheet: PanelSheet) -> None:
 
 
 class Places:
-    """The positions of the vertices of a sheet that was shrunk, the first panel being held."""
+    """The positions of the vertices of a sheet that was shrunk, a panel in its middle being held.
+
+    So errors grow over half the sheet only, and what folds onto that panel is not turned with it.
+    """
 
     def __init__(self, drive: Drive, clock: Clock) -> None:
         self.drive, self.clock, sheet = drive, clock, drive.sheet
         ends = [[thin(c) for c in point] for point in sheet.points]
         self._flat = [[(c.low + c.high) >> 1 for c in point] for point in ends]
         self._blur = 1 + max(c.high - c.low for point in ends for c in point)
-        self._steps = list(_order(sheet))
+        self.held = _middle(sheet)
+        self._steps = list(_order(sheet, self.held))
         self._owner: dict[int, int] = {}
-        for panel in (0, *(after for after, *_ in self._steps)):
+        for panel in (self.held, *(after for after, *_ in self._steps)):
             for v in sheet.panels[panel]:
                 self._owner.setdefault(v, panel)
         self._axes: dict[Edge, tuple[int, int, int]] = {}
@@ -159,7 +163,7 @@ class Places:
         rows = [(_UNIT, _STILL, _STILL), (_STILL, _UNIT, _STILL), (_STILL, _STILL, _UNIT)]
         # Of each panel its rotation and its shift, and how far they are off.
         placed: dict[int, tuple[list[Row], int, list[Polynomial], int]] = {
-            0: (rows, 0, [_STILL] * 3, 0)
+            self.held: (rows, 0, [_STILL] * 3, 0)
         }
         for panel, before, i, j in self._steps:
             if (i, j) not in self._axes:
@@ -200,11 +204,23 @@ def panels_of(sheet: PanelSheet) -> dict[Edge, int]:
     }
 
 
-def _order(sheet: PanelSheet) -> Iterator[tuple[int, int, int, int]]:
+def _middle(sheet: PanelSheet) -> int:
+    """The panel in the middle of a chain from one that is as far from another as any."""
+    last = 0
+    for _ in range(2):
+        before = {after: panel for after, panel, _, _ in _order(sheet, last)}
+        last = [last, *before][-1]
+    chain = [last]
+    while chain[-1] in before:
+        chain.append(before[chain[-1]])
+    return chain[len(chain) // 2]
+
+
+def _order(sheet: PanelSheet, held: int) -> Iterator[tuple[int, int, int, int]]:
     """The panels in the order in which they are placed: each with the one before, and the fold
     i to j between them that it is left of."""
     sides = panels_of(sheet)
-    seen, waiting = {0}, [0]
+    seen, waiting = {held}, [held]
     for before in waiting:
         panel = sheet.panels[before]
         for i, j in zip(panel, (*panel[1:], panel[0]), strict=True):

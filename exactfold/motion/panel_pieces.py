@@ -63,9 +63,13 @@ class PanelPiece:
 
 @dataclass(frozen=True)
 class PanelPieces:
-    """The pieces of a motion of panels that exists, by `PanelMotion.exists`."""
+    """The pieces of a motion of panels that exists, by `PanelMotion.exists`.
+
+    `held`: the panel that stays where it is, by default one in the middle of the sheet.
+    """
 
     motion: PanelMotion
+    held: int | None = None
 
     @cached_property
     def unit(self) -> float:
@@ -75,13 +79,15 @@ class PanelPieces:
 
     @cached_property
     def _placing(self) -> Placing:
-        return Placing(self.motion.pattern, self.motion.held)
+        pattern = self.motion.pattern
+        held = Placing(pattern, self.motion.held).middle if self.held is None else self.held
+        return Placing(pattern, held)
 
     @cached_property
     def _flat(self) -> list[tuple[FloatArray, float]]:
         """The flat vertices in floats, and how far these are off at most."""
         pattern = self.motion.pattern
-        x, y = pattern.vertices[pattern.faces[self.motion.held][0]]
+        x, y = pattern.vertices[pattern.faces[self._placing.held][0]]
         with ctx.workprec(_BITS):
             unit = arb(self.unit)
             return [

@@ -66,6 +66,18 @@ class Placing:
                 found.append(_Step(panel, before, numbers[min(i, j), max(i, j)], j, i))
         return tuple(found)
 
+    @property
+    def middle(self) -> int:
+        """A panel in the middle of a chain of panels that is as long as any, about."""
+        last, before = self.held, dict[int, int]()
+        for _ in range(2):
+            before = {step.panel: step.before for step in Placing(self.pattern, last).steps}
+            last = [last, *before][-1]
+        chain = [last]
+        while chain[-1] in before:
+            chain.append(before[chain[-1]])
+        return chain[len(chain) // 2]
+
     @cached_property
     def owners(self) -> Mapping[int, int]:
         """For each vertex the first panel placed that has it as a corner."""
