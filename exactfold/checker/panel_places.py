@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from functools import partial
+from functools import cmp_to_key, partial
 from itertools import pairwise
 from math import floor
+from operator import itemgetter
 
 from .intervals import Interval
 from .motion_lengths import GRID
@@ -26,6 +27,7 @@ _WIDEST = Fraction(1, 16)
 _NARROWEST = Fraction(1, 1 << 40)
 _STILL: Polynomial = [0] * (DEGREE + 1)
 _UNIT: Polynomial = [ONE, *_STILL[1:]]
+_TRIES = 4
 _ROUNDED = DEGREE + 1  # what one rounded product with a number is off at most
 Row = tuple[Polynomial, Polynomial, Polynomial]
 
@@ -205,15 +207,21 @@ def panels_of(sheet: PanelSheet) -> dict[Edge, int]:
 
 
 def _middle(sheet: PanelSheet) -> int:
-    """The panel in the middle of a chain from one that is as far from another as any."""
-    last = 0
-    for _ in range(2):
-        before = {after: panel for after, panel, _, _ in _order(sheet, last)}
-        last = [last, *before][-1]
-    chain = [last]
-    while chain[-1] in before:
-        chain.append(before[chain[-1]])
-    return chain[len(chain) // 2]
+    """The largest of the panels from which others are few folds away: few from those tried."""
+    most = [0] * len(sheet.panels)
+    for _ in range(_TRIES):
+        last = max(enumerate(_depths(sheet, most.index(min(most)))), key=itemgetter(1))[0]
+        most = list(map(max, most, _depths(sheet, last)))
+    near = [k for k, depth in enumerate(most) if depth <= min(most) + 1]
+    areas = {k: sheet.area(sheet.panels[k]) for k in near}
+    return max(near, key=cmp_to_key(lambda i, j: (areas[i] - areas[j]).sign()))
+
+
+def _depths(sheet: PanelSheet, held: int) -> list[int]:
+    found = [0] * len(sheet.panels)
+    for after, before, _, _ in _order(sheet, held):
+        found[after] = found[before] + 1
+    return found
 
 
 def _order(sheet: PanelSheet, held: int) -> Iterator[tuple[int, int, int, int]]:

@@ -199,7 +199,7 @@ class PanelPieces:
         width = half / count
         found: dict[int, list[arb]] = {}
         for part in range(count):
-            time = arb(middle + (2 * part + 1 - count) * width, width)
+            time = arb(middle) + arb((2 * part + 1 - count) * width, width)
             for fold, series in self._turns(time).items():
                 known = found.setdefault(fold, [arb(0), arb(0)])
                 for k, f in enumerate(series):
