@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from functools import partial
+from functools import cmp_to_key, partial
 from itertools import pairwise
 from math import floor
+from operator import itemgetter
 
 from .intervals import Interval
 from .motion_lengths import GRID
@@ -26,6 +27,7 @@ _WIDEST = Fraction(1, 16)
 _NARROWEST = Fraction(1, 1 << 40)
 _STILL: Polynomial = [0] * (DEGREE + 1)
 _UNIT: Polynomial = [ONE, *_STILL[1:]]
+_TRIES = 4
 _ROUNDED = DEGREE + 1  # what one rounded product with a number is off at most
 Row = tuple[Polynomial, Polynomial, Polynomial]
 
@@ -63,16 +65,20 @@ def shrunk(sheet: PanelSheet) -> None:
 
 
 class Places:
-    """The positions of the vertices of a sheet that was shrunk, the first panel being held."""
+    """The positions of the vertices of a sheet that was shrunk, a panel in its middle being held.
+
+    So errors grow over half the sheet only, and what folds onto that panel is not turned with it.
+    """
 
     def __init__(self, drive: Drive, clock: Clock) -> None:
         self.drive, self.clock, sheet = drive, clock, drive.sheet
         ends = [[thin(c) for c in point] for point in sheet.points]
         self._flat = [[(c.low + c.high) >> 1 for c in point] for point in ends]
         self._blur = 1 + max(c.high - c.low for point in ends for c in point)
-        self._steps = list(_order(sheet))
+        self.held = _middle(sheet)
+        self._steps = list(_order(sheet, self.held))
         self._owner: dict[int, int] = {}
-        for panel in (0, *(after for after, *_ in self._steps)):
+        for panel in (self.held, *(after for after, *_ in self._steps)):
             for v in sheet.panels[panel]:
                 self._owner.setdefault(v, panel)
         self._axes: dict[Edge, tuple[int, int, int]] = {}
@@ -159,7 +165,7 @@ class Places:
         rows = [(_UNIT, _STILL, _STILL), (_STILL, _UNIT, _STILL), (_STILL, _STILL, _UNIT)]
         # Of each panel its rotation and its shift, and how far they are off.
         placed: dict[int, tuple[list[Row], int, list[Polynomial], int]] = {
-            0: (rows, 0, [_STILL] * 3, 0)
+            self.held: (rows, 0, [_STILL] * 3, 0)
         }
         for panel, before, i, j in self._steps:
             if (i, j) not in self._axes:
@@ -200,11 +206,29 @@ def panels_of(sheet: PanelSheet) -> dict[Edge, int]:
     }
 
 
-def _order(sheet: PanelSheet) -> Iterator[tuple[int, int, int, int]]:
+def _middle(sheet: PanelSheet) -> int:
+    """The largest of the panels from which others are few folds away: few from those tried."""
+    most = [0] * len(sheet.panels)
+    for _ in range(_TRIES):
+        last = max(enumerate(_depths(sheet, most.index(min(most)))), key=itemgetter(1))[0]
+        most = list(map(max, most, _depths(sheet, last)))
+    near = [k for k, depth in enumerate(most) if depth <= min(most) + 1]
+    areas = {k: sheet.area(sheet.panels[k]) for k in near}
+    return max(near, key=cmp_to_key(lambda i, j: (areas[i] - areas[j]).sign()))
+
+
+def _depths(sheet: PanelSheet, held: int) -> list[int]:
+    found = [0] * len(sheet.panels)
+    for after, before, _, _ in _order(sheet, held):
+        found[after] = found[before] + 1
+    return found
+
+
+def _order(sheet: PanelSheet, held: int) -> Iterator[tuple[int, int, int, int]]:
     """The panels in the order in which they are placed: each with the one before, and the fold
     i to j between them that it is left of."""
     sides = panels_of(sheet)
-    seen, waiting = {0}, [0]
+    seen, waiting = {held}, [held]
     for before in waiting:
         panel = sheet.panels[before]
         for i, j in zip(panel, (*panel[1:], panel[0]), strict=True):

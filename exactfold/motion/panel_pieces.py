@@ -27,20 +27,20 @@ from flint import arb, arb_series, ctx
 from exactfold.arrays import FloatArray
 from exactfold.exact.surds import ball
 from exactfold.modes.stars import dot
+from exactfold.motion.panel_chain import Turned, hinged, moved, product, spun, still
 from exactfold.motion.panel_curves import LinearCurve
 from exactfold.motion.panel_motion import PanelMotion
-from exactfold.motion.panel_passing import Passed, passes_of, spread
+from exactfold.motion.panel_passing import Passed, Tangent, passes_of, spread
 from exactfold.motion.panel_places import Placing
 from exactfold.pattern.panel_pattern import Edge
 
-ORDER = 8
+ORDER = 12
 _BITS = 128
-_THIN = 1e-10
+_THIN = 1e-9
 """The error that a piece may have, in units of twice the sheet."""
 _WIDEST, _NARROWEST = 1 / 8, 2.0**-20
 _CAP = ORDER + 2
-
-Matrix = list[list[arb_series]]
+_PARTS = 8
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,9 +63,13 @@ class PanelPiece:
 
 @dataclass(frozen=True)
 class PanelPieces:
-    """The pieces of a motion of panels that exists, by `PanelMotion.exists`."""
+    """The pieces of a motion of panels that exists, by `PanelMotion.exists`.
+
+    `held`: the panel that stays where it is, by default one in the middle of the sheet.
+    """
 
     motion: PanelMotion
+    held: int | None = None
 
     @cached_property
     def unit(self) -> float:
@@ -75,17 +79,33 @@ class PanelPieces:
 
     @cached_property
     def _placing(self) -> Placing:
-        return Placing(self.motion.pattern, self.motion.held)
+        pattern = self.motion.pattern
+        held = Placing(pattern, self.motion.held).middle if self.held is None else self.held
+        return Placing(pattern, held)
 
     @cached_property
-    def _flat(self) -> list[tuple[arb, arb]]:
+    def _flat(self) -> list[tuple[FloatArray, float]]:
+        """The flat vertices in floats, and how far these are off at most."""
         pattern = self.motion.pattern
-        x, y = pattern.vertices[pattern.faces[self.motion.held][0]]
+        x, y = pattern.vertices[pattern.faces[self._placing.held][0]]
         with ctx.workprec(_BITS):
             unit = arb(self.unit)
             return [
-                (ball(a - x, _BITS) / unit, ball(b - y, _BITS) / unit) for a, b in pattern.vertices
+                _vector(ball(a - x, _BITS) / unit, ball(b - y, _BITS) / unit)
+                for a, b in pattern.vertices
             ]
+
+    @cached_property
+    def _axes(self) -> dict[Edge, tuple[FloatArray, float]]:
+        """The directions of the folds between the panels, and how far these are off at most."""
+        found = {}
+        for _, _, _, i, j in self._placing.steps:
+            d = self.motion.pattern.direction(i, j)
+            with ctx.workprec(_BITS):
+                length = ball(dot(d, d), _BITS).sqrt()
+                x, y = (ball(c, _BITS) / length for c in d)
+                found[i, j] = _vector(x, y)
+        return found
 
     @cached_property
     def _numbers(self) -> dict[Edge, int]:
@@ -145,64 +165,71 @@ class PanelPieces:
     def _about(self, middle: float, half: float) -> PanelPiece | None:
         with ctx.workprec(_BITS), _capped():
             try:
-                here = self._positions(arb(middle))
-                there = self._positions(arb(middle, half))
+                here = self._turns(arb(middle))
+                rests = self._rests(middle, half)
             except ValueError:  # of python-flint, for a divisor that may be 0; or a closed fold
                 return None
-            reach = arb(half)
-            coefficients = np.zeros((ORDER + 1, len(here), 3))
-            radius = np.zeros((len(here), 3))
-            for v, (spot, beyond) in enumerate(zip(here, there, strict=True)):
-                for axis in range(3):
-                    error = abs(beyond[axis][ORDER + 1]) * reach ** (ORDER + 1)
-                    for k in range(ORDER + 1):
-                        c = spot[axis][k]
-                        coefficients[k, v, axis] = float(c.mid())
-                        error += abs(c - arb(float(coefficients[k, v, axis]))) * reach**k
-                    radius[v, axis] = float(error.upper()) * (1 + 1e-9) + 1e-18
-        if not (np.isfinite(radius).all() and radius.max() <= _THIN):
+            turns = {
+                fold: [_polynomial(*both, half) for both in zip(series, rests[fold], strict=True)]
+                for fold, series in here.items()
+            }
+        with np.errstate(invalid="ignore", over="ignore"):
+            coefficients, radius = self._placed(turns)
+        if not (np.isfinite(coefficients).all() and radius.max() <= _THIN):
             return None
-        return PanelPiece(middle, half, coefficients, radius, self.unit)
+        powers = half ** np.arange(ORDER + 1.0)  # half is a power of two: nothing is rounded
+        return PanelPiece(middle, half, coefficients / powers[:, None, None], radius, self.unit)
 
-    def _positions(self, time: arb) -> list[list[arb_series]]:
-        """The coordinates of all vertices as series in the time after `time`."""
-        pattern, flat = self.motion.pattern, self._flat
-        zero, one = _constant(arb(0)), _constant(arb(1))
-        still: Matrix = [[one if i == j else zero for j in range(3)] for i in range(3)]
-        placed: dict[int, tuple[Matrix, list[arb_series]]] = {
-            self._placing.held: (still, [zero, zero, zero])
-        }
-        rotations = {k: _cosine_and_sine(c, s) for k, (c, s) in self._tangents(time).items()}
-        for panel, before, fold, i, j in self._placing.steps:
-            turned, moved = placed[before]
-            if fold not in rotations:
-                placed[panel] = turned, moved
-                continue
-            spin = self._spin(*rotations[fold], i, j)
-            new = [
-                [_sum(row[k] * spin[k][c] for k in range(3)) for c in range(3)] for row in turned
-            ]
-            # The fold stays where it is: new a + t = old a + shift.
-            ax, ay = flat[i]
-            shift = [
-                (old[0] - fresh[0]) * ax + (old[1] - fresh[1]) * ay + s
-                for old, fresh, s in zip(turned, new, moved, strict=True)
-            ]
-            placed[panel] = new, shift
-        found = []
-        for v, (x, y) in enumerate(flat):
-            turned, moved = placed[self._placing.owners[v]]
-            pairs = zip(turned, moved, strict=True)
-            found.append([row[0] * x + row[1] * y + s for row, s in pairs])
-        if len(found) != len(pattern.vertices):
-            raise ArithmeticError("a vertex without a place")
+    def _turns(self, time: arb) -> dict[int, tuple[arb_series, arb_series]]:
+        """Sine and 1 - cosine of the angles of folds that move, as series in the time after it."""
+        found = {}
+        for fold, (c, s) in self._tangents(time).items():
+            square = s * s
+            over = 2 / (c * c + square)
+            found[fold] = c * s * over, square * over
         return found
 
-    def _tangents(self, time: arb) -> dict[int, tuple[arb_series, arb_series]]:
-        """By fold (c, s) with s / c = tan(angle / 2)."""
-        motion, found = self.motion, dict[int, tuple[arb_series, arb_series]]()
+    def _rests(self, middle: float, half: float) -> dict[int, list[arb]]:
+        """Bounds of the first coefficients left out, of the sines and of the versines.
 
-        def driven(rate: float) -> tuple[arb_series, arb_series]:
+        In modes that are not linear balls grow from vertex to vertex, so that those of parts of the
+        stretch are smaller than one of all of it.
+        """
+        count = _PARTS if any(self._passes) else 1
+        width = half / count
+        found: dict[int, list[arb]] = {}
+        for part in range(count):
+            time = arb(middle) + arb((2 * part + 1 - count) * width, width)
+            for fold, series in self._turns(time).items():
+                known = found.setdefault(fold, [arb(0), arb(0)])
+                for k, f in enumerate(series):
+                    known[k] = known[k].max(abs(f[ORDER + 1]))
+        return found
+
+    def _placed(self, turns: dict[int, list[Turned]]) -> tuple[FloatArray, FloatArray]:
+        """The polynomials of all vertices in y = (time - middle) / half, and their errors."""
+        placing, flat = self._placing, self._flat
+        placed = {placing.held: still(ORDER)}
+        for panel, before, fold, i, j in placing.steps:
+            if fold not in turns:
+                placed[panel] = placed[before]
+                continue
+            rotation, shift = placed[before]
+            new = product(rotation, spun(*turns[fold], *self._axes[i, j]))
+            placed[panel] = new, hinged(rotation, new, *flat[i], shift)
+        coefficients = np.empty((ORDER + 1, len(flat), 3))
+        radius = np.empty((len(flat), 3))
+        for v, point in enumerate(flat):
+            rotation, shift = placed[placing.owners[v]]
+            place = moved(rotation, *point, shift)
+            coefficients[:, v], radius[v] = place.polynomial.T, place.error
+        return coefficients, radius
+
+    def _tangents(self, time: arb) -> dict[int, Tangent]:
+        """By fold (c, s) with s / c = tan(angle / 2), as series about a time or a ball of times."""
+        motion, found = self.motion, dict[int, Tangent]()
+
+        def driven(rate: float) -> Tangent:
             half = arb_series([time * arb(rate) / 2, arb(rate) / 2], _CAP)
             return half.cos(), half.sin()
 
@@ -218,18 +245,6 @@ class PanelPieces:
             found[self._numbers[fold]] = driven(rate)
         return found
 
-    def _spin(self, cosine: arb_series, sine: arb_series, i: int, j: int) -> Matrix:
-        """The rotation about the fold from i to j (Rodrigues)."""
-        d = self.motion.pattern.direction(i, j)
-        length = ball(dot(d, d), _BITS).sqrt()
-        x, y = (ball(c, _BITS) / length for c in d)
-        versine = 1 - cosine
-        return [
-            [cosine + versine * (x * x), versine * (x * y), sine * y],
-            [versine * (x * y), cosine + versine * (y * y), sine * (-x)],
-            [sine * (-y), sine * x, cosine],
-        ]
-
 
 class _capped:  # noqa: N801
     """Series with as many terms as are needed here."""
@@ -242,19 +257,18 @@ class _capped:  # noqa: N801
         ctx.cap = self.before
 
 
-def _cosine_and_sine(c: arb_series, s: arb_series) -> tuple[arb_series, arb_series]:
-    """Of an angle, where s / c is the tangent of its half."""
-    cc, ss = c * c, s * s
-    squared = cc + ss
-    return (cc - ss) / squared, 2 * s * c / squared
+def _polynomial(series: arb_series, rest: arb, half: float) -> Turned:
+    """A function of m + half y for |y| <= 1, from its series at m and a bound of the next term."""
+    reach, row, error = arb(half), np.zeros((1, ORDER + 1)), arb(0)
+    for k in range(ORDER + 1):
+        c = series[k] * reach**k
+        row[0, k] = float(c.mid())
+        error += abs(c - arb(float(row[0, k])))
+    error += rest * reach ** (ORDER + 1)
+    return Turned(row, float(error.upper()) * (1 + 1e-9))
 
 
-def _constant(value: arb) -> arb_series:
-    return arb_series([value], _CAP)
-
-
-def _sum(terms: Iterator[arb_series]) -> arb_series:
-    total = next(terms)
-    for term in terms:
-        total = total + term
-    return total
+def _vector(x: arb, y: arb) -> tuple[FloatArray, float]:
+    found = np.array([float(x.mid()), float(y.mid())])
+    off = abs(x - arb(float(found[0]))) + abs(y - arb(float(found[1])))
+    return found, float(off.upper()) * (1 + 1e-9)

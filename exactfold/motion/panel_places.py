@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from exactfold.arrays import FloatArray
+from exactfold.arrays import FloatArray, IndexArray
 from exactfold.errors import UsageError
 from exactfold.exact.joined_fields import JoinedField
 from exactfold.exact.surds import Number, exact, simple
@@ -18,6 +18,9 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 Spot: TypeAlias = tuple[Number, Number, Number]
 Turn: TypeAlias = tuple[Number, Number]
 """(p, q), the quaternion p + q d of a fold with vector d: q / p is tan(angle / 2) / length."""
+
+
+_TRIES = 4
 
 
 class _Step(NamedTuple):
@@ -65,6 +68,30 @@ class Placing:
                 waiting.append(panel)
                 found.append(_Step(panel, before, numbers[min(i, j), max(i, j)], j, i))
         return tuple(found)
+
+    @property
+    def middle(self) -> int:
+        """The largest of the panels from which others are few folds away: few from those tried."""
+        most = np.zeros(len(self.pattern.faces), dtype=np.intp)
+        for _ in range(_TRIES):
+            near = Placing(self.pattern, int(most.argmin()))
+            last = Placing(self.pattern, int(near.depths.argmax()))
+            most = np.maximum(most, last.depths)
+        near = np.flatnonzero(most <= most.min() + 1)
+        return int(max(near, key=lambda panel: self._area(self.pattern.faces[panel])))
+
+    def _area(self, face: tuple[int, ...]) -> float:
+        """Twice the area of a panel, to a few digits, so that the same ones are the same."""
+        x, y = self._flat[0][list(face)].T[:2]
+        return float(f"{np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)):.6g}")
+
+    @property
+    def depths(self) -> IndexArray:
+        """For each panel the number of folds from the one that is held, at least."""
+        found = np.zeros(len(self.pattern.faces), dtype=np.intp)
+        for step in self.steps:
+            found[step.panel] = found[step.before] + 1
+        return found
 
     @cached_property
     def owners(self) -> Mapping[int, int]:

@@ -69,7 +69,7 @@ def view_document(
     components of the motions of its rigid panels, up to 200, and the modes that are not followed.
     Each is followed in `frames` frames to the first contact; one that cannot be has the reason.
     With `proving`, motions along branches are proved, too (`prove`), and the first contacts of
-    motions of panels that close exactly (`prove_contacts`). `workers`: processes that
+    motions of panels that are proved to exist (`prove_contacts`). `workers`: processes that
     share the work. `name` names the sheet.
 
     Raises the errors of `open_sheet`, `UsageError` for signs that do not fit, and

@@ -55,7 +55,7 @@ class Following:
 class FollowingPanels:
     """The same for the components of the motions of rigid panels, by their numbers from 1.
 
-    `proving`: the first contact of a motion that closes exactly is proved, too.
+    `proving`: the first contact of a motion that is proved to exist is proved, too.
     """
 
     ways: Decomposition
@@ -134,11 +134,12 @@ def _proof_of_panels(motion: PanelMotion, contacts: bool) -> dict[str, Any]:
         touching = _proved_contact(motion) if contacts else "contacts were found in floats"
         return {"proved": True, "exists": True, "said": f"{said}; {touching}"}
     if motion.exists is PROVED:
-        said = (
-            "until a fold is at 180 degrees, all angles growing; what is drawn, and contacts, are "
-            f"floats; {_kept(motion)}"
-        )
-        return {"exists": True, "said": said}
+        said = "until a fold is at 180 degrees, all angles growing"
+        if contacts:
+            said = f"{said}; {_proved_contact(motion)}; what is drawn is"
+        else:
+            said = f"{said}; what is drawn, and contacts, are"
+        return {"exists": True, "said": f"{said} floats; {_kept(motion)}"}
     return {}
 
 

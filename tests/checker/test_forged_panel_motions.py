@@ -334,10 +334,10 @@ def test_positions_are_those_of_the_frames(name: str) -> None:
     assert off <= pieces[0].errors[0] + pieces[1].errors[0] + 64
     there = np.array(ends[1]).reshape(-1, 3) / factor
     coords = motion.at(min(float(clock.time(x)[0]), motion.duration))
-    held = sheet.panels[0]
+    held = sheet.panels[places.held]
     assert np.abs(distances(there) - distances(coords)).max() < 1e-8
     flat = np.array([[float(Fraction(c.parts[0])) for c in point] for point in before])
-    moved = there[list(held), :2] - (flat - flat[held[0]])[list(held)]
+    moved = there[list(held), :2] - (flat - flat[sheet.panels[0][0]])[list(held)]
     assert np.abs(moved).max() < 1e-9
 
 

@@ -142,7 +142,12 @@ def test_it_says_what_is_proved_of_a_motion_of_panels():
     assert said[0].startswith("until a fold is at 180 degrees, all angles growing; what is drawn")
     exact = "every vertex closes exactly at all fold angles; "
     assert said[2] == exact + "contacts were found in floats"
-    way = view_document("zigzags", frames=2, proving=True)["ways"][2]
+    ways = view_document("zigzags", frames=2, proving=True)["ways"]
+    growing = "until a fold is at 180 degrees, all angles growing; its first contact is between "
+    assert ways[0]["motion"]["said"].startswith(f"{growing}the times ")
+    assert ": proved; what is drawn is floats; faces stay rigid" in ways[0]["motion"]["said"]
+    assert (ways[0]["motion"]["proved"], ways[0]["motion"]["exists"]) == (False, True)
+    way = ways[2]
     event = prove_contacts(follow_panels(count_ways("zigzags"), component=3)).event
     low, high = event.time
     times = f"its first contact is between the times {low:.12g} and {high:.12g}: proved"
