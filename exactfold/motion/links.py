@@ -14,7 +14,7 @@ from exactfold.motion.piece import Ball, evaluated
 from exactfold.motion.tube import Tube, prove_tube
 
 _LEAST = 1e-7  # of a step, in the unit of the framework
-_EXIT = 15, 16  # the part of the reach at which the next tube is entered
+_EXIT = 3, 4  # the part of the reach at which the next tube is entered
 _AHEAD = 0.7  # of the reach: about how far beyond the exit the next tube has its centre
 _GROWTH = 0.5, 1.2  # of the reach from tube to tube, as far as it is relied on
 _THICKNESS = 1e-8, 1e-7
