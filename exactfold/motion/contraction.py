@@ -92,8 +92,10 @@ class Contraction:
         That of the numerator of `velocity` is its polynomials at the reach, less those at 0; the
         denominator is least at the reach.
         """
-        rise = (polynomial((0, *c[1:]), reach) for c in (self.residual, self.slope, self.quadratic))
-        return self._over(*rise, reach, radius)
+        b, q, kappa = (
+            polynomial((0, *c[1:]), reach) for c in (self.residual, self.slope, self.quadratic)
+        )
+        return self._over(b, q, kappa, reach, radius)
 
     def _over(self, b: int, q: int, kappa: int, reach: int, radius: int) -> int:
         """(b + q r + kappa r^2 / 2) / (1 - q(h) - kappa(h) r), rounded up."""
