@@ -381,7 +381,7 @@ def test_the_centre_of_a_tube_counts_where_it_is_on_the_way() -> None:
     # The way through the centre is longer than the straight one, and it may be claimed.
     straight = chord(places[0], places[2], equations.bits) * equations.unit
     assert before + after > straight
-    reach = tube_.reach / 2
+    reach = tube_.reach / 3
     for begin, end, way in ((-1, 1, (-1, 0, 1)), (-2, -1, (-2, -1)), (1, 2, (1, 2))):
         path = Path((tube_.enclosure(begin * reach), tube_.velocity(begin * reach)), tube_.bits)
         so_far = path.length
