@@ -33,12 +33,14 @@ class Path:
         """The tube at a parameter."""
         tube = self._tube()
         require(self.entered <= end, "a motion leaves a tube before it enters")
+        self._pass_centre(end)
         self.go(tube.enclosure(end), tube.velocity(end))
 
     def meet(self, ball: Ball, velocity: Ball) -> None:
         """Another piece, which holds a configuration on the tube and follows the motion."""
         low, _ = self._tube().met(ball, velocity)
         require(self.entered <= low, "a motion meets another piece before it enters a tube")
+        self._pass_centre(low)
         self.go(ball, velocity)
 
     def go(self, ball: Ball, velocity: Ball) -> None:
@@ -49,6 +51,13 @@ class Path:
     def land(self) -> Fraction:
         """In the flat state: the length."""
         return self.length + self._from_flat()
+
+    def _pass_centre(self, end: Fraction) -> None:
+        """Count the chord to x(0), if it lies on the way to the parameter `end`."""
+        if self.entered < 0 < end:
+            middle = self._tube().enclosure(Fraction(0))
+            self.length += chord(self.here, middle, self.bits)
+            self.here = middle
 
     def _from_flat(self) -> Fraction:
         none = [0] * len(self.here.centre)

@@ -119,15 +119,25 @@ def step_documents(steps: Sequence[Step], leaves: bool) -> list[Document]:
 def chords(
     start: StartTube, steps: Sequence[Step], leaves: bool, landing: Ball | None = None
 ) -> Fraction:
-    """A little less than the lengths of the chords between the points where pieces meet.
+    """A little less than the lengths of the chords between points on the way.
 
-    From the flat state to the last of them, or through that in the box `landing` back to it.
+    From the flat state to the last of them, or through that in the box `landing` back to it. These
+    are the points where pieces meet, nodes, and the centres of tubes that are passed.
     """
     balls = [start.ball(start.last)]
     for step, after in zip_longest(steps, steps[1:]):
         if isinstance(step, Passage):
             balls += [step.tube.ball(at) for at in sorted({step.entry, 0, step.exit})]
-        elif isinstance(after, Link) or (after is None and leaves):
+            continue
+        at, leaving = step.exit, isinstance(after, Link) or (after is None and leaves)
+        if isinstance(after, Passage):
+            at = after.met[0]
+        elif not leaving and landing is not None:
+            at = (step.tube.located(landing) or (0, 0))[0]
+        # Clearly on the way: the bounds of the checker are its own.
+        if step.entry[1] < -step.tube.longest // 8 and at > step.tube.longest // 8:
+            balls.append(step.tube.enclosure(0))
+        if leaving:
             balls.append(step.tube.enclosure(step.exit))
     none = np.zeros((1, start.framework.size))
     points = [none] + [ball.floats[0][None] for ball in balls]

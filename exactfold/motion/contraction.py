@@ -6,7 +6,7 @@ y -> y - P H(p(s) + y, s) is studied in a weighted maximum norm (docs/motion.md,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import isqrt
@@ -84,6 +84,21 @@ class Contraction:
         b, q, kappa = (
             polynomial(derivative(c), reach) for c in (self.residual, self.slope, self.quadratic)
         )
+        return self._over(b, q, kappa, reach, radius)
+
+    def drift(self, reach: int, radius: int) -> int:
+        """A bound of the integral of |x'(s) - p'(s)| over 0 <= s <= reach; `radius` as before.
+
+        That of the numerator of `velocity` is its polynomials at the reach, less those at 0; the
+        denominator is least at the reach.
+        """
+        b, q, kappa = (
+            polynomial((0, *c[1:]), reach) for c in (self.residual, self.slope, self.quadratic)
+        )
+        return self._over(b, q, kappa, reach, radius)
+
+    def _over(self, b: int, q: int, kappa: int, reach: int, radius: int) -> int:
+        """(b + q r + kappa r^2 / 2) / (1 - q(h) - kappa(h) r), rounded up."""
         top = b + up(q * radius, SCALE) + up(kappa * radius * radius, 2 * SCALE + 1)
         bottom = ONE - polynomial(self.slope, reach)
         bottom -= up(polynomial(self.quadratic, reach) * radius, SCALE)
@@ -223,22 +238,34 @@ def contraction(
             ]
             slope.append(norm(sizes, INVERSE_BITS + row_bits + WEIGHT_BITS + 1))
     quadratic = [norm(_above(size, square), INVERSE_BITS + 2 * WEIGHT_BITS) for square in squares]
-    # Residuals likewise: floor instead of the nearest, and P to _COARSE bits less.
-    coarse, size = _coarse(p), np.asarray(abs(p))
+    residual = [
+        norm(bounds, INVERSE_BITS + residual_bits + 1) for bounds in _twice_images(p, residuals)
+    ]
+    return Contraction(tuple(residual), tuple(slope), tuple(quadratic))
+
+
+def _twice_images(p: Whole, residuals: Sequence[Sequence[int]]) -> Iterator[list[int]]:
+    """Twice the upper bounds of |P g| for each of the residuals.
+
+    Exactly for one alone, that of a point, which may be next to a node, where P is large. Of many
+    the floor is taken instead of the nearest, and P to _COARSE bits less.
+    """
+    if len(residuals) == 1:
+        exact = abs(p.astype(object) @ np.array([int(x) for x in residuals[0]], dtype=object))
+        yield [2 * int(x) for x in exact]
+        return
+    coarse, size, n = _coarse(p), np.asarray(abs(p)), len(p)
     spare = max(_WORD - _largest(coarse).bit_length() - n.bit_length(), _SHORTEST)
     shifts = [max(0, max(map(int.bit_length, g)) - spare) for g in residuals]
     short = [[x >> shift for x in g] for g, shift in zip(residuals, shifts, strict=True)]
     images = np.asarray(abs(_dot(coarse, np.array(short, dtype=object).T))).T.tolist()
     rest = _above(size, [1] * n)
-    residual = []
     for image, g, shift in zip(images, short, shifts, strict=True):
         spread = sum(map(abs, g))
-        bounds = [
+        yield [
             (((2 * x + spread) << _COARSE) + (2 * y if shift else 0)) << shift
             for x, y in zip(image, rest, strict=True)
         ]
-        residual.append(norm(bounds, INVERSE_BITS + residual_bits + 1))
-    return Contraction(tuple(residual), tuple(slope), tuple(quadratic))
 
 
 def _on_bars(p: Whole, coupling: Coupling, bars: int) -> Whole:

@@ -43,8 +43,8 @@ class FlatPatch:
         the equations have one solution in a box is proved in any case.
         """
         patch = cls(framework, tuple(sorted(flat)))
-        if not patch.flat or len(patch.base) != 3:
-            return None
+        if not patch.flat or len(patch.base) != 3 or not patch.moving:
+            return None  # without a vertex that moves it is the flat sheet
         equations = len(patch.bars) + len(framework.ties)
         return patch if equations == 3 * len(patch.moving) else None
 

@@ -5,13 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
+from exactfold.arrays import FloatArray
 from exactfold.motion.arclength import Interval
 from exactfold.motion.length_equations import LengthEquations
-from exactfold.motion.piece import Ball
+from exactfold.motion.piece import Ball, evaluated
 from exactfold.motion.tube import Tube, prove_tube
 
 _LEAST = 1e-7  # of a step, in the unit of the framework
-_EXIT = 11, 16  # the part of the reach at which the next tube begins
+_EXIT = 3, 4  # the part of the reach at which the next tube is entered
+_AHEAD = 0.7  # of the reach: about how far beyond the exit the next tube has its centre
+_GROWTH = 0.5, 1.2  # of the reach from tube to tube, as far as it is relied on
+_THICKNESS = 1e-8, 1e-7
+"""The most radius of a tube, and of its length: by it the ends of tubes are known."""
+_FAR = 64.0  # unknowns beyond it, in the unit of the framework, are not those of the sheet
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,8 +56,9 @@ def onwards(
 
     The first tube is about `step` long. Ends with the reason if there is no next link.
     """
+    place: _Place | None = None
     while True:
-        tube, entry = _next(equations, ball, velocity, step)
+        tube, entry = _next(equations, ball, velocity, step, place)
         if tube is None or entry is None:
             yield (
                 "no tube longer than 1e-7 of the sheet was proved here: the configuration is "
@@ -61,19 +70,65 @@ def onwards(
         left = time[0] + shortest, time[1] + longest
         yield Link(tube, entry, at, time, left)
         ball, velocity, time = tube.enclosure(at), tube.velocity(at), left
-        step = float(shortest + longest) / 2 * _EXIT[1] / _EXIT[0]
+        reach = float(shortest + longest) / 2 * tube.longest / (at - entry[1])
+        growth, step = min(max(reach / step, _GROWTH[0]), _GROWTH[1]), reach
+        place = _place(equations, tube, at + int(_AHEAD * growth * tube.longest))
+
+
+_Place = tuple[FloatArray, FloatArray]
+"""The centre of a tube that is to be proved, and the direction of the motion there, in floats."""
+
+
+def _place(equations: LengthEquations, tube: Tube, parameter: int) -> _Place | None:
+    """A point of the curve beyond the end of a tube: by its series, and a step of Newton's method.
+
+    The tube about a point ahead holds the curve on both sides of it, where that about the end of
+    the last tube would hold half of it anew.
+    """
+    framework = equations.framework
+    x, along = (
+        equations.floats(evaluated(curve, parameter)) for curve in (tube.coefficients, tube.slope)
+    )
+    matrix = equations.matrix(framework.flat_edges + framework.along(x), along)
+    try:
+        x = x - np.linalg.solve(matrix, np.append(framework.residual(x), 0.0))
+    except np.linalg.LinAlgError:
+        return None
+    return (x, along) if np.abs(x).max() < _FAR else None
 
 
 def _next(
-    equations: LengthEquations, ball: Ball, velocity: Ball, step: float
+    equations: LengthEquations, ball: Ball, velocity: Ball, step: float, place: _Place | None
 ) -> tuple[Tube | None, tuple[int, int] | None]:
-    """A tube on which the configuration in a box lies, which the motion passes forwards."""
+    """A tube on which the configuration in a box lies, which the motion passes forwards.
+
+    About a place ahead, or if that does not reach back to the box, about the middle of the box.
+    """
+    if place is not None and step > _LEAST:
+        tube = prove_tube(equations, *place, step, thickness=_thickness(step))
+        entry = None if tube is None else _entered(tube, ball, velocity)
+        if entry is not None:
+            return tube, entry
     while step > _LEAST:
-        tube = prove_tube(equations, ball.finer(equations.bits).centre, velocity.floats[0], step)
-        if tube is not None:
-            entry = tube.located(ball)
-            forwards = entry is not None and tube.goes_along(velocity) == 1
-            if entry is not None and forwards and entry[1] < tube.longest * _EXIT[0] // _EXIT[1]:
-                return tube, entry
+        centre, along = ball.finer(equations.bits).centre, velocity.floats[0]
+        tube = prove_tube(equations, centre, along, step, thickness=_thickness(step))
+        entry = None if tube is None else _entered(tube, ball, velocity)
+        if entry is not None:
+            return tube, entry
         step /= 4
     return None, None
+
+
+def _thickness(step: float) -> float:
+    return min(_THICKNESS[0], _THICKNESS[1] * step)
+
+
+def _entered(tube: Tube, ball: Ball, velocity: Ball) -> tuple[int, int] | None:
+    """The parameters at which the motion enters a tube, if it is proved to do so before the exit.
+
+    It is at a configuration in a box, with a velocity in a box.
+    """
+    entry = tube.located(ball)
+    if entry is None or tube.goes_along(velocity) != 1:
+        return None
+    return entry if entry[1] < tube.longest * _EXIT[0] // _EXIT[1] else None

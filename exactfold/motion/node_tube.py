@@ -88,7 +88,7 @@ def prove_node_tube(
     *,
     order: int = 8,
     bits: int = 64,
-    thickness: float = 1e-7,
+    thickness: float = 1e-8,
 ) -> NodeTube | None:
     """The arc through the node near the unknowns `near`, about in the direction `along`.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -19,8 +19,8 @@ from exactfold.motion.piece import PARAMETER_BITS, Ball
 from exactfold.motion.tube import prove_tube, sharpened
 from exactfold.motion.visits import Visit
 
-_LOOK_BACK = (1, 3, 5, 8, 12, 16, 24)
-"""From which of the last links a node ahead is looked for; the last ones are too close to it."""
+_NEAREST, _FARTHEST = 1e-4, 0.2
+"""How long before the end of the last link a node ahead is looked for, in the framework's unit."""
 _PART = 1 / 8
 """Of the way to the node: about how far a tube reaches beside it."""
 _LEAST = 1e-7
@@ -97,14 +97,23 @@ def passage_ahead(
     """
     if steps and steps[-1].tube.framework.coupling.rows:
         return None  # the equations of a node have no driven folds
-    # The links right before a node are too close to it for floats.
-    back = [steps[-k] for k in _LOOK_BACK if k <= len(steps)]
-    for link in (step for step in back if isinstance(step, Link)):
+    for link in _far_enough(steps):
         point, velocity = link.tube.enclosure(link.exit), link.tube.velocity(link.exit)
         crossing = crossing_ahead(link.tube.framework, point.floats[0], velocity.floats[0])
         if crossing is not None:
             return _passage_at(labels, steps, *crossing)
     return None
+
+
+def _far_enough(steps: Sequence[Link | Passage]) -> Iterator[Link]:
+    """The last links, those near the end first; those next to a node are too close for floats."""
+    end = steps[-1].left[0]
+    for step in reversed(steps):
+        away = float(end - step.left[0])
+        if isinstance(step, Passage) or away > _FARTHEST:
+            return
+        if away >= _NEAREST or step is steps[-1]:
+            yield step
 
 
 def _passage_at(

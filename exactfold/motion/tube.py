@@ -79,10 +79,18 @@ class Tube(Piece):
         """
         rows = self.slope
         middle = (entry[0] + entry[1]) // 2
-        error = self.velocity(max(abs(middle), abs(end))).radii
-        unit = 1 << PARAMETER_BITS
-        low, high = length_between(rows, self.bits, error, PARAMETER_BITS, middle, end)
-        slack = Fraction((entry[1] - entry[0] + 1) * self._fastest, unit << self.bits)
+        none = (0,) * len(self.weights)
+        low, high = length_between(rows, self.bits, none, PARAMETER_BITS, middle, end)
+        radius = self.radius_within(max(abs(middle), abs(end)))
+        off = sum(
+            self.contraction.drift(most << (SCALE - PARAMETER_BITS), radius)
+            for most in (max(-middle, 0), max(middle, end))
+        )
+        size = isqrt(sum(w * w for w in self.weights)) + 1
+        slack = Fraction(off * size, 1 << (SCALE + WEIGHT_BITS))
+        slack += Fraction(
+            (entry[1] - entry[0] + 1) * self._fastest, 1 << (PARAMETER_BITS + self.bits)
+        )
         return max(low - slack, Fraction(0)), high + slack
 
     def near(self, length: float, low: int, high: int) -> int:

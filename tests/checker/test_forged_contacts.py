@@ -259,7 +259,7 @@ def test_parameters_out_of_range() -> None:
         refused_alone("corner", f'the parameter "{key}" is out of range', moved)
 
     def back(claims: Document, contacts: Document) -> None:
-        contacts["from"] = -(1 << 20)
+        contacts["from"] = -reach
 
     stopped("corner", 'the parameter "from" is out of range', back)
 
@@ -305,7 +305,7 @@ def test_other_tubes_hold_no_contact() -> None:
     with pytest.raises(CertificateError) as caught:
         judged(document, "contact")
     assert str(caught.value) == "no side runs through the other face"
-    for first in (0, 5):
+    for first in (0, 4):
         document = given("corner")
         tubes = document["evidence"]["tubes"]
         tubes[first], tubes[first + 1] = tubes[first + 1], tubes[first]

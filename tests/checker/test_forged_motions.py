@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from fractions import Fraction
 from functools import cache
@@ -16,7 +17,7 @@ from exactfold import checker
 from exactfold.checker import motion, motion_bounds
 from exactfold.checker.motion_bounds import Bounds
 from exactfold.checker.motion_equations import LengthEquations
-from exactfold.checker.motion_paths import chord
+from exactfold.checker.motion_paths import Path, chord
 from exactfold.checker.motion_tubes import Ball, Start, Tube
 from exactfold.checker.reading import CertificateError, FormatError
 from exactfold.checker.sheet import read_sheet
@@ -364,6 +365,37 @@ def test_a_length_that_is_too_long_is_refused() -> None:
     shorter = given()
     del shorter["evidence"]["tubes"][-1]
     refused(shorter, "the motion is shorter than claimed")
+
+
+def test_the_centre_of_a_tube_counts_where_it_is_on_the_way() -> None:
+    document = given()
+    evidence, claims = document["evidence"], document["claims"]
+    sheet, entry = read_sheet(document["pattern"])[0], evidence["tubes"][-1]
+    equations = LengthEquations(sheet, evidence["pinned"], evidence["bits"])
+    tube_ = Tube(equations, entry["centre"], entry["row"], Fraction(entry["reach"], 64))
+    early = -entry["reach"] << 31  # an eighth of the reach before the centre
+    places = [tube_.enclosure(Fraction(x, 1 << 40)) for x in (early, 0, entry["exit"])]
+    before, after = (
+        chord(a, b, equations.bits) * equations.unit for a, b in itertools.pairwise(places)
+    )
+    # The way through the centre is longer than the straight one, and it may be claimed.
+    straight = chord(places[0], places[2], equations.bits) * equations.unit
+    assert before + after > straight
+    reach = tube_.reach / 3
+    for begin, end, way in ((-1, 1, (-1, 0, 1)), (-2, -1, (-2, -1)), (1, 2, (1, 2))):
+        path = Path((tube_.enclosure(begin * reach), tube_.velocity(begin * reach)), tube_.bits)
+        so_far = path.length
+        path.enter(tube_)
+        path.leave(end * reach)
+        balls = [tube_.enclosure(at * reach) for at in way]
+        ways = [chord(a, b, tube_.bits) for a, b in itertools.pairwise(balls)]
+        assert path.length - so_far == sum(ways)
+    # Left before it, it may not: not even the way there and back.
+    entry["exit"] = early
+    claims["length"] = str(Fraction(claims["length"]) - before - after)
+    verified(document)
+    claims["length"] = str(Fraction(claims["length"]) + 2 * before)
+    refused(document, "the motion is shorter than claimed")
 
 
 def test_chords_are_lower_bounds() -> None:

@@ -183,7 +183,7 @@ def test_the_flat_state_is_no_node_to_come_to() -> None:
     along[[i for i in range(len(along)) if i % 3 != 2]] = 0
     arc = prove_node_tube(framework, patch, np.zeros(framework.size), along)
     assert arc is not None
-    early = start.last // 2  # the arc does not reach as far as the start tube
+    early = start.last // 3  # the arc does not reach as far as the start tube
     ahead = onwards(
         LengthEquationsOfProver.of(framework),
         start.ball(early),

@@ -235,3 +235,34 @@ def test_integers_on_both_sides_of_a_machine_word() -> None:
     for signs in ("-+-+", "----"):
         start = half_branch(find_branch(random_square(4, seed=0), signs)).start
         assert all(type(x) is int for x in start.contraction.slope)
+
+
+def test_the_integral_of_the_error_of_the_velocity() -> None:
+    source = random.Random(5)
+    for _ in range(20):
+        b, q, kappa = (
+            tuple(source.randrange(ONE >> bits) for _ in range(9)) for bits in (30, 6, 5)
+        )
+        proof, reach, radius = Contraction(b, q, kappa), ONE * 9 // 10, ONE >> 20
+        parts = [reach * k // 200 for k in range(201)]
+        rates = [proof.velocity(at, radius) for at in parts]
+        below, above = (Fraction(sum(rates[k : k + 200]) * reach, 200 * ONE) for k in (0, 1))
+        drift = proof.drift(reach, radius)
+        assert below < drift < above * 3 / 2  # its denominator is the least one
+        top = sum(
+            (Fraction(c, ONE) * Fraction(reach, ONE) ** k * size)
+            for row, size in zip(
+                (b, q, kappa),
+                (1, Fraction(radius, ONE), Fraction(radius, ONE) ** 2 / 2),
+                strict=True,
+            )
+            for k, c in enumerate(row)
+            if k
+        )
+        bottom = 1 - sum(
+            Fraction(c, ONE) * Fraction(reach, ONE) ** k * size
+            for row, size in ((q, 1), (kappa, Fraction(radius, ONE)))
+            for k, c in enumerate(row)
+        )
+        exact = top / bottom
+        assert exact <= Fraction(drift, ONE) < exact * (1 + Fraction(1, 1 << 60))

@@ -327,6 +327,16 @@ def test_at_the_flat_state_a_track_is_undecided() -> None:
     assert 20 < len(track.links) < 100
     end = track.links[-1].tube.enclosure(track.links[-1].exit).floats[0]
     assert np.abs(end).max() < 0.05
+    # It is no node, although all stars are flat there.
+    on = follow_proved(find_branch(random_square(2, seed=1), "++"), through_nodes=True)
+    assert (on.status, on.reason, on.through) == (UNDECIDED, track.reason, ())
+
+
+def test_most_tubes_hold_the_curve_on_both_sides_of_their_centres() -> None:
+    track = track_of(random_square(5, seed=2), "+-++-", until=1.5)
+    begins = [link.entry[0] / link.tube.longest for link in track.links[1:]]
+    assert len(begins) > 5
+    assert sum(begin < -0.4 for begin in begins) > 0.8 * len(begins)
 
 
 def test_the_return_to_the_flat_state_is_proved() -> None:
