@@ -308,20 +308,24 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         for n, found in near.items():
             draw_distribution(axes, [d for d in found if d], label=f"$V_i = {n}$", **of_size(n))
         axes.set_xscale("log")
-        axes.set_xlabel("distance of an exception, sides of the square")
-        axes.set_ylabel("squares for which one is found (%)")
+        axes.set_xlabel("distance of the exception, in sides of the square")
+        axes.set_ylabel("squares with a nearer one (%)")
+        axes.set_ylim(0, 100)
         axes.legend()
 
     def shares(axes: Any) -> None:
-        for n in sorted({n for n, _ in tallies}):
+        found = sorted({n for n, _ in tallies})
+        for place, n in enumerate(found):
             points = [(d, t) for (m, d), t in tallies.items() if m == n and t.exceptions]
             counts = [(t.exceptions, t.proved) for _, t in points]
-            places = [d for d, _ in points]
+            places = [d * 2 ** (0.12 * (place - (len(found) - 1) / 2)) for d, _ in points]
             draw_shares(axes, places, counts, 1.0, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xscale("log", base=2)
         axes.set_yscale("log")
+        axes.set_xticks(DENOMINATORS, [str(d) for d in DENOMINATORS])
+        axes.minorticks_off()
         axes.set_xlabel("denominator of the grid")
-        axes.set_ylabel("share of exceptions")
+        axes.set_ylabel("squares that are exceptions")
         axes.legend()
 
     found = [

@@ -328,7 +328,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     def shares(axes: Any) -> None:
         for k, (label, key, paper) in enumerate(
             (
-                ("no corner of degree 3", "irreducible", PAPER_IRREDUCIBLE),
+                ("irreducible", "irreducible", PAPER_IRREDUCIBLE),
                 ("H1", "h1", PAPER_H1),
             )
         ):
@@ -372,8 +372,9 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     return [
         StudyFigure(
             "shares",
-            "Squares that are H1, and squares without a corner of degree 3",
-            "Random squares, with exact 95 % intervals, and the figures of the paper.",
+            "Squares that are H1, and squares that are irreducible",
+            "Random squares, with exact 95 % intervals, and the figures of the paper. Irreducible: "
+            "no boundary vertex has degree 3; with three interior vertices no square is.",
             shares,
         ),
         StudyFigure(

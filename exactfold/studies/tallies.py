@@ -32,9 +32,10 @@ def interior_of(row: Row) -> int:
 
 
 def draw_distribution(axes: Any, values: Sequence[float], **style: Any) -> None:
-    """The share of values, in per cent, that are smaller, as a curve of steps."""
+    """The share of values, in per cent, that are no larger, as a curve of steps from 0 to 100."""
     ordered = sorted(values)
-    shares = [100 * (k + 1) / len(ordered) for k in range(len(ordered))]
+    shares = [100 * k / len(ordered) for k in range(len(ordered) + 1)]
+    ordered = [*ordered[:1], *ordered]
     axes.plot(ordered, shares, drawstyle="steps-post", **style)
 
 
