@@ -30,7 +30,7 @@ from exactfold.verdict import PROVED
 DENOMINATORS: Final = (16, 64, 256, 1024)
 """Of the grids."""
 
-MEASURED: Final = 50
+MEASURED: Final = 5
 """Of so many squares on the finest grid the nearest exception to one is looked for."""
 
 

@@ -61,7 +61,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
     found["differing"] = [list(item) for item in sorted(numbers.items())]
     reduced, labels = lines.pattern.without_rigid_parts()
     degrees = {v: reduced.degree(k) for k, v in enumerate(labels)}
-    which = np.flatnonzero(np.any(pairs, axis=0)) if pairs else []
+    which: list[int] = np.flatnonzero(np.any(pairs, axis=0)).tolist() if pairs else []
     found["least_degree"] = min((degrees[lines.pattern.interior[k]] for k in which), default=None)
     return found
 

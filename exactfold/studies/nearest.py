@@ -182,9 +182,9 @@ def _turns(points: Sequence[Sequence[int]], cycle: Cycle) -> list[int]:
     return [_turn(points, *(cycle[(k + j) % 4] for j in range(3))) for k in range(4)]
 
 
-def _sides(points: Sequence[Sequence[int]], cycle: Cycle, v: int) -> list[int]:
+def _sides(points: Any, cycle: Cycle, v: int) -> list[Any]:
     """On which side of each side of the cycle a vertex is; 0 for its corners."""
-    return [_turn(points, cycle[k], cycle[(k + 1) % 4], v) for k in range(4)]
+    return [orientation(points[cycle[k]], points[cycle[(k + 1) % 4]], points[v]) for k in range(4)]
 
 
 def _stays_positive(first: CreasePattern, last: CreasePattern, triple: Sequence[int]) -> bool:
