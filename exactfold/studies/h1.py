@@ -20,6 +20,7 @@ from exactfold.studies.statistics import (
     interval,
     interval_text,
     one_share,
+    p_equals,
     p_text,
     same_probability,
     verdict,
@@ -210,7 +211,7 @@ def _decay(tallies: dict[int, _Tally]) -> StudyTable:
         said = "one factor does not fit" if fit.p < 0.01 else "one factor fits"
         notes.append(
             "Exactly exponential, with the share 1 at Vi = 3: the factor would be "
-            f"{fit.ratio:.3f}; a likelihood-ratio test gives p {_equals(fit.p)}: {said}."
+            f"{fit.ratio:.3f}; a likelihood-ratio test gives {p_equals(fit.p)}: {said}."
         )
     return StudyTable(
         "decay",
@@ -219,11 +220,6 @@ def _decay(tallies: dict[int, _Tally]) -> StudyTable:
         tuple(lines),
         tuple(notes),
     )
-
-
-def _equals(p: float) -> str:
-    text = p_text(p)
-    return text if text.startswith("<") else f"= {text}"
 
 
 def _factors(values: Sequence[float]) -> str:
@@ -248,7 +244,7 @@ def _sentences(tallies: dict[int, _Tally], every: list[Row]) -> StudyTable:
         lines.append(
             (
                 "more and more squares are irreducible",
-                f"from each size to the next p {_equals(worst)}" + " or less" * (worst >= 1e-15),
+                f"from each size to the next {p_equals(worst)}" + " or less" * (worst >= 1e-15),
                 verdict(grows if worst < AGREE else None),
             )
         )
@@ -258,7 +254,7 @@ def _sentences(tallies: dict[int, _Tally], every: list[Row]) -> StudyTable:
         lines.append(
             (
                 "the share of H1 squares falls exponentially",
-                f"from size to size by {_factors(shares)}; p {_equals(fit.p)}",
+                f"from size to size by {_factors(shares)}; {p_equals(fit.p)}",
                 verdict(fit.p >= AGREE),
             )
         )
@@ -270,7 +266,7 @@ def _sentences(tallies: dict[int, _Tally], every: list[Row]) -> StudyTable:
             lines.append(
                 (
                     f"Vi = {size}: the share with more moves falls exponentially",
-                    f"from move to move by {_factors(left)}; p {_equals(p)}",
+                    f"from move to move by {_factors(left)}; {p_equals(p)}",
                     verdict(p >= AGREE),
                 )
             )

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from exactfold.studies.lines import UNKNOWN, Lines, SignArray
 from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.statistics import AGREE, interval, p_text, trend, verdict
+from exactfold.studies.statistics import AGREE, interval, p_equals, trend, verdict
 from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
 from exactfold.studies.table1 import same_side
 from exactfold.studies.tallies import interior_of, tallied
@@ -220,7 +220,7 @@ def _sentences(tallies: dict[int, _Tally]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
     if len(shares) > 1:
         holds = None if p >= AGREE else z > 0
-        number = f"from Vi = {min(shares)} to {max(shares)}: z = {z:.2f}, p = {p_text(p)}"
+        number = f"from Vi = {min(shares)} to {max(shares)}: z = {z:.2f}, {p_equals(p)}"
         lines.append(("more and more squares have branches with equal letters", number))
         lines[-1] += (verdict(holds),)
     numbers: Counter[int] = Counter()

@@ -134,6 +134,16 @@ def p_text(p: float) -> str:
     return f"{p:.2g}" if p >= 1e-15 else "< 1e-15"
 
 
+def p_equals(p: float) -> str:
+    """The same as an equation.
+
+    >>> p_equals(0.4519), p_equals(0.0)
+    ('p = 0.45', 'p < 1e-15')
+    """
+    text = p_text(p)
+    return f"p {text}" if text.startswith("<") else f"p = {text}"
+
+
 def verdict(holds: bool | None) -> str:
     """What a number says of a sentence; None where it does not tell.
 

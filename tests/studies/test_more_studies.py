@@ -175,6 +175,12 @@ def test_loops_flip_one_sign_on_single_vertices_and_every_branch_ends():
         assert 0 < loop["length"][0] < loop["length"][1]
 
 
+def test_motions_of_a_branch_with_a_flat_vertex_are_not_decided():
+    branches = count_branches("flat-vertex").branches
+    (flat,) = [branch for branch in branches if 0 in branch.vertex_signs.values()]
+    assert motions._proof_of(flat) is None
+
+
 def test_what_the_figures_show():
     run = run_study("figures")
     rows = {row["figure"]: row for row in run.rows}
