@@ -359,7 +359,9 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         for size, tally in tallies.items():
             counts = [(k, tally.at_least(k) / tally.number) for k in range(size + 1)]
             counts = [(k, share) for k, share in counts if share]
-            axes.plot(*zip(*counts, strict=True), "o-", label=f"$V_i = {size}$", **of_size(size))
+            axes.plot(
+                *zip(*counts, strict=True), marker="o", label=f"$V_i = {size}$", **of_size(size)
+            )
         axes.set_yscale("log")
         axes.set_xlabel("reverse H1 moves, at least")
         axes.set_ylabel("share of squares")

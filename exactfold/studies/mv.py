@@ -265,6 +265,9 @@ def _sentences(tallies: dict[int, _Tally]) -> StudyTable:
     )
 
 
+_DOTS: Final = {"linestyle": "none"}
+
+
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of all assignments that occurs, against the number of vertices."""
     tallies = {size: t for size, t in tallied(rows, _Tally, interior_of).items() if t.known}
@@ -273,7 +276,9 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         sizes = sorted(tallies)
         axes.plot(sizes, [4.0**-n for n in sizes], "-", color="0.6", label="$(1/4)^{V_i}$")
         for size, tally in tallies.items():
-            axes.plot([size], [tally.share / tally.known], "o", **of_size(size))
+            share = tally.share / tally.known
+            label = "random squares" if size == sizes[0] else None
+            axes.plot([size], [share], marker="o", label=label, **{**of_size(size), **_DOTS})
         axes.set_yscale("log")
         axes.set_xticks(sizes)
         axes.set_xlabel("interior vertices $V_i$")

@@ -258,7 +258,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             ("paper", {n: (k, m) for n, (m, _, k, _) in PAPER.items() if n in tallies}),
             ("here", {n: (t.letters, t.number - t.undecided) for n, t in tallies.items()}),
         ):
-            shift = 0.12 if label == "here" else -0.12
+            shift = 0.0 if not PAPER.keys() & tallies else 0.12 if label == "here" else -0.12
             for place, (size, (count, number)) in enumerate(points.items()):
                 low, high = interval(count, number)
                 colour = "C0" if label == "here" else "C1"
@@ -283,7 +283,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             for d in range(most + 1):
                 seen += tally.histogram.get(d, 0)
                 shares.append(100 * seen / total)
-            axes.plot(range(most + 1), shares, "o-", label=f"$V_i = {size}$", **of_size(size))
+            axes.plot(range(most + 1), shares, marker="o", label=f"$V_i = {size}$", **of_size(size))
         axes.set_xlabel("decimals of the unit vectors")
         axes.set_ylabel("squares told apart (%)")
         axes.set_xticks(range(most + 1))

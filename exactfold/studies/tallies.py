@@ -47,4 +47,4 @@ def draw_shares(
     bounds = [interval(found, number) for found, number in counts]
     below = [m - unit * low for m, (low, _) in zip(middle, bounds, strict=True)]
     above = [unit * high - m for m, (_, high) in zip(middle, bounds, strict=True)]
-    axes.errorbar(places, middle, [below, above], fmt="o-", **style)
+    axes.errorbar(places, middle, [below, above], marker="o", **style)
