@@ -1,4 +1,4 @@
-"""Fans: sheets of which it is known which sign flips on every loop (docs/matching.md, 3)."""
+"""Fans: sheets on which one sign flips on all loops, and which (docs/matching.md, Theorem 2)."""
 
 from __future__ import annotations
 

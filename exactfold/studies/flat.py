@@ -54,8 +54,8 @@ def row(recipe: Recipe) -> dict[str, Any]:
     `flat`: the sets of such vertices that are joined by folds, each once, as the folds at its
     vertices (those inside triangulated triangles left out): [[4]] is one vertex of degree four.
     `straight`: whether at some interior vertex two folds continue each other. `path`: whether folds
-    make a straight path from border to border. Of a measured square, `distance`: there is an
-    exception at most so far, in sides of the square, 0 if it is one; and `distance_straight`:
+    make a straight path from border to border. Of a measured square, `distance`: an exception is at
+    most so far, in sides of the square, with six digits, 0 if it is one; `distance_straight`:
     whether that one may have straight folds. None where none was found.
     """
     pattern = square_of(recipe)
@@ -74,7 +74,8 @@ def row(recipe: Recipe) -> dict[str, Any]:
         if found["flat"]:
             found["distance"], found["distance_straight"] = 0.0, found["straight"]
         elif near := nearest_exception(count_branches(pattern.without_rigid_parts()[0])):
-            found["distance"], found["distance_straight"] = near.distance, near.straight
+            found["distance"] = float(f"{near.distance * (1 + 1e-5):.5e}")
+            found["distance_straight"] = near.straight
     return found
 
 

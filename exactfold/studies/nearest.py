@@ -71,8 +71,8 @@ def nearest_exception(count: BranchCount) -> Nearest | None:
     >>> from exactfold.count.collect import count_branches
     >>> from exactfold.pattern.random_squares import random_square
     >>> found = nearest_exception(count_branches(random_square(5, seed=4)))
-    >>> found.cycle, found.signs, round(found.distance, 6)
-    ((4, 5, 2, 3), '-+--+', 0.000402)
+    >>> found.cycle, round(found.distance, 6), found.straight
+    ((4, 5, 2, 3), 0.000402, False)
     """
     pattern = count.pattern
     found = [_beside_a_path(pattern)]
