@@ -334,7 +334,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             "exceptions",
             "Exceptions become rare on fine grids",
             "The share of random squares with a vertex outside triangulated triangles that can "
-            "stay flat, with exact 95 % intervals.",
+            "stay flat, with exact 95 % intervals, where some are exceptions.",
             shares,
         )
     ]
