@@ -21,6 +21,7 @@ if not __package__:  # run as a file
 import networkx as nx
 
 from exactfold import families
+from exactfold.studies.triangulations import degrees, insertions
 from proofs.framework import Proof, Script, run
 from proofs.statements import Severity
 
@@ -58,23 +59,6 @@ def rooted(triangles: Triangulation) -> Triangulation:
     return frozenset(_smallest_first(*(names[v] for v in t)) for t in triangles)
 
 
-def insertions(triangles: Triangulation) -> Iterator[Triangulation]:
-    """All results of inserting one interior vertex of degree 3, 4 or 5."""
-    turn = {(a, b): c for t in triangles for a, b, c in (t, (*t[1:], t[0]), (*t[2:], *t[:2]))}
-    new = len({v for t in triangles for v in t})
-    for a, b, c in triangles:
-        yield _filled(triangles, [(a, b, c)], (a, b, c), new)
-    for (a, b), c in turn.items():
-        if (b, a) not in turn:
-            continue
-        d = turn[b, a]
-        if a < b:
-            yield _filled(triangles, [(a, b, c), (b, a, d)], (a, d, b, c), new)
-        if (a, c) in turn and turn[a, c] != d:
-            e = turn[a, c]
-            yield _filled(triangles, [(a, b, c), (b, a, d), (a, c, e)], (a, d, b, c, e), new)
-
-
 def boundary(triangles: Triangulation) -> list[int]:
     """Boundary vertices in counter-clockwise order."""
     sides = {(t[i], t[(i + 1) % 3]) for t in triangles for i in range(3)}
@@ -83,15 +67,6 @@ def boundary(triangles: Triangulation) -> list[int]:
     while follow[cycle[-1]] != cycle[0]:
         cycle.append(follow[cycle[-1]])
     return cycle
-
-
-def degrees(triangles: Triangulation) -> dict[int, int]:
-    """Number of edges at each vertex."""
-    near: dict[int, set[int]] = {}
-    for t in triangles:
-        for v in t:
-            near.setdefault(v, set()).update(t)
-    return {v: len(s) - 1 for v, s in near.items()}
 
 
 def reverse_moves(triangles: Triangulation) -> Iterator[Triangulation]:
@@ -291,14 +266,6 @@ def _has_triangulated_triangle(triangles: Triangulation) -> bool:
     return any(
         len(c) == 3 and frozenset(c) not in faces for c in nx.simple_cycles(graph, length_bound=3)
     )
-
-
-def _filled(
-    triangles: Triangulation, gone: list[Triangle], hole: tuple[int, ...], new: int
-) -> Triangulation:
-    rest = triangles - {_smallest_first(*t) for t in gone}
-    fan = {_smallest_first(a, b, new) for a, b in zip(hole, (*hole[1:], hole[0]), strict=True)}
-    return rest | fan
 
 
 def _smallest_first(a: int, b: int, c: int) -> Triangle:

@@ -356,7 +356,7 @@ def _reductions(script: Script) -> None:
         r"more reverse H1 moves appears to decay exponentially''}",
         note=f"data of the paper; in our samples of {SAMPLES} with Vi = 8, those with at least 0, "
         f"1, 2, ... moves: {', '.join(map(str, counts))}. A triangulation that can be reduced to "
-        "Vi = 3 can be reduced to the seed (IV.10)",
+        "Vi = 3 can be reduced to the seed (IV.10), unless it has a chord by then",
         code="random_square",
     )
 

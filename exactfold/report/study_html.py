@@ -27,7 +27,7 @@ code { font-size: .9rem; }
 def study_page(run: StudyRun, command: str) -> str:
     """The page of a run; `command` is what made it. Raises `StudyPartsMissingError`."""
     study = run.study
-    sizes = ", ".join(f"{number} of size {size}" for size, number in run.numbers.items())
+    sizes = ", ".join(f"{number} of size {size}" for size, number in run.numbers.items() if number)
     undecided = f" {run.undecided} of them are undecided." if run.undecided else ""
     parts = [
         "<!doctype html>",

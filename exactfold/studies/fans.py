@@ -1,4 +1,4 @@
-"""Fans: sheets of which it is known which sign flips on every loop (docs/matching.md, 3)."""
+"""Fans: sheets on which one sign flips on all loops, and which (docs/matching.md, Theorem 2)."""
 
 from __future__ import annotations
 
@@ -20,14 +20,15 @@ class Fan:
     def _area(self, a: int, b: int, c: int) -> Fraction:
         """Twice the signed area of a triangle."""
         points = self.sheet.vertices
-        return Fraction(orientation(points[a], points[b], points[c]))
+        area: Fraction = orientation(points[a], points[b], points[c])
+        return area
 
     def closing(self, j: int) -> Fraction:
         """c_j: a quarter of |p q|^2 in the flat sheet less |p q|^2 where fold j is closed."""
         (p, q), (x, y) = self.poles, self.chain[j - 1 : j + 1]
         dx, dy = (a - b for a, b in zip(*(self.sheet.vertices[v] for v in (x, y)), strict=True))
         product = self._area(x, y, p) * self._area(y, x, q)
-        return product / (dx * dx + dy * dy)
+        return product / Fraction(dx * dx + dy * dy)
 
     def signs(self) -> tuple[int, ...] | None:
         """For folds 1 to n + 1 the place of the sign they carry, or None at a straight angle."""

@@ -41,6 +41,9 @@ _FOLDS: Final = ((0, 4), (1, 4), (1, 5))
 _AXES: Final = {2: (3, 4, 5), 3: (3, 4, 5)}
 """The vertices whose heights are axes; the others, 0, 1 and 2, are held."""
 
+_ARROW: Final = 48.0
+"""Degrees that the arrows of angles are long."""
+
 _MOUNTAIN, _VALLEY = "#c62828", "#1565c0"
 _RAYS: Final = ("#365c8d", "#1fa187", "#e07b39", "#7b3294")
 
@@ -185,31 +188,73 @@ def _view(turn: float, lift: float) -> FloatArray:
     )
 
 
-def _axes_of_space(axes: Any, view: FloatArray, names: Sequence[str], size: float) -> None:
-    """Three arrows from the origin, with names."""
-    for direction, name in zip(np.eye(3), names, strict=True):
+def _axes_of_space(
+    axes: Any,
+    view: FloatArray,
+    names: Sequence[str],
+    size: float,
+    anchors: Sequence[tuple[str, str]],
+) -> None:
+    """Three arrows from the origin, with names, and where these are anchored to the tips."""
+    for direction, name, (across, along) in zip(np.eye(3), names, anchors, strict=True):
         x, y = view @ direction * size
         axes.plot([1.25 * x], [1.25 * y], alpha=0.0)  # so that there is room for the name
         axes.annotate(
             "", (x, y), (0, 0), arrowprops={"arrowstyle": "->", "color": "0.55", "lw": 0.7}
         )
-        axes.text(1.14 * x, 1.14 * y, name, ha="center", va="center", fontsize=8, color="0.35")
+        axes.text(
+            1.05 * x,
+            1.05 * y,
+            name,
+            ha=across,
+            va=along,
+            fontsize=8,
+            color="0.25",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
+        )
     axes.set_aspect("equal")
     axes.axis("off")
 
 
 def _draw_curves(axes: Any, row: Row) -> None:
     view = _view(112.0, 15.0)
-    names = [f"${i}$–${j}$" for i, j in row["folds"]]
+    names = [f"angle of {i}–{j}" for i, j in row["folds"]]
     for place, curve in enumerate(row["curves"]):
         points = np.array(curve["angles"]) @ view.T
         colour = _RAYS[place // 2]
         axes.plot(points[:, 0], points[:, 1], color=colour)
         if curve["side"] > 0:
             x, y = points[-1] * (1 + 4 / np.linalg.norm(points[-1]))
-            axes.text(x, y, curve["signs"], ha="center", va="center", color=colour)
-    _axes_of_space(axes, view, names, 48.0)
+            axes.text(x, y, _shown(curve["signs"]), ha="center", va="center", color=colour)
+    anchors = (("right", "center"), ("center", "top"), ("center", "bottom"))
+    _axes_of_space(axes, view, names, _ARROW, anchors)
     axes.plot([0], [0], "o", color="black", markersize=4)
+    _draw_inset(axes.inset_axes([0.0, 0.0, 0.3, 0.3]), row["folds"])
+
+
+def _draw_inset(axes: Any, shown: Sequence[Sequence[int]]) -> None:
+    """The two-vertex pattern, with some folds thick."""
+    pattern = two_vertex()
+    points = np.array([[float(x), float(y)] for x, y in pattern.vertices])
+    middle = points.mean(axis=0)
+    for i, j in pattern.edges:
+        width = 1.8 if [i, j] in [list(fold) for fold in shown] else 0.6
+        axes.plot(points[[i, j], 0], points[[i, j], 1], color="0.25", linewidth=width)
+    reach = 0.13 * float(np.ptp(points))
+    for v, point in enumerate(points):
+        away = point - middle
+        x, y = point + reach * away / np.linalg.norm(away) if v in pattern.boundary else point
+        if v not in pattern.boundary:
+            y += 0.8 * reach
+        axes.text(x, y, str(v), ha="center", va="center", fontsize=7, color="0.35")
+    axes.margins(0.2)
+    axes.set_aspect("equal")
+    axes.axis("off")
+
+
+def _shown(signs: str) -> str:
+    """Vertex signs with the sign that is as wide as a plus."""
+    return signs.replace("-", "\N{MINUS SIGN}")
 
 
 def _draw_cone(axes: Any, row: Row) -> None:
@@ -228,8 +273,10 @@ def _draw_cone(axes: Any, row: Row) -> None:
         for k in range(0, 120, 4):
             axes.plot([0, rim[0, k]], [0, rim[1, k]], color=colour, lw=0.5, alpha=0.6)
         axes.plot(rim[0], rim[1], color=colour)
-        axes.text(0, 0.62 * side, f"popped {label}", color=colour, ha="right", va="center")
-    _axes_of_space(axes, view, [f"$h_{v}$" for v in row["axes"]], 1.1)
+        x, y = rim[:, int(rim[0].argmax())]
+        axes.text(x, y + 0.2 * side, f"popped {label}", color=colour, ha="right", va="center")
+    anchors = (("right", "top"), ("left", "center"), ("center", "bottom"))
+    _axes_of_space(axes, view, [f"$h_{v}$" for v in row["axes"]], 1.1, anchors)
 
 
 def _draw_chambers(axes: Any, row: Row) -> None:
@@ -245,9 +292,11 @@ def _draw_chambers(axes: Any, row: Row) -> None:
     for place, ray in enumerate(rays):
         x, y = view @ ray
         axes.plot([-x, x], [-y, y], color=_RAYS[place])
-        axes.text(1.12 * x, 1.12 * y, row["rays"][place]["signs"], ha="center", color=_RAYS[place])
+        signs = _shown(row["rays"][place]["signs"])
+        axes.text(1.12 * x, 1.12 * y, signs, ha="center", va="center", color=_RAYS[place])
     names = [f"vertex {v} up" for v in row["functionals"]]
-    _axes_of_space(axes, view, [*names, f"$h_{row['axes'][0]}$"], 1.15)
+    anchors = (("right", "center"), ("left", "bottom"), ("center", "bottom"))
+    _axes_of_space(axes, view, [*names, f"$h_{row['axes'][0]}$"], 1.15, anchors)
 
 
 def _draw_shared(axes: Any, row: Row) -> None:
@@ -262,6 +311,9 @@ def _draw_shared(axes: Any, row: Row) -> None:
         axes.plot(
             *points[v], "o", markersize=6, markerfacecolor=both, markeredgecolor="black", zorder=3
         )
+        axes.annotate(
+            str(v), points[v], (7, 4), textcoords="offset points", fontsize=7, color="0.25"
+        ).set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.3})
     axes.set_aspect("equal")
     axes.axis("off")
 
@@ -283,7 +335,8 @@ def figures(rows: Iterable[Row]) -> list[StudyFigure]:
     }
     captions = {
         1: "Angles of three folds of the two-vertex pattern along the true motions of its four "
-        "branches, until a fold has 45 degrees.",
+        "branches, until a fold has 45 degrees; arrows are 48 degrees long, valleys positive. The "
+        "signs are those of vertices 4 and 5. Thick in the pattern: the three folds.",
         2: "To second order, in the heights of three vertices; the other three are held.",
         3: "The branches of the two-vertex pattern to second order. On two axes are the "
         "functionals of the vertex signs, which vanish on the planes; on the third is the height "

@@ -30,7 +30,7 @@ from exactfold.verdict import PROVED
 DENOMINATORS: Final = (16, 64, 256, 1024)
 """Of the grids."""
 
-MEASURED: Final = 50
+MEASURED: Final = 5
 """Of so many squares on the finest grid the nearest exception to one is looked for."""
 
 
@@ -54,8 +54,8 @@ def row(recipe: Recipe) -> dict[str, Any]:
     `flat`: the sets of such vertices that are joined by folds, each once, as the folds at its
     vertices (those inside triangulated triangles left out): [[4]] is one vertex of degree four.
     `straight`: whether at some interior vertex two folds continue each other. `path`: whether folds
-    make a straight path from border to border. Of a measured square, `distance`: there is an
-    exception at most so far, in sides of the square, 0 if it is one; and `distance_straight`:
+    make a straight path from border to border. Of a measured square, `distance`: an exception is at
+    most so far, in sides of the square, with six digits, 0 if it is one; `distance_straight`:
     whether that one may have straight folds. None where none was found.
     """
     pattern = square_of(recipe)
@@ -74,7 +74,8 @@ def row(recipe: Recipe) -> dict[str, Any]:
         if found["flat"]:
             found["distance"], found["distance_straight"] = 0.0, found["straight"]
         elif near := nearest_exception(count_branches(pattern.without_rigid_parts()[0])):
-            found["distance"], found["distance_straight"] = near.distance, near.straight
+            found["distance"] = float(f"{near.distance * (1 + 1e-5):.5e}")
+            found["distance_straight"] = near.straight
     return found
 
 
@@ -308,20 +309,24 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         for n, found in near.items():
             draw_distribution(axes, [d for d in found if d], label=f"$V_i = {n}$", **of_size(n))
         axes.set_xscale("log")
-        axes.set_xlabel("distance of an exception, sides of the square")
-        axes.set_ylabel("squares for which one is found (%)")
+        axes.set_xlabel("distance of the exception, in sides of the square")
+        axes.set_ylabel("squares with a nearer one (%)")
+        axes.set_ylim(0, 100)
         axes.legend()
 
     def shares(axes: Any) -> None:
-        for n in sorted({n for n, _ in tallies}):
+        found = sorted({n for n, _ in tallies})
+        for place, n in enumerate(found):
             points = [(d, t) for (m, d), t in tallies.items() if m == n and t.exceptions]
             counts = [(t.exceptions, t.proved) for _, t in points]
-            places = [d for d, _ in points]
+            places = [d * 2 ** (0.12 * (place - (len(found) - 1) / 2)) for d, _ in points]
             draw_shares(axes, places, counts, 1.0, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xscale("log", base=2)
         axes.set_yscale("log")
+        axes.set_xticks(DENOMINATORS, [str(d) for d in DENOMINATORS])
+        axes.minorticks_off()
         axes.set_xlabel("denominator of the grid")
-        axes.set_ylabel("share of exceptions")
+        axes.set_ylabel("squares that are exceptions")
         axes.legend()
 
     found = [
@@ -329,7 +334,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             "exceptions",
             "Exceptions become rare on fine grids",
             "The share of random squares with a vertex outside triangulated triangles that can "
-            "stay flat, with exact 95 % intervals.",
+            "stay flat, with exact 95 % intervals, where some are exceptions.",
             shares,
         )
     ]

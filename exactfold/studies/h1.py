@@ -20,6 +20,7 @@ from exactfold.studies.statistics import (
     interval,
     interval_text,
     one_share,
+    p_equals,
     p_text,
     same_probability,
     verdict,
@@ -210,7 +211,7 @@ def _decay(tallies: dict[int, _Tally]) -> StudyTable:
         said = "one factor does not fit" if fit.p < 0.01 else "one factor fits"
         notes.append(
             "Exactly exponential, with the share 1 at Vi = 3: the factor would be "
-            f"{fit.ratio:.3f}; a likelihood-ratio test gives p {_equals(fit.p)}: {said}."
+            f"{fit.ratio:.3f}; a likelihood-ratio test gives {p_equals(fit.p)}: {said}."
         )
     return StudyTable(
         "decay",
@@ -219,11 +220,6 @@ def _decay(tallies: dict[int, _Tally]) -> StudyTable:
         tuple(lines),
         tuple(notes),
     )
-
-
-def _equals(p: float) -> str:
-    text = p_text(p)
-    return text if text.startswith("<") else f"= {text}"
 
 
 def _factors(values: Sequence[float]) -> str:
@@ -248,7 +244,7 @@ def _sentences(tallies: dict[int, _Tally], every: list[Row]) -> StudyTable:
         lines.append(
             (
                 "more and more squares are irreducible",
-                f"from each size to the next p {_equals(worst)}" + " or less" * (worst >= 1e-15),
+                f"from each size to the next {p_equals(worst)}" + " or less" * (worst >= 1e-15),
                 verdict(grows if worst < AGREE else None),
             )
         )
@@ -258,7 +254,7 @@ def _sentences(tallies: dict[int, _Tally], every: list[Row]) -> StudyTable:
         lines.append(
             (
                 "the share of H1 squares falls exponentially",
-                f"from size to size by {_factors(shares)}; p {_equals(fit.p)}",
+                f"from size to size by {_factors(shares)}; {p_equals(fit.p)}",
                 verdict(fit.p >= AGREE),
             )
         )
@@ -270,7 +266,7 @@ def _sentences(tallies: dict[int, _Tally], every: list[Row]) -> StudyTable:
             lines.append(
                 (
                     f"Vi = {size}: the share with more moves falls exponentially",
-                    f"from move to move by {_factors(left)}; p {_equals(p)}",
+                    f"from move to move by {_factors(left)}; {p_equals(p)}",
                     verdict(p >= AGREE),
                 )
             )
@@ -328,7 +324,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     def shares(axes: Any) -> None:
         for k, (label, key, paper) in enumerate(
             (
-                ("no corner of degree 3", "irreducible", PAPER_IRREDUCIBLE),
+                ("irreducible", "irreducible", PAPER_IRREDUCIBLE),
                 ("H1", "h1", PAPER_H1),
             )
         ):
@@ -363,7 +359,9 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         for size, tally in tallies.items():
             counts = [(k, tally.at_least(k) / tally.number) for k in range(size + 1)]
             counts = [(k, share) for k, share in counts if share]
-            axes.plot(*zip(*counts, strict=True), "o-", label=f"$V_i = {size}$", **of_size(size))
+            axes.plot(
+                *zip(*counts, strict=True), marker="o", label=f"$V_i = {size}$", **of_size(size)
+            )
         axes.set_yscale("log")
         axes.set_xlabel("reverse H1 moves, at least")
         axes.set_ylabel("share of squares")
@@ -372,8 +370,9 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     return [
         StudyFigure(
             "shares",
-            "Squares that are H1, and squares without a corner of degree 3",
-            "Random squares, with exact 95 % intervals, and the figures of the paper.",
+            "Squares that are H1, and squares that are irreducible",
+            "Random squares, with exact 95 % intervals, and the figures of the paper. Irreducible: "
+            "no boundary vertex has degree 3; with three interior vertices no square is.",
             shares,
         ),
         StudyFigure(

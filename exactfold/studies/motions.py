@@ -11,13 +11,15 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from exactfold.branches.branch import Branch
 from exactfold.count.find import BranchFinder
+from exactfold.errors import NotFollowedError
 from exactfold.motion.arclength import in_floats
 from exactfold.motion.following import follow
 from exactfold.motion.half_branches import HalfBranch
 from exactfold.motion.loop_proofs import Loop
 from exactfold.motion.matching import find_loops
-from exactfold.motion.proving import prove
+from exactfold.motion.proving import MotionProof, prove
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.solve.dense_newton import sign_vectors
 from exactfold.studies.fans import fan
@@ -87,7 +89,7 @@ def _contacts(pattern: CreasePattern) -> list[dict[str, Any]]:
     found = []
     for signs in sign_vectors(0, 1 << size, size).tolist():
         branch = finder.find(dict(zip(finder.poppable, signs, strict=True)))
-        proof = prove(follow(branch, frames=2)) if branch.status is PROVED else None
+        proof = _proof_of(branch) if branch.status is PROVED else None
         end, time, shared = "open", None, None
         if proof is not None and proof.status is PROVED and proof.contact is not None:
             event = proof.contact.event
@@ -98,6 +100,14 @@ def _contacts(pattern: CreasePattern) -> list[dict[str, Any]]:
                 end, time = "node", list(in_floats(proof.length))
         found.append({"signs": branch.sign_text, "end": end, "time": time, "shared": shared})
     return found
+
+
+def _proof_of(branch: Branch) -> MotionProof | None:
+    """The proof of the motion along a branch until its end; None if it is not followed."""
+    try:
+        return prove(follow(branch, frames=2))
+    except NotFollowedError:  # a vertex is flat on it
+        return None
 
 
 @dataclass

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from exactfold.studies.lines import UNKNOWN, Lines, SignArray
 from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.statistics import AGREE, interval, p_text, trend, verdict
+from exactfold.studies.statistics import AGREE, interval, p_equals, trend, verdict
 from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
 from exactfold.studies.table1 import same_side
 from exactfold.studies.tallies import interior_of, tallied
@@ -61,7 +61,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
     found["differing"] = [list(item) for item in sorted(numbers.items())]
     reduced, labels = lines.pattern.without_rigid_parts()
     degrees = {v: reduced.degree(k) for k, v in enumerate(labels)}
-    which = np.flatnonzero(np.any(pairs, axis=0)) if pairs else []
+    which: list[int] = np.flatnonzero(np.any(pairs, axis=0)).tolist() if pairs else []
     found["least_degree"] = min((degrees[lines.pattern.interior[k]] for k in which), default=None)
     return found
 
@@ -220,7 +220,7 @@ def _sentences(tallies: dict[int, _Tally]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
     if len(shares) > 1:
         holds = None if p >= AGREE else z > 0
-        number = f"from Vi = {min(shares)} to {max(shares)}: z = {z:.2f}, p = {p_text(p)}"
+        number = f"from Vi = {min(shares)} to {max(shares)}: z = {z:.2f}, {p_equals(p)}"
         lines.append(("more and more squares have branches with equal letters", number))
         lines[-1] += (verdict(holds),)
     numbers: Counter[int] = Counter()
@@ -265,6 +265,9 @@ def _sentences(tallies: dict[int, _Tally]) -> StudyTable:
     )
 
 
+_DOTS: Final = {"linestyle": "none"}
+
+
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of all assignments that occurs, against the number of vertices."""
     tallies = {size: t for size, t in tallied(rows, _Tally, interior_of).items() if t.known}
@@ -273,7 +276,9 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         sizes = sorted(tallies)
         axes.plot(sizes, [4.0**-n for n in sizes], "-", color="0.6", label="$(1/4)^{V_i}$")
         for size, tally in tallies.items():
-            axes.plot([size], [tally.share / tally.known], "o", **of_size(size))
+            share = tally.share / tally.known
+            label = "random squares" if size == sizes[0] else None
+            axes.plot([size], [share], marker="o", label=label, **{**of_size(size), **_DOTS})
         axes.set_yscale("log")
         axes.set_xticks(sizes)
         axes.set_xlabel("interior vertices $V_i$")

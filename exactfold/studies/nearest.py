@@ -71,8 +71,8 @@ def nearest_exception(count: BranchCount) -> Nearest | None:
     >>> from exactfold.count.collect import count_branches
     >>> from exactfold.pattern.random_squares import random_square
     >>> found = nearest_exception(count_branches(random_square(5, seed=4)))
-    >>> found.cycle, found.signs, round(found.distance, 6)
-    ((4, 5, 2, 3), '-+--+', 0.000402)
+    >>> found.cycle, round(found.distance, 6), found.straight
+    ((4, 5, 2, 3), 0.000402, False)
     """
     pattern = count.pattern
     found = [_beside_a_path(pattern)]
@@ -182,9 +182,9 @@ def _turns(points: Sequence[Sequence[int]], cycle: Cycle) -> list[int]:
     return [_turn(points, *(cycle[(k + j) % 4] for j in range(3))) for k in range(4)]
 
 
-def _sides(points: Sequence[Sequence[int]], cycle: Cycle, v: int) -> list[int]:
+def _sides(points: Any, cycle: Cycle, v: int) -> list[Any]:
     """On which side of each side of the cycle a vertex is; 0 for its corners."""
-    return [_turn(points, cycle[k], cycle[(k + 1) % 4], v) for k in range(4)]
+    return [orientation(points[cycle[k]], points[cycle[(k + 1) % 4]], points[v]) for k in range(4)]
 
 
 def _stays_positive(first: CreasePattern, last: CreasePattern, triple: Sequence[int]) -> bool:

@@ -152,14 +152,15 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
 
     def shares(axes: Any) -> None:
         places = dict(zip(SIZES, range(len(SIZES)), strict=True))
-        for n in sorted({n for n, _ in tallies}):
+        found = sorted({n for n, _ in tallies})
+        for place, n in enumerate(found):
             points = [(places[s], t) for (m, s), t in tallies.items() if m == n and t.proved]
             counts = [(t.some, t.proved) for _, t in points]
-            at = [x for x, _ in points]
+            at = [x + 0.06 * (place - (len(found) - 1) / 2) for x, _ in points]
             draw_shares(axes, at, counts, 100.0, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xticks(range(len(SIZES)), SIZES)
         axes.set_xlabel("largest relative change of a coefficient")
-        axes.set_ylabel("systems with zeros\nthat are not real (%)")
+        axes.set_ylabel("systems with solutions\nthat are not real (%)")
         axes.legend(loc="upper left")
 
     return [

@@ -143,7 +143,7 @@ def normal(row: Row, recipe: Recipe) -> dict[str, Any]:
     """A row as it comes back from the journal; raises `UsageError` for one that is no row."""
     if row.get("status") not in STATUSES:
         raise UsageError(f"the status of a row is one of {', '.join(STATUSES)}")
-    shared = {"row", *recipe} & set(row)
+    shared = {"row", "sha256", *recipe} & set(row)
     if shared:
         raise UsageError(f"{min(shared)!r} is both of the recipe and of the row")
     try:

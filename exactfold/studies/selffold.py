@@ -126,8 +126,9 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         for n, tally in tallies.items():
             draw_distribution(axes, tally.margins, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xlabel("best margin, torques of size at most 1")
-        axes.set_ylabel("branches (%)")
-        axes.legend()
+        axes.set_ylabel("branches with a smaller margin (%)")
+        axes.set_ylim(0, 100)
+        axes.legend(loc="lower right")
 
     return [
         StudyFigure(

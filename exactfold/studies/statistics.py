@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from math import floor, log10
 
 LEVEL = 0.95
 """Of intervals."""
@@ -109,7 +110,7 @@ def trend(samples: Mapping[int, tuple[int, int]]) -> tuple[float, float]:
 
     >>> z, p = trend({5: (12, 1000), 6: (33, 1000), 7: (43, 1000)})
     >>> round(z, 2), f"{p:.1e}"
-    (4.09, '4.4e-05')
+    (4.11, '4.0e-05')
     """
     from scipy.stats import norm
 
@@ -133,6 +134,16 @@ def p_text(p: float) -> str:
     return f"{p:.2g}" if p >= 1e-15 else "< 1e-15"
 
 
+def p_equals(p: float) -> str:
+    """The same as an equation.
+
+    >>> p_equals(0.4519), p_equals(0.0)
+    ('p = 0.45', 'p < 1e-15')
+    """
+    text = p_text(p)
+    return f"p {text}" if text.startswith("<") else f"p = {text}"
+
+
 def verdict(holds: bool | None) -> str:
     """What a number says of a sentence; None where it does not tell.
 
@@ -153,13 +164,15 @@ def percent(part: float) -> str:
 
 
 def interval_text(found: int, number: int) -> str:
-    """The interval of a share in per cent.
+    """The interval of a share in per cent, with as many digits as its width makes sense of.
 
-    >>> interval_text(17, 1000)
-    '0.99 to 2.7'
+    >>> interval_text(17, 1000), interval_text(7131, 20000), interval_text(8, 50)
+    ('0.99 to 2.7', '35.0 to 36.3', '7.2 to 29')
     """
-    low, high = interval(found, number)
-    return f"{percent(low)} to {percent(high)}"
+    ends = interval(found, number)
+    places = max(0, 1 - floor(log10(100 * (ends[1] - ends[0]))))
+    low, high = (percent(x) if 100 * x < 9.95 else f"{100 * x:.{places}f}" for x in ends)
+    return f"{low} to {high}"
 
 
 def agreement(p: float) -> str:

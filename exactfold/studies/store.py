@@ -46,8 +46,8 @@ class StoredRow:
 
     @property
     def whole(self) -> dict[str, Any]:
-        """Name, recipe and row in one mapping, for tables and figures."""
-        return {"row": self.id, **self.recipe, **self.row}
+        """Name, recipe, row and digest in one mapping, for tables, figures and files."""
+        return {"row": self.id, **self.recipe, **self.row, "sha256": self.sha256}
 
 
 class RowStore:

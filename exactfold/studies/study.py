@@ -158,9 +158,12 @@ _COLOURS = ("#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#
 
 
 def of_size(size: int) -> dict[str, str]:
-    """The colour of a number of interior vertices in figures: from dark to light, 2 to 8 and on.
+    """The colour of a number of interior vertices in figures: from dark to light, 2 to 9.
 
-    >>> of_size(2)
-    {'color': '#440154'}
+    From 10 on the same again, with dashes.
+
+    >>> of_size(2), of_size(10)
+    ({'color': '#440154'}, {'color': '#440154', 'linestyle': '--'})
     """
-    return {"color": _COLOURS[(size - 2) % len(_COLOURS)]}
+    colour = {"color": _COLOURS[(size - 2) % len(_COLOURS)]}
+    return colour if size < 10 else {**colour, "linestyle": "--"}

@@ -147,7 +147,8 @@ class _Tally:
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """The table of the paper, the comparison with it, and how close branches come."""
     tallies = tallied(rows, _Tally, interior_of)
-    return [_main(tallies), _comparison(tallies), _distances(tallies)]
+    beside = [_comparison(tallies)] if PAPER.keys() & tallies else []
+    return [_main(tallies), *beside, _distances(tallies)]
 
 
 def _main(tallies: dict[int, _Tally]) -> StudyTable:
@@ -257,7 +258,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             ("paper", {n: (k, m) for n, (m, _, k, _) in PAPER.items() if n in tallies}),
             ("here", {n: (t.letters, t.number - t.undecided) for n, t in tallies.items()}),
         ):
-            shift = 0.12 if label == "here" else -0.12
+            shift = 0.0 if not PAPER.keys() & tallies else 0.12 if label == "here" else -0.12
             for place, (size, (count, number)) in enumerate(points.items()):
                 low, high = interval(count, number)
                 colour = "C0" if label == "here" else "C1"
@@ -271,7 +272,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
                     label=label if not place else None,
                 )
         axes.set_xlabel("interior vertices $V_i$")
-        axes.set_ylabel("squares (%)")
+        axes.set_ylabel("squares with equal letters (%)")
         axes.set_xticks(sorted(tallies))
         axes.legend(loc="upper left")
 
@@ -282,9 +283,9 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             for d in range(most + 1):
                 seen += tally.histogram.get(d, 0)
                 shares.append(100 * seen / total)
-            axes.plot(range(most + 1), shares, "o-", label=f"$V_i = {size}$", **of_size(size))
-        axes.set_xlabel("decimals")
-        axes.set_ylabel("squares (%)")
+            axes.plot(range(most + 1), shares, marker="o", label=f"$V_i = {size}$", **of_size(size))
+        axes.set_xlabel("decimals of the unit vectors")
+        axes.set_ylabel("squares told apart (%)")
         axes.set_xticks(range(most + 1))
         axes.legend()
 
@@ -292,7 +293,8 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         StudyFigure(
             "letters",
             "Squares with branches that share their mountains and valleys",
-            "Shares of random squares, with exact 95 % intervals.",
+            "Shares of random squares with two branches whose letters agree, with exact 95 % "
+            "intervals.",
             shares,
         ),
         StudyFigure(

@@ -32,9 +32,10 @@ def interior_of(row: Row) -> int:
 
 
 def draw_distribution(axes: Any, values: Sequence[float], **style: Any) -> None:
-    """The share of values, in per cent, that are smaller, as a curve of steps."""
+    """The share of values, in per cent, that are no larger, as a curve of steps from 0 to 100."""
     ordered = sorted(values)
-    shares = [100 * (k + 1) / len(ordered) for k in range(len(ordered))]
+    shares = [100 * k / len(ordered) for k in range(len(ordered) + 1)]
+    ordered = [*ordered[:1], *ordered]
     axes.plot(ordered, shares, drawstyle="steps-post", **style)
 
 
@@ -46,4 +47,4 @@ def draw_shares(
     bounds = [interval(found, number) for found, number in counts]
     below = [m - unit * low for m, (low, _) in zip(middle, bounds, strict=True)]
     above = [unit * high - m for m, (_, high) in zip(middle, bounds, strict=True)]
-    axes.errorbar(places, middle, [below, above], fmt="o-", **style)
+    axes.errorbar(places, middle, [below, above], marker="o", **style)

@@ -3,8 +3,8 @@
 A triangulation is the set of its triangles, each counter-clockwise and beginning with its smallest
 vertex; no two edges join the same vertices. A type is a class of triangulations under renumbering
 and reflection. Every one with n >= 1 interior vertices has an interior vertex of degree 3, 4 or 5
-whose removal can be filled without a double edge (`proofs/h1_triangulations.py`), so that all
-arise from those with n - 1 by inserting one.
+whose removal can be filled without a double edge (`proofs/h1_triangulations.py`, which inserts
+vertices by this module), so that all arise from those with n - 1 by inserting one.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def types(interior: int) -> list[Triangulation]:
     """
     level = [triangulation([(0, 1, 2), (0, 2, 3)])]
     for _ in range(interior):
-        found = {_code(larger): larger for smaller in level for larger in _insertions(smaller)}
+        found = {_code(larger): larger for smaller in level for larger in insertions(smaller)}
         level = [found[code] for code in sorted(found)]
     return level
 
@@ -103,8 +103,12 @@ def _reduced(triangles: Triangulation) -> Iterator[Triangulation]:
                 yield triangles - {first, second}
 
 
-def _insertions(triangles: Triangulation) -> Iterator[Triangulation]:
-    """All results of putting a vertex of degree 3, 4 or 5 inside."""
+def insertions(triangles: Triangulation) -> Iterator[Triangulation]:
+    """All results of putting a vertex of degree 3, 4 or 5 inside, whose number is the next one.
+
+    >>> len(set(insertions(triangulation([(0, 1, 2), (0, 2, 3)]))))
+    3
+    """
     turn = turns(triangles)
     new = len({v for t in triangles for v in t})
     for a, b, c in triangles:

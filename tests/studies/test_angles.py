@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from exactfold import PROVED, count_branches, random_square
-from exactfold.studies import angles
-from exactfold.studies.angles import distance, uniform
+from exactfold.studies import angle_statistics, angles
+from exactfold.studies.angle_statistics import distance, uniform
 from exactfold.studies.lines import Lines
 from exactfold.studies.pair_angles import BINS, pair_angles
 
@@ -18,7 +18,7 @@ from exactfold.studies.pair_angles import BINS, pair_angles
 @pytest.fixture(autouse=True)
 def few(monkeypatch):
     """Few samples are drawn again: a p-value of 1/151 is still below 0.01."""
-    monkeypatch.setattr(angles, "RESAMPLED", 150)
+    monkeypatch.setattr(angle_statistics, "RESAMPLED", 150)
 
 
 def row(size, seed):
@@ -196,3 +196,16 @@ def test_rows_that_are_not_proved_count_nowhere():
 
 def test_the_cosine_of_a_bin_is_that_of_its_edge():
     assert acos(np.cos(3 * pi / 2 / BINS)) == pytest.approx(3 * pi / 2 / BINS)
+
+
+def test_pairs_of_a_branch_with_itself_are_told():
+    """Vi = 2: 4 of the 16 ordered pairs are those of a branch with itself."""
+    rows = [{**row, "angles": [0] * (BINS - 1) + [6]} for row in sample(2, 3, 1.0, 1)]
+    rows += [{**row, "angles": [0] * (BINS - 1) + [28]} for row in sample(3, 3, 1.0, 1)]
+    last = angles.tables(rows)[4].rows[-1]
+    assert last[1:] == (
+        "Vi = 2: 25 % of pairs, others there 0 %; Vi = 3: 12 % and 0 %",
+        "agreed",
+    )
+    near = [{**row, "angles": [6] + [0] * (BINS - 1)} for row in sample(2, 3, 1.0, 1)]
+    assert angles.tables(near + rows[3:])[4].rows[-1][-1] == "not agreed"

@@ -83,9 +83,9 @@ def test_all_small_types_are_h1_unless_there_are_chords():
 
 def test_the_tables():
     run = run_study("h1", numbers={3: 6, 8: 6})
-    shares, moves, decay, every = run.tables
+    shares, moves, decay, every, sentences = run.tables
     assert [line[:4] for line in shares.rows[:3:2]] == [
-        ("no corner of degree 3", 3, "0/6", "0.00"),
+        ("irreducible", 3, "0/6", "0.00"),
         ("H1", 3, "6/6", "100.00"),
     ]
     assert [line[-1] for line in shares.rows] == ["agree"] * 4
@@ -93,6 +93,8 @@ def test_the_tables():
     assert moves.rows[1][:2] == (8, 6)
     assert (decay.rows, every.rows) == ((), ((3, 18, 8, "yes", 2, 2, 3, 2),))
     assert run.total == 13
+    verdicts = {line[0]: line[1:] for line in sentences.rows}
+    assert verdicts["up to Vi = 3 all types without chords are H1"] == ("2 of 2", "agreed")
 
 
 def test_factors_from_size_to_size():
@@ -102,6 +104,35 @@ def test_factors_from_size_to_size():
         for k in range(64)
     ]
     assert h1.tables(rows)[2].rows == (("4 to 5", "0.500"),)
+
+
+def squares_with_moves(size, counts):
+    """Random squares of which `counts[k]` have k reverse moves at most."""
+    return [
+        {
+            "kind": "random square",
+            "interior": size,
+            "low_corners": int(moves > 0),
+            "moves": moves,
+            "h1": moves == size,
+        }
+        for moves, count in enumerate(counts)
+        for _ in range(count)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("counts", "said"),
+    [((500, 250, 125, 0, 0, 0, 125), "agreed"), ((900, 10, 10, 0, 0, 0, 80), "not agreed")],
+)
+def test_the_decay_from_move_to_move_is_judged(counts, said):
+    rows = squares_with_moves(6, counts) + squares_with_moves(5, (100, 0, 0, 0, 0, 900))
+    verdicts = {line[0]: line[-1] for line in h1.tables(rows)[-1].rows}
+    assert verdicts["Vi = 6: the share with more moves falls exponentially"] == said
+    assert verdicts["more and more squares are irreducible"] == "agreed"
+    fewer = squares_with_moves(7, (100, 0, 0, 0, 0, 0, 0, 900))
+    verdicts = {line[0]: line[-1] for line in h1.tables(rows + fewer)[-1].rows}
+    assert verdicts["more and more squares are irreducible"] == "not agreed"
 
 
 def test_the_numbers_of_the_paper_are_those_of_section_four():

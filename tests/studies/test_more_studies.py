@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from dataclasses import replace
+from itertools import combinations
+
 import numpy as np
 import pytest
 
@@ -10,7 +14,7 @@ from exactfold.algebra.groebner_bases import quotient_algebra
 from exactfold.algebra.hermite import hermite_counts
 from exactfold.problem import BranchSystem, perturbed
 from exactfold.rigidity.functionals import saddle_functional
-from exactfold.studies import run_study
+from exactfold.studies import motions, mv, run_study
 from exactfold.studies.flat import has_straight_folds
 from exactfold.studies.lines import Lines
 from exactfold.studies.squares import square_of
@@ -52,26 +56,67 @@ def test_degrees_of_flat_vertices_and_what_causes_them():
         degrees = {reduced.degree(labels.index(v)) for v in vertices}
         assert {degree for part in row["flat"] for degree in part} == degrees
         assert row["straight"] == has_straight_folds(pattern)
-    assert all(row["straight"] for row in exceptional)  # of these; no theorem says it of all
+        assert row["path"] <= row["straight"]
+    assert all(row["straight"] for row in exceptional)  # of these; not of all, see test_nearest
 
 
 def test_letters_are_those_of_the_counts():
-    run = run_study("mv", numbers={4: 4, 5: 3})
+    chosen = {"interior": 5, "denominator": 1024}
+    rows = [{**chosen, "seed": seed} for seed in (50000058, 50000527)]
+    study = replace(mv.STUDY, recipes=lambda *_: iter([{**chosen, "seed": 0}, *rows]))
+    run = run_study(study, numbers={5: 3})
+    assert [row["least_degree"] for row in run.rows] == [None, 6, None]
     for row in run.rows:
         result = count_branches(square_of(row))
         assert row["with_letters"] == result.repeated_assignments
         known = {min(b.assignment_text, b.assignment_text.translate(TURNED)) for b in result}
         assert row["assignments"] == len(known)
         assert row["separated"]
+        groups = {}
+        for branch in result:
+            texts = branch.assignment_text, branch.sign_text
+            turned = texts[0].translate(TURNED), texts[1].translate(str.maketrans("+-", "-+"))
+            letters, signs = min(texts, turned)
+            groups.setdefault(letters, []).append(signs)
+        numbers = Counter(
+            sum(a != b for a, b in zip(*pair, strict=True))
+            for group in groups.values()
+            for pair in combinations(group, 2)
+        )
+        assert dict(map(tuple, row["differing"])) == dict(numbers)
         saddle = saddle_functional(result.pattern)  # signs are those of this side
         for branch in result:
             assert sum(c * branch.approx_heights[v] for v, c in saddle.items()) > 0
     occurring = columns(run, "occurring")
-    assert occurring["Vi"] == (4, 5)
-    assert all(
-        float(share) <= 1.001 * 4.0**-n
-        for n, share in zip((4, 5), occurring["of all"], strict=True)
-    )
+    assert (occurring["Vi"], columns(run, "pairs")["none"]) == ((5,), (1,))
+    assert float(occurring["of all"][0]) <= 1.001 * 4.0**-5
+    assert set(columns(run, "sentences")["verdict"]) == {"agreed", "not decided"}
+
+
+def contact(end, shared=None):
+    return {"signs": "+", "end": end, "time": None if shared is None else [1, 1], "shared": shared}
+
+
+def test_loops_are_counted_by_the_rules_they_follow():
+    loop = {"nodes": 0, "stars": 0, "length": [1, 2], "winding": 2, "winding_there": None}
+    row = {"status": "proved", "interior": 2, "half_branches": 8, "rule": 1, "h1": True}
+    row["loops"] = [
+        {**loop, "flipped": [1], "winding_there": 2},
+        {**loop, "flipped": [0], "winding_there": 3},
+        {**loop, "flipped": [0, 1], "nodes": 1, "stars": 1},
+        {**loop, "flipped": [2]},
+        {**loop, "flipped": [0, 2]},
+    ]
+    row["contacts"] = [
+        contact("contact", 0),
+        contact("contact", 1),
+        contact("node"),
+        contact("open"),
+    ]
+    found = {table.name: table for table in motions.tables([row])}
+    assert found["rules"].rows == ((2, "4/5", "1/5", "3/5", "3/4", "1/3", "1/2", "0/1"),)
+    assert found["ends"].rows == ((2, 4, 0, "0", 1, 1, 1, 1),)
+    assert found["loops"].rows == ((2, 1, 1, 2, 5, 1, 3, 2, 0, 0),)
 
 
 @pytest.mark.slow
@@ -119,12 +164,21 @@ def test_loops_flip_one_sign_on_single_vertices_and_every_branch_ends():
     for row in run.rows:
         n = row["interior"]
         assert row["status"] == "proved"
-        assert [loop["flips"] for loop in row["loops"]] == [1] * 2 ** (n - 1)
-        assert sum(row["ends"].values()) == 2**n
-        assert row["ends"]["open"] == 0
+        assert [loop["flipped"] for loop in row["loops"]] == [[row["rule"]]] * 2 ** (n - 1)
+        assert [contact["end"] for contact in row["contacts"]] == ["flat-fold"] * 2**n
+        assert len({contact["signs"] for contact in row["contacts"]}) == 2**n
+        for contact in row["contacts"]:
+            assert 0 < contact["time"][0] <= contact["time"][1]
     assert columns(run, "loops")["followed"] == (2, 2)
+    assert columns(run, "rules")["fans"] == columns(run, "rules")["H1"] == ("2/2", "2/2")
     for loop in run.rows[0]["loops"]:
         assert 0 < loop["length"][0] < loop["length"][1]
+
+
+def test_motions_of_a_branch_with_a_flat_vertex_are_not_decided():
+    branches = count_branches("flat-vertex").branches
+    (flat,) = [branch for branch in branches if 0 in branch.vertex_signs.values()]
+    assert motions._proof_of(flat) is None
 
 
 def test_what_the_figures_show():
