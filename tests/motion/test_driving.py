@@ -155,7 +155,7 @@ def test_what_cannot_be_driven() -> None:
 
 
 def test_folds_that_are_missing_are_named_and_can_be_driven() -> None:
-    with pytest.raises(BadDriveError, match="for instance also ([0-9, -]+) \\(") as caught:
+    with pytest.raises(BadDriveError, match="for instance also ") as caught:
         find_driven(STAR, {(0, 7): 30}, "+")
     text = str(caught.value).partition("for instance also ")[2].partition(" (")[0]
     more = [tuple(map(int, fold.split("-"))) for fold in text.split(", ")]
