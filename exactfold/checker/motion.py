@@ -58,7 +58,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     `side` is the sign of the factor near the flat state. With `drive`, instead, the curve leaves
     the flat state along a simple solution with these signs, on which its folds are valleys or
     mountains by the signs of the `squares` q, and all along sin(a / 2)^2 of their angles a is in
-    the ratio of |q|; then `side` is 1. If it is `reached`, these are |q| themselves at one of them.
+    the ratio of |q|; then `side` is 1. If they are `reached`, these are |q| or more at the end.
     With `clear`, no two faces touch beyond what they share before this length of the motion; with
     `contact`, some do between two lengths (docs/contacts.md). With `node` the motion ends at a
     configuration in which the stars of the vertices `flat` are flat; all before it are regular. If

@@ -182,8 +182,13 @@ class _Search:
             return self._of_two_sides(signs)
         solutions: list[FloatArray] = []
         drive: Drive | None = None
+        dependent: list[BadDriveError] = []
         for start in self._starts:
-            found = self._from(start, signs, drive)
+            try:
+                found = self._from(start, signs, drive)
+            except BadDriveError as error:  # on one branch by chance, or on all
+                dependent.append(error)
+                continue
             if found is None:
                 continue
             drive, y = found
@@ -191,6 +196,8 @@ class _Search:
                 solutions.append(y)
             if self.on.framework.size > _SMALL:
                 break
+        if len(dependent) == len(self._starts):
+            raise dependent[0]
         if drive is None:
             return None
         best = min(solutions, key=self.on.bending)

@@ -54,9 +54,9 @@ def test_the_claims_say_what_is_driven() -> None:
     assert claims["drive"]["reached"] is True
     ratio = " : ".join(claims["drive"]["squares"])
     text = f"driven by the folds 0-5, 1-5 (valley, valley), sin^2 of half the angle as {ratio}"
-    assert f"{text}, which it reaches;" in motion.summary(claims)
+    assert f"{text}, at least that at the end;" in motion.summary(claims)
     early = {**claims, "drive": claims["drive"] | {"reached": False}}
-    assert "which it reaches" not in motion.summary(early)
+    assert "at least that at the end" not in motion.summary(early)
 
 
 def test_only_the_ratio_of_the_squares_is_kept() -> None:
