@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from exactfold.commands.driving import driven_angles
 from exactfold.commands.parameters import (
     Curvature,
+    Drive,
     Json,
     Pattern,
     Place,
@@ -186,16 +186,7 @@ def fold(
     place: Place = None,
     rim: Rim = None,
     side: Side = None,
-    drive: Annotated[
-        Any,
-        typer.Option(
-            parser=driven_angles,
-            metavar="I-J=DEG,...",
-            help="Drive folds: their angles grow together to these, 90deg a valley, -90deg a "
-            "mountain; a fold without one goes along as on the branch. FILE.json reads them. As "
-            "many as the sheet has degrees of freedom.",
-        ),
-    ] = None,
+    drive: Drive = None,
     through_nodes: Annotated[
         bool,
         flag("--through-nodes", text="Of a branch: go straight on where another motion crosses."),
@@ -273,6 +264,7 @@ def fold(
     sheet follows modes of rigid panels: --component or --modes. That the branch or
     mode exists is proved; what of the motion is proved is said.
     """
+    from exactfold.commands.driving import driven_angles
     from exactfold.commands.fold import Wanted
     from exactfold.commands.given import Given
 
@@ -308,7 +300,7 @@ def fold(
         certificate,
         as_json,
         Given(rim),
-        drive,
+        None if drive is None else driven_angles(drive),
     )
     raise typer.Exit(asked.answer())
 
