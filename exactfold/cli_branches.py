@@ -270,10 +270,8 @@ def fold(
 
     if (signs is not None) + (up is not None) + (place is not None) > 1:
         raise UsageError("give one of --signs, --up and --branch")
-    if rim is not None and place is not None:
-        raise UsageError("--rim goes with --signs or --up")
-    if drive is not None and place is not None:
-        raise UsageError("--drive goes with --signs or --up")
+    if place is not None and (rim, drive) != (None, None):
+        raise UsageError(f"{'--drive' if rim is None else '--rim'} goes with --signs or --up")
     if component is not None and modes is not None:
         raise UsageError("give one of --component and --modes")
     apart(output, pattern, rim, plot, picture, certificate)
