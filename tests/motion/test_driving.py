@@ -104,6 +104,7 @@ def test_a_mirror_sheet_has_the_mirror_motion() -> None:
     assert np.abs(one.coords * (1, 1, -1) - over.coords).max() < 1e-10
 
 
+@pytest.mark.slow
 def test_which_face_is_held_does_not_matter() -> None:
     """Unlike on a rim path: the distances of all vertices are the same at the goal."""
     one = along(pentagon())
@@ -177,14 +178,11 @@ def test_a_ratio_that_is_not_met() -> None:
 
 def test_at_a_dead_point_the_drive_ends() -> None:
     """Fold 0-5 closes at the vertex with four folds, so that those at the next cannot go on."""
-    motion = along(find_driven(PENTAGON, {(2, 6): 150, (3, 6): 170}))
+    motion = along(find_driven(PENTAGON, {(2, 6): 150, (3, 6): 170}), frames=20)
     assert motion.end == "dead-point"
     assert abs(motion.angles[-1, PENTAGON.folds.index((0, 5))]) == pytest.approx(np.pi, abs=1e-6)
     assert sines(motion)[-1, 0] < 0.9
-    rates = np.diff(
-        sines(follow(motion.branch, drive=motion.drive, until="return", frames=50))[:, 0]
-    )
-    assert (rates > 0).all()
+    assert (np.diff(sines(motion)[:, 0]) > 0).all()
 
 
 def test_a_driven_motion_is_proved_to_reach_its_angles() -> None:
