@@ -59,6 +59,7 @@ def branch(
         written("Of one branch: write a certificate.", "OUT.json"),
     ] = None,
     rim: Rim = None,
+    drive: Drive = None,
     curvature: Curvature = None,
     as_json: Json = False,
     snap: Snap = None,
@@ -68,8 +69,8 @@ def branch(
 
     Signs are those of the side with boundary saddle +1 (with a reflex corner:
     on which the corner pops up); the other side has all of them reversed. With
-    more corners they are those of the way with these heights of the border. With
-    --json, one object a line.
+    more corners they are those of the way with these heights of the border, or of
+    one on which folds start in the ratio of --drive. With --json, one object a line.
     """
     from exactfold.commands.branch import Asked
     from exactfold.commands.given import Given
@@ -82,7 +83,7 @@ def branch(
         raise UsageError("--certificate goes with a single branch")
     apart(certificate, pattern, rim, curvature)
     given = Given(rim, curvature)
-    asked = Asked(pattern, snap, sheet, signs, up, batch, pops, certificate, as_json, given)
+    asked = Asked(pattern, snap, sheet, signs, up, batch, pops, certificate, as_json, given, drive)
     proved = asked.answer()
     raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
 
@@ -264,7 +265,6 @@ def fold(
     sheet follows modes of rigid panels: --component or --modes. That the branch or
     mode exists is proved; what of the motion is proved is said.
     """
-    from exactfold.commands.driving import driven_angles
     from exactfold.commands.fold import Wanted
     from exactfold.commands.given import Given
 
@@ -298,7 +298,7 @@ def fold(
         certificate,
         as_json,
         Given(rim),
-        None if drive is None else driven_angles(drive),
+        drive,
     )
     raise typer.Exit(asked.answer())
 

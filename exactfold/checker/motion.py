@@ -201,7 +201,7 @@ def check_steps(equations: LengthEquations, entries: list[Any], more: int = 0) -
     nodes = sum(map(is_node, entries))
     tubes = len(entries) - nodes + NODE_WORK * (nodes + more)
     require(tubes <= MOST_TUBES, "there are too many tubes")
-    size, digits = equations.size, 1 + equations.bits // 256
+    size, digits = equations.size, 1 + (equations.bits + equations.more) // 256
     work = (tubes + 1) * size**2 * (size + 200) * digits
     require(work <= MOST_WORK, "the work is out of range")
 

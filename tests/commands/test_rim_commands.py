@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from fractions import Fraction
 from pathlib import Path
 
 import jsonschema
@@ -10,6 +12,7 @@ import pytest
 from running import error_class, run
 
 from exactfold import checker, delaunay, families, write_fold
+from exactfold.branches import fold_angles
 from exactfold.problem.rims import default_rim
 from exactfold.schemas import schema
 
@@ -167,6 +170,23 @@ def test_a_drive_that_is_none(here: Path, text: str, code: int, said: str) -> No
     assert done.exit_code == code
 
 
+def test_a_branch_on_which_folds_start_in_a_ratio(here: Path) -> None:
+    options = ["pentagon.fold", "--signs=--", "--drive", "1-5=60,2-6=-45"]
+    assert run("branch", *options, "--certificate", "c.json").exit_code == 0
+    claims = checker.check(checker.load(Path("c.json").read_text()))
+    found = json.loads(run("branch", *options, "--json").stdout)
+    jsonschema.validate(found, schema("branch"))
+    assert found["drive"]["status"] == "proved"
+    assert found["drive"]["folds"]["1-5"] == {"angle": pytest.approx(60), "square": "1/4"}
+    assert found["vertex_signs"] == {"5": -1, "6": -1}
+    assert claims["sha256"] == found["pattern"]["sha256"]
+    # The ratio of the bends over the lengths of the folds, from the heights that are printed.
+    heights = {int(v): (Fraction(h), Fraction(h)) for v, h in found["centres"].items()}
+    angles = fold_angles("pentagon.fold", heights).degrees(1.0)
+    ratio = -math.sin(math.radians(30)) / math.sin(math.radians(22.5))
+    assert angles[1, 5] / angles[2, 6] == pytest.approx(ratio, rel=1e-7)
+
+
 def test_what_does_not_go_with_a_drive(here: Path) -> None:
     def refused(said: str, *options: str) -> None:
         done = run("fold", *options)
@@ -177,6 +197,9 @@ def test_what_does_not_go_with_a_drive(here: Path) -> None:
     refused("--drive goes with --signs or --up", "pentagon.fold", *drive, "--branch", "1")
     refused("the angles say to which side", "pentagon.fold", *drive, "--side", "+")
     refused("--drive is for branches", "zigzags", "--drive", "1-2=3")
+    done = run("branch", "pentagon.fold", "--signs=--", *drive, "--neighbours", "all")
+    assert done.exit_code == 2
+    assert "--drive goes with --signs or --up, and with --rim" in done.stderr
 
 
 def test_such_a_branch_is_followed_and_proved(here: Path) -> None:

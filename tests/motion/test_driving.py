@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 
@@ -55,7 +56,7 @@ def test_the_sines_of_half_the_angles_keep_their_ratio_up_to_the_goal(driven: Dr
     [event] = [event for event in motion.events if event.kind == "driven"]
     assert event.folds == driven.drive.folds
     # The branch starts in that ratio, with the signs asked for.
-    assert off_the_ratio(driven.branch, driven.side, driven.drive) < 1e-12
+    assert off_the_ratio(driven.branch, driven.side, driven.drive) < 1e-8
     signs = driven.branch.vertex_signs
     assert find_driven(motion.pattern, driven.drive.angles, signs).branch == driven.branch
 
@@ -153,6 +154,15 @@ def test_what_cannot_be_driven() -> None:
     )
     with pytest.raises(BadDriveError, match="fold 0-8 lies in a triangulated triangle"):
         find_driven(inside, {(0, 8): 90, **FOUR})
+
+
+def test_a_solution_with_exactly_the_ratio_is_proved() -> None:
+    driven = pentagon()
+    assert driven.status is PROVED
+    # Of folds that go the other way nothing is.
+    flipped = replace(driven.drive, squares=tuple(-q for q in driven.drive.squares))
+    assert replace(driven, drive=flipped).status is UNDECIDED
+    assert find_driven(families.two_vertex(), {(3, 5): 40}, "++").status is PROVED
 
 
 def test_folds_that_are_missing_are_named_and_can_be_driven() -> None:
