@@ -127,8 +127,8 @@ class Watch:
         watched = [(goal, kind, every) for goal, kind in goals]
         if self.driven:
             # That of a fold that does not close there has a rate.
-            fold, goal = min(self.driven, key=lambda item: abs(item[1] - np.pi / 2))
-            watched.append((goal, DRIVEN, [self.framework.sheet.folds.index(fold)]))
+            driven, goal = min(self.driven, key=lambda item: abs(item[1] - np.pi / 2))
+            watched.append((goal, DRIVEN, [self.framework.sheet.folds.index(driven)]))
         for goal, kind, columns in watched:
             beyond = np.abs(angles) >= goal
             for k, e in np.argwhere(beyond[1:] & ~beyond[:-1]):
