@@ -232,3 +232,52 @@ def test_tubes_hold_what_sixty_digits_give() -> None:
         x = driven_newton(track.framework, tube, tube.longest // 2, driven.drive)
         assert holds(tube.enclosure(tube.longest // 2), x)
         assert not holds(tube.enclosure(tube.longest // 3), x)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_at_one_vertex_the_solutions_are_those_of_a_quadratic_equation(seed: int) -> None:
+    """Given angles leave a line of heights, up to planes, which meets the cone of the vertex."""
+    random = np.random.default_rng(seed)
+    star = [STAR, families.single_vertex(5), families.single_vertex(6)][seed % 3]
+    hub, folds = star.interior[0], star.folds
+    chosen = sorted(random.choice(len(folds), len(folds) - 3, replace=False).tolist())
+    angles = {folds[k]: float(random.choice([-1, 1]) * random.integers(20, 150)) for k in chosen}
+    drive = Drive.of(angles)
+    spokes = np.array([[float(c) for c in star.vertices[v]] for v in star.star(hub)])
+    rows = np.zeros((len(spokes), len(spokes)))  # first-order angles, the hub at height 0
+    for k in range(len(spokes)):
+        around = [spokes[k - 1], spokes[k], spokes[(k + 1) % len(spokes)]]
+        for m, sign in ((0, 1), (2, 1)):
+            across = around[m][0] * around[1][1] - around[m][1] * around[1][0]
+            along = around[m] @ around[1] / (around[1] @ around[1])
+            far = np.linalg.norm(around[1]) / abs(across)
+            rows[k, (k + m - 1) % len(spokes)] += sign * far
+            rows[k, k] -= sign * far * along
+    place = [folds.index((v, hub)) for v in star.star(hub)]
+    driven_rows = rows[[place.index(k) for k in chosen]]
+    base = np.linalg.lstsq(driven_rows, np.array(drive.sines), rcond=None)[0]
+    null = np.linalg.svd(driven_rows)[2][-3:]
+    bends = rows @ null.T  # of three heights, two are planes
+    way = null.T @ np.linalg.svd(bends)[2][0]
+
+    def form(h: np.ndarray) -> float:
+        """K, from the turns of unit normals (docs/conventions.md): a spherical polygon's area."""
+        tiny = 1e-4
+        normals = [
+            np.cross([*a, tiny * x], [*b, tiny * y])
+            for a, x, b, y in zip(spokes, h, np.roll(spokes, -1, 0), np.roll(h, -1), strict=True)
+        ]
+        flat = np.array([n[:2] / n[2] for n in normals]) / tiny
+        after = np.roll(flat, -1, 0)
+        return float((flat[:, 0] * after[:, 1] - flat[:, 1] * after[:, 0]).sum() / 2)
+
+    values = [form(base + t * way) for t in (-1.0, 0.0, 1.0)]
+    c, b, a = values[1], (values[2] - values[0]) / 2, (values[2] + values[0]) / 2 - values[1]
+    real = 2 if b * b - 4 * a * c > 0 else 0
+    found = 0
+    for signs in "+-":
+        try:
+            found += 1 + find_driven(star, angles, signs).others
+        except NotDrivenError:
+            continue
+    assert found == real
