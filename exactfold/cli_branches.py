@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from exactfold.commands.driving import driven_angles
 from exactfold.commands.parameters import (
     Curvature,
+    Drive,
     Json,
     Pattern,
     Place,
@@ -59,6 +59,7 @@ def branch(
         written("Of one branch: write a certificate.", "OUT.json"),
     ] = None,
     rim: Rim = None,
+    drive: Drive = None,
     curvature: Curvature = None,
     as_json: Json = False,
     snap: Snap = None,
@@ -68,8 +69,8 @@ def branch(
 
     Signs are those of the side with boundary saddle +1 (with a reflex corner:
     on which the corner pops up); the other side has all of them reversed. With
-    more corners they are those of the way with these heights of the border. With
-    --json, one object a line.
+    more corners they are those of the way with these heights of the border, or of
+    one on which folds start in the ratio of --drive. With --json, one object a line.
     """
     from exactfold.commands.branch import Asked
     from exactfold.commands.given import Given
@@ -82,7 +83,7 @@ def branch(
         raise UsageError("--certificate goes with a single branch")
     apart(certificate, pattern, rim, curvature)
     given = Given(rim, curvature)
-    asked = Asked(pattern, snap, sheet, signs, up, batch, pops, certificate, as_json, given)
+    asked = Asked(pattern, snap, sheet, signs, up, batch, pops, certificate, as_json, given, drive)
     proved = asked.answer()
     raise typer.Exit(EXIT[PROVED if proved else UNDECIDED])
 
@@ -189,16 +190,7 @@ def fold(
     place: Place = None,
     rim: Rim = None,
     side: Side = None,
-    drive: Annotated[
-        Any,
-        typer.Option(
-            parser=driven_angles,
-            metavar="I-J=DEG,...",
-            help="Drive folds: their angles grow together to these, 90deg a valley, -90deg a "
-            "mountain; a fold without one goes along as on the branch. FILE.json reads them. As "
-            "many as the sheet has degrees of freedom.",
-        ),
-    ] = None,
+    drive: Drive = None,
     through_nodes: Annotated[
         bool,
         flag("--through-nodes", text="Of a branch: go straight on where another motion crosses."),
@@ -281,10 +273,8 @@ def fold(
 
     if (signs is not None) + (up is not None) + (place is not None) > 1:
         raise UsageError("give one of --signs, --up and --branch")
-    if rim is not None and place is not None:
-        raise UsageError("--rim goes with --signs or --up")
-    if drive is not None and place is not None:
-        raise UsageError("--drive goes with --signs or --up")
+    if place is not None and (rim, drive) != (None, None):
+        raise UsageError(f"{'--drive' if rim is None else '--rim'} goes with --signs or --up")
     if component is not None and modes is not None:
         raise UsageError("give one of --component and --modes")
     apart(output, pattern, rim, plot, picture, certificate)

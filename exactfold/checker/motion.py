@@ -58,7 +58,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     `side` is the sign of the factor near the flat state. With `drive`, instead, the curve leaves
     the flat state along a simple solution with these signs, on which its folds are valleys or
     mountains by the signs of the `squares` q, and all along sin(a / 2)^2 of their angles a is in
-    the ratio of |q|; then `side` is 1. If it is `reached`, these are |q| themselves at one of them.
+    the ratio of |q|; then `side` is 1. If they are `reached`, these are |q| or more at the end.
     With `clear`, no two faces touch beyond what they share before this length of the motion; with
     `contact`, some do between two lengths (docs/contacts.md). With `node` the motion ends at a
     configuration in which the stars of the vertices `flat` are flat; all before it are regular. If
@@ -201,7 +201,7 @@ def check_steps(equations: LengthEquations, entries: list[Any], more: int = 0) -
     nodes = sum(map(is_node, entries))
     tubes = len(entries) - nodes + NODE_WORK * (nodes + more)
     require(tubes <= MOST_TUBES, "there are too many tubes")
-    size, digits = equations.size, 1 + equations.bits // 256
+    size, digits = equations.size, 1 + (equations.bits + equations.more) // 256
     work = (tubes + 1) * size**2 * (size + 200) * digits
     require(work <= MOST_WORK, "the work is out of range")
 

@@ -70,5 +70,5 @@ def driven_of(claims: dict[str, Any]) -> str:
     names = ", ".join(f"{i}-{j}" for i, j in drive["folds"])
     ratio = " : ".join(q.removeprefix("-") for q in drive["squares"])
     ways = ", ".join("mountain" if q.startswith("-") else "valley" for q in drive["squares"])
-    reached = ", which it reaches" if drive["reached"] else ""
+    reached = ", at least that at the end" if drive["reached"] else ""
     return f", driven by the folds {names} ({ways}), sin^2 of half the angle as {ratio}{reached}"

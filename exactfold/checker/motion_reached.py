@@ -12,10 +12,9 @@ from .reading import require
 
 
 def check_reached(equations: LengthEquations, drive: Drive, here: Ball) -> None:
-    """Raise unless all driven folds are beyond their angles at the end, in a box.
+    """Raise unless all driven folds are bent as far as claimed, or farther, in a box at the end.
 
     There g <= -2 w for one of them, and so for all, and they are valleys or mountains as claimed.
-    The ratio grew from 0, so that it was 1 before; and from then on no fold was flat.
     """
     bits, k = equations.bits, len(equations.edges) + drive.most
     u, e = equations.flat[k], equations.along(here.centre)[k]

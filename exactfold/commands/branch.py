@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.branches.branch import Branch
+from exactfold.commands.driving import Angles, driven_angles
 from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, name_of, say
@@ -33,6 +34,7 @@ class Asked:
     certificate: Path | None
     as_json: bool
     given: Given = NOTHING
+    drive: str | None = None
 
     @property
     def name(self) -> str:
@@ -47,6 +49,8 @@ class Asked:
         """
         from exactfold import report
 
+        if self.drive is not None:
+            return self._driven(driven_angles(self.drive))
         proved, rows = True, []
         with Bar("reading") as bar:
             sheet = read(self.pattern, self.snap, self.sheet, "branch")
@@ -65,6 +69,31 @@ class Asked:
         elif not self.as_json:
             report.show(report.branches_report(rows))
         return proved
+
+    def _driven(self, angles: Angles) -> bool:
+        """The branch on which folds start in the ratio of their angles, instead."""
+        from exactfold import report
+        from exactfold.motion.driven import find_driven
+
+        if self._is_many or self.given.curvature is not None:
+            raise UsageError("--drive goes with --signs or --up, and with --rim")
+        with Bar("reading") as bar:
+            pattern = read(self.pattern, self.snap, self.sheet, "branch").pattern
+            bar("setting up")
+            finder = self.given.finder(pattern)
+            rim = None if self.given.rim is None else finder.rim
+            signs = given_signs(finder, self.signs, self.up)
+            found = find_driven(pattern, angles, signs, rim=rim, progress=bar)
+            status = found.status
+        if found.others:
+            say(also_found(found.others))
+        self._certify(found.branch)
+        if self.as_json:
+            more = {"folds": found.drive.to_dict(), "side": found.side, "status": str(status)}
+            print(json.dumps(found.branch.report(self.name) | {"drive": more}))
+        else:
+            report.show(report.branch_report(found.branch, found))
+        return found.branch.status is PROVED and status is PROVED
 
     @property
     def _is_many(self) -> bool:
@@ -95,6 +124,14 @@ class Asked:
                 write_certificate(branch_certificate(result), self.certificate)
         else:
             say("no certificate was written: nothing is proved")
+
+
+def also_found(others: int) -> str:
+    """That folds start in a ratio on more branches."""
+    return (
+        f"{counted(others, 'more branch')} with these signs on which the folds start so: this is "
+        "the one that bends least; --rim FILE starts from other border heights"
+    )
 
 
 def chosen(

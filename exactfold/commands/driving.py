@@ -9,7 +9,7 @@ import typer
 
 from exactfold.commands.json_numbers import numbers_by_name
 from exactfold.commands.parameters import fold_name
-from exactfold.errors import BadDriveError
+from exactfold.errors import BadDriveError, UsageError
 from exactfold.pattern.crease_pattern import Edge
 
 Angles = dict[Edge, float | None]
@@ -18,18 +18,17 @@ Angles = dict[Edge, float | None]
 _SHAPE = 'write {"3-7": 90, "4-9": -45, "2-8": null}, degrees for each fold'
 
 
-def driven_angles(text: object) -> Angles:
+def driven_angles(text: str) -> Angles:
     """Folds and angles such as 3-7=90deg,4-9=-45deg,2-8, or those in a file FILE.json.
 
-    Raises `UnreadableFileError`, and `BadDriveError` for a file of another shape.
+    Raises `UsageError`; `UnreadableFileError`, and `BadDriveError` for a file of another shape.
     """
-    given = str(text)
-    if given.endswith(".json"):
-        return _of_file(Path(given))
+    if text.endswith(".json"):
+        return _of_file(Path(text))
     found: Angles = {}
-    for part in given.split(","):
+    for part in text.split(","):
         name, equals, value = part.strip().partition("=")
-        _add(found, name, value if equals else None, typer.BadParameter)
+        _add(found, name, value if equals else None, UsageError)
     return found
 
 

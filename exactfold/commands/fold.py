@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exactfold.branches.branch import Branch
-from exactfold.commands.branch import chosen, given_signs
-from exactfold.commands.driving import Angles
+from exactfold.commands.branch import also_found, chosen, given_signs
+from exactfold.commands.driving import driven_angles
 from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read_any
 from exactfold.commands.shell import EXIT, Bar, name_of, say
@@ -69,7 +69,7 @@ class Wanted:
     certificate: Path | None
     as_json: bool
     given: Given = NOTHING
-    angles: Angles | None = None
+    drive: str | None = None
 
     def answer(self) -> int:
         """Follow the sheet, write what was asked for and print; the exit code.
@@ -129,12 +129,13 @@ class Wanted:
     @property
     def _named(self) -> bool:
         """Whether a branch was asked for, which a sheet with more corners has with a rim only."""
-        return (self.signs or self.up or self.angles) is not None or bool(self.given)
+        return (self.signs or self.up or self.drive) is not None or bool(self.given)
 
     def _begin(self, pattern: CreasePattern, bar: Bar) -> _Begin:
         """The half-branch to follow, and what is driven."""
-        if self.angles is None:
+        if self.drive is None:
             return _Begin(self._branch(pattern, bar), self.side or 1)
+        angles = driven_angles(self.drive)
         Goal.of(self.until)  # before the work
         if self.side is not None and pattern.Ve > 4:
             raise UsageError("--side: with --drive the angles say to which side the sheet folds")
@@ -146,17 +147,14 @@ class Wanted:
         if (self.signs, self.up) != (None, None):
             signs = given_signs(finder, self.signs, self.up)
         rim = None if self.given.rim is None else finder.rim
-        found = find_driven(pattern, self.angles, signs, rim=rim, side=self.side, progress=bar)
+        found = find_driven(pattern, angles, signs, rim=rim, side=self.side, progress=bar)
         if signs is None:
             say(
                 "no branch was named (--signs, --up): this is the first that was found on which "
                 f"the folds start so: {found.branch.sign_text}"
             )
         if found.others:
-            say(
-                f"{counted(found.others, 'more branch')} with these signs on which the folds start "
-                "so: this is the one that bends least; --rim FILE starts from other border heights"
-            )
+            say(also_found(found.others))
         return _Begin(found.branch, found.side, found.drive)
 
     def _branch(self, pattern: CreasePattern, bar: Bar) -> Branch:
@@ -202,7 +200,7 @@ class Wanted:
             "--branch": self.place,
             "--side": self.side,
             "--rim": self.given.rim,
-            "--drive": self.angles,
+            "--drive": self.drive,
             "--through-nodes": self.through_nodes or None,
         }
         _refuse(

@@ -187,6 +187,16 @@ Up = Annotated[
     str | None,
     typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
 ]
+Drive = Annotated[
+    str | None,
+    typer.Option(
+        metavar="I-J=DEG,...",
+        help="Drive folds: their angles grow together to these, 90deg a valley, -90deg a "
+        "mountain; a fold without one goes along as on the branch. FILE.json reads them. As "
+        "many as the sheet has degrees of freedom.",
+    ),
+]
+
 Rim = Annotated[
     Path | None,
     typer.Option(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import asin, copysign, cos, degrees, gcd, radians, sqrt
+from math import atan2, copysign, cos, degrees, gcd, radians, sqrt
 
 import numpy as np
 
@@ -48,7 +48,7 @@ class Drive:
     def angles(self) -> dict[Edge, float]:
         """The goals in degrees."""
         return {
-            fold: copysign(degrees(2 * asin(sqrt(abs(q)))), q)
+            fold: copysign(degrees(2 * atan2(sqrt(abs(q)), sqrt(1 - abs(q)))), q)
             for fold, q in zip(self.folds, self.squares, strict=True)
         }
 
@@ -62,6 +62,13 @@ class Drive:
         """The folds and their goals, in words."""
         goals = ", ".join(f"{fold_text(fold)} to {a:.6g}" for fold, a in self.angles.items())
         return f"{goals} degrees"
+
+    @property
+    def ratio(self) -> str:
+        """To first order the ratio of the angles, the largest 1, in words."""
+        largest = max(map(abs, self.sines))
+        pairs = zip(self.folds, self.sines, strict=True)
+        return ", ".join(f"{fold_text(fold)} {sine / largest:.4g}" for fold, sine in pairs)
 
     def to_dict(self) -> dict[str, dict[str, object]]:
         """By fold its goal in degrees, and its square, exactly."""

@@ -12,15 +12,17 @@ import numpy as np
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.count.find import BranchFinder, Rim, Signs, branch_finder
-from exactfold.errors import BadDriveError, NotDrivenError
+from exactfold.errors import BadDriveError, NotDrivenError, NotProvedAtTheFlatStateError
 from exactfold.motion.drive import Drive, fold_text
 from exactfold.motion.driven_folds import DrivenFolds
-from exactfold.motion.rim_path import problem_of
+from exactfold.motion.rim_path import framework_of, problem_of
+from exactfold.motion.tube_start import prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.problem.problem import Problem
 from exactfold.problem.rims import saddle_rims
 from exactfold.progress import Progress
+from exactfold.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.wording import counted
 
 _TRIED = 8
@@ -37,7 +39,7 @@ class Driven:
     """A branch on which driven folds start in their ratio, and the side on which they do.
 
     `branch` is proved. With more than four corners its border has the heights of the way the driven
-    motion starts, rounded: it shows this start with an error of about 1e-12. `others`: how many
+    motion starts, rounded to nine places: it shows this start, nearly. `others`: how many
     more with the same signs were found, on which folds bend more.
     """
 
@@ -45,6 +47,28 @@ class Driven:
     side: int
     drive: Drive
     others: int = 0
+
+    @cached_property
+    def status(self) -> Verdict:
+        """Whether a solution with exactly this ratio is proved, with these vertex signs.
+
+        It is the one that `branch` shows, as far as floats see.
+        """
+        branch = self.branch
+        if branch.status is not PROVED or len(self.drive.folds) == 1:
+            return branch.status
+        problem, heights = problem_of(branch), branch.approx_heights
+        try:
+            start = prove_start(
+                framework_of(problem, None, self.drive),
+                problem.gauge,
+                self.side * np.array([heights[v] for v in problem.labels]),
+                ways=self.drive.ways(problem.labels),
+            )
+        except NotProvedAtTheFlatStateError:
+            return UNDECIDED
+        signs = tuple(self.side * branch.vertex_signs[v] for v in problem.foldable)
+        return PROVED if start.vertex_signs == signs else UNDECIDED
 
     def __repr__(self) -> str:
         return f"<Driven: branch {self.branch.sign_text}, {self.drive.text}>"
@@ -182,8 +206,13 @@ class _Search:
             return self._of_two_sides(signs)
         solutions: list[FloatArray] = []
         drive: Drive | None = None
+        dependent: list[BadDriveError] = []
         for start in self._starts:
-            found = self._from(start, signs, drive)
+            try:
+                found = self._from(start, signs, drive)
+            except BadDriveError as error:  # on one branch by chance, or on all
+                dependent.append(error)
+                continue
             if found is None:
                 continue
             drive, y = found
@@ -191,6 +220,8 @@ class _Search:
                 solutions.append(y)
             if self.on.framework.size > _SMALL:
                 break
+        if len(dependent) == len(self._starts):
+            raise dependent[0]
         if drive is None:
             return None
         best = min(solutions, key=self.on.bending)

@@ -22,7 +22,7 @@ from exactfold.problem.problem import Problem
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
 from exactfold.wording import counted
 
-_RIM_BITS = 48
+_PLACES = 10**9
 _NEWTON = 12
 _SHORTEST = 1e-3
 _DEPENDENT = 1e-9
@@ -239,5 +239,4 @@ class DrivenFolds:
         heights = self.framework.displacement(y)[:, 2]
         border = {self.problem.labels[v]: heights[v] for v in self.problem.sheet.boundary}
         largest = max(abs(h) for h in border.values())
-        one = 1 << _RIM_BITS
-        return {v: Fraction(round(h / largest * one), one) for v, h in border.items()}
+        return {v: Fraction(round(h / largest * _PLACES), _PLACES) for v, h in border.items()}

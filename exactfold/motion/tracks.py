@@ -126,9 +126,9 @@ class Track:
         """Whether the driven folds are beyond the angles of the drive at the end, by far more than
         the error there: so they have these angles at some configuration of the track."""
         last = self.steps[-1] if self.steps else None
-        if self.drive is None or not isinstance(last, Link):
+        if self.drive is None or isinstance(last, Passage):
             return False
-        ball = last.tube.enclosure(last.exit)
+        ball = self.start.ball(self.start.last) if last is None else last.tube.enclosure(last.exit)
         hinges = hinges_of(self.framework.sheet)
         angles = fold_angles_of(self.framework.positions(ball.floats[0]), hinges)
         folds = self.framework.sheet.folds

@@ -18,12 +18,16 @@ if TYPE_CHECKING:
     from exactfold.branches.branch import Branch
     from exactfold.branches.export import BranchExport
     from exactfold.count.shapes import ShapeCount
+    from exactfold.motion.driven import Driven
 
 Row = tuple[str, str, str, str]
 
 
-def branch_report(result: Branch) -> Group:
-    """One branch: what is proved, which vertices pop up, and the folds."""
+def branch_report(result: Branch, driven: Driven | None = None) -> Group:
+    """One branch: what is proved, which vertices pop up, and the folds.
+
+    `driven`: the folds by which it was found, if it was.
+    """
     rows: list[tuple[str, str | Text]] = [
         ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
         ("up", cut(_with_sign(result, 1))),
@@ -38,6 +42,9 @@ def branch_report(result: Branch) -> Group:
         rows.append(("heights of the border", cut(rim_text(result.rim))))
         if straight := result.straight_border:
             rows.append(("on a straight side", f"{_vertices(straight)}: the side may bend there"))
+    if driven is not None:
+        ratio = cut(f"{driven.drive.ratio}: exactly so on a solution near it, ")
+        rows.append(("folds start as", Text.assemble(ratio, status_text(driven.status))))
     if result.radius is not None:
         rows.append(("mountain-valley", letters_text(cut(result.assignment_text))))
         if undecided := len(result.undecided_folds):

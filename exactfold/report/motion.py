@@ -85,7 +85,7 @@ def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
     if motion.rim is not None:
         rows.append(("border", f"in the ratio {cut(rim_text(motion.rim))}"))
     if motion.drive is not None:
-        rows.append(("driven", cut(f"{motion.drive.text}, the sines of the halves in ratio")))
+        rows.append(("driven", cut(f"{motion.drive.text}; sines of half the angles in ratio")))
     return rows
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from fractions import Fraction
 from pathlib import Path
 
 import jsonschema
@@ -10,6 +12,7 @@ import pytest
 from running import error_class, run
 
 from exactfold import checker, delaunay, families, write_fold
+from exactfold.branches import fold_angles
 from exactfold.problem.rims import default_rim
 from exactfold.schemas import schema
 
@@ -111,6 +114,92 @@ def test_such_a_branch_is_drawn_and_exported(here: Path) -> None:
         assert "branch +-" in Path("a.svg").read_text()
     exported = run("export", "pentagon.fold", "--signs", "+-", "--rim", "rim.json", "-o", "e.fold")
     assert exported.exit_code == 0
+
+
+def test_folds_drive_a_sheet(here: Path) -> None:
+    options = ["--drive", "1-5=6deg,2-6=-5", "--frames", "2", "--certificate", "c.json"]
+    done = run("fold", "pentagon.fold", *options)
+    assert done.exit_code == 0
+    said = " ".join(done.stdout.split())
+    assert "driven 1-5 to 6, 2-6 to -5 degrees; sines of half the angles in ratio" in said
+    assert "on which the driven folds reach their angles" in said
+    assert "folds 1-5, 2-6 have the angles of the drive" in said
+    assert "no branch was named (--signs, --up): this is the first that was found" in done.stderr
+    claims = checker.check(checker.load(Path("c.json").read_text()))
+    assert claims["drive"]["folds"] == [[1, 5], [2, 6]]
+    # From a file; a fold without an angle goes along as on the branch.
+    Path("drive.json").write_text('{"1-6": 5, "2-6": null}')
+    done = run(
+        "fold",
+        "pentagon.fold",
+        "--signs",
+        "+-",
+        "--rim",
+        "rim.json",
+        "--drive",
+        "drive.json",
+        "--json",
+    )
+    found = json.loads(done.stdout)
+    jsonschema.validate(found, schema("motion"))
+    assert found["end"] == "driven"
+    assert found["rim"] is None
+    assert found["drive"]["1-6"]["angle"] == pytest.approx(5)
+    assert found["proof"] is None
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "said"),
+    [
+        ("1-5=x", 2, "fold 1-5: 'x' is no angle such as 90deg"),
+        ("1-5=3,5-1=4", 2, "fold 5-1 is there twice"),
+        ("1:5=3", 2, "'1:5' is not a fold such as 4-7"),
+        ("0-6=3,2-6=4", 3, "there is no fold 0-6 to drive"),
+        ("1-5=3", 3, "1 fold to drive: this sheet has 2 degrees of freedom"),
+        ('{"1-5": 3, "2-6": "y"}', 3, "drive.json: fold 2-6: 'y' is no angle"),
+        ('{"1-5": 3, "2-6": true}', 3, "drive.json: the angle of fold 2-6 is no number"),
+        ("[]", 3, "drive.json holds no numbers by fold"),
+    ],
+)
+def test_a_drive_that_is_none(here: Path, text: str, code: int, said: str) -> None:
+    if text[0] in "{[":
+        Path("drive.json").write_text(text)
+        text = "drive.json"
+    done = run("fold", "pentagon.fold", "--drive", text)
+    assert said in " ".join(done.stderr.split())
+    assert done.exit_code == code
+
+
+def test_a_branch_on_which_folds_start_in_a_ratio(here: Path) -> None:
+    options = ["pentagon.fold", "--signs=--", "--drive", "1-5=60,2-6=-45"]
+    assert run("branch", *options, "--certificate", "c.json").exit_code == 0
+    claims = checker.check(checker.load(Path("c.json").read_text()))
+    found = json.loads(run("branch", *options, "--json").stdout)
+    jsonschema.validate(found, schema("branch"))
+    assert found["drive"]["status"] == "proved"
+    assert found["drive"]["folds"]["1-5"] == {"angle": pytest.approx(60), "square": "1/4"}
+    assert found["vertex_signs"] == {"5": -1, "6": -1}
+    assert claims["sha256"] == found["pattern"]["sha256"]
+    # The ratio of the bends over the lengths of the folds, from the heights that are printed.
+    heights = {int(v): (Fraction(h), Fraction(h)) for v, h in found["centres"].items()}
+    angles = fold_angles("pentagon.fold", heights).degrees(1.0)
+    ratio = -math.sin(math.radians(30)) / math.sin(math.radians(22.5))
+    assert angles[1, 5] / angles[2, 6] == pytest.approx(ratio, rel=1e-7)
+
+
+def test_what_does_not_go_with_a_drive(here: Path) -> None:
+    def refused(said: str, *options: str) -> None:
+        done = run("fold", *options)
+        assert done.exit_code == 2
+        assert said in " ".join(done.stderr.split())
+
+    drive = ["--drive", "1-5=6,2-6=-5"]
+    refused("--drive goes with --signs or --up", "pentagon.fold", *drive, "--branch", "1")
+    refused("the angles say to which side", "pentagon.fold", *drive, "--side", "+")
+    refused("--drive is for branches", "zigzags", "--drive", "1-2=3")
+    done = run("branch", "pentagon.fold", "--signs=--", *drive, "--neighbours", "all")
+    assert done.exit_code == 2
+    assert "--drive goes with --signs or --up, and with --rim" in done.stderr
 
 
 def test_such_a_branch_is_followed_and_proved(here: Path) -> None:

@@ -55,6 +55,7 @@ PIECES = exactfold.pieces.find_pieces(
 MOTIONS = exactfold.decompose(OPENED.sheet)
 SPACES = exactfold.decompose(panels(single_vertex(5)))
 MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
+BY_FOLDS = exactfold.motion.find_driven(single_vertex(5), {(0, 5): 9, (2, 5): 6})
 DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
 ALL = exactfold.assignment.all_assignments(single_vertex(5))
 MATCH = exactfold.assignment.match(PATTERN, exactfold.find_branch(PATTERN, "+-").assignment)
@@ -174,6 +175,8 @@ VALUES = {
     "signed branch": exactfold.find_branch(PATTERN, "+-"),
     "motion": MOTION,
     "event": MOTION.events[-1],
+    "driven": BY_FOLDS,
+    "drive": BY_FOLDS.drive,
     "framework": MOTION.curve.framework,
     "start": exactfold.motion.Start.of(
         MOTION.curve.framework, np.array([0.0, 0.0, 0.0, 1.0, 0.3, -0.1])

@@ -136,6 +136,7 @@ TAKES_PATTERN = {
     "rigidity.rigidity_matrix": (),
     "rigidity.self_stresses": (),
     "algebra.split_form": (4,),
+    "motion.find_driven": ({(3, 5): 40},),
     "pattern.near_degenerate": (),
     "problem.BranchSystem": (),
     "count.count_branches": (),
