@@ -214,7 +214,11 @@ def _middle(sheet: PanelSheet) -> int:
         most = list(map(max, most, _depths(sheet, last)))
     near = [k for k, depth in enumerate(most) if depth <= min(most) + 1]
     areas = {k: sheet.area(sheet.panels[k]) for k in near}
-    return max(near, key=cmp_to_key(lambda i, j: (areas[i] - areas[j]).sign()))
+
+    def larger(i: int, j: int) -> int:
+        return (areas[i] - areas[j]).sign()
+
+    return max(near, key=cmp_to_key(larger))
 
 
 def _depths(sheet: PanelSheet, held: int) -> list[int]:

@@ -74,10 +74,10 @@ class Placing:
         """The largest of the panels from which others are few folds away: few from those tried."""
         most = np.zeros(len(self.pattern.faces), dtype=np.intp)
         for _ in range(_TRIES):
-            near = Placing(self.pattern, int(most.argmin()))
-            last = Placing(self.pattern, int(near.depths.argmax()))
+            first = Placing(self.pattern, int(most.argmin()))
+            last = Placing(self.pattern, int(first.depths.argmax()))
             most = np.maximum(most, last.depths)
-        near = np.flatnonzero(most <= most.min() + 1)
+        near = np.flatnonzero(most <= most.min() + 1).tolist()
         return int(max(near, key=lambda panel: self._area(self.pattern.faces[panel])))
 
     def _area(self, face: tuple[int, ...]) -> float:
