@@ -215,7 +215,8 @@ class PanelPieces:
                 placed[panel] = placed[before]
                 continue
             rotation, shift = placed[before]
-            new = product(rotation, spun(*turns[fold], *self._axes[i, j]))
+            sine, versine = turns[fold]
+            new = product(rotation, spun(sine, versine, *self._axes[i, j]))
             placed[panel] = new, hinged(rotation, new, *flat[i], shift)
         coefficients = np.empty((ORDER + 1, len(flat), 3))
         radius = np.empty((len(flat), 3))
