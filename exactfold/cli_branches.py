@@ -385,7 +385,7 @@ def assignments(
     everything: Annotated[bool, flag("--all", text="List every assignment.")] = False,
     certificate: Annotated[
         Path | None,
-        typer.Option(metavar="OUT.json", help="Write the proof, for `exactfold check`."),
+        written("Write a certificate, if the list is proved.", "OUT.json"),
     ] = None,
     as_json: Json = False,
     snap: Snap = None,

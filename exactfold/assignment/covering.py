@@ -18,11 +18,12 @@ from typing import Final
 
 from exactfold.assignment.nappe_points import NappePoints
 from exactfold.checker.arcs import Arcs, Word
-from exactfold.checker.assignments import MOST_VERTICES, check
+from exactfold.checker.assignments import MOST_VERTICES, check, free_border
 from exactfold.checker.formats import ASSIGNMENTS, ASSIGNMENTS_VERSION
 from exactfold.checker.reading import CertificateError
 from exactfold.checker.sheet import Sheet
 from exactfold.evidence.entries import Document, emptied_evidence, pattern_document
+from exactfold.exact.numbers import format_integer
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.progress import Progress
 
@@ -39,12 +40,11 @@ Heights = tuple[int, ...]
 class Covering:
     """Points on the circle of each sign vector that begins with a plus, heights as integers.
 
-    Heights are those of `free`, two border vertices, and then of those that can pop, all others
-    being 0. With a fold from border to border the corner behind it is left out, and `free` is one
-    vertex. `assignments` are the letters that occur, of all folds of the pattern.
+    Heights are those of two border vertices, and then of those that can pop, all others being 0.
+    With a fold from border to border the corner behind it is left out, and one border vertex has a
+    height. `assignments` are the letters that occur, of all folds of the pattern.
     """
 
-    free: tuple[int, ...]
     circles: tuple[tuple[Heights, ...], ...]
     assignments: tuple[str, ...]
 
@@ -78,8 +78,7 @@ def covering(pattern: CreasePattern, progress: Progress | None = None) -> Coveri
         own = {fold: "MV"[x > 0] for fold, x in zip(folds, word, strict=True)}
         either = [own.get(f, "MV" if f in chords else "F") for f in pattern.folds]
         texts |= {"".join(letters) for letters in product(*either)}
-    free = tuple(labels[v] for v in search.free)
-    return Covering(free, circles, tuple(sorted(texts)))
+    return Covering(circles, tuple(sorted(texts)))
 
 
 def covering_document(pattern: CreasePattern, points: Covering) -> Document:
@@ -91,8 +90,10 @@ def covering_document(pattern: CreasePattern, points: Covering) -> Document:
         "claims": {"assignments": list(points.assignments)},
         "evidence": {
             "emptied": emptied_evidence(pattern),
-            "free": list(points.free),
-            "circles": [[list(heights) for heights in circle] for circle in points.circles],
+            "circles": [
+                [[format_integer(z) for z in heights] for heights in circle]
+                for circle in points.circles
+            ],
         },
     }
 
@@ -123,10 +124,11 @@ class _Search:
         self, sheet: CreasePattern, labels: Sequence[int], progress: Progress | None
     ) -> None:
         self.sheet, self.labels, self.progress = sheet, labels, progress
-        self.free = _free(sheet)
         places, _ = sheet.integer_vertices
         points = {v: (Fraction(x), Fraction(y)) for v, (x, y) in enumerate(places)}
-        self.arcs = Arcs(Sheet(points, sheet.triangles), [*self.free, *sheet.interior])
+        seen_by_checker = Sheet(points, sheet.triangles)
+        self.free = tuple(free_border(seen_by_checker))
+        self.arcs = Arcs(seen_by_checker, [*self.free, *sheet.interior])
         self.solvers = [NappePoints(sheet, self.free, depth) for depth in _DEPTHS]
         self.seen: set[Word] = set()
         self.short: list[tuple[Heights, Heights]] = []
@@ -243,15 +245,3 @@ class _Search:
             return self.arcs.possible(self.arcs.letters(a, b), signs) <= self.seen
         except CertificateError:
             return False
-
-
-def _free(sheet: CreasePattern) -> tuple[int, ...]:
-    """Border vertices all but three, which are not on a line."""
-    first, second, *others = sheet.boundary
-    (ax, ay), (bx, by) = (sheet.vertices[v] for v in (first, second))
-    third = next(
-        v
-        for v in others
-        if (bx - ax) * (sheet.vertices[v][1] - ay) != (by - ay) * (sheet.vertices[v][0] - ax)
-    )
-    return tuple(v for v in others if v != third)

@@ -62,7 +62,7 @@ class Arcs:
         return [(self._at[v], int(w * unit)) for v, w in own.items()]
 
     def _weighted(self) -> tuple[_Form, int]:
-        """4 D times a number, and the number; m_v = R^2 - |U_v - c|^2 for a disk round the sheet."""
+        """4 D times a number, and it; m_v = R^2 - |U_v - c|^2 for a disk round the sheet."""
         points = self.sheet.points
         xs, ys = zip(*points.values(), strict=True)
         x, y = min(xs) + max(xs), min(ys) + max(ys)

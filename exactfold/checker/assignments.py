@@ -22,9 +22,9 @@ from .reading import (
     CertificateError,
     counted,
     document,
-    integer,
     items,
     keys,
+    parse_integer,
     require,
 )
 from .reduced import check_convex
@@ -58,18 +58,31 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, "assignments", "claims")
-    keys(evidence, "emptied free circles", "evidence")
-    place = Place(given, evidence["emptied"])
-    require(len(place.sheet.boundary) == 5, "there are not five boundary vertices")
-    check_convex(place.sheet)
-    border = set(place.sheet.boundary)
-    chords = [fold for fold in place.sheet.folds if border.issuperset(fold)]
-    circles = _Circles(_without_ear(place.sheet) if chords else place.sheet, evidence["free"])
-    words = circles.shown(evidence["circles"])
-    texts = sorted(text for word in words for text in circles.texts(word, given.folds, chords))
+    keys(evidence, "emptied circles", "evidence")
+    texts = _shown(given, evidence)
     listed = items(claims["assignments"], "assignments")
     require(listed == texts, f"the evidence shows {len(texts)} assignments, and not these")
     return {"sha256": digest, "interior": len(given.interior), **claims}
+
+
+def _shown(given: Sheet, evidence: dict[str, Any]) -> list[str]:
+    """The letters that occur, in order."""
+    sheet = Place(given, evidence["emptied"]).sheet
+    require(len(sheet.boundary) == 5, "there are not five boundary vertices")
+    check_convex(sheet)
+    border = set(sheet.boundary)
+    chords = [fold for fold in sheet.folds if border.issuperset(fold)]
+    circles = _Circles(_without_ear(sheet) if chords else sheet)
+    words = circles.shown(evidence["circles"])
+    return sorted(text for word in words for text in circles.texts(word, given.folds, chords))
+
+
+def free_border(sheet: Sheet) -> list[int]:
+    """The border vertices but three that are not on a line, which modulo planes have height 0."""
+    first, second, *others = sheet.boundary
+    p, q = sheet.points[first], sheet.points[second]
+    third = next(v for v in others if turn(p, q, sheet.points[v]))
+    return [v for v in others if v != third]
 
 
 def _without_ear(sheet: Sheet) -> Sheet:
@@ -82,16 +95,14 @@ def _without_ear(sheet: Sheet) -> Sheet:
 class _Circles:
     """The solutions of one sheet, a circle for each sign vector; with four corners two rays."""
 
-    def __init__(self, sheet: Sheet, free: Any) -> None:
+    def __init__(self, sheet: Sheet) -> None:
         self.sheet = sheet
         require(sheet.interior, "no vertex can pop")
         number = len(sheet.interior)
         require(number <= MOST_VERTICES, f"more than {MOST_VERTICES} vertices can pop")
-        self.free = len(sheet.boundary) - 3
-        high = items(free, "free", self.free)
-        p, q, r = (sheet.points[v] for v in sheet.boundary if v not in high)  # or it is malformed
-        require(turn(p, q, r), "the border vertices at height 0 lie on a line")
-        self.arcs = Arcs(sheet, [*high, *sheet.interior])
+        free = free_border(sheet)
+        self.free = len(free)
+        self.arcs = Arcs(sheet, [*free, *sheet.interior])
         self.signs = [(1, *rest) for rest in product((1, -1), repeat=number - 1)]
 
     def shown(self, entries: Any) -> set[Word]:
@@ -115,7 +126,7 @@ class _Circles:
         points = []
         for heights in items(entry, name):
             point = items(heights, "heights", self.free + len(self.sheet.interior))
-            points.append([integer(z) for z in point])
+            points.append([parse_integer(z) for z in point])
             self.arcs.check_nappes(points[-1], signs, name)
         if self.free == 1:
             first, last = points
