@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import lcm
 
-from exactfold.assignment.assignments_certificate import assignments_certificate
 from exactfold.assignment.circles import all_assignments
 from exactfold.assignment.clauses import Refuted
+from exactfold.assignment.list_certificate import assignments_certificate
 from exactfold.assignment.panel_certificate import starting_certificate
 from exactfold.assignment.panel_match import PanelMatch
 from exactfold.assignment.rim_match import RimMatch

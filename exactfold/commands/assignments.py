@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.assignment.assignment_list import AllAssignments
-from exactfold.assignment.assignments_certificate import assignments_certificate
 from exactfold.assignment.circles import all_assignments
+from exactfold.assignment.list_certificate import assignments_certificate
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap

@@ -13,9 +13,9 @@ from exactfold import PROVED, UNDECIDED, delaunay, families
 from exactfold.assignment import circles
 from exactfold.assignment import covering as coverings
 from exactfold.assignment.assignment_list import AllAssignments, Circle
-from exactfold.assignment.assignments_certificate import assignments_certificate
 from exactfold.assignment.circles import all_assignments
 from exactfold.assignment.covering import NotCoveredError, covering
+from exactfold.assignment.list_certificate import assignments_certificate
 from exactfold.branches.letters import UPSIDE_DOWN
 from exactfold.errors import NotApplicableError, NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern
