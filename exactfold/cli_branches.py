@@ -393,7 +393,7 @@ def assignments(
 ) -> None:
     """List every mountain-valley assignment with which a sheet with five corners starts to fold.
 
-    For a convex border of five vertices and up to eight vertices inside that can
+    For a convex border of five vertices and up to six vertices inside that can
     pop. The list is proved to be complete. With four corners, `count` lists
     them with the branches.
     """

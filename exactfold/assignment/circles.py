@@ -29,7 +29,7 @@ from exactfold.progress import Progress
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
 from exactfold.verdict import PROVED, UNDECIDED
 
-MOST_FOLDABLE = 8
+MOST_FOLDABLE = 6
 """Most vertices that can pop of a sheet whose assignments are listed."""
 _MOST_SOLVED = 5
 _CHARTS = ((1, 0), (3, 1), (2, 5), (-4, 3))
@@ -49,7 +49,7 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
     covered by points instead, and the stand-alone checker verifies that they show all (Theorem 2).
 
     Raises `NotCountedError` unless the border is convex and has five vertices (D = 2), and from one
-    to eight vertices can pop. UNDECIDED where neither succeeds.
+    to six vertices can pop. UNDECIDED where neither succeeds.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> found = all_assignments(single_vertex(5))
