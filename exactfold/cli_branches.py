@@ -383,19 +383,23 @@ def actuate(
 def assignments(
     pattern: Pattern,
     everything: Annotated[bool, flag("--all", text="List every assignment.")] = False,
+    certificate: Annotated[
+        Path | None,
+        written("Write a certificate, if the list is proved.", "OUT.json"),
+    ] = None,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
 ) -> None:
     """List every mountain-valley assignment with which a sheet with five corners starts to fold.
 
-    For a convex border of five vertices and up to five vertices inside that can
+    For a convex border of five vertices and up to six vertices inside that can
     pop. The list is proved to be complete. With four corners, `count` lists
     them with the branches.
     """
     from exactfold.commands.assignments import Listed
 
-    raise typer.Exit(Listed(pattern, snap, sheet, everything, as_json).answer())
+    raise typer.Exit(Listed(pattern, snap, sheet, everything, as_json, certificate).answer())
 
 
 COMMANDS = (branch, match, assignments, export, fold, motions, actuate)

@@ -1,10 +1,13 @@
+from exactfold.assignment.assignment_list import AllAssignments as AllAssignments
+from exactfold.assignment.assignment_list import Arc as Arc
+from exactfold.assignment.assignment_list import Circle as Circle
+from exactfold.assignment.assignment_list import Crossing as Crossing
 from exactfold.assignment.certificate import match_certificate as match_certificate
-from exactfold.assignment.circles import AllAssignments as AllAssignments
-from exactfold.assignment.circles import Arc as Arc
-from exactfold.assignment.circles import Circle as Circle
-from exactfold.assignment.circles import Crossing as Crossing
 from exactfold.assignment.circles import all_assignments as all_assignments
 from exactfold.assignment.document import match_document as match_document
+from exactfold.assignment.list_certificate import (
+    assignments_certificate as assignments_certificate,
+)
 from exactfold.assignment.nearest import Nearest as Nearest
 from exactfold.assignment.nearest import nearest_branches as nearest_branches
 from exactfold.assignment.panel_match import PanelMatch as PanelMatch

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from math import lcm
 
+from exactfold.assignment.circles import all_assignments
 from exactfold.assignment.clauses import Refuted
+from exactfold.assignment.list_certificate import assignments_certificate
 from exactfold.assignment.panel_certificate import starting_certificate
 from exactfold.assignment.panel_match import PanelMatch
 from exactfold.assignment.rim_match import RimMatch
@@ -23,9 +25,10 @@ def match_certificate(found: Match | RimMatch | PanelMatch) -> Document:
 
     It shows that a match has all halves; of a sheet with more than four corners, that no solution
     has the letters, or, as a certificate of one branch, that one has; of rigid panels, that they
-    start to fold with the letters, or do not. `write_certificate` writes it to a file. Raises
-    `NotApplicableError` unless the answer is proved, where it rests on a list of all assignments,
-    and if a motion of panels was found by splitting forms.
+    start to fold with the letters, or do not. Where letters of all folds are refuted by the list of
+    all assignments, it is that of the list. `write_certificate` writes it to a file. Raises
+    `NotApplicableError` unless the answer is proved, where letters of some folds were refuted by
+    the list, and if a motion of panels was found by splitting forms.
 
     >>> from exactfold import checker
     >>> from exactfold.assignment.search import match
@@ -45,8 +48,19 @@ def match_certificate(found: Match | RimMatch | PanelMatch) -> Document:
     if found.branch is not None:
         return branch_certificate(found.branch)
     if found.listed:
-        raise NotApplicableError("there is no certificate of a list of all assignments")
+        return _list(found)
     return _letters(found, (), [])
+
+
+def _list(found: RimMatch) -> Document:
+    """The certificate of a list in which the letters are not."""
+    pattern, labels = found.pattern, found.labels
+    moving = [tuple(sorted((labels[i], labels[j]))) for i, j in found.sheet.folds]
+    if any(found.letters[i, j] == "U" for i, j in moving):
+        raise NotApplicableError(
+            "the list of all assignments says nothing of letters that are free"
+        )
+    return assignments_certificate(all_assignments(pattern))
 
 
 def _letters(

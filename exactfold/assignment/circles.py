@@ -11,135 +11,30 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from itertools import pairwise, product
-from typing import Any
 
 from exactfold.algebra.exact_solution import RootClass
 from exactfold.algebra.groebner_bases import groebner
-from exactfold.branches.branch import Branch
+from exactfold.assignment.assignment_list import AllAssignments, Arc, Circle, Crossing
+from exactfold.assignment.covering import NotCoveredError, covering, verified
 from exactfold.branches.letters import SIGNS, UPSIDE_DOWN
 from exactfold.count.find import BranchFinder
 from exactfold.errors import NotCountedError
-from exactfold.exact.numbers import format_rational
 from exactfold.exact.univariate import Interval
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.described import described
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.problem.branch_system import BranchSystem, Chart
 from exactfold.problem.flat_sheets import FlatSheets, flat_sheets
 from exactfold.progress import Progress
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
-from exactfold.schemas import headed
-from exactfold.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.verdict import PROVED, UNDECIDED
 
-MOST_FOLDABLE = 5
+MOST_FOLDABLE = 6
+"""Most vertices that can pop of a sheet whose assignments are listed."""
+_MOST_SOLVED = 5
 _CHARTS = ((1, 0), (3, 1), (2, 5), (-4, 3))
 _BITS = 64
 _MOST_BITS = 1 << 14
-
-
-@dataclass(frozen=True)
-class Arc:
-    """A part of a circle on which no fold is flat, by one proved branch on it.
-
-    All branches of the arc have the letters of `branch`, or if `mirrored` those of its mirror
-    image, on which all heights, signs and letters are reversed.
-    """
-
-    branch: Branch
-    mirrored: bool = False
-
-    @property
-    def letters(self) -> str:
-        """The letters of all folds, in order."""
-        text = self.branch.assignment_text
-        return text.translate(UPSIDE_DOWN) if self.mirrored else text
-
-    @property
-    def rim(self) -> dict[int, Fraction]:
-        """Heights of the border on the arc."""
-        heights = self.branch.rim or {}
-        return {v: -height for v, height in heights.items()} if self.mirrored else heights
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """A point of a circle at which folds are flat: `folds`, and all those at the `vertices`."""
-
-    folds: tuple[Edge, ...]
-    vertices: tuple[int, ...]
-
-
-@dataclass(frozen=True)
-class Circle:
-    """The solutions with one sign vector, up to positive factors, in the order of the rim.
-
-    `crossings[k]` lies before `arcs[k]` and behind the arc before that; without crossings there is
-    one arc.
-    """
-
-    signs: str
-    arcs: tuple[Arc, ...]
-    crossings: tuple[Crossing, ...]
-
-    def __repr__(self) -> str:
-        return f"<Circle {self.signs}: {len(self.arcs)} arcs>"
-
-
-@dataclass(frozen=True, repr=False)
-class AllAssignments:
-    """The mountain-valley assignments that occur, complete if `status` is PROVED.
-
-    `circles` are those of all sign vectors, in their order. UNDECIDED: `reason` says what is
-    missing, and the list may be too short.
-    """
-
-    pattern: CreasePattern
-    status: Verdict
-    reason: str
-    circles: tuple[Circle, ...]
-
-    @cached_property
-    def assignments(self) -> tuple[str, ...]:
-        """The different assignments in which no fold is flat but those that always are, sorted."""
-        return tuple(sorted({arc.letters for circle in self.circles for arc in circle.arcs}))
-
-    def to_dict(self, name: str | None = None) -> dict[str, Any]:
-        """The object printed by `exactfold assignments --json`: `schema("assignments")`."""
-        return {
-            **headed("assignments"),
-            "pattern": described(self.pattern, name),
-            "status": str(self.status),
-            "reason": self.reason,
-            "number": len(self.assignments),
-            "assignments": list(self.assignments),
-            "circles": [
-                {
-                    "signs": circle.signs,
-                    "arcs": [
-                        {
-                            "letters": arc.letters,
-                            "rim": {
-                                str(v): format_rational(height) for v, height in arc.rim.items()
-                            },
-                        }
-                        for arc in circle.arcs
-                    ],
-                    "crossings": [
-                        {
-                            "folds": [f"{i}-{j}" for i, j in crossing.folds],
-                            "vertices": list(crossing.vertices),
-                        }
-                        for crossing in circle.crossings
-                    ],
-                }
-                for circle in self.circles
-            ],
-        }
-
-    def __repr__(self) -> str:
-        return f"<AllAssignments: {self.status}, {len(self.assignments)} of {self.pattern!r}>"
 
 
 def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -> AllAssignments:
@@ -150,9 +45,11 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
     order on the circles; between neighbours no fold is flat, so that one branch shows the letters
     (docs/circles.md, Theorem 1).
 
+    Where folds are flat along whole arcs, or more than five vertices can pop, the circles are
+    covered by points instead, and the stand-alone checker verifies that they show all (Theorem 2).
+
     Raises `NotCountedError` unless the border is convex and has five vertices (D = 2), and from one
-    to five vertices can pop. UNDECIDED where folds are
-    flat along whole arcs, or a branch is not proved.
+    to six vertices can pop. UNDECIDED where neither succeeds.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> found = all_assignments(single_vertex(5))
@@ -173,7 +70,18 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
         raise NotCountedError(
             f"{sheet.Vi} vertices can pop: all assignments are listed for at most {MOST_FOLDABLE}"
         )
-    return _Search(given, progress).found()
+    found = None
+    if sheet.Vi <= _MOST_SOLVED:
+        found = _Search(given, progress).found()
+        if found.status is PROVED:
+            return found
+    try:
+        points = covering(given, progress)
+        verified(given, points)
+    except NotCoveredError as error:
+        reason = f"{found.reason}; " if found is not None else ""
+        return AllAssignments(given, UNDECIDED, f"{reason}{error}", ())
+    return AllAssignments(given, PROVED, "", (), points)
 
 
 @dataclass(frozen=True)

@@ -54,9 +54,9 @@ class MotionSearch:
                 radius /= 4
             else:
                 new = self._off(w + step)
-                if new < 0.9 * value:
+                if new < 0.999 * value:
+                    radius = min(2 * radius, 1.0) if new < 0.9 * value else radius
                     w, value = w + step, new
-                    radius = min(2 * radius, 1.0)
                 else:
                     radius /= 3
             if radius < 1e-7:

@@ -167,6 +167,7 @@ class _Search(SignSearch["Branch | None"]):
         """Whether a complete list of assignments shows what is open; the branch, if there is one.
 
         Letters M and V hold near a solution that has them, and so on some arc without flat folds.
+        Where folds are flat along whole arcs the list has letters of all folds only.
         """
         if self.rims is None or self.sheet.Ve != 5 or self.sheet.Vi > _MOST_LISTED:
             return False
@@ -176,7 +177,11 @@ class _Search(SignSearch["Branch | None"]):
                 letters = dict(zip(self.pattern.folds, arc.letters, strict=True))
                 if not any(differing(self.letters, letters)):
                     self._take(circle.signs, arc.rim)
-        return found.status is PROVED and self.branch is None
+        if found.points is not None and "U" in self.own.values():
+            return False
+        text = "".join(self.letters[fold] for fold in self.pattern.folds)
+        occurs = found.points is not None and text in found.assignments
+        return found.status is PROVED and self.branch is None and not occurs
 
     def _take(self, signs: str | Mapping[int, int], rim: Mapping[int, Fraction]) -> None:
         """Keep the branch over a rim if it is proved and has the letters."""

@@ -9,14 +9,16 @@ their own, and verify every claim. The folder alone is enough. Exit code 0: ever
 some claim is not supported, or the file is not finished. 3: not a certificate. 70: a worker process
 died, memory is short, or a defect of this program; nothing is known of the file.
 
-Eight kinds of certificates are told apart by what is in the file: listings of all branches
+Eleven kinds of certificates are told apart by what is in the file: listings of all branches
 (`listing`, docs/certificate.md), compact ones with one root for each sign vector (`compact`,
 docs/compact-certificate.md), proofs of one branch (`branch`, docs/branch.md), which are checked by
 formulas of their own, all halves of branches with given mountains and valleys (`letters`,
 docs/assignment.md), whether rigid panels start to fold with them (`panel_letters`,
-docs/assignment.md), all motions of a sheet of rigid panels (`panels`, docs/certificate.md), the
-true motion along one branch (`motion`, docs/motion.md), and the loops of true motions through the
-flat state (`motion_loops`, docs/motions.md).
+docs/assignment.md), all assignments of a sheet with five corners (`assignments`, docs/circles.md),
+the pieces of a sheet with more than four (`pieces`, docs/certificate.md), all motions of a sheet of
+rigid panels (`panels`, docs/certificate.md), the true motion along one branch (`motion`,
+docs/motion.md), one of rigid panels (`panel_motion`, docs/panel_motion.md), and the loops of true
+motions through the flat state (`motion_loops`, docs/motions.md).
 `formats` owns their names, versions and limits.
 
 Floating point is used to choose the matrices and weights of Krawczyk's and of Newton's test, which

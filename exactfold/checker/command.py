@@ -15,6 +15,7 @@ from types import ModuleType
 from typing import Any
 
 from . import (
+    assignments,
     branch,
     compact,
     letters,
@@ -28,6 +29,7 @@ from . import (
 )
 from .compact_lines import lines
 from .formats import (
+    ASSIGNMENTS,
     BRANCH,
     COMPACT,
     LETTERS,
@@ -80,6 +82,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
 
 _READERS = {
+    ASSIGNMENTS: assignments,
     BRANCH: branch,
     LETTERS: letters,
     MOTION: motion,
@@ -168,6 +171,8 @@ def _printed(kind: str, several: bool) -> str:
 
 def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
+    if "assignments" in claims:
+        return assignments.summary(claims)
     if "supports" in claims:
         return panels.summary(claims)
     if "loops" in claims:

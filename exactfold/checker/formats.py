@@ -17,6 +17,9 @@ CURVED_VERSION = 2
 LETTERS, LETTERS_VERSION = "exactfold letters", 1
 """All halves of branches with given mountains and valleys (docs/assignment.md)."""
 
+ASSIGNMENTS, ASSIGNMENTS_VERSION = "exactfold assignments", 1
+"""All mountain-valley assignments of a sheet with five corners (docs/circles.md)."""
+
 PANEL_LETTERS, PANEL_LETTERS_VERSION = "exactfold letters on panels", 1
 """Whether rigid panels start to fold with given mountains and valleys (docs/assignment.md)."""
 

@@ -6,10 +6,14 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from exactfold.assignment.assignment_list import AllAssignments
 from exactfold.assignment.circles import all_assignments
+from exactfold.assignment.list_certificate import assignments_certificate
 from exactfold.commands.patterns import read
-from exactfold.commands.shell import EXIT, Bar, name_of
+from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.drawing.drawing import Snap
+from exactfold.errors import NotApplicableError
+from exactfold.evidence.entries import write_certificate
 
 
 @dataclass(frozen=True)
@@ -21,6 +25,7 @@ class Listed:
     sheet: int | None
     everything: bool
     as_json: bool
+    certificate: Path | None
 
     def answer(self) -> int:
         """List the assignments and print; the exit code.
@@ -30,6 +35,7 @@ class Listed:
         with Bar("reading") as bar:
             pattern = read(self.file, self.snap, self.sheet, "assignments").pattern
             found = all_assignments(pattern, progress=bar)
+            self._write(found, bar)
         if self.as_json:
             print(json.dumps(found.to_dict(name_of(self.file))))
         else:
@@ -37,3 +43,14 @@ class Listed:
 
             report.show(report.assignments_report(found, everything=self.everything))
         return EXIT[found.status]
+
+    def _write(self, found: AllAssignments, bar: Bar) -> None:
+        if self.certificate is None:
+            return
+        bar("certificate")
+        try:
+            document = assignments_certificate(found, progress=bar)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
+        else:
+            write_certificate(document, self.certificate)

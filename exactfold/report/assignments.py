@@ -13,7 +13,7 @@ from exactfold.verdict import PROVED
 from exactfold.wording import counted
 
 if TYPE_CHECKING:
-    from exactfold.assignment.circles import AllAssignments
+    from exactfold.assignment.assignment_list import AllAssignments
 
 _MOST = 64
 
@@ -28,15 +28,14 @@ def assignments_report(found: AllAssignments, *, everything: bool = False) -> Gr
     ]
     if found.status is not PROVED:
         return Group(facts_table(list(rows)))
-    arcs = ", ".join(f"{circle.signs}: {len(circle.arcs)}" for circle in found.circles)
     texts = found.assignments
     shown = texts if everything else texts[:_MOST]
-    rows += [
-        ("assignments", f"{len(texts)}, with the folds {_folds(found)}"),
-        ("arcs by vertex signs", arcs),
-    ]
+    rows.append(("assignments", f"{len(texts)}, with the folds {_folds(found)}"))
+    if found.circles:
+        arcs = ", ".join(f"{circle.signs}: {len(circle.arcs)}" for circle in found.circles)
+        rows.append(("arcs by vertex signs", arcs))
     table = Table(box=None, pad_edge=False, show_header=False)
-    width = max(1, min(6, 72 // (len(shown[0]) + 2)))
+    width = max(1, min(6, 72 // (len(found.pattern.folds) + 2)))
     for k in range(0, len(shown), width):
         table.add_row(*(letters_text(text) for text in shown[k : k + width]))
     more = []

@@ -10,15 +10,21 @@ import pytest
 from sheets import dart, relabelled, wheel
 
 from exactfold import PROVED, UNDECIDED, delaunay, families
-from exactfold.assignment.circles import AllAssignments, Circle, all_assignments
+from exactfold.assignment import circles
+from exactfold.assignment import covering as coverings
+from exactfold.assignment.assignment_list import AllAssignments, Circle
+from exactfold.assignment.circles import all_assignments
+from exactfold.assignment.covering import NotCoveredError, covering
+from exactfold.assignment.list_certificate import assignments_certificate
 from exactfold.branches.letters import UPSIDE_DOWN
-from exactfold.errors import NotCountedError
+from exactfold.errors import NotApplicableError, NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import fold_functional
 
 CORNERS = [(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9)]
 PENTAGON = delaunay([*CORNERS, (5, 4), (8, 7)])
+FAMILIES = delaunay([(-4, 0), (1, 4), (0, 3), (0, 0), (1, -2), (-4, 3), (4, 0)])
 
 
 def pentagon(seed: int) -> CreasePattern:
@@ -194,11 +200,36 @@ def test_what_is_not_listed() -> None:
         all_assignments(CreasePattern(CORNERS, [(0, 1, 2), (0, 2, 3), (0, 3, 4)]))
 
 
-def test_a_fold_that_is_flat_along_arcs_is_undecided() -> None:
+def test_where_folds_are_flat_along_arcs_the_circles_are_covered_by_points() -> None:
     # Two straight lines cross at the hub: each folds alone, with the other flat, on half a circle.
     pattern = wheel([(4, 0), (0, 4), (-4, 0), (0, -4)])
     corner = CreasePattern([*pattern.vertices, (5, 5)], [*pattern.triangles, (0, 5, 1)])
     found = all_assignments(corner)
+    assert (found.status, found.assignments, found.circles) == (PROVED, (), ())
+    assert repr(found.points) == "<Covering: 2 points on 1 circles>"
+
+
+def test_points_round_the_circles_show_what_algebra_finds() -> None:
+    for pattern in (PENTAGON, pentagon(3), families.single_vertex(5)):
+        assert covering(pattern).assignments == all_assignments(pattern).assignments
+
+
+@pytest.mark.slow
+def test_assignments_with_folds_flat_along_arcs_are_those_of_random_rims() -> None:
+    """A fold to a corner on a straight line through a vertex: algebra has families there."""
+    found = all_assignments(FAMILIES)
+    assert (found.status, found.circles) == (PROVED, ())
+    assert set(found.assignments) == letters_by_resultant(FAMILIES, 1000, 1)
+
+
+def test_where_points_do_not_tell_folds_apart_it_is_undecided(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(coverings, "_DEPTHS", (3,))
+    with pytest.raises(NotCoveredError, match=r"with the vertex signs .. the letters"):
+        covering(pentagon(3))
+    monkeypatch.setattr(circles, "_MOST_SOLVED", 0)
+    found = all_assignments(pentagon(3))
     assert found.status is UNDECIDED
-    assert "flat on whole families" in found.reason
-    assert found.assignments == ()
+    with pytest.raises(NotApplicableError, match="a list that is undecided"):
+        assignments_certificate(found)

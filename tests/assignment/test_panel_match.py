@@ -274,3 +274,18 @@ def test_the_command_says_whether_panels_start_to_fold(tmp_path):
     assert "does not start to fold" in words
     assert "4, 5, 6, 7" in words
     assert "even at the first instant" in words.replace("\n", " ")
+
+
+def test_a_motion_far_from_the_first_order_ones_is_found():
+    """A bird base with a diagonal: the forms are far from 0 where the search begins."""
+    x = Fraction(7, 3)
+    points = [(-4, -4), (-4, 0), (0, -4), (4, 4), (0, 4), (4, 0), (0, 0), (-4, 4), (4, -4)]
+    points += [(-x, 0), (x, 0), (0, x), (0, -x)]
+    border = "0-1 1-7 4-7 3-4 3-5 5-8 2-8 0-2"
+    mountains = "0-9 0-12 3-10 3-11 6-9 6-10 6-11 6-12 7-9 7-11 8-10 8-12"
+    valleys = "1-9 2-12 4-11 5-10 6-7 6-8"
+    edges = [tuple(map(int, e.split("-"))) for e in f"{border} {mountains} {valleys}".split()]
+    letters = dict.fromkeys(edges[8:20], "M") | dict.fromkeys(edges[20:], "V")
+    found = match_panels(PanelPattern(points, edges), letters)
+    assert (found.starts, found.truly) == (PROVED, PROVED)
+    assert checker.check(match_certificate(found))["truly"] == "proved"

@@ -28,6 +28,7 @@ KINDS = {
     "panels-bent.json": "VALID: the motions of the sheet of 12 folds and 4 interior vertices have",
     "loops-one-vertex.txt": "VALID: 1 loop of true motions, which match all 4 half-branches",
     "branch-reflex.json": "VALID: exactly one branch has the vertex signs +0- (3); 10 of 10",
+    "assignments-pentagon.json": "VALID: exactly 32 mountain-valley assignments occur with no fold",
     "letters-random.json": "VALID: exactly 2 halves of branches have the 7 letters asked for on 16",
 }
 WAYS = ("folder", "zipapp", "module")

@@ -237,3 +237,10 @@ def test_all_assignments(here: Path) -> None:
     shown = run("assignments", "pentagon.fold").stdout
     assert all(letters in shown for letters in found["assignments"])
     assert run("assignments", "six.fold").exit_code == 4
+
+
+def test_a_certificate_of_all_assignments(here: Path) -> None:
+    done = run("assignments", "pentagon.fold", "--json", "--certificate", "all.json")
+    claims = checker.verify("all.json")
+    assert claims["assignments"] == json.loads(done.stdout)["assignments"]
+    assert run("check", "all.json").stdout.startswith("VALID: exactly 32 mountain-valley")

@@ -32,6 +32,15 @@ NEVER_FLAT = CreasePattern(
 )
 """D = 2, the star of vertex 9 is a convex quadrilateral, and other folds bend if it is flat."""
 
+TUNED_ANTIPRISM = CreasePattern(
+    [
+        *(("-201/16", "99/16"), ("3/4", "-171/28"), ("201/16", "-99/16"), ("-3/4", "171/28")),
+        *((0, -3), (3, 0), (0, 3), (-3, 0), (0, 0)),
+    ],
+    faces("014 154 125 265 236 376 307 047 458 568 678 748"),
+)
+"""D = 1: with the star of vertex 8 flat the densities fit round it, and the fold angles do not."""
+
 
 def joined_by_shapes(pattern: CreasePattern, angles: int = 720) -> int:
     """Pieces for D = 2 in floating point: shapes over the circle of rims, and where stars flatten.

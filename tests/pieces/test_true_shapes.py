@@ -6,10 +6,10 @@ from fractions import Fraction
 
 import pytest
 from mpmath import mpf
-from shapes import FOUR_CIRCLES
+from shapes import FOUR_CIRCLES, TUNED_ANTIPRISM
 from true_shapes import true_heights
 
-from exactfold import count_branches, find_branch
+from exactfold import UNDECIDED, count_branches, find_branch
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.rigidity.functionals import vertex_sign_functional
 
@@ -54,3 +54,21 @@ def test_a_double_line_is_one_true_curve_where_the_star_stays_flat():
         start[flat] += above * t**3
         found = true_heights(pattern, start, rim)
         assert abs(side(pattern, flat, found)) < t**3 / 10**6
+
+
+@pytest.mark.slow
+def test_a_double_line_is_two_true_curves_where_the_star_does_not_stay_flat():
+    """A tuned square antiprism: from starts above and below, its centre pops up and down."""
+    pattern = TUNED_ANTIPRISM
+    result = count_branches(pattern)
+    assert (result.true_bounds, result.true_branches) == ((31, 32), UNDECIDED)
+    (double,) = (b for b in result.branches if b.multiplicity == 2)
+    assert [v for v, sign in double.vertex_signs.items() if not sign] == [8]
+    heights = []
+    t = mpf(1) / 40
+    for above in (1, -1):
+        start = {v: t * number(low + high) / 2 for v, (low, high) in double.heights.items()}
+        rim = {v: start[v] for v in pattern.boundary}
+        start[8] += above * t**3
+        heights.append(side(pattern, 8, true_heights(pattern, start, rim)) / t**3)
+    assert heights == pytest.approx([0.0003928, -0.0003928], rel=1e-4)
