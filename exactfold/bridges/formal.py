@@ -90,7 +90,7 @@ def to_coq(pattern: PatternLike) -> str:
     corners the branches are bounded as well. Raises `NotApplicableError` if the border is not
     convex, and the errors of `load`.
 
-    >>> print(to_coq("two-vertex").splitlines()[7])
+    >>> print(to_coq("two-vertex").splitlines()[8])
       points := [(0, 0); (840, 0); (840, 840); (0, 840); (280, 336); (525, 480)]%Z;
     """
     sheet = as_pattern(pattern)

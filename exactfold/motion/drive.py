@@ -88,7 +88,7 @@ class Drive:
         >>> from exactfold.pattern.families import single_vertex
         >>> star = single_vertex(5)
         >>> Drive.of({(0, 5): 90, (2, 5): 90}).coupling(star, range(6)).diagonals
-        ((1, 4), (3, 1))
+        ((4, 1), (1, 3))
         """
         if len(self.folds) < 2:
             return NO_COUPLING

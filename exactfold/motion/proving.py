@@ -286,7 +286,8 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
     )
     contact = watch.result(track) if found is None else found
     status, reason = _judged(motion, track, contact)
-    passed = found is not None or (contact.event is not None and not to_contact)
+    met = found is not None or (contact.event is not None and not to_contact)
+    passed = met and contact.clear < Fraction(motion.duration)
     proof = MotionProof(status, reason, motion, track.length, track.tubes, track, contact, passed)
     if track.node is not None and status is not PROVED:
         proof = replace(proof, reason=f"proved {proof.end_text}, but {reason}")

@@ -101,7 +101,7 @@ def test_negative_numbers_are_refused() -> None:
         (("evidence", "tubes", 0, "reach"), "reach"),
     ):
         refused(changed(place, -1), f"{what} is not a natural number")
-    backwards = changed(("evidence", "tubes", 1, "exit"), -1)
+    backwards = changed(("evidence", "tubes", 0, "exit"), -1)
     refused(backwards, "a motion leaves a tube before it enters")
 
 
