@@ -14,6 +14,7 @@ sys.path.insert(0, str(HERE.parent))
 from proofs import MODULES
 from proofs.__main__ import load
 from proofs.framework import Proof
+from proofs.reading import pieces
 from proofs.statements import How, Ruling, Statement
 
 SECTIONS = {
@@ -56,26 +57,9 @@ def order(key: str) -> tuple[int, int, str]:
     return rank, int(digits[0]) if digits else 0, number
 
 
-def pieces(latex: str) -> list[tuple[bool, str]]:
-    """LaTeX cut at its outermost `\\text{...}`: pairs (whether it is prose, content)."""
-    found, start, at = [], 0, 0
-    depth = 0
-    while at < len(latex):
-        if depth == 0 and latex.startswith(r"\text{", at):
-            end, level = at + len(r"\text{"), 1
-            while level:
-                level += {"{": 1, "}": -1}.get(latex[end], 0)
-                end += 1
-            found += [(False, latex[start:at]), (True, latex[at + len(r"\text{") : end - 1])]
-            start = at = end
-            continue
-        depth += {"{": 1, "}": -1}.get(latex[at], 0)
-        at += 2 if latex[at] == "\\" else 1
-    return [*found, (False, latex[start:])]
-
-
 def prose(text: str) -> str:
     """The words inside `\\text{...}` as Markdown."""
+    text = re.sub(r"\\ref\{(?:eq:)?(\w+)\}", r"\1", text)
     for latex, plain in PLAIN.items():
         text = text.replace(latex, plain)
     if "\\" in text or "$" in text:

@@ -59,7 +59,9 @@ class Proof:
             f"cited: {statement.cited}" if statement.cited else "",
             f"in words: {statement.words}" if statement.words else "",
         ]
-        if statement.ruling is not Ruling.AS_PRINTED:
+        if statement.contradiction:
+            parts.append(f"the paper says otherwise: {statement.contradiction}")
+        elif statement.ruling is not Ruling.AS_PRINTED:
             parts.append("the printed form refuted by an example")
         return "; ".join(part for part in parts if part)
 
@@ -174,7 +176,7 @@ class Script:
         printed: str,
         corrected: str = "",
         *,
-        over: Iterable[Names],
+        over: Iterable[Names] = (),
         at: Iterable[Names] = (),
         functions: Iterable[str] = (),
         mentions: bool = False,
@@ -184,6 +186,7 @@ class Script:
 
         `over` and `at` say what the names mean: free geometries, in which they have to hold
         identically, and such with numbers, where the printed form fails (`over` if none is given).
+        Without the first they are tested only, on each of the second.
         With `mentions` single names and numbers among the words are evaluated, too.
         """
         names = tuple(functions)
@@ -195,12 +198,13 @@ class Script:
         claim = Claim(key, first, right, free, tuple(at) or free)
         self.claims.append(claim)
         which = "corrected" if corrected else "printed"
-        number = len({id(names) for names in (*claim.over, *claim.at)})
+        places = "free geometries" if free else "cases"
         self.steps.append(
             Step(
-                f"{key} as {which}, evaluated in {number} geometries or systems",
-                How.IDENTITY,
-                bool(number) and claim.holds(right),
+                f"{key} as {which}, evaluated in {len(free or claim.at)} {places}",
+                How.IDENTITY if free else How.CASES,
+                bool(claim.at) and claim.holds(right),
+                cases=0 if free else len(claim.at),
                 of=(key,),
                 formula=True,
             )
@@ -234,7 +238,8 @@ class Script:
     def _ruled(self, statement: Statement) -> Statement:
         """The statement with its ruling. Raises `ValueError` if nothing carries it."""
         key = statement.key
-        refuted = any(key in step.against for step in self.steps)
+        refuted = bool(statement.contradiction)
+        refuted = refuted or any(key in step.against for step in self.steps)
         named = any(key in step.of for step in self.steps)
         if not (named or refuted or statement.rests or statement.cited or statement.words):
             raise ValueError(f"{key} rests on nothing")

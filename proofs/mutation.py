@@ -87,7 +87,7 @@ def _mistakes(node: Node) -> Iterator[Node]:
     elif kind == "product":
         for k in range(len(parts)):
             rest = parts[:k] + parts[k + 1 :]
-            yield rest[0] if len(rest) == 1 else replace(node, parts=rest)
+            yield rest[0] if len(rest) == 1 else Node(kind, " " * (len(rest) - 1), rest)
     elif kind == "quotient":
         yield replace(node, parts=(parts[1], parts[0]))
         yield parts[0]
