@@ -4,8 +4,8 @@
 
 What a statement gives as printed has to stand in the source word by word and formula by formula
 (`proofs/quotations.py`); every passage that `proofs/replacements.py` replaces has to stand there
-once. Then the digests with which the tests compare are written to `proofs/quotations.json`, and
-the source with all replacements to a second file, if one is named.
+once. Then the digests with which the tests compare are written to `tests/proofs/quotations.json`,
+and the source with all replacements to a second file, if one is named.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def main(arguments: list[str]) -> int:
         return 1
     digests = {s.key: digest(s.printed) for s in statements}
     text = json.dumps(digests, indent=0, sort_keys=True)
-    (HERE.parent / "proofs" / "quotations.json").write_text(text + "\n", encoding="utf-8")
+    (HERE.parent / "tests" / "proofs" / "quotations.json").write_text(text + "\n", encoding="utf-8")
     if len(arguments) > 1:
         Path(arguments[1]).write_text(corrected, encoding="utf-8")
     return 0

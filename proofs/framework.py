@@ -45,6 +45,10 @@ class Proof:
         """The steps that name a statement, for it or against its printed form."""
         return [step for step in self.steps if key in (*step.of, *step.against)]
 
+    def kind(self, statement: Statement) -> str:
+        """Whether the text of a statement is a formula that a step evaluates, or words."""
+        return "formula" if any(c.key == statement.key for c in self.claims) else "in words"
+
     def basis(self, statement: Statement) -> str:
         """What a statement rests on, from the strongest to the weakest, in words."""
         steps = [step for step in self.steps if statement.key in step.of]
@@ -88,6 +92,7 @@ class Proof:
                     "code": s.code,
                     "equation": s.equation,
                     "severity": s.severity.value if s.severity else None,
+                    "kind": self.kind(s),
                     "basis": self.basis(s),
                 }
                 for s in self.statements
@@ -264,7 +269,10 @@ def report(proof: Proof) -> str:
 def stated(proof: Proof, s: Statement) -> list[str]:
     """The lines on one statement: where, printed, corrected, why, and what it rests on."""
     where = f"{s.place}, Eq. ({s.equation})" if s.equation else s.place
-    lines = [f"  {s.key}  {s.ruling.value}: {where}", f"      printed:   {s.printed}"]
+    lines = [
+        f"  {s.key}  {s.ruling.value}; {proof.kind(s)}: {where}",
+        f"      printed:   {s.printed}",
+    ]
     lines += [f"      corrected: {s.corrected}"] if s.corrected else []
     lines += [f"      severity:  {s.severity.value}"] if s.severity else []
     lines += [f"      note:      {s.note}"] if s.note else []

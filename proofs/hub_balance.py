@@ -322,7 +322,7 @@ def _last_display(script: Script) -> None:
         at=[without(5, numbers=True)],
         note="as far as the four right-hand sides go, which are equal; the left-hand side needs "
         "the sign of B.20",
-        equation="B20 to B23",
+        equation="B20 to B24",
     )
 
 

@@ -17,7 +17,7 @@ import hashlib
 import re
 
 UNPRINTED = {"B.23": "printed for three spokes (B.16), and for more in words"}
-"""Statements that are not printed in this form, and why: each is a formula that a step evaluates."""
+"""Statements that are not printed in this form, and why: a step evaluates each of them."""
 
 _GONE = re.compile(
     r"(?<!\\)%.*|\\label\{[^}]*\}|\\(?:begin|end)\{(?:align|eqnarray|equation)\*?\}|"

@@ -152,8 +152,8 @@ REPLACEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
     ),
     "V.5": (
         (
-            "we have thus shown that it is impossible to satisfy the above orthogonality constraint "
-            "for even modest numbers of internal vertices!",
+            "we have thus shown that it is impossible to satisfy the above orthogonality "
+            "constraint for even modest numbers of internal vertices!",
             "we see that it is impossible to satisfy the above orthogonality constraint wherever "
             "the $2^{V_i}-1$ undesired branches span the $(V_i+1)$-dimensional space of foldings.",
         ),

@@ -49,8 +49,8 @@ class Statement:
     implements it, `equation` is its number in the paper. What it rests on besides the steps that
     name it: `rests` (keys of other statements), `cited` (a theorem of others) and `words` (where a
     proof is written out that is not run); `contradiction` names another place of the paper that
-    says something else, which no step has to refute. `replace` are passages of the paper's LaTeX
-    source with what to put in their place. The ruling is set when a proof is finished.
+    says something else, which no step has to refute. The ruling is set when a
+    proof is finished.
     """
 
     key: str
@@ -65,7 +65,6 @@ class Statement:
     cited: str = ""
     words: str = ""
     contradiction: str = ""
-    replace: tuple[tuple[str, str], ...] = ()
     ruling: Ruling = Ruling.AS_PRINTED
 
     @property
