@@ -352,7 +352,7 @@ def _freedoms(system: BranchSystem) -> dict[str, Any]:
 def _share(pattern: CreasePattern) -> dict[str, Any]:
     """The share of all assignments, up to reflection, that are those of branches."""
     count = count_branches(pattern)
-    found = (count.distinct or 0) - count.repeated_assignments
+    found = (count.distinct or 0) - (count.repeated_assignments or 0)
     share = Fraction(found, 2 ** len(pattern.without_rigid_parts()[0].folds) // 2)
     return {"V_i": pattern.Vi, "V_t": pattern.Vt, "values": (share,)}
 

@@ -142,7 +142,7 @@ def _inequality(script: Script) -> None:
         half_bend(0, slope, t) - 1,
         of="IIIC.1",
     )
-    outcomes = []
+    outcomes: list[bool] = []
     for pattern, hub, heights in _null_vectors():
         form = curvature_form(pattern, hub)
         for nx, ny in ((0, 1), (1, 0), (1, 2), (3, -1)):
