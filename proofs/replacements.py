@@ -168,9 +168,13 @@ REPLACEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
     "B.14": (
         (
             r"\frac{\sigma_1}{\sin\alpha_{2,3}}=&\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{L_3}"
-            r"+\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{2,3})}{L_1}\\",
+            r"+\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{2,3})}{L_1}\\"
+            "\n"
+            r"&+\frac{\csc\alpha_{2,3}\csc\alpha_{1,2}}{L_2}\nonumber\\",
             r"\frac{\sigma_1}{\sin\alpha_{2,3}}=&\frac{\csc\alpha_{3,1}\csc\alpha_{2,3}}{L_3}"
-            r"+\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{3,1})}{L_1}\\",
+            r"+\frac{-\csc\alpha_{2,3}(\cot\alpha_{1,2}+\cot\alpha_{3,1})}{L_1}\\"
+            "\n"
+            r"&+\frac{\csc\alpha_{2,3}\csc\alpha_{1,2}}{L_2}\nonumber\\",
         ),
     ),
     "B.20": (
