@@ -14,7 +14,10 @@ sys.path.insert(0, str(HERE.parent))
 from proofs import MODULES
 from proofs.__main__ import load
 from proofs.framework import Proof
-from proofs.statements import How, Ruling, Statement
+from proofs.mutation import garbled
+from proofs.reading import pieces
+from proofs.replacements import REPLACEMENTS
+from proofs.statements import How, Ruling, Severity, Statement
 
 SECTIONS = {
     "I": "Introduction",
@@ -56,26 +59,9 @@ def order(key: str) -> tuple[int, int, str]:
     return rank, int(digits[0]) if digits else 0, number
 
 
-def pieces(latex: str) -> list[tuple[bool, str]]:
-    """LaTeX cut at its outermost `\\text{...}`: pairs (whether it is prose, content)."""
-    found, start, at = [], 0, 0
-    depth = 0
-    while at < len(latex):
-        if depth == 0 and latex.startswith(r"\text{", at):
-            end, level = at + len(r"\text{"), 1
-            while level:
-                level += {"{": 1, "}": -1}.get(latex[end], 0)
-                end += 1
-            found += [(False, latex[start:at]), (True, latex[at + len(r"\text{") : end - 1])]
-            start = at = end
-            continue
-        depth += {"{": 1, "}": -1}.get(latex[at], 0)
-        at += 2 if latex[at] == "\\" else 1
-    return [*found, (False, latex[start:])]
-
-
 def prose(text: str) -> str:
     """The words inside `\\text{...}` as Markdown."""
+    text = re.sub(r"\\ref\{(?:eq:)?(\w+)\}", r"\1", text)
     for latex, plain in PLAIN.items():
         text = text.replace(latex, plain)
     if "\\" in text or "$" in text:
@@ -87,7 +73,8 @@ def mathematics(latex: str) -> str:
     """A statement on one line: its prose as Markdown, its formulas between dollar signs."""
     words, latex = "", " ".join(latex.split())
     parts = pieces(latex)
-    if any(part.count(a) != part.count(b) for _, part in parts for a, b in ("()", "[]", "{}")):
+    formulas = [part for is_prose, part in parts if not is_prose]
+    if any(part.count(a) != part.count(b) for part in formulas for a, b in ("()", "[]", "{}")):
         return f"$`{latex}`$"  # a formula with words in it
     for is_prose, content in parts:
         if is_prose:
@@ -125,7 +112,7 @@ def definitions() -> dict[str, str]:
 def entry(statement: Statement, proof: Proof) -> str:
     """One statement with its ruling, correction, note and what it rests on."""
     ruling = statement.ruling.value.capitalize()
-    lines = [f"**{statement.key}** ({where(statement)}). *{ruling}.*", ""]
+    lines = [f"**{statement.key}** ({where(statement)}). *{ruling}; {proof.kind(statement)}.*", ""]
     lines.append(f"- printed: {mathematics(statement.printed)}")
     if statement.corrected:
         lines.append(f"- correct: {mathematics(statement.corrected)}")
@@ -157,17 +144,17 @@ def erratum(statement: Statement, proof: Proof) -> str:
     script = f"[`python -m proofs {statement.key}`](../proofs/{proof.name}.py)"
     lines.append(f"- shown by: {script} ({proof.basis(statement)})")
     text = "\n".join(wrapped(line) for line in lines) + "\n"
-    if statement.corrected:
-        text += f"\n```latex\n{pasted(statement.corrected)}\n```\n"
+    for old, new in REPLACEMENTS[statement.key]:
+        instead = [f"%   {row}" for row in rows(old, 92)]
+        block = "\n".join(["% in place of", *instead, *rows(new, 96)])
+        text += f"\n```latex\n{block}\n```\n"
     return f"{text}\n"
 
 
-def pasted(latex: str) -> str:
-    """The correction as LaTeX to paste: prose as it is, formulas between dollar signs."""
-    words = ""
-    for is_prose, content in pieces(" ".join(latex.split())):
-        words += content if is_prose or not content.strip() else f"${content.strip()}$"
-    return "\n".join(textwrap.wrap(words, 98, break_long_words=False, break_on_hyphens=False))
+def rows(latex: str, width: int) -> list[str]:
+    """LaTeX in lines of at most `width` characters, broken at spaces and where it was broken."""
+    options = {"break_long_words": False, "break_on_hyphens": False}
+    return [row for line in latex.splitlines() for row in textwrap.wrap(line, width, **options)]
 
 
 def wrapped(line: str) -> str:
@@ -205,6 +192,7 @@ def pages() -> dict[str, str]:
     steps = [step for proof in proofs for step in proof.steps]
     tested = sum(step.how is How.CASES for step in steps)
     formulas = sum(len(proof.claims) for proof in proofs)
+    mutants = sum(1 for proof in proofs for claim in proof.claims for _ in garbled(claim.right))
     mistakes = sum(len(proof.changes) for proof in proofs)
     head = (
         "# The paper, statement by statement\n\n"
@@ -212,21 +200,40 @@ def pages() -> dict[str, str]:
         f"{len(papers)} statements of the paper: {summary}. {len(stated) - len(papers)} statements "
         "of exactfold come last. Each says what it rests on, and its steps are run by a machine "
         f"(`python -m proofs`, {len(steps)} steps; {tested} of them test exact cases rather than "
-        f"prove, and say so). {formulas} statements are expressions that a step evaluates. All "
-        f"other steps refuse at least one of {mistakes} deliberate mistakes each. Written "
-        f"by `python docs/make_statements.py`.\n\n{STANDARD}"
+        f"prove, and say so). What is given as printed is what the paper prints, word by word. "
+        f"{formulas} statements are formulas that a step evaluates, and with one small mistake in "
+        f"them, {mutants} in all, they do not hold; the others are in words. All other steps "
+        f"refuse at least one of {mistakes} deliberate mistakes each. Written by "
+        f"`python docs/make_statements.py`.\n\n{STANDARD}"
     )
     head = "\n".join(textwrap.fill(part, 100) for part in head.split("\n")) + "\n"
-    body, errata, section = head, ERRATA, ""
+    wrong = [(s, p) for s, p in stated if s.ruling is not Ruling.AS_PRINTED]
+    body, errata, section = head, ERRATA + severities([s for s, _ in wrong]), ""
     for statement, proof in stated:
         title = SECTIONS.get(statement.key.partition(".")[0].replace(" ", ""), "Further statements")
         if title != section:
             section = title
             body += f"\n## {section}\n\n"
         body += entry(statement, proof)
-        if statement.ruling is not Ruling.AS_PRINTED:
-            errata += erratum(statement, proof)
+    errata += "".join(erratum(statement, proof) for statement, proof in wrong)
     return {"statements.md": body.rstrip() + "\n", "errata.md": errata.rstrip() + "\n"}
+
+
+def severities(statements: list[Statement]) -> str:
+    """A table of the errata by how much is wrong."""
+    lines = ["| severity | what it means | statements |", "|---|---|---|"]
+    for severity, meaning in MEANINGS.items():
+        keys = [s.key for s in statements if s.severity is severity]
+        lines.append(f"| {severity.value} ({len(keys)}) | {meaning} | {', '.join(keys)} |")
+    return "\n".join(lines) + "\n\n"
+
+
+MEANINGS = {
+    Severity.TYPO: "a slip, as the rest of the paper shows",
+    Severity.CONSTANT: "a number, a range or a label that changes what is computed",
+    Severity.CONDITION: "true under a condition that is not stated",
+    Severity.CLAIM: "not true in the sense in which it is used",
+}
 
 
 STANDARD = (
@@ -246,6 +253,10 @@ origami near the unfolded state", that does not hold as printed, with the correc
 that checks it. None of them touches the paper's main observation, which is a theorem: all branches
 are real ([Theorem 2](theorem.md)), and on almost every sheet $`2^{{V_i - V_t}}`$ of them differ
 ([Theorem 11](generic.md)). Written by `python docs/make_statements.py`.
+
+The blocks of LaTeX can be pasted: below the passage of the paper's source that is meant, as a
+comment, stands what to put in its place. `python docs/read_paper.py PAPER.tex CORRECTED.tex` does
+it for all of them at once.
 
 {textwrap.fill(STANDARD, 100)}
 

@@ -28,6 +28,7 @@ MODULES: tuple[str, ...] = (
     "eigenvector",
     "vertex_signs",
     "counting",
+    "table_counts",
     "discussion_counts",
     "random_squares",
     "branch_angles",

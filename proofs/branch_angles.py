@@ -142,9 +142,10 @@ def _samples(script: Script) -> None:
     script.state(
         "D.11",
         f"{PLACE} and Fig. (distribution)",
-        r"\text{the distributions for }V_i=6,7\text{ ``very nearly coincide, they differ "
-        r"significantly from that of }V_i=8\text{. We do not believe that this is due to a lack of "
-        r"data'', as the numbers of pairs are comparable}",
+        r"\text{``while the distributions for }V_i=6,7\text{ very nearly coincide, they "
+        r"differ significantly from that of }V_i=8\text{. We do not believe that this is "
+        r"due to a lack of data'' \dots\ ``the number of data points going into the "
+        r"histograms is comparable''}",
         r"\text{the number of squares counts, not that of pairs: 1000, 300 and 50}",
         "the pairs of one square are far from independent: on our samples the mean of cos^2 varies "
         f"from square to square by {spread / one:.0f} times what independent pairs would give",

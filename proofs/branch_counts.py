@@ -89,8 +89,9 @@ def _single_vertex(script: Script) -> None:
     script.state(
         "IIC.6",
         "Section II C and Fig. (conical)",
-        r"V_i=1,\ D=2:\text{ a double cone over a closed curve in }\mathbb{RP}^2\text{; axes "
-        r"}4\text{--}6",
+        r"\text{``where }V_i=1,D=2\text{, the branch is a double cone over a closed curve "
+        r"in }\mathbb{RP}^2\text{'' \dots\ ``The axes correspond to the vertical "
+        r"displacements of the three vertices labeled }4\text{--}6\text{''}",
     )
     script.state(
         "IIIA.10",
@@ -104,7 +105,9 @@ def _single_vertex(script: Script) -> None:
     script.state(
         "I.2",
         "Introduction, Fig. (schematic)",
-        r"\text{two-vertex example: }D=1,\ B=4",
+        r"\text{``In this example, }D=1\text{ so the configuration space is locally "
+        r"curve-like almost everywhere; yet, }B=4\text{, which can be seen as four distinct "
+        r"one-dimensional branches''}",
         note="for our coordinates; the paper gives none",
         code="families.two_vertex",
     )
@@ -138,7 +141,9 @@ def _rigid_triangles(script: Script) -> None:
     script.state(
         "IIC.7",
         "Section II C, Ve = 3",
-        r"D=0:\text{ rigid; the configuration space is a point, with multiplicity}",
+        r"\text{``Our count }D=0\text{ suggests that these should have 0 degrees of "
+        r"freedom, i.e. that they should be rigid'' \dots\ ``the configuration space is "
+        r"simply a point at the unfolded state (with multiplicity''}",
         note="multiplicity 2^Vi",
         code="definite_stress",
         words="docs/mathematics.md, 6 and 7",
@@ -146,9 +151,8 @@ def _rigid_triangles(script: Script) -> None:
     script.state(
         "IIC.8",
         "Section II C, Ve = 3",
-        r"\text{triangulated triangles are equivalent to ``planar projections (Schlegel diagrams) "
-        r"of "
-        r"triangulations of spheres''}",
+        r"\text{``Triangulated triangles are equivalent to planar projections (Schlegel "
+        r"diagrams) of triangulations of spheres''}",
         r"\text{to planar projections of triangulated spheres; they are Schlegel diagrams iff they "
         r"have a convex lifting}",
         note="no convex lifting: corners (0,0), (4,0), (0,4), inner (1,1), (2,1), (1,2), diagonals "
@@ -175,9 +179,8 @@ def _rigid_triangles(script: Script) -> None:
     script.state(
         "IIC.9",
         "Fig. (triangle); Section III A, edges between opposite corners",
-        r"\text{the three vertices interior to the triangle are rigid; the diagonal gives two "
-        r"rigid "
-        r"triangulated triangles}",
+        r"\text{``the three vertices interior to the triangle are rigid even though they "
+        r"each have four folds''}",
         code="CreasePattern.triangulated_triangles",
         rests="IIC.7",
     )

@@ -111,19 +111,24 @@ def _butterfly(script: Script) -> None:
     script.state(
         "IV.1",
         "Section IV, definition of a butterfly",
-        r"\text{the configuration space is a circle, parametrized by the dihedral angle}",
+        r"\text{``Its configuration space is topologically a circle, parametrized by the "
+        r"dihedral angle at the shared fold''}",
         note="modulo rigid motions; self-intersection (theta = 0) allowed",
     )
     script.state(
         "IV.2",
         "Section IV",
-        r"d\text{ increases from }d_{min}\ (0)\text{ to }d_{max}\ (\pi)\text{, then decreases}",
+        r"\text{``the distance }d\text{ increases monotonically from its minimum value "
+        r"}d_{min}\text{ in the flat folded state, to its maximum value }d_{max}\text{ when "
+        r"the butterfly is flat and unfolded, and then decreases monotonically again to "
+        r"}d_{min}\text{''}",
         note="strictly: d^2 = const - 2 p q cos(theta)",
     )
     script.state(
         "IV.3",
         "Section IV",
-        r"d_{min}<d<d_{max}:\text{ two configurations related by reflection}",
+        r"\text{``for each value }d_{min}<d<d_{max}\text{, there are two distinct "
+        r"configurations of the butterfly that are related by reflection''}",
     )
 
 
@@ -211,8 +216,9 @@ def _reflex(script: Script) -> None:
     script.state(
         "IV.4",
         "Section IV, key property of H1 moves",
-        r"\text{faces around }v_2\text{ folded: ``always two distinct folded configurations of }T'"
-        r"\text{''}",
+        r"\text{``given a configuration of }T\text{ where the faces around }v_2\text{ are "
+        r"in a folded configuration, there are always two distinct folded configurations of "
+        r"}T'\text{''}",
         r"\text{near the unfolded state: two if the angle of }T\text{ at }v_2\text{ is less than "
         r"}\pi\text{; if it is larger, two if }v_2\text{ has degree 3 in }T\text{ or (to second "
         r"order) if }V_e=4\text{; only one can be sure if it is }\pi",

@@ -77,7 +77,7 @@ def _freedom(script: Script) -> None:
         "IIC.1",
         "Section II C, Eq. (Dcount)",
         r"D=V_e-3",
-        over=counts,
+        at=counts,
         note="holds also with chords. With a convex boundary the dimension of the complex solution "
         "set is exactly Ve - 3: for fixed boundary heights there are finitely many solutions "
         "(definite stress, docs/mathematics.md, 6); transversality is not needed",
@@ -89,29 +89,31 @@ def _freedom(script: Script) -> None:
         "IIC.2",
         "Section II C, after Eq. (Dcount)",
         r"\text{``}V_i+V_e-3=D+V_i\text{ nontrivial linear motions''}",
-        over=counts,
+        at=counts,
         code="BranchSystem.variables",
         rests="IIC.1",
     )
     state(
         "IIC.11",
         "Section II C, after Eq. (Dcount)",
-        r"\text{Eq. (Dcount) ``recovers the count \dots\ derived from a linear analysis''}",
+        r"\text{``recovers the count for the degrees of freedom for a generic (folded) "
+        r"triangulated origami derived from a linear analysis''}",
         note="3V - 6 - E = Ve - 3 with E = 3Vi + 2Ve - 3",
     )
     state(
         "IIC.3",
         "Section II C, before Eq. (Dcount) and Fig. (triangle)",
-        r"\text{all folds are incident to an internal vertex; other folds ``do not couple to any "
-        r"others''}",
+        r"\text{``all folds are incident to at least one internal vertex'' \dots\ ``Such "
+        r"folds do not couple to any others''}",
         note="a convenience: Eq. (Dcount) does not need it",
         code="CreasePattern.chords",
     )
     state(
         "IIC.4",
         "Section II C",
-        r"\lambda\mathbf h\text{ solves Eqs. (compat) if }\mathbf h\text{ does; lines in }\mathbb "
-        r"R^{V_i+D}\text{ are points of }\mathbb{RP}^{V_i+D-1}",
+        r"\text{``any vector }\lambda\mathbf{h}\text{ solves Eqs. (\ref{eq:compat}) if "
+        r"}\mathbf{h}\text{ does, for any real number }\lambda\text{'' \dots\ ``solutions "
+        r"of Eqs. (\ref{eq:compat}) in projective space }\mathbb{RP}^{V_i+D-1}\text{''}",
         code="Chart",
     )
     rho, sigma, t, lam = sympy.symbols("rho sigma t lambda")
@@ -139,14 +141,16 @@ def _freedom(script: Script) -> None:
     state(
         "IV.18",
         "Section IV, Henneberg moves",
-        r"\text{adding a vertex with three new edges preserves rigidity; }D\text{ does not change}",
+        r"\text{``rigidity-preserving transformations of graphs'' \dots\ ``the addition of "
+        r"a new vertex and attaching it to the original graph with three new edges''}",
         note="as a count of freedoms, in space; in the unfolded state see IV.4 and IV.7",
     )
     state(
         "IIC.12",
         "Section II C",
-        r"\text{the components are generically }(D-1)\text{-dimensional, the branches cones over "
-        r"them}",
+        r"\text{``each of these connected components is generically a "
+        r"}(D-1)\text{-dimensional component of the intersection of a small sphere centered "
+        r"at the unfolded state with the origami configuration space''}",
         note="with a convex boundary every component has that dimension over C",
         rests="IIC.1",
     )
@@ -155,7 +159,7 @@ def _freedom(script: Script) -> None:
         "Section III A",
         r"\text{``resulting in }V_i+1\text{ quadratic polynomials that must be simultaneously "
         r"solved in terms of }V_i+1\text{ vertex heights''}",
-        over=[
+        at=[
             {"V_i": s.pattern.Vi, "values": (len(s.quadrics) + 1, len(s.variables))}
             for s in systems
             if s.pattern.Ve == 4
@@ -177,7 +181,7 @@ def _freedom(script: Script) -> None:
         "Section III A, Bezout's theorem",
         r"\text{``this yields }2^{V_i+1}\text{ roots'' \dots\ ``the branches correspond to "
         r"}\pm\text{ pairs of solutions, we therefore have }B=2^{V_i}\text{''}",
-        over=[
+        at=[
             {
                 "V_i": p.Vi,
                 "B": count_branches(p).real,
@@ -221,7 +225,7 @@ def _folds(script: Script) -> None:
         "Section III A, mountain and valley folds",
         r"N_F=3(V_i-V_t+1)",
         r"N_F=3(V_i-V_t)+1",
-        over=_squares(),
+        at=_squares(),
         note="one vertex has 4 folds, not 6; agrees with Appendix D, 3Vi + 1; folds inside "
         "triangulated "
         "triangles not counted",
@@ -231,9 +235,11 @@ def _folds(script: Script) -> None:
     script.formula(
         "IIIA.4",
         "Section III A, mountain and valley folds",
-        r"2^{N_F}/2=2^{3(V_i-V_t+1)}/2",
-        r"2^{N_F}/2=2^{3(V_i-V_t)+1}/2=2^{3(V_i-V_t)}",
-        over=_squares(),
+        r"\text{``the potential number of distinct mountain-valley (MV) assignments up to a global "
+        r"sign change is }2^{3(V_i-V_t+1)}/2\text{''}",
+        r"\text{the potential number of distinct mountain-valley (MV) assignments up to a global "
+        r"sign change is }2^{3(V_i-V_t)+1}/2",
+        at=[{**names, "values": (2 ** names["N_F"] // 2,)} for names in _squares()],
         note="follows from IIIA.3; one vertex of degree four: 8",
         severity=Severity.CONSTANT,
         rests="IIIA.3",
@@ -247,7 +253,7 @@ def _folds(script: Script) -> None:
         r"branches is at most }(1/4)^{V_i-V_t-1}\text{''}",
         r"\text{the fraction of these MV assignments that we should expect to find among the "
         r"branches is at most }(1/4)^{V_i-V_t}",
-        over=shares,
+        at=shares,
         note="2^n branches over the 2^(3n) assignments of IIIA.4, n = Vi - Vt, where all have "
         "different assignments, as in the two-vertex square: 4 of 64; the printed count of "
         "folds would give (1/4)^(n + 1). As a bound (1/4)^(n - 1) is true and an overestimate, but "
@@ -272,7 +278,8 @@ def _folds(script: Script) -> None:
     script.state(
         "I.1",
         "Introduction",
-        r"\text{mountain and valley: dihedral angle larger or smaller than }\pi",
+        r"\text{``which folds have dihedral angle larger or smaller than }\pi\text{ "
+        r"respectively''}",
         note="measured on the upper side of the sheet",
         code="fold_functional",
     )
@@ -309,7 +316,8 @@ def _chambers(script: Script) -> None:
     script.state(
         "IIIA.7",
         "Section III A, after Eq. (B distinct)",
-        r"\text{the branches lie in a lower-dimensional }\mathbb R^{V_i-V_t+1}",
+        r"\text{``the branches must lie in a lower-dimensional "
+        r"}\mathbb{R}^{V_i-V_t+1}\text{''}",
         note="each of the Vt inner heights is the value of the plane through the triangle's "
         "corners",
         code="CreasePattern.without_rigid_parts",
@@ -320,7 +328,7 @@ def _chambers(script: Script) -> None:
         "Section III B",
         r"\text{``there are therefore }2^{V_i-V_t}\text{ choices of vertex sign patterns'' \dots\ "
         r"``we are left with only }2^{V_i-V_t-1}\text{ equivalence classes''}",
-        over=[{**names, "values": (2 * names["signs"], names["signs"])} for names in chambers],
+        at=[{**names, "values": (2 * names["signs"], names["signs"])} for names in chambers],
         note="a vertex of degree 4 has one class and two branches. Here counted as those of "
         "branches: every sign vector occurs",
         code="BranchCount.sign_vectors",
@@ -330,7 +338,7 @@ def _chambers(script: Script) -> None:
         "Section III B, chambers; Fig. (chambers)",
         r"\text{``the }2^{V_i-V_t+1}\text{ distinct rays of the branches always seem to be "
         r"distributed so that two rays lie in each of these chambers''}",
-        over=[{**names, "values": (names["rays"],)} for names in chambers],
+        at=[{**names, "values": (names["rays"],)} for names in chambers],
     )
 
 
@@ -344,7 +352,7 @@ def _freedoms(system: BranchSystem) -> dict[str, Any]:
 def _share(pattern: CreasePattern) -> dict[str, Any]:
     """The share of all assignments, up to reflection, that are those of branches."""
     count = count_branches(pattern)
-    found = (count.distinct or 0) - count.repeated_assignments
+    found = (count.distinct or 0) - (count.repeated_assignments or 0)
     share = Fraction(found, 2 ** len(pattern.without_rigid_parts()[0].folds) // 2)
     return {"V_i": pattern.Vi, "V_t": pattern.Vt, "values": (share,)}
 

@@ -361,7 +361,8 @@ def _curvature_form(script: Script) -> None:
     script.state(
         "A.9",
         "Appendix A, 'precisely the form ... from the self stresses in Eq. (compat)'",
-        r"\sum_{(n,m)}\frac{\sigma_{(n,m)}}{|\mathbf U_n-\mathbf U_m|}(h_n-h_m)^2=2\,K_v(h)",
+        r"\text{``This is precisely the form of the quadratic constraint that we get from "
+        r"the self stresses in Eq. (\ref{eq:compat})''}",
         note="the same equation: Eq. (constraint) is one half of Eq. (compat) with the stress of "
         "Eq. (wheelstress). K_v > 0 on a cone over a convex polygon",
         code="curvature_form, stress_form, wheel_stress",

@@ -1,4 +1,4 @@
-"""Counts of the table, the Discussion (Section V) and Appendix D."""
+"""Freedoms and orthogonality: the Discussion (Section V)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import sympy
 
 from exactfold import CreasePattern, count_branches, families, random_square
 from exactfold.exact import QuadraticForm
-from exactfold.exact.linalg import from_fmpq, inertia, nullspace, rank, to_flint
+from exactfold.exact.linalg import from_fmpq, inertia, nullspace, to_flint
 from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Script, run
@@ -26,55 +26,17 @@ from proofs.statements import Severity
 from proofs.vertex_forms import star
 
 NAME = "discussion_counts"
-TITLE = "Counts of the table, the Discussion and Appendix D"
+TITLE = "Counts of the Discussion"
 
 WIDE = star((1, 0), (0, 1), (-2, -1), (-1, -2), (1, -1))
-TABLE = {2: (100, 0, 0), 3: (5000, 0, 0), 4: (1000, 2, 0), 5: (1000, 1, 17)}
-TABLE |= {6: (1000, 1, 28), 7: (300, 0, 17), 8: (50, 0, 8)}
-"""Table (summary) by Vi: triangulations generated, with Vt > 0, with MV duplicates."""
 
 
 def prove(change: str | None = None) -> Proof:
-    """The numbers quoted from the computations, rigidified folds, dimensions of Appendix D."""
+    """Rigidified folds, and gradients orthogonal to all branches but one."""
     script = Script(NAME, TITLE, ("a triangulated disk with Vi, Ve vertices",), change)
-    _table(script)
     _rigid_folds(script)
     _orthogonality(script)
-    _appendix(script)
     return script.proof()
-
-
-def _table(script: Script) -> None:
-    duplicates = [TABLE[v][2] for v in (5, 6, 7, 8)]
-    fractions = [Fraction(TABLE[v][2], TABLE[v][0]) for v in (5, 6, 7, 8)]
-    checked = script.alter("numbers instead of fractions", fractions, [*map(Fraction, duplicates)])
-    script.counterexample(
-        "MV duplicates for Vi = 5 to 8: 17, 28, 17, 8 do not increase, their fractions do",
-        sorted(checked) == checked and sorted(duplicates) != duplicates,
-        of="IIIA.8",
-        against="IIIA.8",
-    )
-    column = script.alter("column of the duplicates", 1, 2)
-    total, special = (sum(row[k] for row in TABLE.values()) for k in (0, column))
-    script.certificate(
-        "4 of 8450 patterns have triangulated triangles, 4 of the 3350 with Vi >= 4",
-        (total, special) == (8450, 4) and sum(TABLE[v][0] for v in range(4, 9)) == 3350,
-        of="IIIA.9",
-    )
-    script.state(
-        "IIIA.8",
-        "Section III A, last paragraph",
-        r"\text{``with }V_i=5,6,7,8\text{ we found an increasing number of crease patterns''}",
-        r"\text{an increasing fraction: }1.7\%,\ 2.8\%,\ 5.7\%,\ 16\%",
-        "the numbers in Table (summary) are 17, 28, 17, 8; the Discussion says fraction",
-        severity=Severity.TYPO,
-    )
-    script.state(
-        "IIIA.9",
-        "Section III A and Introduction",
-        r"\text{exceptions: 2, 1, 1 systems with }V_i=4,5,6\text{, frequency }\sim 1/1000",
-        note="4 of 3350 with Vi >= 4, where exceptions are possible; 4 of 8450 in all",
-    )
 
 
 def _rigid_folds(script: Script) -> None:
@@ -145,7 +107,7 @@ def _rigid_folds(script: Script) -> None:
         "Section V, non-triangulated origami",
         r"D=V_e-4-E",
         r"D=V_e-3-E",
-        over=_rigidified(),
+        at=_rigidified(),
         note="E = 0 must give Eq. (Dcount); a vertex of degree 5 with one rigid fold has D = "
         "1. Like "
         "Eq. (Dcount) a count of equations: D can be larger (V.2), and smaller, if a rigid fold "
@@ -246,18 +208,28 @@ def _orthogonality(script: Script) -> None:
         special.distinct == script.alter("four branches there", 3, 4),
         against="V.5",
     )
+    folds = script.alter("printed number of folds", 1, 3)
+    script.cases(
+        "3 Vi + 1 folds",
+        (
+            len(p.folds) == 3 * p.Vi + folds
+            for p in (families.two_vertex(), families.hypar(1), families.h1_sequence(5))
+        ),
+        of="V.3",
+    )
     state = script.state
     state(
         "V.3",
         "Section V",
-        r"N_F=3V_i+\mathrm{const}",
+        r"\text{``in a triangulation, the number of internal folds is "
+        r"}N_F=3V_i+const\text{''}",
         note="const = Ve - 3 = 1 for four boundary vertices",
     )
     state(
         "V.4",
         "Section V",
-        r"\sum_i\frac{\partial E}{\partial\theta_i}\Delta\theta_i\ge0\text{ on both rays: "
-        r"perpendicular}",
+        r"\sum_{i=1}^{N_F}\frac{\partial E}{\partial\theta_i}\cdot\Delta\theta_i\ge0\text{ "
+        r"\dots\ ``must then be perpendicular to all undesired branches''}",
         note="x >= 0 and -x >= 0 give x = 0",
         equation="12",
         words="x >= 0 and -x >= 0",
@@ -265,7 +237,9 @@ def _orthogonality(script: Script) -> None:
     state(
         "V.5",
         "Section V",
-        r"N_F=3V_i+\mathrm{const}\text{ and }2^{V_i}\text{ branches: orthogonality ``impossible''}",
+        r"\text{``the number of internal folds is }N_F=3V_i+const\text{ with our finding "
+        r"that the number of branches is }2^{V_i}\text{, we have thus shown that it is "
+        r"impossible to satisfy the above orthogonality constraint''}",
         r"\text{impossible wherever the }2^{V_i}-1\text{ undesired branches span the }(V_i+1)"
         r"\text{-dimensional space of foldings}",
         note="the two numbers alone do not show it, as many vectors can lie in a hyperplane. That "
@@ -297,119 +271,11 @@ def _orthogonality(script: Script) -> None:
     state(
         "V.7",
         "Section V",
-        r"\text{in generic patterns with }D=1\text{ the number of branches depends only on }V_i",
+        r"\text{``in generic triangulated patterns with }D=1\text{, the number of branches "
+        r"depends only on }V_i\text{ and not the geometry''}",
         note="with multiplicity, as in the definition of B. The number of distinct branches "
         "depends on Vi - Vt, and triangulated triangles persist under small changes of the "
         "vertices",
-    )
-
-
-def _appendix(script: Script) -> None:
-    V = sympy.Symbol("V", positive=True)
-    square = script.alter("unordered pairs", 2, 1)
-    script.identity(
-        "2^(V+1) vectors, (2^(V+1))^2 = 4^(V+1) ordered pairs, each with itself included",
-        sympy.powsimp((2 ** (V + 1)) ** square / 4 ** (V + 1), force=True) - 1,
-        of="D.3",
-    )
-    square = script.alter("vectors instead of pairs", 2, 1)
-    pairs = {v: TABLE[v][0] * 2 ** (square * (v + 1)) for v in TABLE}
-    script.certificate(
-        "angle pairs for Vi = 8: 2/3 of those for Vi = 7 and 4/5 of those for Vi = 6",
-        Fraction(pairs[8], pairs[7]) == Fraction(2, 3)
-        and Fraction(pairs[8], pairs[6]) == Fraction(4, 5),
-        of="D.7",
-    )
-    folds = script.alter("printed number of folds", 1, 3)
-    outcomes = []
-    for pattern in (families.two_vertex(), families.hypar(1), families.h1_sequence(5)):
-        rows = [fold_functional(pattern, f) for f in pattern.folds]
-        size = len(pattern.vertices)
-        bends = rank([[row.get(v, 0) for v in range(size)] for row in rows])
-        outcomes.append((len(rows), bends) == (3 * pattern.Vi + folds, pattern.Vi + 1))
-    script.cases(
-        "3 Vi + 1 folds; the bends span a (Vi + 1)-dimensional space", outcomes, of="D.1 D.2 V.3"
-    )
-    state = script.state
-    place = "Appendix D"
-    state(
-        "D.1",
-        place,
-        r"3V_i+1\text{-dimensional space of dihedral angles}",
-    )
-    state(
-        "D.2",
-        place,
-        r"\text{the branches lie in a }V_i+1\text{-dimensional linear subspace}",
-        note="heights modulo planes embed into the bends (IIA.13)",
-    )
-    state(
-        "D.3",
-        place,
-        r"2^{V_i+1}\text{ vectors},\ (2^{V_i+1})^2\text{ ordered pairs}",
-    )
-    state(
-        "D.4",
-        place + " and Fig. (v6)",
-        r"\text{points on the }V_i\text{-dimensional sphere; 6-dimensional for }V_i=6",
-        note="the unit sphere of R^(Vi+1)",
-        rests="D.2",
-    )
-    width = script.alter("the width of the captions in the text", 128, 32)
-    script.counterexample(
-        "bins of pi/32 and of pi/128 are not the same: 32 and 128 bins up to pi",
-        Fraction(1, 32) != Fraction(1, width),
-        against="D.5",
-    )
-    state(
-        "D.5",
-        "Appendix D, Figs. (v6) and (distribution) against the text",
-        r"\text{bins of size }\pi/32\text{ (both captions), }\pi/128\text{ (text, twice)}",
-        r"\text{one of the two; the source does not say which}",
-        "nothing depends on it. V=6 in the text and V=2 -- 8 in a caption are values of Vi",
-        severity=Severity.TYPO,
-    )
-    a, b = sympy.Matrix(sympy.symbols("a1:3")), sympy.Matrix(sympy.symbols("b1:3"))
-    other = script.alter("angle with the other end not turned", -a, a)
-    script.identity(
-        "cos of the angle with the other end of a branch is minus the cosine: theta and pi - theta",
-        other.dot(b) / sympy.sqrt(other.dot(other) * b.dot(b))
-        + a.dot(b) / sympy.sqrt(a.dot(a) * b.dot(b)),
-        of="D.6",
-    )
-    state(
-        "D.6",
-        place,
-        r"\text{``for each angle }\theta\text{, we also include the angle }\pi-\theta\text{''; }"
-        r"0\text{ and }\pi\text{ of each branch with itself}",
-        note="all four pairs of ends; a share 2^(-Vi) of the ordered pairs is of a branch with "
-        "itself",
-    )
-    angle, n = sympy.symbols("theta n", positive=True)
-    density = sympy.sin(angle) ** (n - 1)
-    power = script.alter("sphere of another dimension", n, n + 1)
-    script.identity(
-        "two random points on S^n: the angle has density sin^(n-1), and (sin^n cos)' = sin^(n-1) "
-        "(n cos^2 - sin^2), so that E cos^2 = 1/(n + 1): it tends to pi/2",
-        sympy.simplify(
-            sympy.diff(sympy.sin(angle) ** power * sympy.cos(angle), angle) / density
-            - (n * sympy.cos(angle) ** 2 - sympy.sin(angle) ** 2)
-        ),
-        of="D.8",
-    )
-    state(
-        "D.8",
-        place,
-        r"\text{``for random points on a sphere, the angle distribution approaches a Gaussian with "
-        r"variance going to zero''}",
-        note="the variance is proved here, the Gaussian is cited (Ref. caifanjiang)",
-        cited="Ref. caifanjiang (the Gaussian)",
-    )
-    state(
-        "D.7",
-        place,
-        r"\text{``the number of data points going into the histograms is comparable''}",
-        note="2/3 of the pairs for Vi = 7",
     )
 
 

@@ -134,8 +134,9 @@ def _nappes(script: Script) -> None:
     script.state(
         "IIB.24",
         "Section II B, on the eigenvector",
-        r"\text{points on the two nappes are distinguished by the sign of their dot product with }"
-        r"\mathbf h_-\text{; the plane normal to it separates them}",
+        r"\text{``Points on the two nappes can be distinguished by the sign of their dot "
+        r"products with }\mathbf{h}_-\text{ since the plane normal to }\mathbf{h}_-\text{ "
+        r"separates the nappes''}",
         note="h_- . h = K(h_-, h)/lambda with K(h_-) > 0. Any t with K(t) > 0 serves as well, "
         "with K(t, h) in place of the dot product; the dot product does not change when an affine "
         "function is added to h",
@@ -144,8 +145,9 @@ def _nappes(script: Script) -> None:
     script.state(
         "IIIB.4",
         "Section III B, vertex sign pattern",
-        r"\sigma_n=\mathrm{sgn}[\mathbf e_n\cdot\mathbf h]\text{; each }\mathbf e_n\text{ defines "
-        r"a hyperplane separating popped-up from popped-down configurations at }n",
+        r"\sigma_n=\textrm{sgn}[\mathbf{e}_n\cdot\mathbf{h}]\text{ \dots\ ``each of the "
+        r"}\mathbf{e}_n\text{ defines a hyperplane separating the popped-up configurations "
+        r"at }n\text{ from those popped-down there''}",
         note="by IIB.24; sigma_n = 0 iff the star of n is flat. On branches every other timelike "
         "vector that points up gives the same sign. e_n belongs to the negative eigenvalue in the "
         "sign of Appendix C (positive in that of Eq. (wheelstress), see IIB.21)",
@@ -181,8 +183,8 @@ def _curvature(script: Script) -> None:
     script.state(
         "IIB.25",
         "Section II B, on the eigenvector",
-        r"\mathbf h_-\text{ gives a set of displacements that maximizes the change in the "
-        r"Gaussian curvature}",
+        r"\text{``This eigenvector gives a set of displacements that maximizes the change "
+        r"in the Gaussian curvature''}",
         note="K among displacements of norm 1. Not always |K|: the eigenvalue of largest magnitude "
         "can be negative, as for spokes (0,-3), (2,1), (1,1), (-3,1)",
         code="curvature_form",
@@ -190,8 +192,8 @@ def _curvature(script: Script) -> None:
     script.state(
         "IIB.26",
         "Section II B, Fig. (conical)(b)",
-        r"\text{the eigendeformation of the negative eigenvalue gives the vertex positive "
-        r"Gaussian curvature}",
+        r"\text{``The eigendeformation of the negative eigenvalue would, on its own, give "
+        r"the vertex positive Gaussian curvature''}",
         note="negative in the sign of Appendix C, -2 K: K(h_-) = lambda |h_-|^2 > 0",
     )
 
@@ -232,8 +234,9 @@ def _components(script: Script) -> None:
     script.state(
         "IIB.27",
         "Section II B, on the eigenvector",
-        r"\text{the component of largest magnitude is the displacement at the vertex itself; the "
-        r"neighbouring vertices are moved by smaller amounts in the opposite direction}",
+        r"\text{``the component of largest magnitude in this eigenvector is the "
+        r"displacement at the vertex itself and the neighboring vertices are moved by "
+        r"smaller amounts in the opposite direction''}",
         r"h_0>h_n\text{ for all }n\text{, where }\mathbf h_-\text{ pops up; if the link polygon "
         r"has no reflex corner, also }h_n<0\text{ for all }n\text{, so that }|h_n|<h_0",
         note="the first part for every vertex (proof: LARGEST in proofs/eigenvector.py). With a "

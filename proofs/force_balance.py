@@ -105,7 +105,9 @@ def _stresses(script: Script) -> None:
     script.state(
         "B.3",
         "Appendix B, second paragraph",
-        r"\boldsymbol\sigma^T\cdot\mathbf C=\mathbf 0^T\iff\text{ force balance at each vertex}",
+        r"\bm{\sigma}^T\cdot\mathbf{C}=\mathbf{0}^T\text{ \dots\ ``self stresses are "
+        r"assignments of tensions and compressions to edges that preserve force balance at "
+        r"each vertex''}",
         note="the columns of vertex n give the sum over its edges of sigma times the unit vector",
         rests="IIA.14",
     )
@@ -319,7 +321,8 @@ def _telescope(script: Script) -> None:
     script.state(
         "B.24",
         "Appendix B, conclusion",
-        r"\text{Eqs. (outer), (spokes) define a self stress on the wheel graph}",
+        r"\text{``Eqs. (\ref{eq:outer}) and (\ref{eq:spokes}) define a self stress on the "
+        r"wheel graph''}",
         note="short proof for every closed star with c_j != 0, back-tracks and any winding too: "
         "d_{j+1} - (s_j/L_j^2) d_j = (c_j/L_j^2) J d_j telescopes at the hub, cancels at the rim",
         code="wheel_stress",

@@ -33,10 +33,10 @@ RELATIONS = ("=", "<", ">", r"\le", r"\ge", r"\approx")
 class Node:
     """One part of an expression: `kind`, its text (a name, a number, signs, brackets), its parts.
 
-    Kinds: number, name (parts: indices), sum (text: signs), product, quotient (text: "frac" or
-    "/"), power, function (text: sin, ...), sum over an index or product over one (text: "sum i",
-    parts: body, and the two ends unless all indices are meant), group (text: its brackets), tuple,
-    and truth (a relation in square brackets: 1 if it holds, else 0).
+    Kinds: number, name (parts: indices), sum (text: signs), product (text: dots or spaces between),
+    quotient (text: "frac" or "/"), power, function (text: sin, ...), sum over an index or product
+    over one (text: "sum i", parts: body, and the two ends unless all indices are meant), group
+    (text: its brackets), tuple, and truth (a relation in square brackets: 1 if it holds, else 0).
     """
 
     kind: str
@@ -178,7 +178,9 @@ def latex(part: Formula | Node) -> str:
         joined = "".join(sign + term for sign, term in zip(text, parts, strict=True))
         return joined.removeprefix("+")
     if kind == "product":
-        return "".join(_joined(parts))
+        dots = [r"\cdot" if joint == "." else "" for joint in text]
+        pairs = zip(parts, [*dots, ""], strict=True)
+        return "".join(_joined([x for pair in pairs for x in pair if x]))
     if kind == "power":
         return f"{parts[0]}^{{{parts[1]}}}"
     if kind == "quotient":

@@ -45,6 +45,10 @@ class Proof:
         """The steps that name a statement, for it or against its printed form."""
         return [step for step in self.steps if key in (*step.of, *step.against)]
 
+    def kind(self, statement: Statement) -> str:
+        """Whether the text of a statement is a formula that a step evaluates, or words."""
+        return "formula" if any(c.key == statement.key for c in self.claims) else "in words"
+
     def basis(self, statement: Statement) -> str:
         """What a statement rests on, from the strongest to the weakest, in words."""
         steps = [step for step in self.steps if statement.key in step.of]
@@ -59,7 +63,9 @@ class Proof:
             f"cited: {statement.cited}" if statement.cited else "",
             f"in words: {statement.words}" if statement.words else "",
         ]
-        if statement.ruling is not Ruling.AS_PRINTED:
+        if statement.contradiction:
+            parts.append(f"the paper says otherwise: {statement.contradiction}")
+        elif statement.ruling is not Ruling.AS_PRINTED:
             parts.append("the printed form refuted by an example")
         return "; ".join(part for part in parts if part)
 
@@ -86,6 +92,7 @@ class Proof:
                     "code": s.code,
                     "equation": s.equation,
                     "severity": s.severity.value if s.severity else None,
+                    "kind": self.kind(s),
                     "basis": self.basis(s),
                 }
                 for s in self.statements
@@ -174,7 +181,7 @@ class Script:
         printed: str,
         corrected: str = "",
         *,
-        over: Iterable[Names],
+        over: Iterable[Names] = (),
         at: Iterable[Names] = (),
         functions: Iterable[str] = (),
         mentions: bool = False,
@@ -184,6 +191,7 @@ class Script:
 
         `over` and `at` say what the names mean: free geometries, in which they have to hold
         identically, and such with numbers, where the printed form fails (`over` if none is given).
+        Without the first they are tested only, on each of the second.
         With `mentions` single names and numbers among the words are evaluated, too.
         """
         names = tuple(functions)
@@ -195,12 +203,13 @@ class Script:
         claim = Claim(key, first, right, free, tuple(at) or free)
         self.claims.append(claim)
         which = "corrected" if corrected else "printed"
-        number = len({id(names) for names in (*claim.over, *claim.at)})
+        places = "free geometries" if free else "cases"
         self.steps.append(
             Step(
-                f"{key} as {which}, evaluated in {number} geometries or systems",
-                How.IDENTITY,
-                bool(number) and claim.holds(right),
+                f"{key} as {which}, evaluated in {len(free or claim.at)} {places}",
+                How.IDENTITY if free else How.CASES,
+                bool(claim.at) and claim.holds(right),
+                cases=0 if free else len(claim.at),
                 of=(key,),
                 formula=True,
             )
@@ -234,7 +243,8 @@ class Script:
     def _ruled(self, statement: Statement) -> Statement:
         """The statement with its ruling. Raises `ValueError` if nothing carries it."""
         key = statement.key
-        refuted = any(key in step.against for step in self.steps)
+        refuted = bool(statement.contradiction)
+        refuted = refuted or any(key in step.against for step in self.steps)
         named = any(key in step.of for step in self.steps)
         if not (named or refuted or statement.rests or statement.cited or statement.words):
             raise ValueError(f"{key} rests on nothing")
@@ -259,7 +269,10 @@ def report(proof: Proof) -> str:
 def stated(proof: Proof, s: Statement) -> list[str]:
     """The lines on one statement: where, printed, corrected, why, and what it rests on."""
     where = f"{s.place}, Eq. ({s.equation})" if s.equation else s.place
-    lines = [f"  {s.key}  {s.ruling.value}: {where}", f"      printed:   {s.printed}"]
+    lines = [
+        f"  {s.key}  {s.ruling.value}; {proof.kind(s)}: {where}",
+        f"      printed:   {s.printed}",
+    ]
     lines += [f"      corrected: {s.corrected}"] if s.corrected else []
     lines += [f"      severity:  {s.severity.value}"] if s.severity else []
     lines += [f"      note:      {s.note}"] if s.note else []

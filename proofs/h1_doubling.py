@@ -212,7 +212,9 @@ def _doubling(script: Script) -> None:
     script.state(
         "IV.14",
         "Section IV, last argument",
-        r"\text{the seed and the first butterfly: two intersecting lines, ``a letter X''}",
+        r"\text{``a neighborhood of the unfolded state of the configuration space of the "
+        r"two butterflies together consists of two intersecting lines, topologically a "
+        r"letter X''}",
         note="v2 has degree 3 in the seed, so the doubling needs only that its fold is bent",
         code="families.single_vertex",
     )

@@ -170,8 +170,8 @@ def _small(script: Script, levels: list[set[Triangulation]]) -> None:
     script.state(
         "IV.11",
         "Section IV, fractions",
-        r"\text{at }V_i=3\text{: 0\% ``had no degree-3 vertices at the boundary'', and the "
-        r"fraction of H1 triangulations is 1}",
+        r"\text{``starting from }0\%\text{ at }V_i=3\text{'' \dots\ ``the fraction of H1 "
+        r"triangulations decreased roughly exponentially from 1 at }V_i=3\text{''}",
         note="follows from IV.10; the other percentages are IV.15 and IV.16",
         rests="IV.10",
     )
@@ -235,7 +235,8 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
     script.state(
         "IV.9",
         "Section IV",
-        r"\text{a reverse H1 move deletes one boundary vertex and converts one internal vertex}",
+        r"\text{``each reverse H1 move results in the deletion of one boundary vertex and "
+        r"the conversion of one internal vertex to a boundary vertex''}",
         note="when the middle neighbour is interior, that is, without chords",
     )
     script.formula(
@@ -243,7 +244,7 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         "Section IV",
         r"\text{``can be decomposed into a sequence of }V_i\text{ butterflies''}",
         r"\text{can be decomposed into a sequence of }V_i+1\text{ butterflies}",
-        over=[
+        at=[
             {"V_i": p.Vi, "values": (len(p.triangles) // 2,)}
             for p in map(families.h1_sequence, (3, 5, 8))
         ],

@@ -213,7 +213,8 @@ def _induction_formulas(script: Script) -> None:
     script.state(
         "B.18",
         "Appendix B, induction",
-        r"\text{stresses of }G_{n+1},G_{n,i}\text{ differ only at the spokes }i-1,i,i+1",
+        r"\text{``the self stress evaluated on corresponding spokes of }G_{n+1}\text{ and "
+        r"}G_{n,i}\text{ are identical except at the edges }i-1,i,i+1\text{''}",
         note="Eq. (spokes) for spoke j contains L_{j-1}, L_j, L_{j+1} and its two angles only",
         rests="B.2",
     )
@@ -321,7 +322,7 @@ def _last_display(script: Script) -> None:
         at=[without(5, numbers=True)],
         note="as far as the four right-hand sides go, which are equal; the left-hand side needs "
         "the sign of B.20",
-        equation="B20 to B23",
+        equation="B20 to B24",
     )
 
 
@@ -369,7 +370,8 @@ def _choice_of_spoke(script: Script) -> None:
     script.state(
         "B.22",
         "Appendix B, induction: G_{n,i} by removing 'an arbitrary' spoke vertex i",
-        r"\text{for every spoke }i",
+        r"\text{``the star graph }G_{n,i}\text{ formed by removing (an arbitrary) spoke "
+        r"vertex }i\text{''}",
         r"\text{for a spoke }i\text{ with }\alpha_{i-1,i}+\alpha_{i,i+1}<\pi",
         "equal to pi: Eq. (spokes) has no meaning in G_{n,i}; larger: G_{n,i} has a reflex "
         "sector, where the formulas hold, but neither the figure nor 'angles in (0, pi)'. Such a "

@@ -172,7 +172,7 @@ def _crossings(script: Script) -> None:
         r"2w-1+[\alpha_{1,2}<0]+[\alpha_{N,1}<0]\text{ is the net number of times }C_f-C_b\text{ "
         r"that the angles but the first and the last cross; back-tracks among them do not cross }"
         r"b-[\alpha_{1,2}<0]-[\alpha_{N,1}<0]-C_b\text{ times}",
-        over=map(_crossed, stars),
+        at=map(_crossed, stars),
         note="the two gaps cancel, and the sum b + 2w - 1 is right. As printed both counts fail "
         "when the first or the last angle is a back-track: spokes (1,0), (2,-1), (0,1), (-1,-1)",
         code="kapovich_millson",
@@ -236,15 +236,16 @@ def _vanishing(script: Script) -> None:
         "Appendix C, end of the proof of Theorem KM",
         r"\sum_{n=1}^{N-1}\alpha_{n,n+1}=2\pi-\alpha_{N,1}",
         r"\sum_{n=1}^{N-1}\alpha_{n,n+1}=2\pi w-\alpha_{N,1}",
-        over=[_winding_star(5, 1), _winding_star(5, 2), _winding_star(7, 3)],
+        at=[_winding_star(5, 1), _winding_star(5, 2), _winding_star(7, 3)],
         note="the theorem is about any winding w; the sine of the sum is the same",
         severity=Severity.TYPO,
     )
     script.state(
         "C.21",
         "Appendix C, end of the proof of Theorem KM",
-        r"\text{where a }\Delta_j\text{ vanishes, ``we can perturb the angles'' without changing }"
-        r"f,b,w\text{ and the signature}",
+        r"\text{``we can perturb the angles }\alpha\text{ to avoid these cases'' \dots\ "
+        r"``and hence without changing the signature. Such a perturbation can also be "
+        r"chosen small enough so that }f,b,w\text{ do not change''}",
         note="turn the spokes d_n, 2 < n < N, that are parallel to d_1. It can be avoided: two "
         "minors in sequence never vanish, and C.7 gives opposite signs around one that does",
     )
@@ -279,8 +280,10 @@ def _germ(script: Script) -> None:
     script.state(
         "C.17",
         "Appendix C, Theorem 1 (Kapovich and Millson)",
-        r"\text{germ of the configuration space }\cong\text{ germ of the null cone of a form with "
-        r"nullity 3 and signature }(f-2w-1,b+2w-1)",
+        r"\text{``The germ of the configuration space of an origami vertex with }f\text{ "
+        r"forward-tracks, }b\text{ back-tracks, and winding }w\text{ is isomorphic to the "
+        r"germ of the null-cone of a quadratic form with nullity 3, and signature "
+        r"}(f-2w-1,b+2w-1)\text{''}",
         note="in the sign of Appendix C, -2 K_v. Nullity 3 by C.4 and chi(N) = "
         "-c_N/(c_1...c_{N-1}), which hold for any tracks. The germ: the lengths have rank 2N - 1 "
         "in the plane, so they leave one analytic equation in the heights modulo rigid motions, "
@@ -315,8 +318,10 @@ def _changes(script: Script) -> None:
     script.state(
         "C.20",
         "Appendix C, after Theorem 1 and in its proof",
-        r"\text{the matrix is }(n+1)\times(n+1),\ f+b=n;\text{ we showed the case "
-        r"}f=N,b=0,w=1\text{, and our sign convention agrees}",
+        r"\text{``the defining symmetric matrix is }(n+1)\times(n+1)\text{ and "
+        r"}f+b=n\text{'' \dots\ ``We showed above the case of this theorem when "
+        r"}f=N,b=0\text{ and }w=1\text{, and in fact our sign convention for the sign of "
+        r"the quadratic form also agrees with theirs''}",
         note="with the sign of Appendix C: (N - 3, 1); Eq. (compat) has the other sign (IIB.21)",
     )
     second = script.alter("stars of different signature", TWICE_BACK, BACK_FIRST)
@@ -341,8 +346,8 @@ def _changes(script: Script) -> None:
     script.state(
         "C.18",
         "Appendix C, after Theorem 1",
-        r"\text{Eq. (determinant) only vanishes when one of the }\alpha\text{ is an integer "
-        r"multiple of }\pi",
+        r"\text{``only vanishes when one of the }\alpha\text{ is an integer multiple of "
+        r"}\pi\text{''}",
         note="by C.6 it vanishes iff alpha_{N,1} is; where another angle tends to such a multiple "
         "it is unbounded",
         equation="C5",
@@ -351,7 +356,7 @@ def _changes(script: Script) -> None:
     script.state(
         "C.19",
         "Appendix C, after Theorem 1",
-        r"\text{the signature changes when any of }f,b,w\text{ change}",
+        r"\text{``the signature changes when any of }f,b,w\text{ change''}",
         r"\text{the signature changes each time one angle passes a multiple of }\pi,\text{ by "
         r"}(-1,1)\text{ or }(1,-1)",
         note="two such changes can cancel: (f, b, w) and (f - 2, b + 2, w - 1) have the same "

@@ -142,7 +142,7 @@ def _inequality(script: Script) -> None:
         half_bend(0, slope, t) - 1,
         of="IIIC.1",
     )
-    outcomes = []
+    outcomes: list[bool] = []
     for pattern, hub, heights in _null_vectors():
         form = curvature_form(pattern, hub)
         for nx, ny in ((0, 1), (1, 0), (1, 2), (3, -1)):
@@ -262,7 +262,7 @@ def _examples(script: Script) -> None:
     script.state(
         "IIIC.2",
         "Section III C, after Fig. (mvexample1)",
-        r"\text{``must contain both a mountain bird's foot and a valley bird's foot''}",
+        r"\text{``must contain both a mountain ``bird's foot'' and a valley bird's foot''}",
         r"\text{for each of the two signs a bird's foot of that sign or, if folds are collinear, a "
         r"cross of four folds of that sign}",
         "hub (0,0), spokes (1,0), (1,1), (0,1), (-1,1), (-1,0), (0,-1), (1,-2), folds VMVMVVM: "
@@ -283,9 +283,10 @@ def _examples(script: Script) -> None:
     script.state(
         "IIIC.6",
         "Section III C, definition of a bird's foot",
-        r"\text{``four \dots\ folds }c_1,c_2,c_3,c_4\text{ in counter-clockwise order \dots\ such "
-        r"that the angles between }c_1,c_2,c_3\text{ are between 0 and }\pi\text{'', with }c_1,c_2,"
-        r"c_3\text{ of one sign and }c_4\text{ of the other}",
+        r"\text{``a sequence of four not-necessarily adjacent folds }c_1,c_2,c_3,c_4\text{ "
+        r"in counter-clockwise order around the vertex such that the angles between "
+        r"}c_1,c_2,c_3\text{ are between 0 and }\pi\text{ and }c_1,c_2,c_3\text{ have the "
+        r"same sign (all mountains or all valleys) and }c_4\text{ has the opposite sign''}",
         note="all three angles, also that from c_3 to c_1, which holds c_4: the directions of one "
         "sign lie in no closed half-plane. With two angles only three folds within a right angle "
         "would do",
@@ -300,7 +301,10 @@ def _examples(script: Script) -> None:
     script.state(
         "IIIA.20",
         "Section III A, last paragraph",
-        r"\text{the 6-fold vertex MVMVMV: distributions of folds do not distinguish foldings}",
+        r"\text{``the 6-fold origami vertex with alternating mountain and valley folds "
+        r"(MVMVMV in cyclic order around the vertex)'' \dots\ ``the distribution of "
+        r"mountain and valley folds do not distinguish different branches in configuration "
+        r"space''}",
         note="heights (-3,-3,1,-2,-2,-3) and (3,3,3,2,2,-1) at the ends of its folds in "
         "ccw order: same folds, one popped up, one popped down. As D = 3 both lie on one branch",
     )

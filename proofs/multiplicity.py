@@ -119,7 +119,7 @@ def _multiplicity(script: Script) -> None:
         r"\sum_b2^{|F_b|}=2^{V_i},\quad B_{distinct}\le2^{V_i-V_t}\text{, where }b\text{ are the "
         r"distinct branches and }F_b\text{ the vertices that are flat on }b\text{; equality iff "
         r"these are those in triangulated triangles on every branch}",
-        over=map(
+        at=map(
             _with_flat_vertices,
             (
                 families.two_vertex(),
@@ -212,8 +212,10 @@ def _transversality(script: Script) -> None:
     script.state(
         "IIC.13",
         "Section II C, after Eq. (Dcount)",
-        r"\text{the hypersurfaces of Eq. (compat) ``intersect transversely. This should be true "
-        r"generically, and in all of the numerical examples''}",
+        r"\text{``the hypersurfaces arising from Eq. (\ref{eq:compat}) for each of the "
+        r"}V_i\text{ internal vertices intersect transversely'' \dots\ ``This should be "
+        r"true generically, and in all of the numerical examples considered in this paper "
+        r"this is indeed the case''}",
         r"\text{transversely along a branch iff no vertex star is flat on it; so nowhere where "
         r"}V_t>0",
         "triangulated triangles persist under small changes, and the paper's samples hold four. "

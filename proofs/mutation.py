@@ -3,9 +3,10 @@
 `survivors` puts each of them in the place of a statement as it should be and evaluates it where the
 step does: first in geometries with numbers, where nearly all fail at once.
 
->>> from proofs.formulas import latex, parse
->>> [latex(wrong) for wrong in mutants(parse("D=V_e-3"))]
-['D=V_{e+1}-3', 'D=-V_{e}-3', 'D=V_{e}+3', 'D=-3', 'D=V_{e}', 'D=V_{e}-4']
+>>> from proofs.formulas import latex
+>>> from proofs.reading import parse
+>>> " ".join(latex(wrong) for wrong in mutants(parse("D=V_e-3")))
+'e=V_{e}-3 D=V_{D}-3 D=V_{e+1}-3 D=-V_{e}-3 D=V_{e}+3 D=-3 D=V_{e} D=V_{e}-4'
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from proofs.claims import Claim, holds
+from proofs.claims import Claim
 from proofs.formulas import Formula, Node
 from proofs.reading import Text
 
@@ -26,17 +27,6 @@ def survivors(claim: Claim) -> list[str]:
     return [wrong.latex for wrong in garbled(claim.right) if claim.holds(wrong)]
 
 
-def survivors_as_printed(claim: Claim) -> list[str]:
-    """The same for a printed form that is corrected: a mistake more, and it holds."""
-    if claim.printed == claim.right:
-        return []
-    return [
-        wrong.latex
-        for wrong in garbled(claim.printed)
-        if all(holds(wrong, names) for names in claim.at)
-    ]
-
-
 def garbled(text: Text) -> Iterator[Text]:
     """Every text with one mistake in one of its formulas."""
     for k, part in enumerate(text.parts):
@@ -46,8 +36,15 @@ def garbled(text: Text) -> Iterator[Text]:
 
 
 def mutants(formula: Formula) -> list[Formula]:
-    """Every formula with one mistake: a sign, an index, a number, a function, a factor, a place."""
-    found = []
+    """Every formula with one mistake.
+
+    A sign, an index, a number, a function, a factor, a name for another one, a relation, a range.
+    """
+    found = [
+        replace(formula, sides=(*formula.sides[:k], wrong, *formula.sides[k + 1 :]))
+        for k, side in enumerate(formula.sides)
+        for wrong in _renamed(side, sorted({n.text for s in formula.sides for n in _names(s)}))
+    ]
     for k, side in enumerate(formula.sides):
         for wrong in _mutated(side):
             found.append(
@@ -62,6 +59,23 @@ def mutants(formula: Formula) -> list[Formula]:
             moved = Node("sum", f"+{shift}", (end, Node("number", "1")))
             found.append(replace(formula, ends=(*formula.ends[:k], moved, *formula.ends[k + 1 :])))
     return found
+
+
+def _names(node: Node) -> Iterator[Node]:
+    """All names without indices."""
+    if node.kind == "name" and not node.parts:
+        yield node
+    for part in node.parts:
+        yield from _names(part)
+
+
+def _renamed(node: Node, names: list[str]) -> Iterator[Node]:
+    """All expressions with another name in one place; indices of sums are left alone."""
+    if node.kind == "name" and not node.parts:
+        yield from (replace(node, text=other) for other in names if other != node.text)
+    for k, part in enumerate(node.parts):
+        for wrong in _renamed(part, names):
+            yield replace(node, parts=(*node.parts[:k], wrong, *node.parts[k + 1 :]))
 
 
 def _mutated(node: Node) -> Iterator[Node]:
@@ -87,7 +101,7 @@ def _mistakes(node: Node) -> Iterator[Node]:
     elif kind == "product":
         for k in range(len(parts)):
             rest = parts[:k] + parts[k + 1 :]
-            yield rest[0] if len(rest) == 1 else replace(node, parts=rest)
+            yield rest[0] if len(rest) == 1 else Node(kind, " " * (len(rest) - 1), rest)
     elif kind == "quotient":
         yield replace(node, parts=(parts[1], parts[0]))
         yield parts[0]

@@ -114,8 +114,9 @@ def _branches(script: Script) -> None:
     script.state(
         "IIIA.14",
         "Table (summary), caption",
-        r"2^{V_i}\text{ branches with multiplicity, }2^{V_i-V_t}\text{ distinct ones, 2 to 1 with "
-        r"the vertex sign patterns, in all cases}",
+        r"\text{``In all cases, the number of branches with multiplicity was "
+        r"}2^{V_i}\text{, the number of distinct branches was }2^{V_i-V_t}\text{ and the "
+        r"branches were in 2 to 1 correspondence with their vertex sign patterns''}",
         note="data of the paper, and of these samples; what holds in general is T.1 and T.2",
         code="count_branches",
     )
@@ -177,9 +178,9 @@ def _coincidences(script: Script) -> None:
     script.state(
         "IIIC.4",
         "Section III C, before the last paragraph",
-        r"\text{``a few examples (1 configuration with }V_i=5\text{, 2 with }V_i=6\text{ and 1 "
-        r"with }V_i=7\text{) where MV-coincident branches also had the same vertex sign "
-        r"patterns''}",
+        r"\text{``a few examples (1 configuration with }V_i=5\text{, 2 with }V_i=6\text{ "
+        r"and 1 with }V_i=7\text{'' \dots\ ``where MV-coincident branches also had the same "
+        r"vertex sign patterns''}",
         note="data of the paper. That such patterns exist is proved by an example; by T.2 the "
         "boundary saddles of the two branches have opposite signs",
         code="random_square, BranchCount.repeated_assignments",
@@ -187,8 +188,8 @@ def _coincidences(script: Script) -> None:
     script.state(
         "IIIC.5",
         "Section III C, last paragraph",
-        r"\text{branches with coincident assignments ``either had exactly one high-degree vertex "
-        r"whose popping state distinguished the branches, or none''}",
+        r"\text{``where branches had coincident MV assignments, they either had exactly one "
+        r"high-degree vertex whose popping state distinguished the branches, or none''}",
         note="data of the paper; tested on the pairs of six random squares",
     )
 

@@ -157,17 +157,19 @@ class _Reader:
         return terms[0] if signs == "+" else Node("sum", signs, tuple(terms))
 
     def product(self) -> Node:
-        factors = [self.factor()]
+        factors, joints = [self.factor()], ""
         while self.peek() not in _STOPS and not (self.peek() == "|" and self.in_bars):
             if self.peek() == "/":
                 self.take()
-                top = factors[0] if len(factors) == 1 else Node("product", "", tuple(factors))
-                factors = [Node("quotient", "/", (top, self.factor()))]
+                top = factors[0] if len(factors) == 1 else Node("product", joints, tuple(factors))
+                factors, joints = [Node("quotient", "/", (top, self.factor()))], ""
                 continue
-            if self.peek() == r"\cdot":
+            dotted = self.peek() == r"\cdot"
+            if dotted:
                 self.take()
+            joints += "." if dotted else " "
             factors.append(self.factor())
-        return factors[0] if len(factors) == 1 else Node("product", "", tuple(factors))
+        return factors[0] if len(factors) == 1 else Node("product", joints, tuple(factors))
 
     def factor(self) -> Node:
         base = self.base()

@@ -58,22 +58,26 @@ class Vector:
 
 
 @cache
-def wheel(n: int, pinned: bool = False, numbers: bool = False) -> dict[str, Any]:
+def wheel(
+    n: int, pinned: bool = False, numbers: bool = False, flat: bool = False
+) -> dict[str, Any]:
     """The names of a flat vertex with n free spokes; indices are taken modulo n, the hub is 0.
 
     "alpha" are angles (over one or more sectors), "eta" those at spoke vertex 2, "L" and "Delta L"
     lengths, "h" heights, "sigma" stresses of the wheel stress of exactfold, "f", "g", "A" entries
     of -2 K_v, "K" computes K_v(h). The lengths of the rim, which are square roots, are free as
     well: a formula that holds does not depend on them, or uses "Delta L squared". `pinned`: heights
-    that are 0 at the hub and at spokes 1 and n. `numbers`: rational numbers for all that is free.
+    that are 0 at the hub and at spokes 1 and n. `numbers`: rational numbers for all that is free;
+    `flat`: for rims and heights only, which the names of a flat sheet do not need.
     """
     letters = [f"p{k}" for k in range(1, n)]
     letters += [f"{x}{k}" for x in "LDh" for k in range(1, n + 1)] + ["h0"]
-    if numbers:
-        primes = [sympy.prime(k) for k in range(2, len(letters) + 9)]
-        one, free = Fraction, [Fraction(primes[k], primes[k + 4]) for k in range(len(letters))]
-    else:
-        one, *free = field(letters, QQ)
+    primes = [sympy.prime(k) for k in range(2, len(letters) + 9)]
+    free: list[Any] = [Fraction(primes[k], primes[k + 4]) for k in range(len(letters))]
+    one: Any = Fraction
+    if not numbers:
+        few = 2 * n - 1 if flat else len(letters)
+        one, *free[:few] = field(letters[:few], QQ)
     p, rest = free[: n - 1], free[n - 1 :]
     lengths, rim, heights = rest[:n], rest[n : 2 * n], rest[2 * n : 3 * n]
     sectors = [Angle.twice_arctan(t) for t in p]
@@ -214,7 +218,7 @@ def without(n: int, i: int = 2, numbers: bool = False) -> dict[str, Any]:
     "sigma0" are the stresses without it; "Delta sigma" is the change at its two neighbours; "beta"
     is the angle between spoke i + 1 and the line of spoke i - 1 drawn on through the hub.
     """
-    names = dict(wheel(n, numbers=numbers))
+    names = dict(wheel(n, numbers=numbers, flat=True))
     a, length, ends = names["alpha"], names["L"], names["ends"]
 
     def spokes(before: int, at: int, after: int) -> Any:

@@ -48,7 +48,9 @@ class Statement:
     `corrected` is empty if it holds as printed, or cannot be mended; `code` names what in exactfold
     implements it, `equation` is its number in the paper. What it rests on besides the steps that
     name it: `rests` (keys of other statements), `cited` (a theorem of others) and `words` (where a
-    proof is written out that is not run). The ruling is set when a proof is finished.
+    proof is written out that is not run); `contradiction` names another place of the paper that
+    says something else, which no step has to refute. The ruling is set when a
+    proof is finished.
     """
 
     key: str
@@ -62,6 +64,7 @@ class Statement:
     rests: str = ""
     cited: str = ""
     words: str = ""
+    contradiction: str = ""
     ruling: Ruling = Ruling.AS_PRINTED
 
     @property

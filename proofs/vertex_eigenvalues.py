@@ -69,7 +69,7 @@ def _equal_angles(script: Script) -> None:
         "Appendix C, eigenvalues of the Toeplitz matrix",
         r"\lambda_m=f+2|g|\cos(\frac{m\pi}{N-1}),\quad m=1,\dots,N-1",
         r"\lambda_m=f-2|g|\cos(\frac{m\pi}{N-1}),\quad m=1,\dots,N-2",
-        over=map(equal_angles, (3, 4, 5, 6)),
+        at=map(equal_angles, (3, 4, 5, 6)),
         note="range: the matrix has N-2 rows; m = N-1 is no eigenvalue (N = 4, L = 1: -2 or 2 "
         "besides 1 and -1). Label: with the plus sign lambda_m is the lambda_{N-1-m} of Eq. "
         "(equalangleeigs), which does not follow then, nor that lambda_1 is the negative one "
@@ -82,7 +82,7 @@ def _equal_angles(script: Script) -> None:
         "Appendix C, Eq. (equalangleeigs)",
         r"\lambda_m=2\frac{\csc(2\pi/N)}{L^2}\left[\cos(\frac{2\pi}{N})-\cos("
         r"\frac{m\pi}{N-1})\right],\quad m=1,\dots,N-2",
-        over=map(equal_angles, (3, 4, 5, 6)),
+        at=map(equal_angles, (3, 4, 5, 6)),
         note="for m = 1, ..., N-2, and from C.8 as corrected: the printed line before it would "
         "give cos(2 pi/N) + cos(m pi/(N-1))",
         equation="C8",
@@ -125,9 +125,10 @@ def _all_angles(script: Script) -> None:
     script.state(
         "C.11",
         "Appendix C, after Eq. (equalangleeigs)",
-        r"\text{always one negative eigenvalue so long as the angles between adjacent folds "
-        r"remain in }(0,\pi);\ N\ge4:\text{ eigenvalues of both signs; }N-3\text{ stabilized "
-        r"motions}",
+        r"\text{``there is always one negative eigenvalue so long as the angles between any "
+        r"pair of adjacent folds remain between 0 and }\pi\text{. When }N\geq4\text{ there "
+        r"are thus eigenvalues of both signs'' \dots\ ``The other }N-3\text{ motions "
+        r"correspond to out-of-plane displacements that are stabilized by the pre-stress''}",
         note="in the sign of Appendix C: inertia (N-3, 1, 3), also by C.17. That the N-3 others "
         "'primarily increase' the rim is heuristic",
         code="curvature_form, QuadraticForm.inertia",
@@ -196,7 +197,9 @@ def _matrix(script: Script) -> None:
     script.state(
         "IIB.20",
         "Section II B, Eq. (stressmatrix)",
-        r"\sum_{n,m}Q_{nm}h_nh_m=0,\ Q\text{ symmetric, the quadratic form of Eq. (compat)}",
+        r"\sum_{n,m}Q_{nm}h_n h_m=0\text{ \dots\ ``}Q_{nm}\text{ be the symmetric matrix "
+        r"corresponding to }\bm{\sigma}\text{ so that the quadratic form in Eq. "
+        r"(\ref{eq:compat}) is written in terms of the vector of vertical displacements''}",
         note="Q_nm = -sigma_(n,m)/|U_n - U_m| for n != m, and the rows add up to 0",
         code="stress_form",
         equation="8",
@@ -223,8 +226,9 @@ def _signature(script: Script) -> None:
     script.state(
         "C.22",
         "Appendix C, proof of Theorem KM",
-        r"\text{if no }\Delta_j\text{ vanishes, }N_-\text{ is the number of sign changes of "
-        r"}\Delta_0=1,\Delta_1,\dots,\Delta_k",
+        r"\text{``provided none of the }\Delta_j\text{ vanish, }N_-\text{ is equal to the "
+        r"number of sign changes of the sequence "
+        r"}\Delta_0=1,\Delta_1,\dots,\Delta_k\text{''}",
         note="proved for tridiagonal matrices, all that is needed: the form is a sum of squares "
         "with the factors Delta_j / Delta_{j-1}",
         code="QuadraticForm.inertia",
@@ -264,8 +268,8 @@ def _three_folds(script: Script) -> None:
     script.state(
         "C.12",
         "Appendix C, after Eq. (equalangleeigs)",
-        r"\text{the vertex is infinitesimally rigid when all eigenvalues have the same sign "
-        r"(as happens when }N=3)",
+        r"\text{``the vertex is infinitesimally rigid when all eigenvalues have the same "
+        r"sign (as happens when }N=3\text{, for instance)''}",
         note="infinitesimally rigid to second order, hence rigid; with angles in (0, pi) exactly "
         "for N = 3. In the usual sense (no first-order motions) no vertex is: it has N - 2 of them",
         code="count_branches",
@@ -295,8 +299,10 @@ def _cone(script: Script) -> None:
     script.state(
         "IIB.22",
         "Section II B, after Eq. (stressmatrix)",
-        r"\text{a single }N\text{-fold vertex has }N-2\text{ first-order motions; Eq. "
-        r"(stressmatrix) defines an }(N-3)\text{-dimensional surface, the null cone}",
+        r"\text{``a single }N-\text{fold vertex has }N-2\text{ first-order motions once "
+        r"translations and rotations have been removed'' \dots\ ``which defines a "
+        r"}(N-3)\text{-dimensional surface in the linear space of first-order motions, "
+        r"namely, the null-cone''}",
         note="first-order motions: height motions modulo rigid ones. For N = 3 the cone is the "
         "point 0, of dimension 0",
         code="BranchSystem",
@@ -305,8 +311,9 @@ def _cone(script: Script) -> None:
     script.state(
         "IIB.23",
         "Section II B, after Eq. (stressmatrix)",
-        r"\text{two nappes meet at the unfolded state; topologically they are cones over }(N-4)"
-        r"\text{-dimensional spheres}",
+        r"\text{``its null-cone has two conical components'' \dots\ ``that meet at the "
+        r"unfolded state'' \dots\ ``Topologically, the nappes are cones over "
+        r"}(N-4)\text{-dimensional spheres''}",
         note="N >= 4. For N = 4 the sphere is two points: a nappe is two rays, and the cone two "
         "lines",
     )

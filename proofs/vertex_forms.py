@@ -179,8 +179,9 @@ def _stress_signs(script: Script) -> None:
     script.state(
         "C.3",
         "Appendix C, first paragraph",
-        r"\text{the form of Eq. (constraint) ``has the interpretation as the energy if the wheel "
-        r"self stress is applied as a pre-stress''; it places ``the outer edges under tension''}",
+        r"\text{``This form has the interpretation as the energy if the wheel self stress "
+        r"is applied as a pre-stress'' \dots\ ``this pre-stress places the spokes under "
+        r"compression and the outer edges under tension''}",
         r"\text{the form of Eq. (constraint) is the energy of a pre-stress with the outer edges "
         r"under compression; its negative, the form that is written next, that of one with the "
         r"outer edges under tension}",
@@ -193,7 +194,7 @@ def _stress_signs(script: Script) -> None:
     script.state(
         "C.23",
         "Appendix C, first paragraph",
-        r"\text{this pre-stress ``places the spokes under compression''}",
+        r"\text{``this pre-stress places the spokes under compression''}",
         r"\text{spoke }n\text{ is under compression iff the link polygon is strictly convex at }n"
         r"\text{, unstressed iff it is straight there, under tension iff it is reflex there}",
         note="for the pre-stress of C.3 with the outer edges under tension; all signs are opposite "
@@ -228,8 +229,9 @@ def _null_directions(script: Script) -> None:
     script.state(
         "C.4",
         "Appendix C and Section II B",
-        r"\text{three null directions: vertical translation, rotations about the axes; removed by }"
-        r"h_0=h_1=h_N=0",
+        r"\text{``three null directions, corresponding to the vertical translation and "
+        r"rotations about the }x-\text{ and }y-\text{axes'' \dots\ ``We can remove these by "
+        r"setting }h_0=h_1=h_N=0\text{''}",
         note="exactly three, by C.6: the remaining determinant chi(N) = -c_N/(c_1...c_{N-1}) is "
         "not 0",
         code="curvature_form",

@@ -79,8 +79,8 @@ def _popping(script: Script) -> None:
     script.state(
         "IIB.29",
         "Section II B, popped up and popped down",
-        r"\text{one of the nappes consists of popped up configurations and the other of popped "
-        r"down ones, so we can use dot products with }\mathbf h_-",
+        r"\text{``one of the nappes of the double cone configuration space consists of "
+        r"popped up configurations and the other consists of popped down configurations''}",
         note="near the unfolded state: for heights eps h the area above the trace is 2 pi + 2 eps "
         "K(t, h) + O(eps^2), t the round cone, and K(t, h) is not 0 on a nappe. The printed "
         "argument (the two types meet only in the unfolded state) needs connected nappes: for N = "
@@ -115,8 +115,9 @@ def _hemispheres(script: Script) -> None:
     script.state(
         "IIB.30",
         "Section II B, last sentence",
-        r"\text{popped down (up) if all edge vectors are in the northern (southern) hemisphere: "
-        r"``our definition is a rotation-invariant generalization''}",
+        r"\text{``popped down (up) vertices are those whose edge vectors are all in the "
+        r"northern (southern) hemisphere. Our definition is a rotation-invariant "
+        r"generalization''}",
         note="to lowest order in the heights, like the vertex signs of exactfold",
         code="vertex_sign_functional",
     )
@@ -151,8 +152,10 @@ def _chambers(script: Script) -> None:
     script.state(
         "IIIB.2",
         "Section III B, chambers",
-        r"\text{the planes divide }\mathbb R^{V_i-V_t+1}\text{ into }2^{V_i-V_t}\text{ chambers, "
-        r"each the product of an orthant of }\mathbb R^{V_i-V_t}\text{ with a real line}",
+        r"\text{``The set of all such planes arising from the }V_i-V_t\text{ foldable "
+        r"vertices divides }\mathbb{R}^{V_i-V_t+1}\text{ into }2^{V_i-V_t}\text{ chambers'' "
+        r"\dots\ ``Each of these chambers is topologically the product of an orthant of "
+        r"}\mathbb{R}^{V_i-V_t}\text{ with a real line''}",
         note="because the functionals e_v . h are independent: heights that are 0 on the "
         "boundary, flat in the triangulated triangles, and have K_v(e_v, h) = 0 at the foldable v "
         "have K_v(h) <= 0 everywhere, and vanish by the key lemma for convex polygons "

@@ -128,8 +128,8 @@ def _compatibility(script: Script) -> None:
     script.state(
         "IIA.14",
         "Section II A, Eq. (isometry)",
-        r"[\mathbf C\mathbf u]_{(n,m)}=\frac{\mathbf U_n-\mathbf U_m}{|\mathbf U_n-\mathbf U_m|}"
-        r"\cdot(\mathbf u_n-\mathbf u_m)",
+        r"\left[\mathbf{C}\left(\begin{array}{c}\mathbf{u}_1\\ "
+        r"\vdots\end{array}\right)\right]_{(n,m)}=\frac{\mathbf{U}_n-\mathbf{U}_m}{\left|\mathbf{U}_n-\mathbf{U}_m\right|}\cdot\left(\mathbf{u}_n-\mathbf{u}_m\right)",
         note="row (n, m) of the rigidity matrix is this row times |U_n - U_m|, so its left kernel "
         "consists of the stress densities sigma/|U_n - U_m|",
         code="rigidity_matrix",
@@ -190,8 +190,9 @@ def _counts(script: Script) -> None:
     script.state(
         "IIB.3",
         "Section II B, the wheel",
-        r"2N+2\text{ in-plane positions},\ 2N\text{ constraints},\ 3\text{ motions: generically "
-        r"one self stress}",
+        r"\text{``the }2N+2\text{ in-plane positions of the vertices are subject to "
+        r"}2N\text{ constraints. Since there are three planar Euclidean motions, there must "
+        r"be generically one self stress''}",
         note="the 2N + 2 positions are the coordinates of N + 1 vertices. Exactly one self stress "
         "for every wheel with non-degenerate triangles, generic or not",
         code="self_stresses",
@@ -243,7 +244,8 @@ def _force_balance(script: Script) -> None:
     script.state(
         "IIB.5",
         "Section II B, 'Eqs. (wheelstress) do give the coefficients of a self stress'",
-        r"\tilde{\boldsymbol\sigma}^T\cdot\mathbf C=\mathbf 0^T",
+        r"\text{``we prove that Eqs. (\ref{wheelstress}) do give the coefficients of a self "
+        r"stress''}",
         note="also after embedding in the larger structure with all other components zero; for the "
         "proof of Appendix B see B.1 and following",
         code="wheel_stress",
@@ -307,9 +309,8 @@ def _basis(script: Script) -> None:
     script.state(
         "IIB.8",
         "Section II B, last sentence before the configuration space of a vertex; Introduction",
-        r"\text{each self stress gives one equation, the wheel stress constraint is precisely "
-        r"Gaussian curvature preservation: }V_i\text{ quadratic equations in }V_i+V_e"
-        r"\text{ heights}",
+        r"\text{``the wheel stress constraint is precisely Gaussian curvature "
+        r"preservation''}",
         note="the equations K_v(h) = 0, one an interior vertex, are equivalent to Eq. (compat) for "
         "all self stresses (A.9 and IIB.7)",
         code="BranchSystem",

@@ -1,0 +1,56 @@
+r"""The words and formulas that are printed in the paper, compared with its source.
+
+What a statement gives as printed is cut at dots, quotation marks and signs of equality; each
+fragment has to stand in the LaTeX source of the paper, apart from spaces, fonts, braces, square
+brackets, underscores, and how lines of formulas are aligned. The source is no part of this project:
+`docs/read_paper.py` reads it and keeps a digest of each statement, with which the tests compare.
+
+>>> fragments(r"D=V_{e}-3\text{, ``which is \dots\ small''}")
+['D', 'Ve-3', 'whichis', 'small']
+>>> stands_in(r"V_{e}-3\text{ is}", r"\[D = V_e - 3.\] This is")
+False
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+
+UNPRINTED = {"B.23": "printed for three spokes (B.16), and for more in words"}
+"""Statements that are not printed in this form, and why: a step evaluates each of them."""
+
+_GONE = re.compile(
+    r"(?<!\\)%.*|\\label\{[^}]*\}|\\(?:begin|end)\{(?:align|eqnarray|equation)\*?\}|"
+    r"\\(?:left|right)\.?(?![a-zA-Z])|"
+    r"\\(?:nonumber|cdot|mathbf|bm|boldsymbol|textrm|mathrm|text|textit|em|big|Big|quad|qquad)"
+    r"(?![a-zA-Z])|\\[\\,;! ]|[{}$&~_\s]|(?<!\\)[\[\]]"
+)
+_RANGE = re.compile(r",\s*\\q?quad\s*[a-z]=[^=]*\\dots.*$")
+_CUT = re.compile(r"\\dots|``|''|[,;]\\quad|=")
+
+
+def plain(latex: str) -> str:
+    """A LaTeX source without what does not count."""
+    return _GONE.sub("", re.sub(r"(?<!\\)%.*", "", latex))
+
+
+def fragments(printed: str) -> list[str]:
+    """What has to stand in the paper, in the order in which a statement gives it."""
+    found = (plain(part).strip(",;:.") for part in _CUT.split(_RANGE.sub("", printed)))
+    return [part for part in found if part]
+
+
+def missing(printed: str, paper: str) -> list[str]:
+    """The fragments that do not stand in the LaTeX source of the paper."""
+    text = plain(paper)
+    return [part for part in fragments(printed) if part not in text]
+
+
+def stands_in(printed: str, paper: str) -> bool:
+    """Whether each fragment stands in the LaTeX source of the paper."""
+    return not missing(printed, paper)
+
+
+def digest(printed: str) -> str:
+    """A short digest of the fragments."""
+    return hashlib.sha256("\n".join(fragments(printed)).encode()).hexdigest()[:12]
