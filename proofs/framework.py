@@ -203,10 +203,11 @@ class Script:
         claim = Claim(key, first, right, free, tuple(at) or free)
         self.claims.append(claim)
         which = "corrected" if corrected else "printed"
-        places = "free geometries" if free else "cases"
+        one, many = ("free geometry", "free geometries") if free else ("case", "cases")
+        count = len(free or claim.at)
         self.steps.append(
             Step(
-                f"{key} as {which}, evaluated in {len(free or claim.at)} {places}",
+                f"{key} as {which}, evaluated in {count} {one if count == 1 else many}",
                 How.IDENTITY if free else How.CASES,
                 bool(claim.at) and claim.holds(right),
                 cases=0 if free else len(claim.at),

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import random
 import sys
 from fractions import Fraction
 from itertools import pairwise
-from math import atan2
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +18,7 @@ from sympy.polys.rings import ring
 from exactfold.rigidity import wheel_stress
 from proofs.force_balance import spoke, star
 from proofs.framework import Proof, Script, run
-from proofs.spokes import drawn, forces, wheel, without
+from proofs.spokes import drawn, forces, random_stars, wheel, without
 from proofs.statements import Severity
 from proofs.wheel_stress import Angle, cross
 
@@ -355,7 +353,7 @@ def _choice_of_spoke(script: Script) -> None:
         (
             any(wide * cross(d[k - 1], d[(k + 1) % len(d)]) > 0 for k in range(len(d)))
             or (len(d) == 4 and all(cross(d[k], d[k - 2]) == 0 for k in range(4)))
-            for d in _random_stars()
+            for d in random_stars()
         ),
         of="B.22",
     )
@@ -390,19 +388,6 @@ def _choice_of_spoke(script: Script) -> None:
         code="wheel_stress",
         rests="B.24",
     )
-
-
-def _random_stars() -> list[list[tuple[int, int]]]:
-    """Integer spokes in counter-clockwise order, angles below pi; most are nearly a cross."""
-    source, found = random.Random(1), [[(2, 1), (-1, 2), (-4, -2), (1, -2)]]
-    while len(found) < 60:
-        near = [(9, 0), (0, 9), (-9, 0), (0, -9), (9, 9), (-9, 9), (-9, -9), (9, -9)]
-        chosen = near[: 4 + len(found) % 5]
-        spokes = [(x + source.randint(-2, 2), y + source.randint(-2, 2)) for x, y in chosen]
-        spokes.sort(key=lambda d: atan2(d[1], d[0]))
-        if all(cross(spokes[k - 1], spokes[k]) > 0 for k in range(len(spokes))):
-            found.append(spokes)
-    return found
 
 
 if __name__ == "__main__":

@@ -7,11 +7,13 @@ that a formula is compared with what the library computes and not with another f
 
 from __future__ import annotations
 
+import random
 from collections.abc import Mapping
 from dataclasses import dataclass
 from dataclasses import field as field_
 from fractions import Fraction
 from functools import cache
+from math import atan2
 from typing import Any
 
 import sympy
@@ -242,6 +244,19 @@ def without(n: int, i: int = 2, numbers: bool = False) -> dict[str, Any]:
         "pi": half_turn,
     }
     return names
+
+
+def random_stars() -> list[list[tuple[int, int]]]:
+    """Integer spokes in counter-clockwise order, angles below pi; most are nearly a cross."""
+    source, found = random.Random(1), [[(2, 1), (-1, 2), (-4, -2), (1, -2)]]
+    while len(found) < 60:
+        near = [(9, 0), (0, 9), (-9, 0), (0, -9), (9, 9), (-9, 9), (-9, -9), (9, -9)]
+        chosen = near[: 4 + len(found) % 5]
+        spokes = [(x + source.randint(-2, 2), y + source.randint(-2, 2)) for x, y in chosen]
+        spokes.sort(key=lambda d: atan2(d[1], d[0]))
+        if all(cross(spokes[k - 1], spokes[k]) > 0 for k in range(len(spokes))):
+            found.append(spokes)
+    return found
 
 
 @cache
