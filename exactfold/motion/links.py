@@ -17,8 +17,9 @@ _LEAST = 1e-7  # of a step, in the unit of the framework
 _EXIT = 3, 4  # the part of the reach at which the next tube is entered
 _AHEAD = 0.7  # of the reach: about how far beyond the exit the next tube has its centre
 _GROWTH = 0.5, 1.2  # of the reach from tube to tube, as far as it is relied on
-_THICKNESS = 1e-8, 1e-7
-"""The most radius of a tube, and of its length: by it the ends of tubes are known."""
+_THICKNESS, _OF_STEP, _THINNEST, _SHORT = 1e-8, 1e-7, 1e-10, 1e-5
+"""The most radius of a tube, also of its length, by which the ends of tubes are known; but not of
+short ones: where curves nearly cross, thin tubes would become shorter and shorter."""
 _FAR = 64.0  # unknowns beyond it, in the unit of the framework, are not those of the sheet
 
 
@@ -109,8 +110,8 @@ def _next(
         entry = None if tube is None else _entered(tube, ball, velocity)
         if entry is not None:
             return tube, entry
+    centre, along = ball.finer(equations.bits).centre, velocity.floats[0]
     while step > _LEAST:
-        centre, along = ball.finer(equations.bits).centre, velocity.floats[0]
         tube = prove_tube(equations, centre, along, step, thickness=_thickness(step))
         entry = None if tube is None else _entered(tube, ball, velocity)
         if entry is not None:
@@ -120,7 +121,8 @@ def _next(
 
 
 def _thickness(step: float) -> float:
-    return min(_THICKNESS[0], _THICKNESS[1] * step)
+    """The most radius of a tube that is about `step` long."""
+    return _THICKNESS if step < _SHORT else min(_THICKNESS, max(_OF_STEP * step, _THINNEST))
 
 
 def _entered(tube: Tube, ball: Ball, velocity: Ball) -> tuple[int, int] | None:

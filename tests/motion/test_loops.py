@@ -236,3 +236,13 @@ def test_a_reflex_corner_hides_no_half_branch():
     found = find_loops(pattern)
     assert found.status is PROVED
     assert len(found.matching) == 8
+
+
+@pytest.mark.parametrize(("n", "seed", "signs"), [(4, 6, "+-++"), (4, 24, "----")])
+def test_loops_on_which_two_curves_nearly_cross(n: int, seed: int, signs: str) -> None:
+    """Tubes become as short as 1e-5 of the sheet there, and longer again."""
+    sheet = random_square(n, seed=seed)
+    proof = LoopFinder(Problem.of(sheet)).follow(find_branch(sheet, signs))
+    assert proof.loop.status is PROVED
+    lengths = [float(step.left[0] - step.entered[0]) for step in proof.steps]
+    assert min(lengths[:-5]) < 2e-5 < 1e-2 < max(lengths)
