@@ -202,7 +202,8 @@ def pages() -> dict[str, str]:
         f"(`python -m proofs`, {len(steps)} steps; {tested} of them test exact cases rather than "
         f"prove, and say so). What is given as printed is what the paper prints, word by word. "
         f"{formulas} statements are formulas that a step evaluates, and with one small mistake in "
-        f"them, {mutants} in all, they do not hold; the others are in words. All other steps "
+        f"them, {mutants} in all, they do not hold, but for a few that are true as well, each with "
+        "its reason in the tests; the others are in words. All other steps "
         f"refuse at least one of {mistakes} deliberate mistakes each. Written by "
         f"`python docs/make_statements.py`.\n\n{STANDARD}"
     )

@@ -6,7 +6,7 @@ step does: first in geometries with numbers, where nearly all fail at once.
 >>> from proofs.formulas import latex
 >>> from proofs.reading import parse
 >>> " ".join(latex(wrong) for wrong in mutants(parse("D=V_e-3")))
-'e=V_{e}-3 D=V_{D}-3 D=V_{e+1}-3 D=-V_{e}-3 D=V_{e}+3 D=-3 D=V_{e} D=V_{e}-4'
+'e=V_{e}-3 D=V_{D}-3 D=-V_{e}-3 D=V_{e}+3 D=-3 D=V_{e} D=V_{e+1}-3 D=V_{e}-4'
 """
 
 from __future__ import annotations
