@@ -9,6 +9,7 @@ at a node: its last piece is an arc through it, a point of which lies on the las
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import zip_longest
 from typing import Any
@@ -88,7 +89,10 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     keys(evidence, " ".join(["emptied pinned bits start tubes", *found, *ends]), "evidence")
     require(not (back and (ends or more)), "a motion that returns claims a node, or contacts")
     heights = Rim(given, claims["rim"]) if "rim" in claims else None
-    equations, removed = framework(given, evidence, heights, claims.get("drive"))
+    driven = [claims["drive"]] if "drive" in claims else []
+    equations, removed = framework(given, evidence, heights, driven)
+    bent = equations.drive is not None and equations.drive.reached
+    require(not (back and bent), "a motion that returns ends with its driven folds flat")
     tubes = items(evidence["tubes"], "tubes")
     check_steps(equations, tubes, len(ends))
     start, tau = first_piece(equations, evidence["start"])
@@ -97,7 +101,7 @@ def _check(data: dict[str, Any]) -> dict[str, Any]:
     steps = walked(equations, path, tubes, leaves=not (ends or back))
     if through or any(map(is_node, tubes)):
         _check_passed(claims, [entry["flat"] for entry in tubes if is_node(entry)])
-    if equations.drive is not None and equations.drive.reached:
+    if bent and equations.drive is not None:
         check_reached(equations, equations.drive, path.here)
     if ends:
         steps.append(_to_the_node(equations, path, claims["node"], evidence["node"]))
@@ -182,12 +186,15 @@ def is_node(step: Any) -> bool:
 
 
 def framework(
-    given: Sheet, evidence: Any, rim: Rim | None = None, driven: Any = None
+    given: Sheet, evidence: Any, rim: Rim | None = None, driven: Sequence[Any] = ()
 ) -> tuple[LengthEquations, set[int]]:
-    """The equations of what can fold, and the vertices that were removed."""
+    """The equations of what can fold, and the vertices that were removed.
+
+    `driven`: the claim of what is driven, if there is one.
+    """
     sheet, removed = emptied_sheet(given, dict(given.points), evidence["emptied"])
     four = len(sheet.boundary) == 4
-    drive = None if driven is None or four else Drive(sheet, driven)
+    drive = next((Drive(sheet, claim) for claim in driven), None)
     require(four or rim or drive, "there are not four boundary vertices")
     require(sheet.interior, "nothing can fold")
     bits = natural(evidence["bits"], "bits")

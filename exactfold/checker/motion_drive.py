@@ -27,6 +27,7 @@ class Drive:
         require(type(claim["reached"]) is bool, "reached is not true or false")
         self.reached: bool = claim["reached"]
         number = len(sheet.boundary) - 3
+        require(number > 1, "one fold alone has no ratio that could be claimed")
         self.folds: list[Edge] = []
         for fold in items(claim["folds"], "driven folds", number):
             i, j = (natural(v, "vertex") for v in items(fold, "fold", 2))
@@ -47,7 +48,7 @@ class Drive:
         most = self.most = weights.index(max(weights))
         self.weight = weights[most]
         rows = [self._row(weights, k, most) for k in range(number) if k != most]
-        self.bits = max(_length(row) for row in rows)
+        self.bits = max(map(_length, rows), default=0)
         self.rows = [[c << self.bits - _length(row) for c in row] for row in rows]
 
     def _row(self, weights: list[Fraction], k: int, most: int) -> Vector:

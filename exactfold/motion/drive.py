@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import atan2, copysign, cos, degrees, gcd, radians, sqrt
+from math import atan2, copysign, cos, degrees, gcd, prod, radians, sqrt
 
-import numpy as np
-
-from exactfold.arrays import FloatArray
 from exactfold.errors import BadDriveError
 from exactfold.exact.numbers import format_rational, integer_row
 from exactfold.motion.coupling import NO_COUPLING, Coupling
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 _DENOMINATOR = 10**12
-_BEYOND = 1e-11
 
 
 @dataclass(frozen=True)
@@ -25,8 +21,8 @@ class Drive:
 
     With the fold angles a_k the numbers sin(a_k / 2) are in a fixed ratio all along, which is that
     at the goal. `squares[k]` is sin(a_k / 2)^2 at the goal, exactly, with the sign of the angle:
-    positive for a valley. It is 1/2 for 90 degrees, and rational for all angles, but of most only
-    the nearest rational number with a denominator up to 10^12. `folds` are those of a pattern.
+    positive for a valley. It is 1/2 for 90 degrees, and rational for all angles, but of most only a
+    number near it with a denominator up to 10^12, to 1e-12. `folds` are those of a pattern.
 
     >>> Drive.of({(3, 7): 90, (4, 9): -45})
     <Drive: 3-7 to 90, 4-9 to -45 degrees>
@@ -39,9 +35,10 @@ class Drive:
     def of(cls, angles: Mapping[Edge, float]) -> Drive:
         """From angles in degrees by fold; raises `BadDriveError` for one that is no goal."""
         for fold, angle in angles.items():
-            if not 0 < abs(angle) <= 180:
-                why = "a fold that stays flat is not driven" if not angle else "it is beyond 180"
-                raise BadDriveError(f"fold {fold_text(fold)}: the angle {angle:g}: {why}", [fold])
+            if not 0 < abs(angle) <= 180 or not square_of(angle):
+                raise BadDriveError(
+                    f"fold {fold_text(fold)}: the angle {angle:g}: {_why_not(angle)}", [fold]
+                )
         return cls(tuple(angles), tuple(square_of(angle) for angle in angles.values()))
 
     @property
@@ -113,10 +110,45 @@ class Drive:
                 rows.append(tuple(c // gcd(*whole) for c in whole))
         return Coupling(tuple(diagonals), _alike(rows))
 
-    def passed(self, angles: FloatArray) -> bool:
-        """Whether these angles of the folds, in radians, are clearly beyond their goals."""
-        sines = np.sin(angles / 2)
-        return bool((sines / np.array(self.sines) > 1 + _BEYOND).all())
+    def passed(
+        self,
+        sheet: CreasePattern,
+        place: Mapping[int, int],
+        points: Sequence[Sequence[Fraction]],
+        radius: Fraction,
+    ) -> bool:
+        """Whether all folds are proved to be bent as far as their goals or farther, to their sides.
+
+        `points` are those of the vertices of the sheet in its unit, each coordinate off by at most
+        `radius`; `place` as in `coupling`. With the diagonal of fold k this is g_k <= -8 (A B /
+        l^2) |q_k|, and the sign of the volume of its two faces. False says nothing.
+
+        >>> from exactfold.pattern.families import single_vertex
+        >>> star = single_vertex(5)
+        >>> flat = [(*point, Fraction(0)) for point in star.vertices]
+        >>> Drive.of({(0, 5): 90, (2, 5): 90}).passed(star, range(6), flat, Fraction(0))
+        False
+        """
+        for (v, w), q in zip(self.folds, self.squares, strict=True):
+            i, j = sorted((place[v], place[w]))
+            left, right = sheet.opposite((i, j))
+            flat = [(*sheet.vertices[u], Fraction(0)) for u in (i, j, left, right)]
+            moved = [points[u] for u in (i, j, left, right)]
+            (ux, uy, _), (px, py, _), (rx, ry, _) = (_minus(x, flat[0]) for x in flat[1:])
+            turned, other = ux * py - uy * px, uy * rx - ux * ry
+            gap = _minus(flat[2], flat[3])
+            off = _minus(_minus(moved[2], moved[3]), gap)
+            g = sum(((a + x / 2) * x for a, x in zip(gap, off, strict=True)), Fraction(0))
+            spread = 2 * radius
+            g += sum(abs(a) + abs(x) + spread / 2 for a, x in zip(gap, off, strict=True)) * spread
+            if g > -2 * abs(q) * turned * other / (ux * ux + uy * uy):
+                return False
+            arms = [_minus(x, moved[0]) for x in moved[1:]]
+            sizes = [sum(map(abs, arm)) for arm in arms]
+            most = prod(size + 3 * spread for size in sizes) - prod(sizes)
+            if not _volume(*arms) * (1 if q > 0 else -1) > most:
+                return False
+        return True
 
     def ways(self, labels: Sequence[int]) -> tuple[tuple[Edge, int], ...]:
         """The folds by vertices of the sheet of a framework, 1 for a valley and -1 for a mountain.
@@ -133,6 +165,17 @@ class Drive:
         return f"<Drive: {self.text}>"
 
 
+def _why_not(angle: float) -> str:
+    """Why an angle in degrees is no goal."""
+    if angle != angle:
+        return "it is no number"
+    if abs(angle) > 180:
+        return "it is beyond 180"
+    if angle:
+        return "a fold is driven to 0.0001 degrees or more"
+    return "a fold that stays flat is not driven"
+
+
 def _alike(rows: list[tuple[int, ...]]) -> tuple[tuple[int, ...], ...]:
     """Rows multiplied by powers of 2, so that their largest numbers have the same length."""
     lengths = [max(abs(c).bit_length() for c in row) for row in rows]
@@ -140,8 +183,20 @@ def _alike(rows: list[tuple[int, ...]]) -> tuple[tuple[int, ...], ...]:
     return tuple(tuple(c << most - n for c in row) for row, n in zip(rows, lengths, strict=True))
 
 
+def _minus(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
+def _volume(a: Sequence[Fraction], b: Sequence[Fraction], c: Sequence[Fraction]) -> Fraction:
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        + a[1] * (b[2] * c[0] - b[0] * c[2])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
+
+
 def square_of(angle: float) -> Fraction:
-    """sin(a / 2)^2 of an angle in degrees with its sign, to about 24 digits."""
+    """sin(a / 2)^2 of an angle in degrees with its sign, rounded as `Drive` says."""
     square = Fraction((1 - cos(radians(abs(angle)))) / 2).limit_denominator(_DENOMINATOR)
     return square if angle > 0 else -square
 

@@ -14,7 +14,6 @@ from exactfold.branches.branch import Branch
 from exactfold.errors import FlatVertexError, UsageError
 from exactfold.evidence.entries import Document
 from exactfold.evidence.motion import motion_certificate
-from exactfold.motion.angles import fold_angles_of, hinges_of
 from exactfold.motion.arclength import Interval
 from exactfold.motion.chain import Chain, Step, chords, point_near, step_documents
 from exactfold.motion.drive import Drive
@@ -123,17 +122,21 @@ class Track:
 
     @cached_property
     def reached(self) -> bool:
-        """Whether the driven folds are beyond the angles of the drive at the end, by far more than
-        the error there: so they have these angles at some configuration of the track."""
+        """Whether driven folds are proved to be at the angles of the drive or beyond, at the end.
+
+        So they have these angles at some configuration of the track.
+        """
         last = self.steps[-1] if self.steps else None
         if self.drive is None or isinstance(last, Passage):
             return False
         ball = self.start.ball(self.start.last) if last is None else last.tube.enclosure(last.exit)
-        hinges = hinges_of(self.framework.sheet)
-        angles = fold_angles_of(self.framework.positions(ball.floats[0]), hinges)
-        folds = self.framework.sheet.folds
-        at = [folds.index(fold) for fold, _ in self.drive.ways(self.labels)]
-        return self.drive.passed(angles[at])
+        sheet, one = self.framework.sheet, self.framework.unit / (1 << ball.bits)
+        points = [[x, y, Fraction(0)] for x, y in sheet.vertices]
+        for k, v in enumerate(self.framework.free):
+            d = ball.centre[3 * k : 3 * k + 3]
+            points[v] = [x + one * int(c) for x, c in zip(points[v], d, strict=True)]
+        place = {label: v for v, label in enumerate(self.labels)}
+        return self.drive.passed(sheet, place, points, one * int(max(ball.radii)))
 
     @property
     def tubes(self) -> int:

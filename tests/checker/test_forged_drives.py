@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from contextlib import suppress
 from fractions import Fraction
 from functools import cache
 
@@ -19,13 +20,16 @@ from exactfold.checker.motion_reached import check_reached
 from exactfold.checker.motion_tubes import Ball
 from exactfold.checker.reading import CertificateError
 from exactfold.checker.sheet import read_sheet
-from exactfold.motion import find_driven, follow, prove
+from exactfold.motion import find_driven, follow, follow_proved, prove
+from exactfold.motion.chain import Step
+from exactfold.motion.tracks import half_branch
 from exactfold.pattern.crease_pattern import CreasePattern
 
 # A vertex with five folds.
 STAR = CreasePattern(
     [(0, 0), (8, 1), (10, 7), (4, 11), (-2, 6), (4, 4)], [(k, (k + 1) % 5, 5) for k in range(5)]
 )
+START = ("centre", "halvings", "held", "reach")
 ANGLES = {(0, 5): 12.0, (1, 5): 8.0}
 
 
@@ -124,6 +128,31 @@ def test_without_a_drive_there_are_too_many_corners() -> None:
     refused(document, "there are not four boundary vertices")
 
 
+def test_with_four_corners_nothing_is_driven() -> None:
+    """The side is then that of the saddle, and no equation knows of the fold."""
+    document = back()
+    del document["claims"]["return"], document["evidence"]["landing"]
+    document["evidence"]["tubes"] = []
+    document["claims"] |= {"length": "0", "side": 1}
+    [middle] = read_sheet(document["pattern"])[0].interior
+    message = "one fold alone has no ratio that could be claimed"
+    for fold, reached in (([0, middle], False), ([98, 99], True)):
+        drive = {"folds": [fold], "squares": ["1/2"], "reached": reached}
+        refused(document | {"claims": document["claims"] | {"drive": drive}}, message)
+    ways = []
+    for square in ("1/2", "-1/2"):
+        document["claims"]["drive"] = {
+            "folds": [[0, middle]],
+            "squares": [square],
+            "reached": False,
+        }
+        with without(message), suppress(CertificateError):
+            ways.append(verified(document)["side"])
+    assert ways == [1]
+    document["claims"]["drive"] = None
+    refused(document, "drive: expected an object with the keys folds squares reached")
+
+
 def test_with_a_rim_and_a_drive() -> None:
     document = given()
     document["claims"]["rim"] = ["0", "0", "1", "0", "1"]
@@ -162,6 +191,49 @@ def test_folds_that_end_on_the_other_side() -> None:
     with pytest.raises(CertificateError) as caught:
         check_reached(equations, Drive(sheet, claim), here)
     assert str(caught.value) == message
+
+
+WINGS = {(1, 5): 96.0, (4, 5): -33.0}
+
+
+@cache
+def _there_and_back() -> str:
+    """Driven folds that turn back when fold 3-5 is closed, along the other way to bend it."""
+    up, down = (find_driven(STAR, WINGS, signs) for signs in "+-")
+    end = half_branch(down.branch, down.side, drive=down.drive)
+    tau = end.start.last // 2
+
+    def comes_back(step: Step) -> str | None:
+        return "back" if step.tube.lies_in(end.start.ball(tau)) else None
+
+    document = follow_proved(
+        up.branch,
+        up.side,
+        stop=comes_back,
+        pinned=[end.labels[v] for v in end.framework.pinned],
+        drive=up.drive,
+    ).certificate()
+    flat = end.certificate()
+    start = {key: flat["evidence"]["start"][key] for key in START}
+    del document["evidence"]["tubes"][-1]["exit"]
+    document["evidence"]["landing"] = start | {"tau": tau}
+    document["claims"]["return"] = {"vertex_signs": flat["claims"]["vertex_signs"], "side": 1}
+    document["claims"]["drive"]["reached"] = False
+    return json.dumps(document)
+
+
+def test_driven_folds_that_come_back_are_flat_at_the_end() -> None:
+    """They had small angles where the last tube is entered, and have none where it ends."""
+    document = json.loads(_there_and_back())
+    claims = verified(document)
+    assert (claims["vertex_signs"], claims["return"]["vertex_signs"]) == ([1], [-1])
+    drive = document["claims"]["drive"]
+    drive["squares"] = [str(Fraction(q) / 1000) for q in drive["squares"]]
+    drive["reached"] = True
+    message = "a motion that returns ends with its driven folds flat"
+    with without(message):
+        verified(document)
+    refused(document, message)
 
 
 def test_a_driven_motion_has_no_node() -> None:

@@ -214,6 +214,44 @@ def test_a_driven_motion_is_proved_to_reach_its_angles() -> None:
     assert (early.status, early.reached) == (PROVED, False)
 
 
+def test_folds_pass_their_goals_only_if_that_is_certain() -> None:
+    """Two wings, turned about the sides of a face a little farther than their goals."""
+    goals = {(1, 5): 30.0, (2, 6): -45.0}
+    points = [[Fraction(x), Fraction(y), Fraction(0)] for x, y in PENTAGON.vertices]
+    for ((i, j), goal), wing in zip(goals.items(), (0, 3), strict=True):
+        o, a, p = (np.array([float(x) for x in points[v]]) for v in (i, j, wing))
+        axis, turn = (a - o) / np.linalg.norm(a - o), np.radians(goal * (1 + 1e-9))
+        arm = p - o
+        across = arm - axis * (axis @ arm)
+        spot = o + axis * (axis @ arm) + across * np.cos(turn)
+        points[wing] = [Fraction(x) for x in spot.tolist()]
+        points[wing][2] = Fraction(float(np.linalg.norm(across) * np.sin(turn)))
+
+    def passed(factor: float, radius: Fraction = Fraction(0), up: bool = False) -> bool:
+        drive = Drive.of({f: (abs(a) if up else a) * factor for f, a in goals.items()})
+        return drive.passed(PENTAGON, range(len(points)), points, radius)
+
+    assert passed(1)
+    assert not passed(1.0001)
+    assert not passed(1, Fraction(1, 10**6))
+    assert not passed(1, up=True)
+
+
+@pytest.mark.parametrize(
+    ("angle", "why"),
+    [
+        (float("nan"), "it is no number"),
+        (float("inf"), "it is beyond 180"),
+        (0.0, "a fold that stays flat is not driven"),
+        (1e-5, "a fold is driven to 0.0001 degrees or more"),
+    ],
+)
+def test_an_angle_that_is_no_goal(angle: float, why: str) -> None:
+    with pytest.raises(BadDriveError) as caught:
+        Drive.of({(1, 5): angle})
+    assert str(caught.value) == f"fold 1-5: the angle {angle:g}: {why}"
+
+
 @pytest.mark.slow
 def test_two_folds_that_close_at_once_are_not_proved_to_close() -> None:
     driven = find_driven(families.single_vertex(5), {(0, 5): 180, (1, 5): 180})
