@@ -153,23 +153,33 @@ def export(
         ),
     ] = None,
     force: Annotated[
-        bool, flag("--force", text="Write a branch that is enclosed but not proved, too.")
+        bool,
+        flag(
+            "--force", text="Write a branch that is enclosed but not proved, too; see also --all."
+        ),
     ] = False,
     rim: Rim = None,
-    everything: Annotated[bool, flag("--all", text="With --coq: certify all branches.")] = False,
+    everything: Annotated[
+        bool,
+        flag(
+            "--all",
+            text="With --coq: certify all branches. For more than 64, add --force: Coq "
+            "takes a second or more for each.",
+        ),
+    ] = False,
     coq: Annotated[
-        bool, flag("--coq", text="Instead: the sheet itself, for the Coq proof.")
+        bool, flag("--coq", text="Instead: the sheet, and branches asked for, for the Coq proof.")
     ] = False,
     as_json: Json = False,
     snap: Snap = None,
     sheet: Sheet = None,
 ) -> None:
-    """Write one branch as a FOLD file that simulators can fold.
+    """Write one branch as a FOLD file that simulators can fold, or a sheet for Coq.
 
     The fold angles in it are in proportion to those of the branch, so that a
     simulator that is driven by them stays on it. A second frame shows the sheet
-    in space, to second order. With --coq the file states what is proved of all
-    branches of the sheet, and of one if it is named, and Coq verifies it.
+    in space, to second order. With --coq the file is one that Coq verifies: what
+    is proved of every sheet is stated for this one, and of the branches asked for.
     """
     from exactfold.commands.export import Wanted, write_coq
     from exactfold.commands.given import Given
@@ -250,8 +260,7 @@ def fold(
     certificate: Annotated[
         Path | None,
         written(
-            "Of a branch: prove the motion and its first contact, and write the evidence for "
-            "`exactfold check`.",
+            "Prove the motion and its first contact, and write the evidence for `exactfold check`.",
             "OUT.json",
         ),
     ] = None,
@@ -263,10 +272,10 @@ def fold(
 
     A triangulated sheet with four corners follows a branch: the one named by
     --signs, --up or --branch, else that on which all vertices pop up. With more
-    corners it does if --signs, --up or --rim is given: its border then moves in
-    the ratio of the rim; or if --drive is: chosen folds then drive it. Any other
-    sheet follows modes of rigid panels: --component or --modes. That the branch or
-    mode exists is proved; what of the motion is proved is said.
+    corners it does so if --signs, --up or --rim is given (its border then moves
+    in the ratio of the rim), or --drive (chosen folds then drive it). Any other
+    sheet follows modes of rigid panels: --component or --modes. That the branch
+    or mode exists is proved; the answer says what is proved of the motion.
     """
     from exactfold.commands.fold import Wanted
     from exactfold.commands.given import Given

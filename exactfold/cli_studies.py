@@ -85,7 +85,7 @@ def study(
     """Run a study: a table or figure of the paper, each number in it proved.
 
     Rows are kept as they are ready; the same command goes on after an
-    interruption, and asks for no row twice. The result depends on the seed, not
+    interruption, and computes no row twice. The result depends on the seed, not
     on the number of processes.
     """
     from exactfold.commands.study import Wanted

@@ -100,8 +100,8 @@ def branches_to_coq(certificates: Sequence[Mapping[str, Any]]) -> str:
 
     They are those of `branch_to_coq`, one for each of the 2^n sign vectors, in the gauge "saddle".
     Then no star is flat on any branch, and Coq proves that there are exactly 2^n: complex ones
-    included, all of them real. Raises `NotApplicableError` if a sign vector has no certificate, or
-    the sheet not four corners, and what `branch_to_coq` raises.
+    included, all of them real. Raises `NotApplicableError` if a vertex is flat on a branch, a sign
+    vector has no certificate, or the sheet not four corners, and what `branch_to_coq` raises.
     """
     if not certificates:
         raise NotApplicableError("branches are counted by their certificates, and there are none")
@@ -109,14 +109,25 @@ def branches_to_coq(certificates: Sequence[Mapping[str, Any]]) -> str:
     text, signs = to_coq(pattern), {tuple(c["claims"]["vertex_signs"]) for c in certificates}
     if pattern.Ve != 4:
         raise NotApplicableError(f"branches are counted with four corners, not {pattern.Ve}")
+    if flat := [s for s in signs if 0 in s]:
+        shown, v = _shown(min(flat)), pattern.interior[min(flat).index(0)]
+        raise NotApplicableError(
+            f"vertex {v} is flat on the branch with the signs {shown}: the formal proof counts "
+            "branches of sheets on which no vertex can stay flat"
+        )
     if missing := set(product((1, -1), repeat=pattern.Vi)) - signs:
-        shown = "".join("-+"[x > 0] for x in max(missing))
-        raise NotApplicableError(f"there is no certificate of the branch with the signs {shown}")
+        raise NotApplicableError(
+            f"there is no certificate of the branch with the signs {_shown(max(missing))}"
+        )
     names = [f"branch_{k}" for k in range(len(certificates))]
     records = zip(names, certificates, strict=True)
     words = dict(zip("abcd", pinned_first(pattern), strict=True))
     definitions = "\n".join(_record(name, pattern, c) for name, c in records)
     return text + _ALL.format(definitions=definitions, names=listed(names), n=pattern.Vi, **words)
+
+
+def _shown(signs: Sequence[int]) -> str:
+    return "".join("0+-"[x] for x in signs)
 
 
 def _pattern(certificate: Mapping[str, Any]) -> CreasePattern:

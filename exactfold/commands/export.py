@@ -23,6 +23,7 @@ from exactfold.commands.shell import EXIT, Bar, name_of, say
 from exactfold.count.find import find_branches
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
 from exactfold.pattern.fold_writing import write_text
 from exactfold.pattern.near_degeneracy import warnings
@@ -99,9 +100,10 @@ class Wanted:
 def write_coq(asked: Wanted, everything: bool) -> int:
     """Write the sheet as a file for the formal proof, with the branches asked for; the exit code.
 
-    They are the one that is named, if any, or with `everything` all. Raises the errors of `read`,
-    `chosen`, `find_branches`, `to_coq`, `branch_to_coq` and `branches_to_coq`, and `UsageError` for
-    a file that Coq could not compile by its name, and for options that do not go with this.
+    They are the one that is named, if any, or with `everything` all: more than `FEW` are written
+    with `asked.force` alone. Raises the errors of `read`, `chosen`, `find_branches`, `to_coq`,
+    `branch_to_coq` and `branches_to_coq`, and `UsageError` for too many branches, a file that Coq
+    could not compile by its name, and options that do not go with this.
     """
     from exactfold.bridges import branch_to_coq, branches_to_coq, to_coq
     from exactfold.evidence import branch_certificate
@@ -109,7 +111,7 @@ def write_coq(asked: Wanted, everything: bool) -> int:
     for name, given in (
         ("--branch", asked.place is not None),
         ("--amount", asked.amount is not None),
-        ("--force", asked.force),
+        ("--force", asked.force and not everything),
         ("--json", asked.as_json),
     ):
         if given:
@@ -134,6 +136,7 @@ def write_coq(asked: Wanted, everything: bool) -> int:
         if named:
             branches = [chosen(pattern, asked.signs, asked.up, None, bar, asked.given)]
         elif everything:
+            _refuse_uncounted(pattern, asked.force)
             every = map("".join, product("+-", repeat=pattern.Vi))
             branches = list(find_branches(pattern, every, progress=bar))
         for branch in branches:
@@ -152,6 +155,21 @@ def write_coq(asked: Wanted, everything: bool) -> int:
         print(f"wrote {output}; after `make -C proofs/formal`, verify it with")
         print(f"coqc -Q proofs/formal Exactfold {shlex.quote(str(output))}")
     return EXIT[PROVED]
+
+
+FEW = 64
+"""So many branches Coq verifies in two or three minutes, about two seconds for each."""
+
+
+def _refuse_uncounted(pattern: CreasePattern, force: bool) -> None:
+    """Raise `UsageError`, before any branch is looked for, if Coq cannot count them or not soon."""
+    if pattern.Ve != 4:
+        raise UsageError(f"--all is for sheets with four corners, not {pattern.Ve}")
+    if 2**pattern.Vi > FEW and not force:
+        raise UsageError(
+            f"{pattern.Vi} interior vertices have {2**pattern.Vi} sign vectors, and Coq takes a "
+            f"second or more for the branch of each: for more than {FEW} give --force, too"
+        )
 
 
 _MODULE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\.v\Z", re.ASCII)

@@ -266,6 +266,8 @@ def test_a_branch_is_written_for_coq():
         (["two-vertex", "--force"], USAGE, "--force does not go with --coq"),
         (["two-vertex", "--rim", "rim.json"], USAGE, "--rim goes with --signs or --up"),
         (["two-vertex", "--json"], USAGE, "--json does not go with --coq"),
+        (["random-8", "--all"], USAGE, "have 256 sign vectors, and Coq takes a second or more"),
+        (["flat-vertex", "--all"], USAGE, "vertex 5 is flat on the branch with the signs +0"),
         (["flat-vertex", "--signs", "++"], USAGE, "do not show that vertex 5 is bent"),
         (["two-vertex", "-o", "two-vertex.v"], USAGE, "which two-vertex.v cannot be"),
         (["two-vertex", "-o", "two_vertex.coq"], USAGE, "which two_vertex.coq cannot be"),
@@ -277,6 +279,15 @@ def test_what_coq_does_not_take_is_refused(arguments, code, said):
     result = run(*arguments, "--coq")
     assert (result.exit_code, result.stdout.count("Theorem")) == (code, 0)
     assert said in result.stderr
+
+
+def test_many_branches_are_written_for_coq_by_force(monkeypatch):
+    monkeypatch.setattr("exactfold.commands.export.FEW", 2)
+    result = run("two-vertex", "--coq", "--all")
+    assert (result.exit_code, result.stdout) == (USAGE, "")
+    assert "for more than 2 give --force" in result.stderr
+    result = run("two-vertex", "--coq", "--all", "--force")
+    assert (result.exit_code, result.stdout.count("branch_3 :")) == (OK, 1)
 
 
 def test_all_branches_are_for_coq_alone():
