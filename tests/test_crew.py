@@ -37,7 +37,7 @@ def test_results_as_they_end_and_in_order() -> None:
     before = threading.active_count()
     found = []
     for result in as_they_end(2, square, range(10)):
-        assert threading.active_count() == before
+        assert threading.active_count() <= before  # threads of earlier tests may end
         found.append(result)
     assert sorted(found) == [(k, k**2) for k in range(10)]
     assert list(in_order(2, square, range(10), 3)) == [k**2 for k in range(10)]

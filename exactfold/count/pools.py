@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
 from importlib.metadata import version
@@ -17,6 +19,9 @@ R = TypeVar("R")
 
 _AHEAD = 3
 """Jobs under way or waiting for each process: few, so that little is lost and memory is bounded."""
+
+_BUNCH = 0.25
+"""Seconds of work in a task of a cluster, where jobs are shorter: each task costs it some 10 ms."""
 
 _DIED = "the process that worked on it died, most likely for want of memory"
 
@@ -72,25 +77,35 @@ def _on_cluster(
     from distributed import KilledWorker, as_completed
 
     left, needed = iter(jobs), version("exactfold")
-    under_way: dict[Any, J] = {}
+    alone: deque[J] = deque()  # of a bunch that killed its workers: which job it was, is not known
+    under_way: dict[Any, list[J]] = {}
     ended = as_completed(loop=client.loop)
+    bunch = 1
 
     def fill() -> None:
         most = _AHEAD * max(1, sum(client.nthreads().values()))
-        for job in islice(left, most - len(under_way)):
-            future = client.submit(_checked, needed, work, job, pure=False)
-            under_way[future] = job
+        while len(under_way) < most:
+            some = [alone.popleft()] if alone else list(islice(left, bunch))
+            if not some:
+                break
+            future = client.submit(_checked, needed, work, some, pure=False)
+            under_way[future] = some
             ended.add(future)
 
     try:
         fill()
         for future in ended:
-            job = under_way.pop(future)
+            some = under_way.pop(future)
             try:
-                result: R | WorkerDiedError = future.result()
+                results, seconds = future.result()
             except KilledWorker:
-                result = WorkerDiedError(_DIED)
-            yield job, result
+                if len(some) > 1:
+                    alone.extend(some)
+                else:
+                    yield some[0], WorkerDiedError(_DIED)
+            else:
+                bunch = max(1, min(2 * len(some), int(_BUNCH * len(some) / max(seconds, 1e-9))))
+                yield from zip(some, results, strict=True)
             fill()
     except (CancelledError, OSError):
         raise WorkerDiedError("the scheduler is lost; what was counted so far is kept") from None
@@ -101,8 +116,9 @@ def _on_cluster(
             future.cancel()
 
 
-def _checked(needed: str, work: Callable[[J], R], job: J) -> R:
-    """The result of a job on a worker that has the right version of exactfold."""
+def _checked(needed: str, work: Callable[[J], R], jobs: list[J]) -> tuple[list[R], float]:
+    """The results of jobs on a worker that has the right version of exactfold, and the seconds."""
     if (found := version("exactfold")) != needed:
         raise ClusterError(f"a worker has exactfold {found}, not {needed}")
-    return work(job)
+    start = time.monotonic()
+    return [work(job) for job in jobs], time.monotonic() - start

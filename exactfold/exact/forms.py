@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
+from math import gcd
+from operator import mul
 from typing import TYPE_CHECKING, Any
 
 from exactfold.errors import UsageError
+from exactfold.exact.numbers import over_common_denominator
 
 if TYPE_CHECKING:
     from exactfold.exact.linalg import Inertia
@@ -43,9 +47,12 @@ class Diagonal:
         return f"<Diagonal: inertia {self.inertia}>"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class QuadraticForm:
     """Q(h) = h^T M h on the variables named by `labels`, with M symmetric over Q.
+
+    `integers` / `denominator` is M in lowest terms: no integer above 1 divides all entries and the
+    denominator, which is positive. `matrix` has the entries as fractions.
 
     >>> form = QuadraticForm((4, 7), ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(-1))))
     >>> form({4: Fraction(3), 7: Fraction(2)}), form.inertia
@@ -53,22 +60,48 @@ class QuadraticForm:
     """
 
     labels: tuple[int, ...]
-    matrix: tuple[tuple[Fraction, ...], ...]
+    integers: tuple[tuple[int, ...], ...]
+    denominator: int
+
+    def __init__(self, labels: Iterable[int], matrix: Iterable[Iterable[Fraction | int]]) -> None:
+        rows = [list(row) for row in matrix]
+        flat, denominator = over_common_denominator(x for row in rows for x in row)
+        left = iter(flat)
+        self._set(labels, ([next(left) for _ in row] for row in rows), denominator)
+
+    @classmethod
+    def over(
+        cls, denominator: int, labels: Iterable[int], integers: Iterable[Sequence[int]]
+    ) -> QuadraticForm:
+        """The form with the matrix `integers` / `denominator`, whose denominator is positive.
+
+        >>> QuadraticForm.over(4, [7], [[2]]).matrix
+        ((Fraction(1, 2),),)
+        """
+        rows = list(integers)
+        common = gcd(denominator, *(x for row in rows for x in row))
+        form = object.__new__(cls)
+        form._set(labels, ([x // common for x in row] for row in rows), denominator // common)
+        return form
+
+    def _set(
+        self, labels: Iterable[int], integers: Iterable[Iterable[int]], denominator: int
+    ) -> None:
+        object.__setattr__(self, "labels", tuple(labels))
+        object.__setattr__(self, "integers", tuple(map(tuple, integers)))
+        object.__setattr__(self, "denominator", denominator)
+
+    @cached_property
+    def matrix(self) -> tuple[tuple[Fraction, ...], ...]:
+        """M, row by row."""
+        return tuple(tuple(Fraction(x, self.denominator) for x in row) for row in self.integers)
 
     def polar(self, a: Mapping[int, Fraction], b: Mapping[int, Fraction]) -> Fraction:
         """The symmetric bilinear form B(a, b) with B(h, h) = Q(h)."""
-        left = [a[v] for v in self.labels]
-        right = [b[v] for v in self.labels]
-        return sum(
-            (
-                x * m * y
-                for x, row in zip(left, self.matrix, strict=True)
-                if x
-                for m, y in zip(row, right, strict=True)
-                if m
-            ),
-            Fraction(0),
-        )
+        right, below = over_common_denominator(b[v] for v in self.labels)
+        images, denominator = self._images(a)
+        value = sum(x * y for x, y in zip(images, right, strict=True))
+        return Fraction(value, denominator * below)
 
     def __call__(self, heights: Mapping[int, Fraction]) -> Fraction:
         """Q(h)."""
@@ -76,11 +109,24 @@ class QuadraticForm:
 
     def functional(self, a: Mapping[int, Fraction]) -> dict[int, Fraction]:
         """The linear functional h -> B(a, h), as coefficients by label."""
-        left = [a[v] for v in self.labels]
-        return {
-            v: sum((m * x for m, x in zip(row, left, strict=True)), Fraction(0))
-            for v, row in zip(self.labels, self.matrix, strict=True)
-        }
+        images, denominator = self._images(a)
+        return {v: Fraction(x, denominator) for v, x in zip(self.labels, images, strict=True)}
+
+    def integer_functional(self, a: Mapping[int, Fraction]) -> dict[int, int]:
+        """A positive multiple of the functional h -> B(a, h), the least with integer coefficients.
+
+        >>> form = QuadraticForm((4, 7), [[Fraction(1, 3), 1], [1, 0]])
+        >>> form.integer_functional({4: Fraction(1), 7: Fraction(1)})
+        {4: 4, 7: 3}
+        """
+        images, denominator = self._images(a)
+        common = gcd(denominator, *images)
+        return {v: x // common for v, x in zip(self.labels, images, strict=True)}
+
+    def _images(self, a: Mapping[int, Fraction]) -> tuple[list[int], int]:
+        """M a, in integers over a common denominator."""
+        vector, below = over_common_denominator(a[v] for v in self.labels)
+        return [sum(map(mul, row, vector)) for row in self.integers], self.denominator * below
 
     def __repr__(self) -> str:
         return f"<QuadraticForm: {len(self.labels)} variables>"

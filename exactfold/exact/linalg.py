@@ -9,6 +9,8 @@ from typing import TypeAlias
 
 from flint import fmpq, fmpq_mat, nmod_mat
 
+from exactfold.exact.numbers import over_common_denominator
+
 Matrix: TypeAlias = Sequence[Sequence[Fraction | int]]
 Inertia: TypeAlias = tuple[int, int, int]
 
@@ -99,26 +101,46 @@ def sum_of_squares(matrix: Matrix) -> list[tuple[Fraction, list[Fraction]]]:
     >>> [(int(w), [int(x) for x in row]) for w, row in sum_of_squares([[2, 2], [2, 1]])]
     [(2, [1, 1]), (-1, [0, 1])]
     """
+    size = len(matrix)
+    flat, denominator = over_common_denominator(x for row in matrix for x in row)
+    integers = [flat[k * size : (k + 1) * size] for k in range(size)]
+    return [
+        (Fraction(lead, before * denominator), [Fraction(x, lead) for x in row])
+        for lead, before, row in integer_squares(integers)
+    ]
+
+
+def integer_squares(matrix: Sequence[Sequence[int]]) -> list[tuple[int, int, list[int]]]:
+    """Integers p_k and p_(k-1), not 0, and rows s_k: x^T M x = sum_k (s_k . x)^2 / (p_k p_(k-1)).
+
+    The reduction of `sum_of_squares` without fractions: after each step all that is left is divided
+    by the lead of the last one, exactly (Bareiss, Math. Comp. 22, 1968), as the entries are
+    determinants of M in the directions taken so far. p_(-1) = 1. Raises `ValueError` if the matrix
+    is not symmetric.
+
+    >>> integer_squares([[2, 2], [2, 1]])
+    [(2, 1, [2, 2]), (-2, 2, [0, -2])]
+    """
     _check_symmetric(matrix)
-    rest = [[Fraction(x) for x in row] for row in matrix]
+    rest, before = [list(row) for row in matrix], 1
     size = range(len(rest))
-    squares: list[tuple[Fraction, list[Fraction]]] = []
+    squares: list[tuple[int, int, list[int]]] = []
     while len(squares) < len(rest):
         k = max(size, key=lambda i: abs(rest[i][i]))
-        image, weight = list(rest[k]), rest[k][k]
-        if not weight:
+        image, lead = list(rest[k]), rest[k][k]
+        if not lead:
             pair = next(((i, j) for i in size for j in size if rest[i][j]), None)
             if pair is None:
                 break
             i, j = pair
             image = [a + b for a, b in zip(rest[i], rest[j], strict=True)]
-            weight = image[i] + image[j]
-        row = [x / weight for x in image]
-        squares.append((weight, row))
+            lead = image[i] + image[j]
+        squares.append((lead, before, image))
         for i in size:
-            for j in range(i + 1) if image[i] else ():
-                if row[j]:
-                    rest[i][j] = rest[j][i] = rest[i][j] - image[i] * row[j]
+            for j in range(i + 1):
+                value = (lead * rest[i][j] - image[i] * image[j]) // before
+                rest[i][j] = rest[j][i] = value
+        before = lead
     return squares
 
 

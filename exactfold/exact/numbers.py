@@ -187,7 +187,7 @@ def _decimal(value: Fraction, rounding: Context) -> str:
     return f"{found.normalize(rounding):g}"
 
 
-def over_common_denominator(values: Iterable[Fraction]) -> tuple[list[int], int]:
+def over_common_denominator(values: Iterable[Fraction | int]) -> tuple[list[int], int]:
     """Integers n_i and the least d > 0 with values_i = n_i / d.
 
     >>> over_common_denominator([Fraction(1, 2), Fraction(1, 3)])

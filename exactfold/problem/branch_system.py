@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from math import gcd, lcm
 
 from exactfold.errors import CollinearPointsError, NotApplicableError, UsageError
 from exactfold.exact.forms import QuadraticForm
@@ -66,8 +67,8 @@ class BranchSystem:
         for v in self.pattern.interior:
             form = curvature_form(self.pattern, v)
             keep = [k for k, label in enumerate(form.labels) if label not in self.pinned]
-            rows = tuple(tuple(form.matrix[i][j] for j in keep) for i in keep)
-            result[v] = QuadraticForm(tuple(form.labels[k] for k in keep), rows)
+            rows = [[form.integers[i][j] for j in keep] for i in keep]
+            result[v] = QuadraticForm.over(form.denominator, (form.labels[k] for k in keep), rows)
         return result
 
     @cached_property
@@ -142,7 +143,7 @@ class Chart:
         system = self.branch_system
         return self == system.chart and system.pinned == BranchSystem(system.pattern).pinned
 
-    @property
+    @cached_property
     def variables(self) -> tuple[int, ...]:
         """The unknowns of the chart, as vertex indices."""
         return tuple(v for v in self.branch_system.variables if v != self.eliminated)
@@ -167,27 +168,36 @@ class Chart:
         """The quadrics K_v in the chart as matrices over (x, 1), by interior vertices in order."""
         matrices = []
         for form in self.branch_system.quadrics.values():
-            lifts = [self.row(v) for v in form.labels]
+            lifts = [self._integer_rows[v].items() for v in form.labels]
             size = len(self.variables) + 1
-            matrix = [[Fraction(0)] * size for _ in range(size)]
-            for a, left in enumerate(lifts):
-                for b, right in enumerate(lifts):
-                    weight = form.matrix[a][b]
+            matrix = [[0] * size for _ in range(size)]
+            for left, weights in zip(lifts, form.integers, strict=True):
+                for right, weight in zip(lifts, weights, strict=True):
                     if not weight:
                         continue
-                    for i, x in left.items():
-                        for j, y in right.items():
+                    for i, x in left:
+                        for j, y in right:
                             matrix[i][j] += weight * x * y
             matrices.append(matrix)
         return primitive_matrices(matrices)
 
+    @cached_property
+    def _unit(self) -> int:
+        """The least d > 0 for which d times each row of `row` has integer coefficients."""
+        return lcm(*(a.denominator for a in self.eliminated_row))
+
+    @cached_property
+    def _integer_rows(self) -> dict[int, dict[int, int]]:
+        """`row` of every vertex times `_unit`."""
+        unit = self._unit
+        rows: dict[int, dict[int, int]] = {v: {} for v in self.branch_system.pinned}
+        rows |= {v: {k: unit} for k, v in enumerate(self.variables)}
+        row = enumerate(self.eliminated_row)
+        return rows | {self.eliminated: {k: int(a * unit) for k, a in row if a}}
+
     def row(self, vertex: int) -> dict[int, Fraction]:
         """Height of a vertex as an affine function of x: coefficient by position, n for 1."""
-        if vertex in self.branch_system.pinned:
-            return {}
-        if vertex == self.eliminated:
-            return {k: a for k, a in enumerate(self.eliminated_row) if a}
-        return {self.variables.index(vertex): Fraction(1)}
+        return {k: Fraction(a, self._unit) for k, a in self._integer_rows[vertex].items()}
 
     def heights(self, x: Sequence[Fraction]) -> dict[int, Fraction]:
         """Heights of all vertices at a point of the chart."""
@@ -199,11 +209,20 @@ class Chart:
 
     def restrict(self, functional: Mapping[int, int | Fraction]) -> list[Fraction]:
         """A linear functional of the heights as (c_1, ..., c_n, c_0) on (x, 1)."""
-        row = [Fraction(0)] * (len(self.variables) + 1)
+        row: list[int | Fraction] = [0] * (len(self.variables) + 1)
         for v, weight in functional.items():
-            for k, a in self.row(v).items():
+            for k, a in self._integer_rows[v].items():
                 row[k] += weight * a
-        return row
+        return [Fraction(value) / self._unit for value in row]
+
+    def integer_row(self, functional: Mapping[int, int]) -> tuple[int, ...]:
+        """A positive multiple of `restrict` of an integer functional, the least with integers."""
+        row = [0] * (len(self.variables) + 1)
+        for v, weight in functional.items():
+            for k, a in self._integer_rows[v].items():
+                row[k] += weight * a
+        common = gcd(self._unit, *row)
+        return tuple(value // common for value in row)
 
 
 def _collinear(pattern: CreasePattern, vertices: Sequence[int]) -> bool:

@@ -26,7 +26,7 @@ def primitive_matrices(
     """
     primitive = []
     for matrix in matrices:
-        flat, _ = over_common_denominator(Fraction(x) for row in matrix for x in row)
+        flat, _ = over_common_denominator(x for row in matrix for x in row)
         common = gcd(*flat) or 1
         size = len(matrix)
         rows = [[x // common for x in flat[k * size : (k + 1) * size]] for k in range(size)]
@@ -111,5 +111,5 @@ class QuadraticSystem:
         tensor = np.empty((self.size, self.size + 1, self.size + 1))
         for p, matrix in enumerate(self.matrices):
             largest = max((abs(x) for row in matrix for x in row), default=0) or 1
-            tensor[p] = [[float(Fraction(x, largest)) for x in row] for row in matrix]
+            tensor[p] = [[x / largest for x in row] for row in matrix]
         return tensor

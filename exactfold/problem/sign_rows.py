@@ -33,8 +33,7 @@ class Functionals:
         """Positive where the vertex is popped up, negative where down, zero where it is flat."""
         pattern = self.chart.branch_system.pattern
         return {
-            v: integer_row(self.chart.restrict(vertex_sign_functional(pattern, v)))
-            for v in pattern.interior
+            v: self.chart.integer_row(vertex_sign_functional(pattern, v)) for v in pattern.interior
         }
 
     @cached_property
@@ -42,8 +41,7 @@ class Functionals:
         """Positive for a valley, negative for a mountain, zero where the fold is flat."""
         pattern = self.chart.branch_system.pattern
         return {
-            fold: integer_row(self.chart.restrict(fold_functional(pattern, fold)))
-            for fold in pattern.folds
+            fold: self.chart.integer_row(fold_functional(pattern, fold)) for fold in pattern.folds
         }
 
     @cached_property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from math import lcm
 
 from exactfold.errors import UsageError
 from exactfold.exact.forms import QuadraticForm
@@ -16,11 +17,20 @@ def spokes(
     pattern: CreasePattern, vertex: int
 ) -> tuple[tuple[int, ...], list[tuple[Fraction, Fraction]]]:
     """Neighbours of an interior vertex counter-clockwise, and the vectors U_j - U_v to them."""
+    ring, d, unit = integer_spokes(pattern, vertex)
+    return ring, [(Fraction(x, unit), Fraction(y, unit)) for x, y in d]
+
+
+def integer_spokes(
+    pattern: CreasePattern, vertex: int
+) -> tuple[tuple[int, ...], list[tuple[int, int]], int]:
+    """The same with vectors times the least integer that makes all points integers, behind them."""
     if vertex not in pattern.interior_set:
         raise UsageError(f"vertex {vertex} is not an interior vertex")
-    x, y = pattern.vertices[vertex]
+    points, unit = pattern.integer_vertices
+    x, y = points[vertex]
     ring = pattern.star(vertex)
-    return ring, [(pattern.vertices[j][0] - x, pattern.vertices[j][1] - y) for j in ring]
+    return ring, [(points[j][0] - x, points[j][1] - y) for j in ring], unit
 
 
 def wheel_stress(pattern: PatternLike, vertex: int) -> dict[Edge, Fraction]:
@@ -69,24 +79,25 @@ def curvature_form(pattern: PatternLike, vertex: int) -> QuadraticForm:
 
 @remembered
 def _curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
-    ring, d = spokes(pattern, vertex)
+    ring, d, unit = integer_spokes(pattern, vertex)
     n = len(ring)
     turned = d[1:] + d[:1]
     c = [a[0] * b[1] - a[1] * b[0] for a, b in zip(d, turned, strict=True)]
     s = [a[0] * b[0] + a[1] * b[1] for a, b in zip(d, turned, strict=True)]
-    cot = [p / q for p, q in zip(s, c, strict=True)]
-    matrix = [[Fraction(0)] * (n + 1) for _ in range(n + 1)]
-    for j in range(1, n + 1):
-        length2 = d[j - 1][0] ** 2 + d[j - 1][1] ** 2
-        matrix[j][j] = -(cot[j - 1] + cot[j - 2]) / (2 * length2)
+    below = [2 * (x * x + y * y) * c[j] * c[j - 1] for j, (x, y) in enumerate(d)]
+    common = lcm(*below)
+    scale = unit * unit  # of areas
+    matrix = [[0] * (n + 1) for _ in range(n + 1)]
     for j in range(n):
         k = (j + 1) % n
-        matrix[1 + j][1 + k] = matrix[1 + k][1 + j] = 1 / (2 * c[j])
+        cots = s[j] * c[j - 1] + s[j - 1] * c[j]  # over c[j] c[j - 1]
+        matrix[1 + j][1 + j] = -scale * cots * (common // below[j])
+        matrix[1 + j][1 + k] = matrix[1 + k][1 + j] = scale * (common // (2 * c[j]))
     for j in range(1, n + 1):  # invariance under h -> h + constant fixes the hub's row
         row = matrix[j]
         row[0] = matrix[0][j] = -(row[j] + row[j % n + 1] + row[(j - 2) % n + 1])
-    matrix[0][0] = -sum(matrix[0][1:], Fraction(0))
-    return QuadraticForm((vertex, *ring), tuple(tuple(row) for row in matrix))
+    matrix[0][0] = -sum(matrix[0][1:])
+    return QuadraticForm.over(common, (vertex, *ring), matrix)
 
 
 def stress_form(pattern: PatternLike, stress: Mapping[Edge, Fraction]) -> QuadraticForm:
@@ -95,10 +106,11 @@ def stress_form(pattern: PatternLike, stress: Mapping[Edge, Fraction]) -> Quadra
     size = len(pattern.vertices)
     matrix = [[Fraction(0)] * size for _ in range(size)]
     for (i, j), w in stress.items():
-        matrix[i][i] += w / 2
-        matrix[j][j] += w / 2
-        matrix[i][j] -= w / 2
-        matrix[j][i] -= w / 2
+        half = Fraction(w) / 2
+        matrix[i][i] += half
+        matrix[j][j] += half
+        matrix[i][j] -= half
+        matrix[j][i] -= half
     return QuadraticForm(tuple(range(size)), tuple(tuple(row) for row in matrix))
 
 

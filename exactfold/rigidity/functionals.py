@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from exactfold.exact.numbers import over_common_denominator
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.validate import orientation
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
 
@@ -17,9 +17,7 @@ def vertex_sign_functional(pattern: CreasePattern, vertex: int) -> dict[int, int
     down, and 0 exactly where the star of the vertex is flat (docs/conventions.md, Signs of
     vertices).
     """
-    coefficients = curvature_form(pattern, vertex).functional(round_cone(pattern, vertex))
-    integers, _ = over_common_denominator(coefficients.values())
-    return dict(zip(coefficients, integers, strict=True))
+    return curvature_form(pattern, vertex).integer_functional(round_cone(pattern, vertex))
 
 
 def fold_functional(pattern: CreasePattern, fold: Edge) -> dict[int, int]:
@@ -35,8 +33,7 @@ def fold_functional(pattern: CreasePattern, fold: Edge) -> dict[int, int]:
     corners = (i, j, left, right)
 
     def area(a: int, b: int, c: int) -> int:
-        (ax, ay), (bx, by), (cx, cy) = points[a], points[b], points[c]
-        return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+        return int(orientation(points[a], points[b], points[c]))
 
     # Cramer: sum_k (-1)^k det(the other three) h_k vanishes on affine functions.
     weights = (-area(j, left, right), area(i, left, right), -area(i, j, right), area(i, j, left))
@@ -50,11 +47,10 @@ def saddle_functional(pattern: CreasePattern) -> dict[int, Fraction]:
     the smallest index. A branch is represented by the ray on which it is positive.
     """
     b = pattern.boundary
-    points = pattern.vertices
+    points, _ = pattern.integer_vertices
 
-    def area(i: int, j: int, k: int) -> Fraction:
-        (ax, ay), (bx, by), (cx, cy) = points[i], points[j], points[k]
-        return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    def area(i: int, j: int, k: int) -> int:
+        return int(orientation(points[i], points[j], points[k]))
 
     weights = [
         area(b[1], b[2], b[3]),
@@ -63,4 +59,4 @@ def saddle_functional(pattern: CreasePattern) -> dict[int, Fraction]:
         -area(b[0], b[1], b[2]),
     ]
     first = next(w for w in weights if w)
-    return {v: w / first for v, w in zip(b, weights, strict=True)}
+    return {v: Fraction(w, first) for v, w in zip(b, weights, strict=True)}

@@ -7,7 +7,7 @@ from math import isqrt
 
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.remembered import remembered
-from exactfold.rigidity.curvature import curvature_form, spokes
+from exactfold.rigidity.curvature import curvature_form, integer_spokes
 
 
 def sqrt_approximation(value: Fraction, bits: int) -> Fraction:
@@ -29,11 +29,11 @@ def round_cone(pattern: CreasePattern, vertex: int, bits: int = 16) -> dict[int,
 @remembered
 def _round_cone(pattern: CreasePattern, vertex: int, bits: int) -> dict[int, Fraction]:
     form = curvature_form(pattern, vertex)
-    ring, d = spokes(pattern, vertex)
+    ring, d, unit = integer_spokes(pattern, vertex)
     while True:
         cone = {vertex: Fraction(0)}
         for j, (x, y) in zip(ring, d, strict=True):
-            cone[j] = -sqrt_approximation(x * x + y * y, bits)
+            cone[j] = -sqrt_approximation(Fraction(x * x + y * y, unit * unit), bits)
         if form(cone) > 0:
             return cone
         bits *= 2

@@ -21,12 +21,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from operator import mul
 
 import numpy as np
 
 from exactfold.arrays import BoolArray, FloatArray
-from exactfold.errors import NotApplicableError
-from exactfold.exact.forms import QuadraticForm
+from exactfold.exact.linalg import integer_squares
+from exactfold.exact.numbers import over_common_denominator
 from exactfold.problem.branch_system import Chart
 from exactfold.problem.gauge import Gauge
 from exactfold.rigidity.curvature import curvature_form
@@ -59,10 +60,42 @@ class Ends:
 
 @dataclass(frozen=True)
 class Nappe:
-    """l_v and A_v of one vertex as exact rows on (x, 1): N_v = sum of weight * (row . (x, 1))^2."""
+    """l_v and A_v of one vertex as exact rows on (x, 1): N_v = sum of weight * (row . (x, 1))^2.
 
-    line: Row
-    squares: tuple[tuple[Fraction, Row], ...]
+    A row is a tuple of integers and their common denominator, a weight a pair of integers whose
+    quotient it is: these are long, and hardly ever needed in lowest terms.
+    """
+
+    over_line: tuple[tuple[int, ...], int]
+    over_squares: tuple[tuple[tuple[int, int], tuple[tuple[int, ...], int]], ...]
+
+    @cached_property
+    def line(self) -> Row:
+        """l_v as a row of fractions."""
+        row, below = self.over_line
+        return tuple(Fraction(c, below) for c in row)
+
+    @cached_property
+    def squares(self) -> tuple[tuple[Fraction, Row], ...]:
+        """Weights and rows as fractions."""
+        return tuple(
+            (Fraction(*weight), tuple(Fraction(c, below) for c in row))
+            for weight, (row, below) in self.over_squares
+        )
+
+    @property
+    def float_line(self) -> list[float]:
+        """l_v, each entry rounded once."""
+        row, below = self.over_line
+        return [c / below for c in row]
+
+    @property
+    def float_root(self) -> list[list[float]]:
+        """A_v: the rows times the roots of their weights."""
+        return [
+            [(over / under) ** 0.5 * (c / below) for c in row]
+            for (over, under), (row, below) in self.over_squares
+        ]
 
     @property
     def form(self) -> FloatArray:
@@ -104,42 +137,47 @@ class NappeSystem:
 
     @cached_property
     def nappes(self) -> tuple[Nappe, ...]:
-        """Exact data of every unknown's vertex, scaled so that l_v has coefficient 1 at the hub."""
+        """Exact data of every unknown's vertex, scaled so that l_v has coefficient 1 at the hub.
+
+        With K_v = M / d, a cone t and p = M t in integers, l_v is p . h over its coefficient p_v at
+        the hub, and p_v^2 N_v = (p . h)^2 - (t . p) h^T M h.
+        """
         gauge = self.gauge
         size = len(gauge.unknowns) + 1
-        lift = {v: (k, Fraction(1)) for k, v in enumerate(gauge.unknowns)}
-        lift |= {v: (size - 1, height) for v, height in gauge.rim.items() if height}
+        heights, unit = over_common_denominator(gauge.rim.values())
+        lift = {v: (k, unit) for k, v in enumerate(gauge.unknowns)}
+        lift |= {v: (size - 1, h) for v, h in zip(gauge.rim, heights, strict=True) if h}
         found = []
         for v in gauge.unknowns:
             form, cone = curvature_form(gauge.sheet, v), round_cone(gauge.sheet, v)
-            polar = form.functional(cone)
-            hub, scale = polar[v], form(cone) / polar[v] ** 2
-            line = [polar[u] / hub for u in form.labels]
-            rest = tuple(
-                tuple(a * b - scale * k for b, k in zip(line, row, strict=True))
-                for a, row in zip(line, form.matrix, strict=True)
-            )
+            t, _ = over_common_denominator(cone[u] for u in form.labels)
+            p = [sum(map(mul, row, t)) for row in form.integers]
+            top, hub = sum(map(mul, t, p)), p[form.labels.index(v)]
+            rest = [
+                [a * b - top * k for b, k in zip(p, row, strict=True)]
+                for a, row in zip(p, form.integers, strict=True)
+            ]
             places = [lift.get(u) for u in form.labels]
-            found_squares = positive_squares(QuadraticForm(form.labels, rest))
-            squares = [(d, _lifted(row, places, size)) for d, row in found_squares]
+            squares = [
+                ((lead, before * hub * hub), (_lifted(row, places, size), lead * unit))
+                for lead, before, row in integer_squares(rest)
+            ]
             if v == gauge.corner:
-                unit = [Fraction(int(k == size - 1)) for k in range(size)]
-                squares.append((scale * gauge.corner_curvature, tuple(unit)))
-            found.append(Nappe(_lifted(line, places, size), tuple(squares)))
+                level = gauge.corner_curvature * top * form.denominator / (hub * hub)
+                last = tuple(int(k == size - 1) for k in range(size))
+                squares.append((level.as_integer_ratio(), (last, 1)))
+            found.append(Nappe((_lifted(p, places, size), hub * unit), tuple(squares)))
         return tuple(found)
 
     @cached_property
     def lines(self) -> FloatArray:
         """All l_v on (x, 1), one row each."""
-        return np.array([[float(c) for c in nappe.line] for nappe in self.nappes])
+        return np.array([nappe.float_line for nappe in self.nappes])
 
     @cached_property
     def _roots(self) -> list[FloatArray]:
         """A_v for every v, one row a square."""
-        return [
-            np.array([[float(d) ** 0.5 * float(c) for c in row] for d, row in nappe.squares])
-            for nappe in self.nappes
-        ]
+        return [np.array(nappe.float_root) for nappe in self.nappes]
 
     @cached_property
     def _stacked(self) -> FloatArray:
@@ -298,22 +336,11 @@ def solve_each(matrices: FloatArray, right: FloatArray) -> FloatArray:
         )
 
 
-def positive_squares(form: QuadraticForm) -> list[tuple[Fraction, Row]]:
-    """A positive semidefinite form as a sum of weight * (row . x)^2, exactly.
-
-    Raises `NotApplicableError` if the form takes negative values.
-    """
-    found = form.diagonalised
-    if any(weight < 0 for weight in found.weights):
-        raise NotApplicableError("the form is not positive semidefinite")
-    return list(zip(found.weights, found.rows, strict=True))
-
-
 def _lifted(
-    row: Sequence[Fraction], places: Sequence[tuple[int, Fraction] | None], size: int
-) -> Row:
-    """A row over a star as a row on (x, 1); vertices without a place have height 0."""
-    full = [Fraction(0)] * size
+    row: Sequence[int], places: Sequence[tuple[int, int] | None], size: int
+) -> tuple[int, ...]:
+    """A row over a star as a row on (x, 1), with heights in units; others have height 0."""
+    full = [0] * size
     for value, found in zip(row, places, strict=True):
         if found is not None:
             place, height = found

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from itertools import islice
 
 import numpy as np
@@ -17,6 +16,7 @@ from exactfold.branches.result import BranchCount
 from exactfold.count.collect import count_branches
 from exactfold.count.conveyor import LISTED_BITS, Conveyor
 from exactfold.errors import NotCountedError
+from exactfold.exact.numbers import over_common_denominator
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.problem import Problem
 from exactfold.rigidity.functionals import fold_functional
@@ -150,15 +150,17 @@ def _directions(
     """
     pattern, rows = problem.pattern, problem.height_rows(problem.chart)
     size = points.shape[1]
+    flat, unit = over_common_denominator(x for row in rows.values() for x in row)
+    heights = {v: flat[k * size : (k + 1) * size] for k, v in enumerate(rows)}
     matrix = np.empty((len(pattern.folds), size))
     for k, fold in enumerate(pattern.folds):
         weights = fold_functional(pattern, fold)
         left, right = pattern.opposite(fold)
-        scale = Fraction(1, weights[left] * weights[right])
+        below = weights[left] * weights[right] * unit
         length = _length(pattern, fold)
         for column in range(size):
-            value = sum((w * rows[v][column] for v, w in weights.items()), Fraction(0))
-            matrix[k, column] = float(value * scale) * length
+            value = sum(w * heights[v][column] for v, w in weights.items())
+            matrix[k, column] = value / below * length
     absolute = np.abs(matrix)
     bends = points @ matrix.T
     off = radii[:, None] * absolute[:, :-1].sum(axis=1)

@@ -9,7 +9,6 @@ from sheets import SQUARE, dart, mapped, mirrored, reflex_corners, rotated, scra
 from exactfold import families, random_square, read_fold
 from exactfold.data import example_path
 from exactfold.errors import NotApplicableError
-from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.problem.branch_system import chamber_chart
 from exactfold.rigidity.curvature import curvature_form
@@ -17,7 +16,6 @@ from exactfold.rigidity.timelike import round_cone
 from exactfold.solve.dense_newton import (
     Ends,
     NappeSystem,
-    positive_squares,
     sign_vectors,
     solve_each,
 )
@@ -122,11 +120,24 @@ def test_singular_matrices_spoil_only_their_own_solution() -> None:
     assert not np.isfinite(found[1]).any()
 
 
-def test_forms_with_negative_values_are_refused() -> None:
-    with pytest.raises(NotApplicableError):
-        positive_squares(
-            QuadraticForm((0, 1), ((Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))))
+@pytest.mark.parametrize("name", PATTERNS)
+def test_the_square_of_the_line_less_the_squares_is_the_curvature(name: str) -> None:
+    system = NappeSystem(chamber_chart(PATTERNS[name]))
+    sheet, gauge = system.gauge.sheet, system.gauge
+    x = [Fraction(k * k + 1, k + 2) for k in range(len(gauge.unknowns))]
+    heights = {**gauge.rim, **dict(zip(gauge.unknowns, x, strict=True))}
+    for v, nappe in zip(gauge.unknowns, system.nappes, strict=True):
+        cone, form = round_cone(sheet, v), curvature_form(sheet, v)
+        star = {u: heights[u] for u in form.labels}
+        line, *values = (
+            sum(c * z for c, z in zip(row, [*x, 1], strict=True))
+            for row in (nappe.line, *(row for _, row in nappe.squares))
         )
+        hub = form.functional(cone)[v]
+        assert line == form.polar(cone, star) / hub
+        assert all(weight > 0 for weight, _ in nappe.squares)
+        squares = sum(w * b**2 for (w, _), b in zip(nappe.squares, values, strict=True))
+        assert line**2 - squares == form(cone) / hub**2 * (form(star) - gauge.targets.get(v, 0))
 
 
 def test_other_boundaries_are_refused() -> None:
