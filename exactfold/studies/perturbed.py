@@ -18,8 +18,8 @@ from exactfold.problem.perturbation import perturbed
 from exactfold.problem.sign_rows import Functionals
 from exactfold.solve.homotopy_ends import homotopy
 from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.statistics import percent
-from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.statistics import interval, interval_text, percent, verdict
+from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
 from exactfold.studies.tallies import draw_shares, tallied
 from exactfold.verdict import PROVED
 
@@ -116,7 +116,7 @@ def _share(part: int, whole: int) -> str | None:
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """For each number of vertices and size: what share of zeros and of systems is not real."""
+    """What share of zeros and of systems is not real, and the two sentences of the paper."""
     tallies = _tallies(rows)
     lines = tuple(
         (
@@ -142,8 +142,35 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
                 "real zeros for each pair of opposite sign vectors, by the functionals of the "
                 "sheet.",
             ),
-        )
+        ),
+        _sentences(tallies),
     ]
+
+
+def _sentences(tallies: Mapping[tuple[int, str], _Tally]) -> StudyTable:
+    largest = {n: size for n, size in tallies if size != SIZES[0]}  # sizes come in their order
+    lines: list[tuple[Cell, ...]] = []
+    for n, size in largest.items():
+        t = tallies[n, size]
+        for sentence, found, number in (
+            ("zeros in complex pairs", t.some, t.proved),
+            ("not two zeros for each", t.proved - t.unclear - t.two, t.proved - t.unclear),
+        ):
+            if number:
+                low, high = interval(found, number)
+                most = None if low <= 0.5 <= high else low > 0.5
+                share = (_share(found, number), interval_text(found, number))
+                lines.append((n, size, sentence, *share, verdict(most)))
+    return StudyTable(
+        "sentences",
+        "What the paper says of most systems",
+        ("Vi", "size", "", "systems, %", "interval, %", "verdict"),
+        tuple(lines),
+        (
+            "The paper does not say how large its changes were: these are the largest here. Exact "
+            "95 % intervals; a verdict is not decided where the interval holds one half.",
+        ),
+    )
 
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:

@@ -15,6 +15,7 @@ from exactfold.algebra.hermite import hermite_counts
 from exactfold.problem import BranchSystem, perturbed
 from exactfold.rigidity.functionals import saddle_functional
 from exactfold.studies import motions, mv, run_study
+from exactfold.studies import perturbed as perturbed_study
 from exactfold.studies.flat import has_straight_folds
 from exactfold.studies.lines import Lines
 from exactfold.studies.squares import square_of
@@ -140,6 +141,17 @@ def test_real_zeros_are_counted_by_hermite_forms_as_well():
             assert (row["nonreal"], row["two_for_each_pair"]) == (0, True)
     assert columns(run, "real")["systems"] == (1,) * 5 + (2,) * 5
     assert sum(row["nonreal"] for row in run.rows) > 0
+
+
+@pytest.mark.parametrize(("lost", "says"), [(10, "agreed"), (0, "not agreed"), (5, "not decided")])
+def test_what_the_paper_says_of_most_systems_is_judged_by_the_largest_change(lost, says):
+    row = {"interior": 3, "status": "proved", "zeros": 8, "nonreal": 0, "two_for_each_pair": True}
+    changed = [{"nonreal": 2, "two_for_each_pair": False}] * lost + [{}] * (10 - lost)
+    rows = [row | {"size": "0"}] * 10 + [row | {"size": "1/2"} | change for change in changed]
+    _, sentences = perturbed_study.STUDY.tables(rows)
+    assert [(line[1], line[3], line[-1]) for line in sentences.rows] == [
+        ("1/2", f"{10 * lost}", says)
+    ] * 2
 
 
 def test_margins_are_no_smaller_than_those_of_torques_along_the_branch():
