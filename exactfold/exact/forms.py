@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import FrozenInstanceError, dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import gcd
+from math import gcd, lcm
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
@@ -47,12 +47,11 @@ class Diagonal:
         return f"<Diagonal: inertia {self.inertia}>"
 
 
-@dataclass(frozen=True, init=False)
 class QuadraticForm:
     """Q(h) = h^T M h on the variables named by `labels`, with M symmetric over Q.
 
-    `integers` / `denominator` is M in lowest terms: no integer above 1 divides all entries and the
-    denominator, which is positive. `matrix` has the entries as fractions.
+    `matrix` has the entries of M as fractions. `integers` / `denominator` is M in lowest terms: no
+    integer above 1 divides all entries and the denominator, which is positive.
 
     >>> form = QuadraticForm((4, 7), ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(-1))))
     >>> form({4: Fraction(3), 7: Fraction(2)}), form.inertia
@@ -60,14 +59,9 @@ class QuadraticForm:
     """
 
     labels: tuple[int, ...]
-    integers: tuple[tuple[int, ...], ...]
-    denominator: int
 
-    def __init__(self, labels: Iterable[int], matrix: Iterable[Iterable[Fraction | int]]) -> None:
-        rows = [list(row) for row in matrix]
-        flat, denominator = over_common_denominator(x for row in rows for x in row)
-        left = iter(flat)
-        self._set(labels, ([next(left) for _ in row] for row in rows), denominator)
+    def __init__(self, labels: Iterable[int], matrix: Iterable[Iterable[Fraction]]) -> None:
+        vars(self).update(labels=tuple(labels), matrix=tuple(map(tuple, matrix)))
 
     @classmethod
     def over(
@@ -81,20 +75,41 @@ class QuadraticForm:
         rows = list(integers)
         common = gcd(denominator, *(x for row in rows for x in row))
         form = object.__new__(cls)
-        form._set(labels, ([x // common for x in row] for row in rows), denominator // common)
+        vars(form).update(
+            labels=tuple(labels),
+            integers=tuple(tuple(x // common for x in row) for row in rows),
+            denominator=denominator // common,
+        )
         return form
 
-    def _set(
-        self, labels: Iterable[int], integers: Iterable[Iterable[int]], denominator: int
-    ) -> None:
-        object.__setattr__(self, "labels", tuple(labels))
-        object.__setattr__(self, "integers", tuple(map(tuple, integers)))
-        object.__setattr__(self, "denominator", denominator)
+    def __setattr__(self, name: str, value: object) -> None:
+        raise FrozenInstanceError(f"a form does not change: {name}")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, QuadraticForm):
+            return NotImplemented
+        return (self.labels, self.matrix) == (other.labels, other.matrix)
+
+    def __hash__(self) -> int:
+        return hash((self.labels, self.matrix))
 
     @cached_property
     def matrix(self) -> tuple[tuple[Fraction, ...], ...]:
         """M, row by row."""
         return tuple(tuple(Fraction(x, self.denominator) for x in row) for row in self.integers)
+
+    @cached_property
+    def integers(self) -> tuple[tuple[int, ...], ...]:
+        """`denominator` times M, row by row."""
+        return tuple(
+            tuple(x.numerator * (self.denominator // x.denominator) for x in row)
+            for row in self.matrix
+        )
+
+    @cached_property
+    def denominator(self) -> int:
+        """The least d > 0 for which d M has integer entries."""
+        return lcm(*(x.denominator for row in self.matrix for x in row))
 
     def polar(self, a: Mapping[int, Fraction], b: Mapping[int, Fraction]) -> Fraction:
         """The symmetric bilinear form B(a, b) with B(h, h) = Q(h)."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from math import lcm
+from operator import truediv
+from typing import Any
 
 from exactfold.errors import UsageError
 from exactfold.exact.forms import QuadraticForm
@@ -17,20 +19,25 @@ def spokes(
     pattern: CreasePattern, vertex: int
 ) -> tuple[tuple[int, ...], list[tuple[Fraction, Fraction]]]:
     """Neighbours of an interior vertex counter-clockwise, and the vectors U_j - U_v to them."""
-    ring, d, unit = integer_spokes(pattern, vertex)
-    return ring, [(Fraction(x, unit), Fraction(y, unit)) for x, y in d]
+    ring = _ring(pattern, vertex)
+    x, y = pattern.vertices[vertex]
+    return ring, [(pattern.vertices[j][0] - x, pattern.vertices[j][1] - y) for j in ring]
 
 
 def integer_spokes(
     pattern: CreasePattern, vertex: int
 ) -> tuple[tuple[int, ...], list[tuple[int, int]], int]:
     """The same with vectors times the least integer that makes all points integers, behind them."""
-    if vertex not in pattern.interior_set:
-        raise UsageError(f"vertex {vertex} is not an interior vertex")
+    ring = _ring(pattern, vertex)
     points, unit = pattern.integer_vertices
     x, y = points[vertex]
-    ring = pattern.star(vertex)
     return ring, [(points[j][0] - x, points[j][1] - y) for j in ring], unit
+
+
+def _ring(pattern: CreasePattern, vertex: int) -> tuple[int, ...]:
+    if vertex not in pattern.interior_set:
+        raise UsageError(f"vertex {vertex} is not an interior vertex")
+    return pattern.star(vertex)
 
 
 def wheel_stress(pattern: PatternLike, vertex: int) -> dict[Edge, Fraction]:
@@ -47,13 +54,11 @@ def wheel_stress(pattern: PatternLike, vertex: int) -> dict[Edge, Fraction]:
     """
     pattern = as_pattern(pattern)
     ring, d = spokes(pattern, vertex)
-    n = len(ring)
-    c = [d[j][0] * d[(j + 1) % n][1] - d[j][1] * d[(j + 1) % n][0] for j in range(n)]
-    s = [d[j][0] * d[(j + 1) % n][0] + d[j][1] * d[(j + 1) % n][1] for j in range(n)]
+    c = [_cross(a, b) for a, b in zip(d, _turned(d), strict=True)]
+    s = [_dot(a, b) for a, b in zip(d, _turned(d), strict=True)]
     stress = {}
-    for j in range(n):
-        length2 = d[j][0] ** 2 + d[j][1] ** 2
-        after = ring[(j + 1) % n]
+    for j, after in enumerate([*ring[1:], ring[0]]):
+        length2 = _dot(d[j], d[j])
         stress[_edge(ring[j], after)] = -1 / c[j]
         stress[_edge(vertex, ring[j])] = (
             1 / c[j] + 1 / c[j - 1] - (s[j] / c[j] + s[j - 1] / c[j - 1]) / length2
@@ -79,25 +84,61 @@ def curvature_form(pattern: PatternLike, vertex: int) -> QuadraticForm:
 
 @remembered
 def _curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
+    if not isinstance(pattern.vertices[vertex][0], Fraction):  # of another field, in a proof
+        ring, vectors = spokes(pattern, vertex)
+        return QuadraticForm((vertex, *ring), star_matrix(vectors, truediv))
     ring, d, unit = integer_spokes(pattern, vertex)
-    n = len(ring)
-    turned = d[1:] + d[:1]
-    c = [a[0] * b[1] - a[1] * b[0] for a, b in zip(d, turned, strict=True)]
-    s = [a[0] * b[0] + a[1] * b[1] for a, b in zip(d, turned, strict=True)]
-    below = [2 * (x * x + y * y) * c[j] * c[j - 1] for j, (x, y) in enumerate(d)]
-    common = lcm(*below)
+    common = lcm(*star_denominators(d))
+    matrix = star_matrix(d, lambda a, b: a * (common // b))
     scale = unit * unit  # of areas
-    matrix = [[0] * (n + 1) for _ in range(n + 1)]
+    rows = [[scale * x for x in row] for row in matrix]
+    return QuadraticForm.over(common, (vertex, *ring), rows)
+
+
+def star_denominators(d: Sequence[tuple[Any, Any]]) -> list[Any]:
+    """2 L_j^2 c_{j-1} c_j for all spokes d_j: denominators of the entries of `star_matrix`."""
+    c = [_cross(a, b) for a, b in zip(d, _turned(d), strict=True)]
+    return [2 * _dot(a, a) * c[j - 1] * c[j] for j, a in enumerate(d)]
+
+
+def star_matrix(
+    d: Sequence[tuple[Any, Any]], quotient: Callable[[Any, Any], Any]
+) -> list[list[Any]]:
+    """The matrix of K_v from the spokes d_j, the hub's row first.
+
+    `quotient(a, b)` makes a / b; nothing else is divided. So one piece of code computes in integers
+    over a common denominator (`star_denominators`) and, in the proofs, in rational functions.
+
+    >>> star_matrix([(1, 0), (0, 1), (-1, 0), (0, -1)], lambda a, b: Fraction(a, b))[1][2]
+    Fraction(1, 2)
+    """
+    n = len(d)
+    c = [_cross(a, b) for a, b in zip(d, _turned(d), strict=True)]
+    s = [_dot(a, b) for a, b in zip(d, _turned(d), strict=True)]
+    below = star_denominators(d)
+    matrix: list[list[Any]] = [[0] * (n + 1) for _ in range(n + 1)]
     for j in range(n):
         k = (j + 1) % n
-        cots = s[j] * c[j - 1] + s[j - 1] * c[j]  # over c[j] c[j - 1]
-        matrix[1 + j][1 + j] = -scale * cots * (common // below[j])
-        matrix[1 + j][1 + k] = matrix[1 + k][1 + j] = scale * (common // (2 * c[j]))
+        cots = s[j] * c[j - 1] + s[j - 1] * c[j]  # (cot + cot) c_{j-1} c_j
+        matrix[1 + j][1 + j] = quotient(-cots, below[j])
+        matrix[1 + j][1 + k] = matrix[1 + k][1 + j] = quotient(1, 2 * c[j])
     for j in range(1, n + 1):  # invariance under h -> h + constant fixes the hub's row
         row = matrix[j]
         row[0] = matrix[0][j] = -(row[j] + row[j % n + 1] + row[(j - 2) % n + 1])
     matrix[0][0] = -sum(matrix[0][1:])
-    return QuadraticForm.over(common, (vertex, *ring), matrix)
+    return matrix
+
+
+def _turned(d: Sequence[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
+    return [*d[1:], d[0]]
+
+
+def _cross(a: tuple[Any, Any], b: tuple[Any, Any]) -> Any:
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def _dot(a: tuple[Any, Any], b: tuple[Any, Any]) -> Any:
+    return a[0] * b[0] + a[1] * b[1]
 
 
 def stress_form(pattern: PatternLike, stress: Mapping[Edge, Fraction]) -> QuadraticForm:
@@ -106,7 +147,7 @@ def stress_form(pattern: PatternLike, stress: Mapping[Edge, Fraction]) -> Quadra
     size = len(pattern.vertices)
     matrix = [[Fraction(0)] * size for _ in range(size)]
     for (i, j), w in stress.items():
-        half = Fraction(w) / 2
+        half = Fraction(w, 2) if isinstance(w, int) else w / 2
         matrix[i][i] += half
         matrix[j][j] += half
         matrix[i][j] -= half

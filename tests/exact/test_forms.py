@@ -1,17 +1,21 @@
 """Quadratic forms on labelled variables: values, squares, and their SymPy expressions."""
 
+import pickle
+from dataclasses import FrozenInstanceError
 from fractions import Fraction
+from operator import truediv
 
 import pytest
 import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from exactfold import random_square
 from exactfold.errors import UsageError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.families import single_vertex, two_vertex
 from exactfold.problem.branch_system import BranchSystem
-from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.curvature import curvature_form, spokes, star_matrix, stress_form
 
 quick = settings(max_examples=60, deadline=None)
 rationals = st.builds(Fraction, st.integers(-9, 9), st.integers(1, 5))
@@ -97,3 +101,31 @@ def test_a_notebook_shows_small_forms_only():
     zero = QuadraticForm((0,), ((Fraction(0),),))
     assert zero.to_sympy() == 0
     assert zero._repr_latex_() == "$Q(h) = 0$"
+
+
+def test_forms_from_integers_are_those_from_fractions_and_do_not_change():
+    over = QuadraticForm.over(12, [4, 7], [[4, -6], [-6, 0]])
+    form = QuadraticForm(
+        (4, 7), ((Fraction(1, 3), Fraction(-1, 2)), (Fraction(-1, 2), Fraction(0)))
+    )
+    assert (over.integers, over.denominator) == (((2, -3), (-3, 0)), 6)
+    assert (form.integers, form.denominator) == (over.integers, over.denominator)
+    assert form == over == pickle.loads(pickle.dumps(over))
+    assert hash(form) == hash(over)
+    assert form != QuadraticForm((7, 4), form.matrix)
+    assert form != form.matrix
+    with pytest.raises(FrozenInstanceError):
+        form.labels = (1, 2)
+
+
+def test_curvature_forms_do_not_depend_on_the_way_they_are_computed():
+    for v in (sheet := random_square(5, seed=2)).interior:
+        ring, d = spokes(sheet, v)
+        assert curvature_form(sheet, v) == QuadraticForm((v, *ring), star_matrix(d, truediv))
+
+
+def test_stresses_that_are_whole_numbers_have_a_form():
+    assert stress_form(single_vertex(3), {(0, 1): 1}).matrix[0][:2] == (
+        Fraction(1, 2),
+        Fraction(-1, 2),
+    )
