@@ -79,7 +79,7 @@ def test_formats() -> None:
     forged[0]["emptied"] = [{"corners": [0, 1, None], "inside": []}]
     refused(forged, "corner is not a natural number")
     forged[0]["emptied"] = [{"corners": [0, 1, 4], "inside": [99]}]
-    refused(forged, "malformed: KeyError")
+    refused(forged, "malformed: KeyError in the first line")
 
 
 def test_lines_that_were_altered_or_left_out_break_the_chain() -> None:
