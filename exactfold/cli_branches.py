@@ -30,6 +30,7 @@ from exactfold.commands.parameters import (
 from exactfold.commands.shell import (
     EXIT,
     apart,
+    one_at_most,
     reported,
 )
 from exactfold.errors import UsageError
@@ -75,8 +76,7 @@ def branch(
     from exactfold.commands.branch import Asked
     from exactfold.commands.given import Given
 
-    if (signs is not None) + (up is not None) + (batch is not None) != 1:
-        raise UsageError("give one of --signs, --up and --batch")
+    one_at_most("one of --signs, --up and --batch", signs, up, batch)
     if pops is not None and batch is not None:
         raise UsageError("--neighbours goes with --signs or --up")
     if certificate is not None and (pops is not None or batch is not None):
@@ -280,8 +280,7 @@ def fold(
     from exactfold.commands.fold import Wanted
     from exactfold.commands.given import Given
 
-    if (signs is not None) + (up is not None) + (place is not None) > 1:
-        raise UsageError("give one of --signs, --up and --branch")
+    one_at_most("one of --signs, --up and --branch", signs, up, place)
     if place is not None and (rim, drive) != (None, None):
         raise UsageError(f"{'--drive' if rim is None else '--rim'} goes with --signs or --up")
     if component is not None and modes is not None:
@@ -380,8 +379,7 @@ def actuate(
     """
     from exactfold.commands.actuate import Driven
 
-    if (signs is not None) + (up is not None) != 1:
-        raise UsageError("give either --signs or --up")
+    one_at_most("either --signs or --up", signs, up)
     if creases is not None and torques is not None:
         raise UsageError("--creases and --torques do not go together")
     asked = Driven(pattern, snap, sheet, signs, up, creases, torques, as_json, everything)
