@@ -462,6 +462,13 @@ def test_a_node_that_is_none_is_refused() -> None:
         passed(entry)
 
 
+def test_what_nothing_else_refuses_in_a_loop_is_malformed() -> None:
+    forged = given_lines(NODE)
+    step = next(step for step in steps_of(forged) if "node" in step)
+    step["node"] = [0] * len(step["node"])
+    refused(forged, "loop 0: malformed: ZeroDivisionError while checking")
+
+
 def test_another_arc_is_refused() -> None:
     entry = node()
     entry["centre"][0] += 1 << 61
