@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from exactfold.cli_branches import COMMANDS as BRANCHES
+from exactfold.cli_motions import COMMANDS as MOTIONS
 from exactfold.cli_pictures import COMMANDS as PICTURES
 from exactfold.cli_studies import COMMANDS as STUDIES
 from exactfold.commands.parameters import (
@@ -190,7 +191,7 @@ def check(
     raise typer.Exit(0 if valid(certificate, workers, as_json) else 1)
 
 
-for command in (*PICTURES, *BRANCHES, *STUDIES):
+for command in (*PICTURES, *BRANCHES, *MOTIONS, *STUDIES):
     app.command(cls=Command)(command)
 
 

@@ -170,9 +170,10 @@ def _small(script: Script, levels: list[set[Triangulation]]) -> None:
     script.state(
         "IV.11",
         "Section IV, fractions",
-        r"\text{``starting from }0\%\text{ at }V_i=3\text{'' \dots\ ``the fraction of H1 "
-        r"triangulations decreased roughly exponentially from 1 at }V_i=3\text{''}",
-        note="follows from IV.10; the other percentages are IV.15 and IV.16",
+        r"\text{``starting from }0\%\text{ at }V_i=3\text{'' \dots\ ``from 1 at }"
+        r"V_i=3\text{''}",
+        note="the shares without boundary vertices of degree 3, and of H1 triangulations: follows "
+        "from IV.10; the others are IV.15 and IV.16",
         rests="IV.10",
     )
 

@@ -128,6 +128,13 @@ REPLACEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
             "can be decomposed into a sequence of $V_i+1$ butterflies, the seed included",
         ),
     ),
+    "IV.16": (
+        (
+            "decreased roughly exponentially from 1 at",
+            "decreased faster than exponentially from 1 at",
+        ),
+    ),
+    "IV.17": (("appears to decay exponentially", "decays more slowly than exponentially"),),
     "IV.19": (
         (
             r"where the dihedral angle of the new butterfly never reaches $\pi$",

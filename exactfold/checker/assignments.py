@@ -17,16 +17,7 @@ from typing import Any
 from .arcs import Arcs, Word
 from .branch import Place
 from .formats import ASSIGNMENTS, ASSIGNMENTS_VERSION
-from .reading import (
-    MALFORMED,
-    CertificateError,
-    counted,
-    document,
-    items,
-    keys,
-    parse_integer,
-    require,
-)
+from .reading import counted, document, items, keys, parse_integer, refusing, require
 from .reduced import check_convex
 from .sheet import Edge, Sheet, read_sheet, turn
 
@@ -41,6 +32,7 @@ def read(data: Any) -> dict[str, Any]:
     )
 
 
+@refusing()
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
@@ -48,13 +40,6 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     by fold in lexicographic order, of all solutions that bend every fold but those inside
     triangulated triangles, which are "F".
     """
-    try:
-        return _check(data)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
-
-
-def _check(data: dict[str, Any]) -> dict[str, Any]:
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, "assignments", "claims")

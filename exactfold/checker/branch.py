@@ -18,16 +18,7 @@ from typing import Any
 
 from .branch_proof import Heights, Proof
 from .formats import BRANCH, BRANCH_VERSION, CURVED_VERSION
-from .reading import (
-    MALFORMED,
-    CertificateError,
-    document,
-    items,
-    keys,
-    parse_integer,
-    parse_rational,
-    require,
-)
+from .reading import document, items, keys, parse_integer, parse_rational, refusing, require
 from .reduced import check_convex, closed, emptied_sheet
 from .sheet import Sheet, read_sheet, turn
 
@@ -39,6 +30,7 @@ def read(data: Any) -> dict[str, Any]:
     return document(data, BRANCH, version, "format version pattern claims evidence")
 
 
+@refusing()
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
@@ -48,13 +40,6 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     and for its heights h the integral of |grad(h - heights)|^2 is at most `squared_distance`. In
     version 2 "solutions" are those with K_v = `curvature`, in the order of the interior vertices.
     """
-    try:
-        return _check(data)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
-
-
-def _check(data: dict[str, Any]) -> dict[str, Any]:
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
     names = "gauge vertex_signs assignment squared_distance"

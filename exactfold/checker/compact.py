@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from .compact_blocks import CompactSheet
 from .compact_lines import lines, read_header, read_object
-from .reading import MALFORMED, CertificateError, FormatError, UnfinishedError, keys, require
+from .reading import CertificateError, FormatError, UnfinishedError, keys, refusing, require
 
 _sheet: CompactSheet | None = None  # of a worker process
 
@@ -30,11 +30,10 @@ def check_line(text: str, number: int) -> str | None:
     if _sheet is None:
         raise RuntimeError("the worker was not started")
     try:
-        _sheet.check_block(_sheet.decode(text, number))
+        with refusing(f"in block {number}"):
+            _sheet.check_block(_sheet.decode(text, number))
     except CertificateError as error:
         return str(error)
-    except MALFORMED as error:
-        return f"malformed: {type(error).__name__} in block {number}"
     return None
 
 
@@ -105,10 +104,8 @@ def check_lines(
     if first is None:
         raise FormatError("the file is empty")
     header = read_header(first)
-    try:
+    with refusing("in the first line"):
         sheet = CompactSheet(header)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__}") from error
     _check_blocks(found, first, sheet.blocks, workers, engine)
     last = next(found, None)
     if last is None:

@@ -18,16 +18,7 @@ from .branch import Place
 from .branch_proof import Proof
 from .formats import LETTERS, LETTERS_VERSION
 from .letters_refuted import Signs, Stars
-from .reading import (
-    MALFORMED,
-    CertificateError,
-    counted,
-    document,
-    integer,
-    items,
-    keys,
-    require,
-)
+from .reading import counted, document, integer, items, keys, refusing, require
 from .sheet import Edge, read_sheet
 
 Half = tuple[tuple[int, ...], int]
@@ -41,19 +32,13 @@ def read(data: Any) -> dict[str, Any]:
     return document(data, LETTERS, LETTERS_VERSION, "format version pattern claims evidence")
 
 
+@refusing()
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     Returns the claims and the SHA-256 of the pattern. The claims are: the halves of branches with
     these letters, by fold in lexicographic order, "U" for any, are those listed and no others.
     """
-    try:
-        return _check(data)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
-
-
-def _check(data: dict[str, Any]) -> dict[str, Any]:
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, "letters halves", "claims")

@@ -21,7 +21,7 @@ from .boxes import Root, check_isolated
 from .equations import BranchSystem, read_chart
 from .flat_folds import close_flat
 from .formats import COUNTS, FACTS, LISTING, LISTING_VERSION
-from .reading import MALFORMED, CertificateError, counted, document, items, keys, require, text_of
+from .reading import CertificateError, counted, document, items, keys, refusing, require, text_of
 from .sheet import Sheet, facts_of, read_sheet
 from .stress import check_lorentzian, check_triangles
 
@@ -35,18 +35,12 @@ def read(data: Any) -> dict[str, Any]:
     return document(data, LISTING, LISTING_VERSION, names)
 
 
+@refusing()
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a certificate; raises `CertificateError` at the first failure.
 
     Returns the verified claims. Passing means that the claims hold for the pattern in the file.
     """
-    try:
-        return _check(data)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
-
-
-def _check(data: dict[str, Any]) -> dict[str, Any]:
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, f"{FACTS} {COUNTS} branches", "claims")
     require(isinstance(evidence, dict), "the evidence is not an object")

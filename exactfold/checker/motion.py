@@ -26,14 +26,13 @@ from .motion_rim import Rim, border_of
 from .motion_stretches import Arc, Link, Step
 from .motion_tubes import Start
 from .reading import (
-    MALFORMED,
-    CertificateError,
     counted,
     document,
     items,
     keys,
     natural,
     parse_rational,
+    refusing,
     require,
     shown,
 )
@@ -46,6 +45,7 @@ def read(data: Any) -> dict[str, Any]:
     return document(data, MOTION, MOTION_VERSION, "format version pattern claims evidence")
 
 
+@refusing()
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
@@ -68,13 +68,6 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     but for them. With `return` it ends in the flat state, along the half-branch with these vertex
     signs and this side.
     """
-    try:
-        return _check(data)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
-
-
-def _check(data: dict[str, Any]) -> dict[str, Any]:
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
     more = ["clear"] if "clear" in claims else []

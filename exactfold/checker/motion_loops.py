@@ -22,7 +22,6 @@ from .motion_paths import Path
 from .motion_pieces import first_piece, land
 from .motion_tubes import Start
 from .reading import (
-    MALFORMED,
     CertificateError,
     FormatError,
     UnfinishedError,
@@ -33,6 +32,7 @@ from .reading import (
     keys,
     parse_rational,
     read_json,
+    refusing,
     require,
 )
 from .sheet import read_sheet
@@ -108,11 +108,10 @@ def check_line(text: str, number: int) -> str | None:
     if _sheet is None:
         raise RuntimeError("the worker was not started")
     try:
-        _sheet.check_loop(read_object(text, "a loop"))
+        with refusing():
+            _sheet.check_loop(read_object(text, "a loop"))
     except CertificateError as error:
         return f"loop {number}: {error}"
-    except MALFORMED as error:
-        return f"loop {number}: malformed: {type(error).__name__}"
     return None
 
 
@@ -149,10 +148,8 @@ def check_lines(
     if first is None:
         raise FormatError("the file is empty")
     header = read_header(first)
-    try:
+    with refusing("in the first line"):
         sheet = LoopSheet(header)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__}") from error
     matching, last, late = Matching(), list[Any](), list[Exception]()
 
     def loops() -> Iterator[tuple[str, int]]:

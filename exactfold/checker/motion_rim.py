@@ -11,7 +11,7 @@ from fractions import Fraction
 from math import gcd, lcm
 from typing import Any
 
-from .reading import items, parse_rational
+from .reading import items, parse_rational, require
 from .reduced import check_convex
 from .sheet import Sheet, turn
 
@@ -19,7 +19,7 @@ Row = dict[int, Fraction]
 Tie = dict[int, int]
 """Integers c_v, without a common divisor, of an equation sum c_v z_v = 0."""
 
-_MOST_HEIGHTS = 8  # of a border in a summary
+_MOST_HEIGHTS = 8  # of a border in a summary or a message
 
 
 class Rim:
@@ -33,8 +33,8 @@ class Rim:
         base = _base(sheet, boundary)
         levels = {v: _level(sheet, base, v) for v in boundary if v not in base}
         above = {v: _value(row, heights) for v, row in levels.items()}
+        require(any(above.values()), f"the rim {_shown(texts)} is in one plane: no ratio to keep")
         highest = max(levels, key=lambda v: abs(above[v]))
-        # Of heights in one plane no factor is known: the division fails.
         self.factor = {v: c / above[highest] for v, c in levels[highest].items()}
         self.ties = [
             _whole(_less(row, self.factor, above[v])) for v, row in levels.items() if v != highest
@@ -84,8 +84,9 @@ def border_of(claims: dict[str, Any]) -> str:
     """The heights that the border has on a rim path."""
     if "rim" not in claims:
         return ""
-    heights = claims["rim"]
-    more = ", ..." if len(heights) > _MOST_HEIGHTS else ""
     face = "-".join(map(str, claims["pinned"]))
-    ratio = ", ".join(heights[:_MOST_HEIGHTS]) + more
-    return f", with the border in the ratio of {ratio} above the face {face}"
+    return f", with the border in the ratio of {_shown(claims['rim'])} above the face {face}"
+
+
+def _shown(heights: list[str]) -> str:
+    return ", ".join(heights[:_MOST_HEIGHTS]) + ", ..." * (len(heights) > _MOST_HEIGHTS)

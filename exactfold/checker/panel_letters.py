@@ -14,7 +14,7 @@ from .panel_letters_motion import check_motion
 from .panel_letters_refuted import Cases
 from .panel_letters_together import check_never, check_together
 from .panel_sheet import read_panels
-from .reading import MALFORMED, CertificateError, counted, document, items, keys, require
+from .reading import counted, document, items, keys, refusing, require
 
 _TRULY = {
     "proved": "and true motions begin like this",
@@ -29,6 +29,7 @@ def read(data: Any) -> dict[str, Any]:
     return document(data, PANEL_LETTERS, PANEL_LETTERS_VERSION, names)
 
 
+@refusing()
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
@@ -37,13 +38,6 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     motions begin like this, "undecided" if nothing is claimed; and folds that can go their way
     together to first order where none goes against its letter, and that never do.
     """
-    try:
-        return _check(data)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
-
-
-def _check(data: dict[str, Any]) -> dict[str, Any]:
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, "letters starts truly together never", "claims")
     starts, truly, text = claims["starts"], claims["truly"], claims["letters"]

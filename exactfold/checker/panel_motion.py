@@ -19,17 +19,7 @@ from .panel_drive import Drive
 from .panel_places import Piece, Places, shrunk
 from .panel_sheet import read_panels
 from .panel_times import Clock, OneRate, Rates, time_of
-from .reading import (
-    MALFORMED,
-    CertificateError,
-    counted,
-    document,
-    items,
-    keys,
-    natural,
-    parse_rational,
-    require,
-)
+from .reading import counted, document, items, keys, natural, parse_rational, refusing, require
 
 _NARROWEST = 1 << GRID - 15
 _NAMED = 3
@@ -44,6 +34,7 @@ def read(data: Any) -> dict[str, Any]:
     return document(data, PANEL_MOTION, RATED_VERSION if rated else PANEL_MOTION_VERSION, names)
 
 
+@refusing()
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
@@ -53,13 +44,6 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     two panels touch beyond what they share at any time from 0 until before `clear`; with `contact`,
     some do at or before its second time, and none before its first (docs/panel_motion.md, 6).
     """
-    try:
-        return _check(data)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
-
-
-def _check(data: dict[str, Any]) -> dict[str, Any]:
     sheet, digest = read_panels(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
     more = " contact" if isinstance(claims, dict) and "contact" in claims else ""

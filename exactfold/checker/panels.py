@@ -18,17 +18,7 @@ from .panel_leaves import Verified, verified_part
 from .panel_loops import MOST_ORDER, Loops
 from .panel_modes import Modes, Support, corners_of, name, named
 from .panel_sheet import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
-from .reading import (
-    MALFORMED,
-    CertificateError,
-    FormatError,
-    counted,
-    document,
-    items,
-    keys,
-    natural,
-    require,
-)
+from .reading import FormatError, counted, document, items, keys, natural, refusing, require
 
 MOST_LISTED = 1 << 12  # modes of one support that are looked at one by one
 MOST_SUPPORTS = 1 << 15
@@ -44,19 +34,13 @@ def read(data: Any) -> dict[str, Any]:
     return dict(data)
 
 
+@refusing()
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a certificate; raises `CertificateError` at the first failure.
 
     Returns the verified claims. They hold for the pattern in the file, if the folds in `held` are
     held flat.
     """
-    try:
-        return _check(data)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
-
-
-def _check(data: dict[str, Any]) -> dict[str, Any]:
     claims = data["claims"]
     given = claims.get("spaces", []) if isinstance(claims, dict) else []
     keys(claims, f"{FACTS} supports" + (" spaces" if given else ""), "claims")

@@ -19,16 +19,7 @@ from .formats import PIECES, PIECES_VERSION
 from .panel_sheet import PanelSheet, pair
 from .panel_spaces import Spaces
 from .pieces_flat import Signs, solutions
-from .reading import (
-    MALFORMED,
-    CertificateError,
-    counted,
-    document,
-    items,
-    keys,
-    natural,
-    require,
-)
+from .reading import counted, document, items, keys, natural, refusing, require
 from .reduced import check_convex
 from .sheet import read_sheet
 from .towers import Tower
@@ -43,6 +34,7 @@ def read(data: Any) -> dict[str, Any]:
     return document(data, PIECES, PIECES_VERSION, "format version pattern claims evidence")
 
 
+@refusing()
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
@@ -51,13 +43,6 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     the signs of a solution, "0" at flat stars, up to reflection; no others join sign vectors that
     differ at one vertex of `complete` only.
     """
-    try:
-        return _check(data)
-    except MALFORMED as error:
-        raise CertificateError(f"malformed: {type(error).__name__} while checking") from error
-
-
-def _check(data: dict[str, Any]) -> dict[str, Any]:
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, "vertices at_least at_most joints complete", "claims")

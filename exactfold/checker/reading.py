@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any, NoReturn
 
@@ -26,6 +28,18 @@ def require(condition: object, message: str) -> None:
     """Raise `CertificateError` unless the condition holds."""
     if not condition:
         raise CertificateError(message)
+
+
+@contextmanager
+def refusing(where: str = "while checking") -> Iterator[None]:
+    """Refuse as malformed what the arithmetic stumbles over; `with refusing():` or `@refusing()`.
+
+    Raises `CertificateError` in place of each of `MALFORMED`, with the name of that error.
+    """
+    try:
+        yield
+    except MALFORMED as error:
+        raise CertificateError(f"malformed: {type(error).__name__} {where}") from error
 
 
 def plain(error: object) -> str:

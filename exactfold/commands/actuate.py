@@ -11,7 +11,7 @@ from exactfold.actuation.drive import actuate
 from exactfold.commands.branch import given_signs
 from exactfold.commands.json_numbers import numbers_by_name
 from exactfold.commands.patterns import read
-from exactfold.commands.shell import EXIT, Bar, name_of
+from exactfold.commands.shell import EXIT, Bar, name_of, one_at_least
 from exactfold.count.find import BranchFinder
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import BadTorquesError, NumberError
@@ -21,7 +21,7 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 @dataclass(frozen=True)
 class Driven:
-    """What was asked for on the command line; exactly one of `signs` and `up` is given."""
+    """What was asked for on the command line; at most one of `signs` and `up` is given."""
 
     file: Path
     snap: Snap | None
@@ -36,10 +36,12 @@ class Driven:
     def answer(self) -> int:
         """Find or judge the torques and print; the exit code.
 
-        Raises the errors of `read`, `BranchFinder` and `actuate`, and `BadTorquesError`.
+        Raises the errors of `read`, `BranchFinder` and `actuate`, `BadTorquesError`, and
+        `UsageError` where neither `signs` nor `up` is given.
         """
         with Bar("reading") as bar:
             pattern = read(self.file, self.snap, self.sheet, "actuate").pattern
+            one_at_least("either --signs or --up", self.signs, self.up)
             torques = None if self.torques is None else torques_in(self.torques, pattern)
             found = actuate(
                 pattern,

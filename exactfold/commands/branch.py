@@ -11,10 +11,11 @@ from exactfold.branches.branch import Branch
 from exactfold.commands.driving import Angles, driven_angles
 from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read
-from exactfold.commands.shell import Bar, name_of, say
+from exactfold.commands.shell import Bar, name_of, one_at_least, say
 from exactfold.count.find import BranchFinder
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import NotCountedError, UnreadableFileError, UsageError
+from exactfold.errors import NotANumberError, NotCountedError, UnreadableFileError, UsageError
+from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.verdict import PROVED
 from exactfold.wording import counted
@@ -45,7 +46,8 @@ class Asked:
         """Find, prove and print; whether all branches were proved.
 
         Of many branches none is kept: with JSON each is printed when it is found, and of the others
-        the row of the table remains. Raises the errors of `read` and `BranchFinder`.
+        the row of the table remains. Raises the errors of `read` and `BranchFinder`, and
+        `UsageError` where none of `signs`, `up` and `batch` is given.
         """
         from exactfold import report
 
@@ -53,9 +55,7 @@ class Asked:
             return self._driven(driven_angles(self.drive))
         proved, rows = True, []
         with Bar("reading") as bar:
-            sheet = read(self.pattern, self.snap, self.sheet, "branch")
-            bar("setting up")
-            finder = self.given.finder(sheet.pattern)
+            finder = self.given.finder(self._read(bar))
             for name, result in self._found(finder, bar):
                 proved &= result.status is PROVED
                 if self.as_json:
@@ -78,8 +78,7 @@ class Asked:
         if self._is_many or self.given.curvature is not None:
             raise UsageError("--drive goes with --signs or --up, and with --rim")
         with Bar("reading") as bar:
-            pattern = read(self.pattern, self.snap, self.sheet, "branch").pattern
-            bar("setting up")
+            pattern = self._read(bar)
             finder = self.given.finder(pattern)
             rim = None if self.given.rim is None else finder.rim
             signs = given_signs(finder, self.signs, self.up)
@@ -94,6 +93,12 @@ class Asked:
         else:
             report.show(report.branch_report(found.branch, found))
         return found.branch.status is PROVED and status is PROVED
+
+    def _read(self, bar: Bar) -> CreasePattern:
+        pattern = read(self.pattern, self.snap, self.sheet, "branch").pattern
+        one_at_least("one of --signs, --up and --batch", self.signs, self.up, self.batch)
+        bar("setting up")
+        return pattern
 
     @property
     def _is_many(self) -> bool:
@@ -202,8 +207,8 @@ def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str,
 
 def _indices(option: str, text: str) -> list[int]:
     try:
-        return [int(part) for part in text.split(",") if part.strip()]
-    except ValueError:
+        return [parse_whole(part) for part in text.split(",") if part.strip()]
+    except NotANumberError:
         raise UsageError(f"{option} takes vertex indices such as 5,7, not {text!r}") from None
 
 

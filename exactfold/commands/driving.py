@@ -9,7 +9,8 @@ import typer
 
 from exactfold.commands.json_numbers import numbers_by_name
 from exactfold.commands.parameters import fold_name
-from exactfold.errors import BadDriveError, UsageError
+from exactfold.errors import BadDriveError, NotANumberError, UsageError
+from exactfold.exact.numbers import approx_number
 from exactfold.pattern.crease_pattern import Edge
 
 Angles = dict[Edge, float | None]
@@ -52,6 +53,6 @@ def _add(found: Angles, name: str, value: str | None, error: Callable[[str], Exc
     if fold in found:
         raise error(f"fold {name} is there twice")
     try:
-        found[fold] = None if value is None else float(value.removesuffix("deg"))
-    except ValueError:
+        found[fold] = None if value is None else approx_number(value.removesuffix("deg"))
+    except NotANumberError:
         raise error(f"fold {name}: {value!r} is no angle such as 90deg") from None

@@ -19,7 +19,7 @@ from exactfold.branches.export import AMOUNT, BranchExport, exported
 from exactfold.commands.branch import chosen
 from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read
-from exactfold.commands.shell import EXIT, Bar, name_of, say
+from exactfold.commands.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say
 from exactfold.count.find import find_branches
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UndecidedBranchError, UsageError
@@ -54,8 +54,8 @@ class Wanted:
         `UndecidedBranchError`, which is said on stderr with what `BranchFinder` gave as a reason;
         `UsageError` unless exactly one of `signs`, `up` and `place` is given.
         """
-        if (self.signs is not None) + (self.up is not None) + (self.place is not None) != 1:
-            raise UsageError("give one of --signs, --up and --branch")
+        options = "one of --signs, --up and --branch", self.signs, self.up, self.place
+        one_at_most(*options)
         if self.given.rim is not None and self.place is not None:
             raise UsageError("--rim goes with --signs or --up")
         output = self.written
@@ -63,6 +63,7 @@ class Wanted:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
             pattern = read(self.file, self.snap, self.sheet, "export").pattern
+            one_at_least(*options)
             branch = chosen(pattern, self.signs, self.up, self.place, bar, self.given)
             bar("writing")
             try:
@@ -116,8 +117,7 @@ def write_coq(asked: Wanted, everything: bool) -> int:
     ):
         if given:
             raise UsageError(f"{name} does not go with --coq")
-    if asked.signs is not None and asked.up is not None:
-        raise UsageError("give one of --signs and --up")
+    one_at_most("one of --signs and --up", asked.signs, asked.up)
     named = asked.signs is not None or asked.up is not None
     if named and everything:
         raise UsageError("--all names all branches: leave --signs and --up away")

@@ -13,7 +13,7 @@ from exactfold.commands.shell import not_a_dash, standard_input
 from exactfold.count.registry import ALIASES, METHODS
 from exactfold.drawing.drawing import Snap as Snapping
 from exactfold.errors import NotANumberError
-from exactfold.exact.numbers import parse_rational
+from exactfold.exact.numbers import approx_number, parse_rational, parse_whole
 
 
 def complete_pattern(incomplete: str) -> list[str]:
@@ -48,8 +48,8 @@ def whole(least: int | None = None) -> Callable[[object], int]:
 
     def read(text: object) -> int:
         try:
-            number = int(str(text))
-        except ValueError:
+            number = parse_whole(str(text))
+        except NotANumberError:
             raise typer.BadParameter(f"{str(text)!r} is not a whole number") from None
         if least is not None and number < least:
             raise typer.BadParameter(f"{number} is less than {least}")
@@ -71,8 +71,8 @@ def written(text: str, metavar: str = "FILE", *names: str) -> Any:
 def degrees(text: object) -> float:
     """A number with a decimal point."""
     try:
-        return float(str(text))
-    except ValueError:
+        return approx_number(str(text))
+    except NotANumberError:
         raise typer.BadParameter(f"{str(text)!r} is not a number") from None
 
 
@@ -86,8 +86,8 @@ def one_side(text: object) -> int:
 def fold_name(text: object) -> tuple[int, int]:
     """A fold as it is printed, such as 4-7."""
     try:
-        i, j = (int(part) for part in str(text).split("-"))
-    except ValueError:
+        i, j = (parse_whole(part) for part in str(text).split("-"))
+    except ValueError:  # also NotANumberError, which is one
         raise typer.BadParameter(f"{str(text)!r} is not a fold such as 4-7") from None
     return min(i, j), max(i, j)
 

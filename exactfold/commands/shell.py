@@ -267,6 +267,21 @@ def apart(output: Path | None, *others: Path | None) -> None:
             raise UsageError(f"{output} is also read or written otherwise: name another file")
 
 
+def one_at_most(options: str, *given: object) -> None:
+    """Raise `UsageError` if two of the options are given."""
+    if sum(value is not None for value in given) > 1:
+        raise UsageError(f"give {options}")
+
+
+def one_at_least(options: str, *given: object) -> None:
+    """Raise `UsageError` if none of the options is given.
+
+    To be asked when the sheet is read: for the wrong kind of sheet no option helps.
+    """
+    if all(value is None for value in given):
+        raise UsageError(f"give {options}")
+
+
 def name_of(path: Path) -> str:
     """A file as it was named on the command line."""
     return "-" if path == STDIN else str(path)

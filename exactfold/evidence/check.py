@@ -13,7 +13,7 @@ from exactfold.checker import compact
 from exactfold.checker.compact_blocks import Block, CompactSheet
 from exactfold.checker.compact_lines import read_header
 from exactfold.checker.formats import MOST_UNITS
-from exactfold.checker.reading import MALFORMED, CertificateError, FormatError, plain
+from exactfold.checker.reading import CertificateError, FormatError, plain, refusing
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.evidence.sharing import shared
 from exactfold.problem.quadratic import QuadraticSystem
@@ -98,13 +98,12 @@ class FastChecker:
     def refusal(self, text: str, number: int) -> str | None:
         """Verify one block: None, or why it does not hold."""
         try:
-            block = self.sheet.decode(text, number)
-            done: Sequence[bool] = self.verified(block).tolist()
-            self.sheet.check_block(block, done)
+            with refusing(f"in block {number}"):
+                block = self.sheet.decode(text, number)
+                done: Sequence[bool] = self.verified(block).tolist()
+                self.sheet.check_block(block, done)
         except CertificateError as error:
             return str(error)
-        except MALFORMED as error:
-            return f"malformed: {type(error).__name__} in block {number}"
         return None
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from exactfold.errors import UsageError
-from exactfold.exact.surds import RATIONALS, Coefficients, Number, Surd
+from exactfold.exact.root_tower import Coefficients
+from exactfold.exact.surds import RATIONALS, Number, Surd
 
 
 class JoinedField:

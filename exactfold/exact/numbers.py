@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
-from math import lcm
+from math import inf, lcm
 from numbers import Rational
 from typing import TypeAlias
 
@@ -18,11 +18,12 @@ _INTEGER = re.compile(r"[+-]?[0-9]+\Z")
 _QUOTIENT = re.compile(r"([+-]?[0-9]+)/([0-9]+)\Z")
 _DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?\Z")
 _MAX_EXPONENT = 20_000
+_MOST_DIGITS = 4000  # that `int` reads, and prints
 
 
 def _int(text: str) -> int:
     """Integer of any length; `int` alone stops at 4300 digits."""
-    if len(text) <= 4000:
+    if len(text) <= _MOST_DIGITS:
         return int(text)
     from flint import fmpz  # here, as loading it takes longer than reading a pattern
 
@@ -59,6 +60,38 @@ def parse_rational(text: str) -> Fraction:
         power -= len(part)
         return Fraction(digits * 10**power) if power >= 0 else Fraction(digits, 10**-power)
     raise NotANumberError(f'{shown(text)} is not a number: write an integer, "p/q" or a decimal')
+
+
+def parse_whole(text: str) -> int:
+    """A whole number of at most 4000 decimal digits, such as "-12".
+
+    Raises `NotANumberError` for anything else, also for "1_0", which `int` reads as 10.
+
+    >>> parse_whole(" -12 ")
+    -12
+    >>> parse_whole("1_0")
+    Traceback (most recent call last):
+    exactfold.errors.NotANumberError: '1_0' is not a whole number
+    """
+    digits = text.strip()
+    if not _INTEGER.match(digits) or len(digits) > _MOST_DIGITS:
+        raise NotANumberError(f"{shown(text)} is not a whole number")
+    return int(digits)
+
+
+def approx_number(text: str) -> float:
+    """The float nearest to the number that `parse_rational` reads, infinite beyond all floats.
+
+    Raises `NotANumberError` where `parse_rational` does: "nan" and "1_0" are no numbers.
+
+    >>> approx_number("0.1"), approx_number("-1e400")
+    (0.1, -inf)
+    """
+    value = parse_rational(text)
+    try:
+        return float(value)
+    except OverflowError:
+        return inf if value > 0 else -inf
 
 
 def shown(value: object) -> str:

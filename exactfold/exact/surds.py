@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from math import inf, nextafter
-from numbers import Rational
 from sys import float_info
 from typing import Final, TypeAlias
 
@@ -15,10 +13,8 @@ from flint import arb, ctx, fmpq
 
 from exactfold.errors import UsageError
 from exactfold.exact.linalg import from_fmpq
+from exactfold.exact.root_tower import ZERO, Coefficients, Parts, RootTower, sum_of, to_fmpq
 
-Coefficients: TypeAlias = tuple[Fraction, ...]
-Parts: TypeAlias = tuple[fmpq, ...]
-_ZERO: Final = fmpq(0)
 _GUARDED: Final = 60
 """Bits with which a sign is looked for before it is decided exactly."""
 
@@ -57,7 +53,7 @@ class Surd:
 
     def __add__(self, other: Number | fmpq) -> Surd:
         a, b, field = self._paired(other)
-        return _made(field, _sum(a, b))
+        return _made(field, sum_of(a, b))
 
     __radd__ = __add__
 
@@ -156,11 +152,11 @@ class Surd:
         """The same number in a field that extends its own."""
         if field.radicands[: len(self.field.radicands)] != self.field.radicands:
             raise UsageError("the number is in no subfield of this field")
-        return _made(field, self.parts + (_ZERO,) * (field.dimension - len(self.parts)))
+        return _made(field, self.parts + (ZERO,) * (field.dimension - len(self.parts)))
 
     def _paired(self, other: Number | fmpq) -> tuple[Parts, Parts, SurdField]:
         if not isinstance(other, Surd):
-            rest = (_ZERO,) * (self.field.dimension - 1)
+            rest = (ZERO,) * (self.field.dimension - 1)
             return self.parts, (to_fmpq(other), *rest), self.field
         if other.field is self.field or other.field == self.field:
             return self.parts, other.parts, self.field
@@ -172,15 +168,6 @@ class Surd:
 Number: TypeAlias = Surd | Fraction | int
 
 
-def to_fmpq(value: Fraction | fmpq | int) -> fmpq:
-    """A rational number as FLINT's; a float is none, as its value is rarely what was meant."""
-    if isinstance(value, fmpq):
-        return value
-    if not isinstance(value, Rational):
-        raise TypeError(f"{value!r} is no exact number")
-    return fmpq(int(value.numerator), int(value.denominator))
-
-
 def _made(field: SurdField, parts: Parts) -> Surd:
     """A number of these parts, which are FLINT's already."""
     made = Surd.__new__(Surd)
@@ -190,7 +177,7 @@ def _made(field: SurdField, parts: Parts) -> Surd:
 
 
 @dataclass(frozen=True)
-class SurdField:
+class SurdField(RootTower):
     """Q(r_1, ..., r_m), real, with r_k the positive square root of a positive number before it.
 
     `radicands[k - 1]` are the 2^(k-1) coefficients of r_k^2, which is no square in the field
@@ -200,13 +187,6 @@ class SurdField:
     >>> field.dimension, field.square_root(field.number(8)), field.square_root(field.number(5))
     (4, 2*r1, None)
     """
-
-    radicands: tuple[Coefficients, ...]
-
-    @property
-    def dimension(self) -> int:
-        """2^m, the degree over Q."""
-        return 1 << len(self.radicands)
 
     @property
     def name(self) -> str:
@@ -239,7 +219,7 @@ class SurdField:
         """The number as an element of this field."""
         if isinstance(value, Surd):
             return value.in_field(self)
-        return _made(self, (to_fmpq(value), *(_ZERO,) * (self.dimension - 1)))
+        return _made(self, (to_fmpq(value), *(ZERO,) * (self.dimension - 1)))
 
     def adjoined(self, radicand: Number) -> SurdField:
         """The field with the square root of a positive number; itself if that root is in it.
@@ -255,104 +235,14 @@ class SurdField:
 
     def square_root(self, value: Number) -> Surd | None:
         """The root >= 0 of a number, None if it is not in this field."""
-        root = self._square_root(self.number(value).parts)
+        root = self.square_root_of(self.number(value).parts)
         if root is None:
             return None
         found = _made(self, root)
         return -found if found.sign() < 0 else found
 
-    def times(self, a: Parts, b: Parts) -> Parts:
-        """The product of two elements of the same level."""
-        if len(a) == 1:
-            return (a[0] * b[0],)
-        if len(a) == 2:  # most fields have one root
-            (p, q), (x, y), [[square]] = a, b, self._radicands[:1]
-            return p * x + q * y * square, p * y + q * x
-        half = len(a) // 2
-        a0, a1, b0, b1 = a[:half], a[half:], b[:half], b[half:]
-        low = self.times(a0, b0)
-        if any(a1) and any(b1):
-            high = self.times(self.times(a1, b1), self._radicands[half.bit_length() - 1])
-            low = _sum(low, high)
-        return low + _sum(self.times(a0, b1), self.times(a1, b0))
-
-    def inverse(self, a: Parts) -> Parts:
-        """1/a; raises `ZeroDivisionError` for zero."""
-        if len(a) == 1:
-            return (1 / a[0],)
-        half = len(a) // 2
-        a0, a1 = a[:half], a[half:]
-        scale = self.inverse(self._norm(a))
-        return self.times(a0, scale) + tuple([-x for x in self.times(a1, scale)])
-
-    def sign(self, a: Parts) -> int:
-        """The sign of a0 + a1 r from those of a0, a1 and a0^2 - a1^2 r^2, exactly."""
-        if len(a) == 1:
-            return int(a[0] > 0) - int(a[0] < 0)
-        half = len(a) // 2
-        first, second = self.sign(a[:half]), self.sign(a[half:])
-        if first * second >= 0:
-            return first or second
-        return first * self.sign(self._norm(a))
-
-    def products(self, bits: int) -> tuple[arb, ...]:
-        """Enclosures of the 2^m products of roots."""
-        known = self._enclosed
-        if bits not in known:
-            before = ctx.prec
-            ctx.prec = bits
-            try:
-                found = [arb(1)]
-                for radicand in self._radicands:
-                    square = sum((p * c for c, p in zip(radicand, found, strict=True)), arb(0))
-                    root = square.sqrt()
-                    found += [p * root for p in found]
-            finally:
-                ctx.prec = before
-            known[bits] = tuple(found)
-        return known[bits]
-
-    @cached_property
-    def _radicands(self) -> tuple[Parts, ...]:
-        return tuple(tuple(to_fmpq(c) for c in radicand) for radicand in self.radicands)
-
-    @cached_property
-    def _enclosed(self) -> dict[int, tuple[arb, ...]]:
-        return {}
-
     def __reduce__(self) -> tuple[object, ...]:
         return SurdField, (self.radicands,)  # enclosures stay behind
-
-    def _norm(self, a: Parts) -> Parts:
-        half = len(a) // 2
-        a0, a1 = a[:half], a[half:]
-        square = self.times(self.times(a1, a1), self._radicands[half.bit_length() - 1])
-        return tuple([x - y for x, y in zip(self.times(a0, a0), square, strict=True)])
-
-    def _square_root(self, a: Parts) -> Parts | None:
-        """A root of a = a0 + a1 r: (x + y r)^2 has x^2 + y^2 r^2 = a0 and 2 x y = a1.
-
-        With n^2 = a0^2 - a1^2 r^2, x^2 is (a0 + n)/2 or (a0 - n)/2; if a1 = 0 the root is x or y r.
-        """
-        if len(a) == 1:
-            return _rational_root(a[0])
-        half = len(a) // 2
-        a0, a1 = a[:half], a[half:]
-        radicand = self._radicands[half.bit_length() - 1]
-        zero = (_ZERO,) * half
-        if not any(a1):
-            if (x := self._square_root(a0)) is not None:
-                return x + zero
-            y = self._square_root(self.times(a0, self.inverse(radicand)))
-            return None if y is None else zero + y
-        norm = self._square_root(self._norm(a))
-        if norm is None:
-            return None
-        for n in (norm, tuple(-c for c in norm)):
-            x = self._square_root(tuple((p + q) / 2 for p, q in zip(a0, n, strict=True)))
-            if x is not None and any(x):
-                return x + tuple(c / 2 for c in self.times(a1, self.inverse(x)))
-        return None
 
 
 RATIONALS: Final = SurdField(())
@@ -432,16 +322,3 @@ def real_root(value: Number | fmpq, field: SurdField) -> Number:
     number = field.number(value)
     root = field.square_root(number)
     return field.adjoined(number).root if root is None else simple(root)
-
-
-def _sum(a: Parts, b: Parts) -> Parts:
-    return tuple([x + y for x, y in zip(a, b, strict=True)])
-
-
-def _rational_root(value: fmpq) -> Parts | None:
-    if value < 0:
-        return None
-    top, bottom = value.p.isqrt(), value.q.isqrt()
-    if top * top != value.p or bottom * bottom != value.q:
-        return None
-    return (fmpq(top, bottom),)

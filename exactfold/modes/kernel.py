@@ -8,7 +8,8 @@ from typing import TypeAlias, TypeVar
 from flint import fmpq
 
 from exactfold.exact.linalg import from_fmpq
-from exactfold.exact.surds import Number, Surd, to_fmpq
+from exactfold.exact.root_tower import to_fmpq
+from exactfold.exact.surds import Number, Surd
 from exactfold.modes.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import atan2, copysign, cos, degrees, gcd, prod, radians, sqrt
@@ -204,3 +204,16 @@ def square_of(angle: float) -> Fraction:
 def fold_text(fold: Edge) -> str:
     """A fold as it is printed."""
     return f"{fold[0]}-{fold[1]}"
+
+
+def not_a_fold(edges: Container[Edge], pair: Edge, purpose: str) -> str:
+    """Why two vertices are no fold: they are an edge of the border, or none.
+
+    >>> not_a_fold([(0, 1), (0, 4)], (0, 1), "to drive")
+    '0-1 is an edge of the border, not a fold to drive'
+    >>> not_a_fold([(0, 1), (0, 4)], (1, 4), "to drive")
+    'there is no fold 1-4 to drive'
+    """
+    if pair in edges:
+        return f"{fold_text(pair)} is an edge of the border, not a fold {purpose}"
+    return f"there is no fold {fold_text(pair)} {purpose}"

@@ -13,7 +13,7 @@ from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.count.find import BranchFinder, Rim, Signs, branch_finder
 from exactfold.errors import BadDriveError, NotDrivenError, NotProvedAtTheFlatStateError
-from exactfold.motion.drive import Drive, fold_text
+from exactfold.motion.drive import Drive, fold_text, not_a_fold
 from exactfold.motion.driven_folds import DrivenFolds
 from exactfold.motion.rim_path import framework_of, problem_of
 from exactfold.motion.tube_start import prove_start
@@ -134,7 +134,7 @@ def require_driven(branch: Branch, side: int, drive: Drive) -> None:
     """Raise `BadDriveError` unless the folds of a drive start in its ratio on a half-branch."""
     unknown = [fold for fold in drive.folds if fold not in branch.pattern.folds]
     if unknown:
-        raise BadDriveError(f"there is no fold {fold_text(unknown[0])} to drive", unknown)
+        raise BadDriveError(not_a_fold(branch.pattern.edges, unknown[0], "to drive"), unknown)
     number = problem_of(branch).sheet.Ve - 3
     if len(drive.folds) != number or not off_the_ratio(branch, side, drive) < _OFF:
         raise BadDriveError(
@@ -184,7 +184,7 @@ class _Search:
         own = {tuple(sorted(self.problem.labels[v] for v in fold)) for fold in sheet.folds}
         for fold in self.folds:
             if fold not in self.pattern.folds:
-                raise BadDriveError(f"there is no fold {fold_text(fold)} to drive", [fold])
+                raise BadDriveError(not_a_fold(self.pattern.edges, fold, "to drive"), [fold])
             if fold not in own:
                 raise BadDriveError(
                     f"fold {fold_text(fold)} lies in a triangulated triangle, which stays flat",

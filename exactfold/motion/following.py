@@ -12,9 +12,16 @@ import numpy as np
 
 from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
-from exactfold.errors import NotApplicableError, NotFollowedError, UndecidedBranchError, UsageError
+from exactfold.errors import (
+    NotANumberError,
+    NotApplicableError,
+    NotFollowedError,
+    UndecidedBranchError,
+    UsageError,
+)
+from exactfold.exact.numbers import approx_number
 from exactfold.motion.curve import Curve, LostCurveError, Piece, continued, leaving_piece
-from exactfold.motion.drive import Drive
+from exactfold.motion.drive import Drive, not_a_fold
 from exactfold.motion.driven import require_driven
 from exactfold.motion.events import (
     ANGLE,
@@ -93,7 +100,7 @@ def follow(
     _check_followable(branch)
     problem = problem_of(branch)
     if by is not None and by not in branch.pattern.folds:
-        raise UsageError(f"there is no fold {by[0]}-{by[1]} to make equal steps of")
+        raise UsageError(not_a_fold(branch.pattern.edges, by, "to make equal steps of"))
     if drive is not None:
         require_driven(branch, side, drive)
     framework = framework_of(problem, pinned, drive)
@@ -152,8 +159,8 @@ class Goal:
             return cls(frozenset(always | {RETURN}))
         text = str(until)
         try:
-            number = float(text.removesuffix("deg"))
-        except ValueError:
+            number = approx_number(text.removesuffix("deg"))
+        except NotANumberError:
             number = -1.0
         if not (isfinite(number) and number > 0) or (text.endswith("deg") and number > 180):
             raise UsageError(

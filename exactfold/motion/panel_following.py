@@ -11,8 +11,10 @@ import numpy as np
 
 from exactfold.arrays import BoolArray, FloatArray
 from exactfold.errors import NotFollowedError, UsageError
+from exactfold.exact.numbers import approx_number
 from exactfold.modes.decomposition import decompose
 from exactfold.modes.result import Decomposition
+from exactfold.motion.drive import not_a_fold
 from exactfold.motion.events import ANGLE, CONTACT, FLAT_FOLD, TURNING, Event
 from exactfold.motion.followable import (
     PanelMode,
@@ -130,7 +132,7 @@ def _goal(until: str) -> float:
     if until == CONTACT:
         return pi
     try:
-        number = float(until.removesuffix("deg")) if until.endswith("deg") else -1.0
+        number = approx_number(until.removesuffix("deg")) if until.endswith("deg") else -1.0
     except (ValueError, AttributeError):
         number = -1.0
     if not (isfinite(number) and 0 < number <= 180):
@@ -236,7 +238,7 @@ def _at_equal_angles(
 ) -> FloatArray:
     """Times at which the angle of a fold has equal steps: fold angles are strictly monotone."""
     if by not in pattern.folds:
-        raise UsageError(f"there is no fold {by[0]}-{by[1]} to make equal steps of")
+        raise UsageError(not_a_fold(pattern.edges, by, "to make equal steps of"))
     at = pattern.folds.index(by)
     last = float(angles_at(times[-1:])[0, at])
     if not last:

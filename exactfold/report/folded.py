@@ -9,7 +9,8 @@ from typing import Final
 import numpy as np
 
 from exactfold.arrays import FloatArray
-from exactfold.errors import UsageError
+from exactfold.errors import NotANumberError, UsageError
+from exactfold.exact.numbers import approx_number
 from exactfold.motion.in_motion import SheetInMotion
 from exactfold.report.crease_drawing import SIZE
 from exactfold.report.stills import motion_still
@@ -36,8 +37,8 @@ class Amount:
         (Amount(degrees=60.0, part=None), Amount(degrees=None, part=0.5))
         """
         try:
-            number = float(text.removesuffix("deg"))
-        except ValueError:
+            number = approx_number(text.removesuffix("deg"))
+        except NotANumberError:
             number = -1.0
         is_angle = text.endswith("deg")
         if not (isfinite(number) and 0 < number <= (180 if is_angle else 1)):

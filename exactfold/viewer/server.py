@@ -13,7 +13,8 @@ from urllib.parse import parse_qs, urlsplit
 
 from exactfold.count.find import BranchFinder
 from exactfold.count.ways import Sheet
-from exactfold.errors import ExactfoldError, UsageError
+from exactfold.errors import ExactfoldError, NotANumberError, UsageError
+from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.progress import Progress
 from exactfold.viewer.document import FRAMES, Known
@@ -164,6 +165,6 @@ class _Handler(BaseHTTPRequestHandler):
 
 def _whole(text: str) -> int:
     try:
-        return int(text)
-    except ValueError:
+        return parse_whole(text)
+    except NotANumberError:
         raise UsageError(f"{text!r} is not the number of a way") from None

@@ -188,7 +188,7 @@ def test_sheets_of_other_shapes() -> None:
     }
     refused_lines(forged, FOURTH)
     forged[0]["pattern"] = 1  # type: ignore[assignment]
-    refused_lines(forged, "malformed: TypeError")
+    refused_lines(forged, "malformed: TypeError in the first line")
 
 
 def test_unknowns_are_at_most_forty() -> None:

@@ -79,7 +79,7 @@ def test_formats() -> None:
     forged[0]["emptied"] = [{"corners": [0, 1, None], "inside": []}]
     refused(forged, "corner is not a natural number")
     forged[0]["emptied"] = [{"corners": [0, 1, 4], "inside": [99]}]
-    refused(forged, "malformed: KeyError")
+    refused(forged, "malformed: KeyError in the first line")
 
 
 def test_lines_that_were_altered_or_left_out_break_the_chain() -> None:
@@ -460,6 +460,13 @@ def test_a_node_that_is_none_is_refused() -> None:
     entry["node"] = [0] * len(entry["node"])
     with pytest.raises((CertificateError, ZeroDivisionError)):  # the second: "malformed"
         passed(entry)
+
+
+def test_what_nothing_else_refuses_in_a_loop_is_malformed() -> None:
+    forged = given_lines(NODE)
+    step = next(step for step in steps_of(forged) if "node" in step)
+    step["node"] = [0] * len(step["node"])
+    refused(forged, "loop 0: malformed: ZeroDivisionError while checking")
 
 
 def test_another_arc_is_refused() -> None:

@@ -95,8 +95,16 @@ def test_heights_that_are_no_rim() -> None:
         refused(_with(rim=rim), "rim has not 5 entries")
     refused(_with(rim="01023"), "rim is not a list")
     refused(_with(rim=["0", "1", "0", "1/2", 3]), "3 is not a rational number in quotes")
-    flat = [str(x + 2 * y) for x, y in STAR.vertices[:5]]
-    refused(_with(rim=flat), "malformed: ZeroDivisionError while checking")
+
+
+def test_a_rim_in_one_plane() -> None:
+    """It has no ratio, by which the checker would divide; nothing else says so."""
+    for heights in ([x + 2 * y - 3 for x, y in STAR.vertices[:5]], [0] * 5):
+        forged = _with(rim=[str(h) for h in heights])
+        said = f"the rim {', '.join(map(str, heights))} is in one plane: no ratio to keep"
+        with without(said):
+            refused(forged, "malformed: ZeroDivisionError while checking")
+        refused(forged, said)
 
 
 def _with(**claims: object) -> Document:

@@ -133,12 +133,14 @@ def test_neighbours(pops: str, texts: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "give one of"),
+        ((), "give one of --signs, --up and --batch"),
+        (("--drive", "3-5=9"), "give one of --signs, --up and --batch"),
         (("--signs", "++", "--up", "4"), "give one of"),
         (("--signs", "+"), "1 sign for 2 vertices"),
         (("--signs", "+?"), "'?' is not a vertex sign"),
         (("--up", "0"), "vertex 0 is not an interior vertex"),
         (("--up", "x"), "not 'x'"),
+        (("--up", "0_4"), "not '0_4'"),
         (("--up", "4", "--neighbours", "y"), "not 'y'"),
         (("--batch", "none.txt", "--neighbours", "all"), "goes with"),
     ],

@@ -157,7 +157,15 @@ def test_sheets_that_branches_do_not_take_are_refused_with_what_to_do(tmp_path: 
     kite, square = tmp_path / "kite.cp", tmp_path / "s.cp"
     kite.write_text(as_cp(KITE))
     square.write_text(as_cp(SQUARE))
-    for command in (["branch", "--signs", "+"], ["export", "--signs", "+"], ["count", "--stream"]):
+    for command in (  # that no signs are given is said of sheets that have branches only
+        ["branch", "--signs", "+"],
+        ["branch"],
+        ["branch", "--drive", "0-4=3"],
+        ["export", "--signs", "+"],
+        ["export"],
+        ["actuate"],
+        ["count", "--stream"],
+    ):
         given = [tmp_path / "c.txt"] if command[-1] == "--stream" else []
         needs = "--stream" if given else command[0]
         for path, words in ((kite, "lie in Q(sqrt 2)"), (square, "2 panels with more than three")):

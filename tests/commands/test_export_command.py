@@ -150,7 +150,9 @@ def test_json_says_what_was_written(out):
         (["--branch", "5"], "--branch 5: `exactfold count` lists 4 branches"),
         (["--signs", "++", "--amount", "0"], "largest fold angle is 0.0 degrees"),
         (["--signs", "++", "--amount", "200"], "largest fold angle is 200.0 degrees"),
-        (["--signs", "++", "--amount", "nan"], "largest fold angle is nan degrees"),
+        (["--signs", "++", "--amount", "nan"], "--amount: 'nan' is not a number"),
+        (["--signs", "++", "--amount", "1_0"], "--amount: '1_0' is not a number"),
+        (["--signs", "++", "--amount", "1e400"], "largest fold angle is inf degrees"),
     ],
 )
 def test_wrong_usage_is_one_line_and_writes_nothing(out, options, words):

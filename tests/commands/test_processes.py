@@ -45,6 +45,7 @@ def test_wrong_usage_exits_2(arguments):
             "--method: 'nope' is not one of auto, newton, popping, homotopy, groebner",
         ),
         (["random", "--interior", "3", "--seed", "abc"], "--seed: 'abc' is not a whole number"),
+        (["random", "--interior", "1_0"], "--interior: '1_0' is not a whole number"),
         (["count", "x", "--seed", "-1"], "--seed: -1 is less than 0"),
         (["count", "x", "--jobs", "0"], "--jobs: 0 is less than 1"),
         (["export", "x", "--amount", "wide"], "--amount: 'wide' is not a number"),

@@ -1,6 +1,6 @@
 from decimal import Decimal
 from fractions import Fraction
-from math import gcd
+from math import gcd, inf
 
 import numpy as np
 import pytest
@@ -14,11 +14,13 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.exact.numbers import (
+    approx_number,
     as_rational,
     format_integer,
     format_rational,
     over_common_denominator,
     parse_rational,
+    parse_whole,
     shown,
     snap,
 )
@@ -83,6 +85,23 @@ def test_parse_rational(text, value):
 def test_parse_rational_error(text):
     with pytest.raises(NotANumberError):
         parse_rational(text)
+
+
+def test_whole_numbers_are_decimal_digits():
+    assert [parse_whole(text) for text in ("12", " -3\n", "+007")] == [12, -3, 7]
+    assert parse_whole("9" * 4000) == 10**4000 - 1
+    for text in ("", "-", "1_0", "1.0", "1e1", "3/1", "0x10", "\u0663", "1 2", "9" * 4001):
+        with pytest.raises(NotANumberError, match="is not a whole number"):
+            parse_whole(text)
+
+
+def test_floats_are_read_exactly_and_then_rounded():
+    texts = ("0.1", "-1e-400", "7e22", "1/3", "2.5e-324", " 90 ")
+    assert [approx_number(text) for text in texts] == [0.1, -0.0, 7e22, 1 / 3, 5e-324, 90.0]
+    assert (approx_number("2e308"), approx_number("-1e400")) == (inf, -inf)
+    for text in ("1_0", "nan", "inf", "0x10", "\u0663"):
+        with pytest.raises(NotANumberError):
+            approx_number(text)
 
 
 def test_error_messages_are_short():

@@ -143,6 +143,7 @@ def test_what_cannot_be_driven() -> None:
         assert caught.value.folds
 
     refused({(0, 6): 90, (1, 5): 90}, "there is no fold 0-6 to drive")
+    refused({(0, 1): 90, (1, 5): 90}, "0-1 is an edge of the border, not a fold to drive")
     refused({(1, 5): 0, (2, 6): 90}, "fold 1-5: the angle 0: a fold that stays flat")
     refused({(1, 5): 181, (2, 6): 90}, "fold 1-5: the angle 181: it is beyond 180")
     refused({(1, 5): 9, (2, 6): 9, (3, 6): 9}, "3 folds to drive: .* 2 folds can be driven at once")

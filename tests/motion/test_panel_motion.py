@@ -558,6 +558,7 @@ def test_a_mode_that_does_not_fold_is_not_followed():
         ({"amounts": {4: float("nan")}}, "give a number"),
         ({"held": 9}, "no panel 9 to hold: they are 0 to 8"),
         ({"by": (0, 15)}, "no fold 0-15"),
+        ({"by": (0, 1)}, "0-1 is an edge of the border, not a fold to make equal steps of"),
     ],
 )
 def test_what_does_not_fit_is_said(options, message):

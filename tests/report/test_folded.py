@@ -42,7 +42,9 @@ def test_every_face_is_drawn_once(motion):
     assert len(list(tree(text).iter(f"{NAME}path"))) == len(motion.pattern.triangles)
 
 
-@pytest.mark.parametrize("text", ["60", "0", "-1deg", "181deg", "nan", "infdeg", "half", ""])
+@pytest.mark.parametrize(
+    "text", ["60", "0", "-1deg", "181deg", "nan", "infdeg", "1_0deg", "half", ""]
+)
 def test_amounts_that_make_no_sense(text):
     with pytest.raises(UsageError, match="60deg"):
         Amount.of(text)

@@ -76,6 +76,7 @@ def test_motions_and_branches_come_on_demand(server):
         ("/branch", "0 signs for 2 vertices"),
         ("/motion?way=4", "there is no way 4"),
         ("/motion?way=x", "'x' is not the number of a way"),
+        ("/motion?way=0_1", "'0_1' is not the number of a way"),
     ],
 )
 def test_errors_are_told(server, path, message):

@@ -1,0 +1,151 @@
+"""Arithmetic in Q(sqrt a)(sqrt b)... on tuples of coefficients, for the numbers of `surds`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from numbers import Rational
+from typing import Final, TypeAlias
+
+from flint import arb, ctx, fmpq
+
+Coefficients: TypeAlias = tuple[Fraction, ...]
+Parts: TypeAlias = tuple[fmpq, ...]
+ZERO: Final = fmpq(0)
+
+
+@dataclass(frozen=True)
+class RootTower:
+    """Q, and one square root after the other: r_k is that of a positive number before it.
+
+    `radicands[k - 1]` are the 2^(k-1) coefficients of r_k^2. An element of level k is a tuple of
+    2^k rational numbers, of which number m belongs to the product of the roots r_(i+1) over the
+    bits i of m; so its first half, and its second times r_k, are its parts a0 + a1 r_k. `SurdField`
+    makes numbers of them.
+
+    >>> root = (fmpq(0), fmpq(1))
+    >>> tower = RootTower(((Fraction(2),),))
+    >>> tower.times(root, root), tower.inverse(root), tower.sign((fmpq(-3), fmpq(2)))
+    ((2, 0), (0, 1/2), -1)
+    """
+
+    radicands: tuple[Coefficients, ...]
+
+    @property
+    def dimension(self) -> int:
+        """2^m, the degree over Q."""
+        return 1 << len(self.radicands)
+
+    def times(self, a: Parts, b: Parts) -> Parts:
+        """The product of two elements of the same level."""
+        if len(a) == 1:
+            return (a[0] * b[0],)
+        if len(a) == 2:  # most fields have one root
+            (p, q), (x, y), [[square]] = a, b, self._radicands[:1]
+            return p * x + q * y * square, p * y + q * x
+        half = len(a) // 2
+        a0, a1, b0, b1 = a[:half], a[half:], b[:half], b[half:]
+        low = self.times(a0, b0)
+        if any(a1) and any(b1):
+            high = self.times(self.times(a1, b1), self._radicands[half.bit_length() - 1])
+            low = sum_of(low, high)
+        return low + sum_of(self.times(a0, b1), self.times(a1, b0))
+
+    def inverse(self, a: Parts) -> Parts:
+        """1/a; raises `ZeroDivisionError` for zero."""
+        if len(a) == 1:
+            return (1 / a[0],)
+        half = len(a) // 2
+        a0, a1 = a[:half], a[half:]
+        scale = self.inverse(self._norm(a))
+        return self.times(a0, scale) + tuple([-x for x in self.times(a1, scale)])
+
+    def sign(self, a: Parts) -> int:
+        """The sign of a0 + a1 r from those of a0, a1 and a0^2 - a1^2 r^2, exactly."""
+        if len(a) == 1:
+            return int(a[0] > 0) - int(a[0] < 0)
+        half = len(a) // 2
+        first, second = self.sign(a[:half]), self.sign(a[half:])
+        if first * second >= 0:
+            return first or second
+        return first * self.sign(self._norm(a))
+
+    def products(self, bits: int) -> tuple[arb, ...]:
+        """Enclosures of the 2^m products of roots."""
+        known = self._enclosed
+        if bits not in known:
+            before = ctx.prec
+            ctx.prec = bits
+            try:
+                found = [arb(1)]
+                for radicand in self._radicands:
+                    square = sum((p * c for c, p in zip(radicand, found, strict=True)), arb(0))
+                    root = square.sqrt()
+                    found += [p * root for p in found]
+            finally:
+                ctx.prec = before
+            known[bits] = tuple(found)
+        return known[bits]
+
+    def square_root_of(self, a: Parts) -> Parts | None:
+        """A root of a = a0 + a1 r: (x + y r)^2 has x^2 + y^2 r^2 = a0 and 2 x y = a1.
+
+        With n^2 = a0^2 - a1^2 r^2, x^2 is (a0 + n)/2 or (a0 - n)/2; if a1 = 0 the root is x or y r.
+        """
+        if len(a) == 1:
+            return _rational_root(a[0])
+        half = len(a) // 2
+        a0, a1 = a[:half], a[half:]
+        radicand = self._radicands[half.bit_length() - 1]
+        zero = (ZERO,) * half
+        if not any(a1):
+            if (x := self.square_root_of(a0)) is not None:
+                return x + zero
+            y = self.square_root_of(self.times(a0, self.inverse(radicand)))
+            return None if y is None else zero + y
+        norm = self.square_root_of(self._norm(a))
+        if norm is None:
+            return None
+        for n in (norm, tuple(-c for c in norm)):
+            x = self.square_root_of(tuple((p + q) / 2 for p, q in zip(a0, n, strict=True)))
+            if x is not None and any(x):
+                return x + tuple(c / 2 for c in self.times(a1, self.inverse(x)))
+        return None
+
+    def _norm(self, a: Parts) -> Parts:
+        half = len(a) // 2
+        a0, a1 = a[:half], a[half:]
+        square = self.times(self.times(a1, a1), self._radicands[half.bit_length() - 1])
+        return tuple([x - y for x, y in zip(self.times(a0, a0), square, strict=True)])
+
+    @cached_property
+    def _radicands(self) -> tuple[Parts, ...]:
+        return tuple(tuple(to_fmpq(c) for c in radicand) for radicand in self.radicands)
+
+    @cached_property
+    def _enclosed(self) -> dict[int, tuple[arb, ...]]:
+        return {}
+
+
+def to_fmpq(value: Fraction | fmpq | int) -> fmpq:
+    """A rational number as FLINT's; a float is none, as its value is rarely what was meant."""
+    if isinstance(value, fmpq):
+        return value
+    if not isinstance(value, Rational):
+        raise TypeError(f"{value!r} is no exact number")
+    return fmpq(int(value.numerator), int(value.denominator))
+
+
+def sum_of(a: Parts, b: Parts) -> Parts:
+    """The sum of two elements of the same level."""
+    return tuple([x + y for x, y in zip(a, b, strict=True)])
+
+
+def _rational_root(value: fmpq) -> Parts | None:
+    if value < 0:
+        return None
+    top, bottom = value.p.isqrt(), value.q.isqrt()
+    if top * top != value.p or bottom * bottom != value.q:
+        return None
+    return (fmpq(top, bottom),)
