@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
-from exactfold.errors import UsageError
+from exactfold.errors import RowNumbersError
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
 
@@ -118,21 +118,40 @@ class Study:
     def chosen(
         self,
         sizes: Iterable[int] | None = None,
-        number: int | None = None,
+        number: int | Mapping[int, int] | None = None,
         *,
         extend: bool = False,
     ) -> dict[int, int]:
         """How many rows of each size: those of the study, of these `sizes` only, or this `number`.
 
-        Raises `UsageError` for a size that the study has no number for, where none is given.
+        A `number` by size replaces those of the study for the sizes that it names; with neither
+        `sizes` nor `extend` these are all sizes. Raises `RowNumbersError` for a size that has no
+        number, and for a number of a size that is not among `sizes`.
+
+        >>> from exactfold.studies.registry import study_named
+        >>> study_named("table1").chosen(range(2, 6), {4: 30, 5: 7})
+        {2: 100, 3: 5000, 4: 30, 5: 7}
         """
         known = {**self.numbers, **(self.extended if extend else {})}
-        wanted = sorted(set(sizes)) if sizes is not None else sorted(known)
-        if number is not None:
+        by_size = number if isinstance(number, Mapping) else {}
+        if sizes is not None:
+            wanted = sorted(set(sizes))
+        elif by_size and not extend:
+            wanted = sorted(by_size)
+        else:
+            wanted = sorted({*known, *by_size})
+        if number is not None and not isinstance(number, Mapping):
             return dict.fromkeys(wanted, number)
+        beside = sorted(by_size.keys() - set(wanted))
+        if beside:
+            raise RowNumbersError(
+                f"there is a number of rows for size {beside[0]}, which is not one of the sizes "
+                "asked for"
+            )
+        known.update(by_size)
         missing = [size for size in wanted if size not in known]
         if missing:
-            raise UsageError(
+            raise RowNumbersError(
                 f"the study {self.name} has no number of rows for size {missing[0]}: give --number"
             )
         return {size: known[size] for size in wanted}
