@@ -65,8 +65,9 @@ class StudyFigure:
     """A figure of a study: `draw(axes)` draws it on axes of Matplotlib, in the style of the report.
 
     `name` names its file. `width` and `height` are in inches. With `panels` = (rows, columns) other
-    than (1, 1), `draw` gets a list of axes, row by row. What is drawn is a picture; the numbers
-    that are proved stand in the tables.
+    than (1, 1), `draw` gets a list of axes, row by row. What is drawn with a label is named in a
+    legend beside its axes. What is drawn is a picture; the numbers that are proved stand in the
+    tables.
     """
 
     name: str
@@ -173,16 +174,16 @@ def digest(value: object) -> str:
     return hashlib.sha256(canonical(value).encode("utf-8")).hexdigest()
 
 
-_COLOURS = ("#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da39", "#e3c01a")
+_COLOURS = ("#440154", "#3b4cc0", "#2a8fd0", "#1fa187", "#5fae2c", "#d9a400", "#e8702a", "#c62828")
 
 
 def of_size(size: int) -> dict[str, str]:
-    """The colour of a number of interior vertices in figures: from dark to light, 2 to 9.
+    """The colour of a number of interior vertices in figures: violet to red, 2 to 9.
 
-    From 10 on the same again, with dashes.
+    From 10 on the same again, with dashes; 1 is grey.
 
     >>> of_size(2), of_size(10)
     ({'color': '#440154'}, {'color': '#440154', 'linestyle': '--'})
     """
-    colour = {"color": _COLOURS[(size - 2) % len(_COLOURS)]}
+    colour = {"color": _COLOURS[(size - 2) % len(_COLOURS)] if size > 1 else "#8c8c8c"}
     return colour if size < 10 else {**colour, "linestyle": "--"}
