@@ -68,4 +68,16 @@ def _name_beside(axes: Any) -> None:
     """The legend of axes, to their right."""
     handles, labels = axes.get_legend_handles_labels()
     if handles:
-        axes.legend(handles, labels, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        order = sorted(range(len(labels)), key=lambda k: _number_in(labels[k]))
+        axes.legend(
+            [handles[k] for k in order],
+            [labels[k] for k in order],
+            loc="upper left",
+            bbox_to_anchor=(1.0, 1.0),
+        )
+
+
+def _number_in(label: str) -> int:
+    """The size that a label names; 0 for one without a size, which keeps its place."""
+    digits = label.removeprefix("$V_i = ").removesuffix("$")
+    return int(digits) if digits.isdecimal() else 0

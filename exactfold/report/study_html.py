@@ -20,13 +20,15 @@ h1 { font-size: 1.6rem; } h2 { font-size: 1.15rem; margin-top: 2.2rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .2rem .8rem; text-align: right; white-space: nowrap; vertical-align: top; }
 th { border-bottom: 1px solid #777; font-weight: 600; } td.word, th.word { text-align: left; }
-td.word { white-space: normal; min-width: 7rem; } th { vertical-align: bottom; }
+td.long { white-space: normal; min-width: 8.5rem; } th { vertical-align: bottom; }
+sub, sup { line-height: 0; }
 tbody tr:nth-child(even) { background: #f5f5f2; }
 figure { margin: 1rem 0; } figure svg { max-width: 100%; height: auto; }
 figcaption, .note { color: #555; font-size: .92rem; }
 code { font-size: .9rem; overflow-wrap: anywhere; }
 .table:focus-visible { outline: 2px solid #365c8d; }
-@media (max-width: 40rem) { th, td { padding: .2rem .45rem; } table { font-size: .9rem; } }
+@media (max-width: 40rem) { th, td { padding: .2rem .45rem; } table { font-size: .9rem; }
+  th { white-space: normal; } }
 @media print { body { max-width: none; margin: 0; } .table { overflow: visible; }
   h2 { break-after: avoid; } figure, tr { break-inside: avoid; } }
 """
@@ -57,15 +59,17 @@ def study_page(run: StudyRun, command: str) -> str:
 
 
 def _table(table: StudyTable) -> str:
-    def line(cells: list[str], tag: str) -> str:
-        marks = [' class="word"' if word else "" for word in table.words]
-        joined = "".join(f"<{tag}{m}>{c}</{tag}>" for m, c in zip(marks, cells, strict=True))
+    def line(cells: Iterable[str], tag: str) -> str:
+        joined = ""
+        for word, cell in zip(table.words, cells, strict=True):
+            kinds = ["word"] * word + ["long"] * (word and len(cell) > _LONG)
+            mark = f' class="{" ".join(kinds)}"' if kinds else ""
+            joined += f"<{tag}{mark}>{_typeset(cell)}</{tag}>"
         return f"<tr>{joined}</tr>"
 
-    head = line([_typeset(name) for name in table.columns], "th")
+    head = line(table.columns, "th")
     body = "\n".join(
-        line(["" if cell is None else _typeset(str(cell)) for cell in row], "td")
-        for row in table.rows
+        line(["" if cell is None else str(cell) for cell in row], "td") for row in table.rows
     )
     notes = "".join(f'<p class="note">{_terms(note, table.columns)}</p>' for note in table.notes)
     title = f"<h2>{_typeset(table.title)}</h2>"
@@ -77,6 +81,9 @@ def _table(table: StudyTable) -> str:
         f"<tbody>{body}</tbody></table></div>{notes}"
     )
 
+
+_LONG = 24
+"""Characters from which on words are broken into lines."""
 
 _TINY = re.compile(r"(\d(?:\.\d+)?)e([+-]\d+)")
 _POWER = re.compile(r"\^(-?\w+|\([^()]*\))")

@@ -228,7 +228,7 @@ def _axes_of_space(
 
 def _draw_curves(axes: Any, row: Row) -> None:
     view = _view(112.0, 15.0)
-    names = [f"angle of {i}–{j}" for i, j in row["folds"]]
+    names = [f"angle\nof {i}–{j}" for i, j in row["folds"]]
     for place, curve in enumerate(row["curves"]):
         points = np.array(curve["angles"]) @ view.T
         colour = _RAYS[place // 2]
@@ -291,7 +291,7 @@ def _draw_cone(axes: Any, row: Row) -> None:
 
 def _draw_chambers(axes: Any, row: Row) -> None:
     """In coordinates in which the planes of the vertex signs are coordinate planes."""
-    view = _view(64.0, 24.0)
+    view = _view(36.0, 24.0)
     coordinates = np.array([*row["functionals"].values(), [1.0, 0.0, 0.0]])
     rays = np.array([ray["heights"] for ray in row["rays"]]) @ coordinates.T
     rays /= np.abs(rays).max(axis=0)
