@@ -67,7 +67,9 @@ def _table(table: StudyTable) -> str:
             joined += f"<{tag}{mark}>{_typeset(cell)}</{tag}>"
         return f"<tr>{joined}</tr>"
 
-    head = line(table.columns, "th")
+    head = line(
+        (re.sub(r" (?=[>%])|(?<=>) ", "\N{NO-BREAK SPACE}", c) for c in table.columns), "th"
+    )
     body = "\n".join(
         line(["" if cell is None else str(cell) for cell in row], "td") for row in table.rows
     )
