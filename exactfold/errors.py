@@ -186,6 +186,10 @@ class UnknownStudyError(UsageError):
     """No study has this name; the message lists those that there are."""
 
 
+class RowNumbersError(UsageError):
+    """Numbers of rows of a study that cannot be read, or that do not fit the sizes asked for."""
+
+
 class UnknownRowError(InputError):
     """A journal of a study has no row, or more than one, whose name begins like this."""
 

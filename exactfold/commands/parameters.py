@@ -9,10 +9,11 @@ from typing import Annotated, Any
 
 import typer
 
+from exactfold.commands.row_numbers import read_sizes
 from exactfold.commands.shell import not_a_dash, standard_input
 from exactfold.count.registry import ALIASES, METHODS
 from exactfold.drawing.drawing import Snap as Snapping
-from exactfold.errors import NotANumberError
+from exactfold.errors import NotANumberError, RowNumbersError
 from exactfold.exact.numbers import approx_number, parse_rational, parse_whole
 
 
@@ -99,12 +100,10 @@ def numbers(text: object) -> tuple[int, ...]:
 
 def sizes(text: object) -> tuple[int, ...]:
     """Numbers from 1 on and ranges of them, such as 2-5,8."""
-    found: set[int] = set()
-    for part in str(text).split(","):
-        first, _, last = part.strip().partition("-")
-        low = whole(1)(first)
-        found.update(range(low, whole(low)(last or first) + 1))
-    return tuple(sorted(found))
+    try:
+        return tuple(sorted({size for part in str(text).split(",") for size in read_sizes(part)}))
+    except RowNumbersError as error:
+        raise typer.BadParameter(str(error)) from None
 
 
 def sign_vectors(text: object) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from exactfold import report
+from exactfold.commands.row_numbers import read_numbers, written_numbers, written_sizes
 from exactfold.commands.shell import EXIT, Bar, apart, interruptible, stopped
 from exactfold.count.on_dask import LOCAL
 from exactfold.count.pools import Pool, dask_pool, process_pool
@@ -41,7 +42,7 @@ class Wanted:
     name: str | None
     seed: int
     sizes: tuple[int, ...] | None
-    number: int | None
+    number: str | None
     extend: bool
     workers: int | None
     dask: str | None
@@ -83,9 +84,11 @@ class Wanted:
         if self.seed:
             words += ["--seed", str(self.seed)]
         if self.sizes is not None:
-            words += ["--sizes", ",".join(map(str, self.sizes))]
+            words += ["--sizes", written_sizes(self.sizes)]
+        if self.number is not None:
+            words += ["--number", written_numbers(read_numbers(self.number))]
         words += ["--extend"] if self.extend else []
-        for key in ("number", "journal", "csv", "parquet", "html", "figures"):
+        for key in ("journal", "csv", "parquet", "html", "figures"):
             if (value := getattr(self, key)) is not None:
                 words += [f"--{key}", str(value)]
         return shlex.join(words)
@@ -132,7 +135,8 @@ class Wanted:
         if self.workers is not None and self.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --workers goes with --dask local")
         self._check_files()
-        numbers = study.chosen(self.sizes, self.number, extend=self.extend)
+        given = None if self.number is None else read_numbers(self.number)
+        numbers = study.chosen(self.sizes, given, extend=self.extend)
         if not study.number(self.seed, numbers):
             raise UsageError("a study without rows says nothing")
         with Bar("starting") as bar, self._resumable(), self._pool() as pool:

@@ -22,6 +22,8 @@ STYLE = {
     "lines.linewidth": 1.2,
     "lines.markersize": 4,
     "errorbar.capsize": 2,
+    "axes.prop_cycle": "cycler('color', ['#365c8d', '#e07b39', '#1fa187', '#7b3294'])",
+    "axes.formatter.min_exponent": 3,
     "svg.fonttype": "path",
     "svg.hashsalt": "exactfold",
     "pdf.fonttype": 42,
@@ -43,6 +45,7 @@ def check_figures() -> None:
 def drawn(figure: StudyFigure, kind: str = "svg") -> bytes:
     """A figure as a file of a kind, "svg", "pdf" or "png", without the time of its making.
 
+    What is drawn with a label is named in a legend beside its axes, where it hides nothing.
     Raises `StudyPartsMissingError`.
     """
     check_figures()
@@ -53,7 +56,28 @@ def drawn(figure: StudyFigure, kind: str = "svg") -> bytes:
         sheet = Figure(figsize=(figure.width, figure.height))
         axes: Any = sheet.subplots(*figure.panels)
         figure.draw(axes if figure.panels == (1, 1) else list(axes.flat))
+        for each in sheet.axes:
+            _name_beside(each)
         out = io.BytesIO()
         dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind, {})
         sheet.savefig(out, format=kind, dpi=200, metadata=dates)
     return out.getvalue()
+
+
+def _name_beside(axes: Any) -> None:
+    """The legend of axes, to their right."""
+    handles, labels = axes.get_legend_handles_labels()
+    if handles:
+        order = sorted(range(len(labels)), key=lambda k: _number_in(labels[k]))
+        axes.legend(
+            [handles[k] for k in order],
+            [labels[k] for k in order],
+            loc="upper left",
+            bbox_to_anchor=(1.0, 1.0),
+        )
+
+
+def _number_in(label: str) -> int:
+    """The size that a label names; 0 for one without a size, which keeps its place."""
+    digits = label.removeprefix("$V_i = ").removesuffix("$")
+    return int(digits) if digits.isdecimal() else 0

@@ -156,7 +156,9 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
     lines = []
     for row in sorted(rows, key=lambda row: int(row["figure"])):
         figure = int(row["figure"])
-        if figure == 1:
+        if not _has_picture(row):
+            about = ""
+        elif figure == 1:
             about = f"{len(row['curves'])} motions of the two-vertex pattern"
         elif figure in _AXES:
             about = f"{len(row['rays'])} branches" if figure == 3 else "two nappes, a plane each"
@@ -172,9 +174,17 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
         lines.append((figure, SHOWN[figure], about, str(row["status"])))
     return [
         StudyTable(
-            "figures", "Figures of the paper, drawn again", ("", "figure", "", ""), tuple(lines)
+            "figures",
+            "Figures of the paper, drawn again",
+            ("", "figure", "shows", "status"),
+            tuple(lines),
         )
     ]
+
+
+def _has_picture(row: Row) -> bool:
+    """Whether all that the picture shows is proved."""
+    return bool(row["status"] == str(PROVED))
 
 
 def _view(turn: float, lift: float) -> FloatArray:
@@ -218,7 +228,7 @@ def _axes_of_space(
 
 def _draw_curves(axes: Any, row: Row) -> None:
     view = _view(112.0, 15.0)
-    names = [f"angle of {i}–{j}" for i, j in row["folds"]]
+    names = [f"angle\nof {i}–{j}" for i, j in row["folds"]]
     for place, curve in enumerate(row["curves"]):
         points = np.array(curve["angles"]) @ view.T
         colour = _RAYS[place // 2]
@@ -281,7 +291,7 @@ def _draw_cone(axes: Any, row: Row) -> None:
 
 def _draw_chambers(axes: Any, row: Row) -> None:
     """In coordinates in which the planes of the vertex signs are coordinate planes."""
-    view = _view(64.0, 24.0)
+    view = _view(36.0, 24.0)
     coordinates = np.array([*row["functionals"].values(), [1.0, 0.0, 0.0]])
     rays = np.array([ray["heights"] for ray in row["rays"]]) @ coordinates.T
     rays /= np.abs(rays).max(axis=0)
@@ -334,18 +344,20 @@ def figures(rows: Iterable[Row]) -> list[StudyFigure]:
         5: ("signs", "Two branches with these letters and signs", _draw_shared),
     }
     captions = {
-        1: "Angles of three folds of the two-vertex pattern along the true motions of its four "
-        "branches, until a fold has 45 degrees; arrows are 48 degrees long, valleys positive. The "
-        "signs are those of vertices 4 and 5. Thick in the pattern: the three folds.",
-        2: "To second order, in the heights of three vertices; the other three are held.",
-        3: "The branches of the two-vertex pattern to second order. On two axes are the "
-        "functionals of the vertex signs, which vanish on the planes; on the third is the height "
-        "of a corner.",
+        1: "The axes are the angles of three folds of the two-vertex pattern, which are thick in "
+        "the inset. The curves are the true motions along its four branches, until a fold has 45 "
+        "degrees. Arrows are 48 degrees long, valleys are positive, and the signs are those of "
+        "vertices 4 and 5.",
+        2: "The cone is that to second order in the heights of three vertices; the other three are "
+        "held.",
+        3: "The lines are the branches of the two-vertex pattern to second order. On two axes are "
+        "the functionals of the vertex signs, which vanish on the planes; on the third is the "
+        "height of a corner.",
         4: _LEGEND,
         5: _LEGEND,
     }
     found = []
-    for row in sorted(rows, key=lambda row: int(row["figure"])):
+    for row in filter(_has_picture, sorted(rows, key=lambda row: int(row["figure"]))):
         figure = int(row["figure"])
         name, title, draw = drawn[figure]
 

@@ -24,7 +24,7 @@ from exactfold.studies.nearest import nearest_exception
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.statistics import interval_text
 from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
-from exactfold.studies.tallies import draw_distribution, draw_shares, tallied
+from exactfold.studies.tallies import draw_distributions, draw_rare, tallied
 from exactfold.verdict import PROVED
 
 DENOMINATORS: Final = (16, 64, 256, 1024)
@@ -302,39 +302,38 @@ def _quantile(values: Sequence[float], part: float) -> str | None:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of exceptions against the grid, and how far the nearest ones are."""
-    tallies = tallied(rows, _Tally, _key)
-    near = {n: t.distances for (n, _), t in tallies.items() if any(t.distances)}
+    tallies = {key: t for key, t in tallied(rows, _Tally, _key).items() if t.proved}
+    if not tallies:
+        return []
+    near = {n: [d for d in t.distances if d] for (n, _), t in tallies.items() if any(t.distances)}
 
     def distances(axes: Any) -> None:
-        for n, found in near.items():
-            draw_distribution(axes, [d for d in found if d], label=f"$V_i = {n}$", **of_size(n))
+        draw_distributions(axes, near)
         axes.set_xscale("log")
         axes.set_xlabel("distance of the exception, in sides of the square")
         axes.set_ylabel("squares with a nearer one (%)")
-        axes.set_ylim(0, 100)
-        axes.legend()
 
     def shares(axes: Any) -> None:
         found = sorted({n for n, _ in tallies})
         for place, n in enumerate(found):
-            points = [(d, t) for (m, d), t in tallies.items() if m == n and t.exceptions]
+            points = [(d, t) for (m, d), t in tallies.items() if m == n]
             counts = [(t.exceptions, t.proved) for _, t in points]
             places = [d * 2 ** (0.12 * (place - (len(found) - 1) / 2)) for d, _ in points]
-            draw_shares(axes, places, counts, 1.0, label=f"$V_i = {n}$", **of_size(n))
+            draw_rare(axes, places, counts, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xscale("log", base=2)
         axes.set_yscale("log")
         axes.set_xticks(DENOMINATORS, [str(d) for d in DENOMINATORS])
         axes.minorticks_off()
         axes.set_xlabel("denominator of the grid")
-        axes.set_ylabel("squares that are exceptions")
-        axes.legend()
+        axes.set_ylabel("squares that are exceptions (%)")
 
     found = [
         StudyFigure(
             "exceptions",
             "Exceptions become rare on fine grids",
-            "The share of random squares with a vertex outside triangulated triangles that can "
-            "stay flat, with exact 95 % intervals, where some are exceptions.",
+            "The figure shows the share of random squares with a vertex outside triangulated "
+            "triangles that can stay flat, with exact 95 % intervals. Where no square is an "
+            "exception, an open triangle shows the upper end of the interval.",
             shares,
         )
     ]
@@ -343,8 +342,8 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             StudyFigure(
                 "distances",
                 "How far the nearest exception is at most",
-                "The share of random squares with an exception that is proved to be at most so "
-                "far, of those for which one was found.",
+                "The figure shows the share of random squares with an exception that is proved to "
+                "be at most so far, of those for which one was found and that are none themselves.",
                 distances,
             )
         )

@@ -328,18 +328,16 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
                 ("H1", "h1", PAPER_H1),
             )
         ):
-            counts = {size: getattr(t, key) for size, t in tallies.items()}
-            points = [
-                (size, count / tallies[size].number) for size, count in counts.items() if count
-            ]
+            counts = {n: getattr(t, key) for n, t in tallies.items() if getattr(t, key)}
+            points = [(n, 100 * count / tallies[n].number) for n, count in counts.items()]
             if not points:
                 continue
-            ends = [interval(counts[size], tallies[size].number) for size, _ in points]
-            below = [share - low for (_, share), (low, _) in zip(points, ends, strict=True)]
-            above = [high - share for (_, share), (_, high) in zip(points, ends, strict=True)]
+            ends = [interval(count, tallies[n].number) for n, count in counts.items()]
+            below = [share - 100 * low for (_, share), (low, _) in zip(points, ends, strict=True)]
+            above = [100 * high - share for (_, share), (_, high) in zip(points, ends, strict=True)]
             x, y = zip(*points, strict=True)
             axes.errorbar(x, y, [below, above], fmt="o-", color=f"C{k}", label=label)
-            theirs = [(n, c / PAPER_NUMBER) for n, c in paper.items() if c and n in tallies]
+            theirs = [(n, 100 * c / PAPER_NUMBER) for n, c in paper.items() if c and n in tallies]
             if theirs:
                 axes.plot(
                     *zip(*theirs, strict=True),
@@ -351,35 +349,34 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
                 )
         axes.set_yscale("log")
         axes.set_xlabel("interior vertices $V_i$")
-        axes.set_ylabel("share of squares")
+        axes.set_ylabel("squares (%)")
         axes.set_xticks(sorted(tallies))
-        axes.legend(loc="lower left")
 
     def moves(axes: Any) -> None:
         for size, tally in tallies.items():
-            counts = [(k, tally.at_least(k) / tally.number) for k in range(size + 1)]
+            counts = [(k, 100 * tally.at_least(k) / tally.number) for k in range(size + 1)]
             counts = [(k, share) for k, share in counts if share]
             axes.plot(
                 *zip(*counts, strict=True), marker="o", label=f"$V_i = {size}$", **of_size(size)
             )
         axes.set_yscale("log")
         axes.set_xlabel("reverse H1 moves, at least")
-        axes.set_ylabel("share of squares")
-        axes.legend()
+        axes.set_ylabel("squares (%)")
 
     return [
         StudyFigure(
             "shares",
             "Squares that are H1, and squares that are irreducible",
-            "Random squares, with exact 95 % intervals, and the figures of the paper. Irreducible: "
-            "no boundary vertex has degree 3; with three interior vertices no square is.",
+            "The figure shows shares of random squares with exact 95 % intervals, and those of the "
+            "paper. A square is irreducible if no boundary vertex has degree 3; with three "
+            "interior vertices none is.",
             shares,
         ),
         StudyFigure(
             "moves",
             "Squares by the number of reverse H1 moves in a row",
-            "The share of squares with which so many moves can be made; the last point of each "
-            "line, at as many moves as interior vertices, is the share of H1 squares.",
+            "The figure shows the share of squares with which so many moves can be made. The last "
+            "point of a line, at as many moves as interior vertices, is the share of H1 squares.",
             moves,
         ),
     ]

@@ -25,8 +25,8 @@ from exactfold.solve.dense_newton import sign_vectors
 from exactfold.studies.fans import fan
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.statistics import percent
-from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
-from exactfold.studies.tallies import draw_distribution, interior_of, tallied
+from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable
+from exactfold.studies.tallies import draw_distributions, interior_of, tallied
 from exactfold.studies.triangulations import reverse_moves, triangulation
 from exactfold.verdict import PROVED, UNDECIDED
 
@@ -279,41 +279,39 @@ def _ends(tallies: dict[int, _Tally]) -> StudyTable:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The distributions of the lengths of loops, and of motions until the first contact."""
-    tallies = {n: t for n, t in tallied(rows, _Tally, interior_of).items() if t.loops}
-
-    def curves(axes: Any, spans: dict[int, list[tuple[float, float]]], label: str) -> None:
-        for n, bounds in spans.items():
-            if bounds:
-                lows = [low for low, _ in bounds]
-                draw_distribution(axes, lows, label=f"$V_i = {n}$", **of_size(n + 1))
-        axes.set_xlabel(f"{label}, in sides of the square")
-        axes.set_ylim(0, 100)
-        axes.legend(loc="lower right")
+    tallies = tallied(rows, _Tally, interior_of)
+    spans = {n: [low for low, _ in t.lengths] for n, t in tallies.items() if t.lengths}
+    times = {n: [low for low, _ in t.times] for n, t in tallies.items() if t.times}
 
     def lengths(axes: Any) -> None:
-        curves(axes, {n: t.lengths for n, t in tallies.items()}, "length of a loop")
+        draw_distributions(axes, spans)
+        axes.set_xlabel("length of a loop, in sides of the square")
         axes.set_ylabel("loops that are shorter (%)")
 
     def contacts(axes: Any) -> None:
-        curves(axes, {n: t.times for n, t in tallies.items()}, "length until the first contact")
+        draw_distributions(axes, times)
+        axes.set_xlabel("length until the first contact, in sides of the square")
         axes.set_ylabel("branches in contact (%)")
 
-    return [
+    loops = [
         StudyFigure(
             "lengths",
             "Lengths of loops",
-            "Loops of true motions through the flat state of random squares: the share of loops "
-            "that are shorter. Lengths are those in the space of all vertices.",
+            "The figure shows the distribution of the lengths of loops of true motions through the "
+            "flat state of random squares, in the space of all vertices.",
             lengths,
         ),
+    ]
+    ends = [
         StudyFigure(
             "contacts",
             "First contacts",
-            "How far branches of random squares fold until a fold closes or two faces touch, of "
-            "those that meet no node before: the share of branches that have come to a contact.",
+            "The figure shows how far branches of random squares fold until a fold closes or two "
+            "faces touch: the share that has come to a contact, of those that meet no node before.",
             contacts,
         ),
     ]
+    return (loops if spans else []) + (ends if times else [])
 
 
 STUDY: Final = Study(

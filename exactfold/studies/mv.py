@@ -18,7 +18,7 @@ import numpy.typing as npt
 from exactfold.studies.lines import UNKNOWN, Lines, SignArray
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.statistics import AGREE, interval, p_equals, trend, verdict
-from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable
 from exactfold.studies.table1 import same_side
 from exactfold.studies.tallies import interior_of, tallied
 from exactfold.verdict import PROVED
@@ -265,31 +265,28 @@ def _sentences(tallies: dict[int, _Tally]) -> StudyTable:
     )
 
 
-_DOTS: Final = {"linestyle": "none"}
-
-
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of all assignments that occurs, against the number of vertices."""
     tallies = {size: t for size, t in tallied(rows, _Tally, interior_of).items() if t.known}
+    if not tallies:
+        return []
 
     def shares(axes: Any) -> None:
         sizes = sorted(tallies)
-        axes.plot(sizes, [4.0**-n for n in sizes], "-", color="0.6", label="$(1/4)^{V_i}$")
-        for size, tally in tallies.items():
-            share = tally.share / tally.known
-            label = "random squares" if size == sizes[0] else None
-            axes.plot([size], [share], marker="o", label=label, **{**of_size(size), **_DOTS})
+        axes.plot(sizes, [100 * 4.0**-n for n in sizes], "-", color="0.6", label="$(1/4)^{V_i}$")
+        shares = [100 * tallies[n].share / tallies[n].known for n in sizes]
+        axes.plot(sizes, shares, "o", color="C0", label="random squares")
         axes.set_yscale("log")
         axes.set_xticks(sizes)
         axes.set_xlabel("interior vertices $V_i$")
-        axes.set_ylabel("share of assignments\nthat occur")
-        axes.legend()
+        axes.set_ylabel("assignments that occur (%)")
 
     return [
         StudyFigure(
             "occurring",
             "Few assignments occur",
-            "The mean share of all assignments of letters that a branch of a random square has.",
+            "The figure shows which share of all assignments of letters occurs as those of a "
+            "branch, in the mean over random squares.",
             shares,
         )
     ]

@@ -175,27 +175,29 @@ def _sentences(tallies: Mapping[tuple[int, str], _Tally]) -> StudyTable:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of systems with zeros that are not real, against the size of the change."""
-    tallies = _tallies(rows)
+    tallies = {key: t for key, t in _tallies(rows).items() if t.proved}
+    if not tallies:
+        return []
 
     def shares(axes: Any) -> None:
         places = dict(zip(SIZES, range(len(SIZES)), strict=True))
         found = sorted({n for n, _ in tallies})
         for place, n in enumerate(found):
-            points = [(places[s], t) for (m, s), t in tallies.items() if m == n and t.proved]
+            points = [(places[s], t) for (m, s), t in tallies.items() if m == n]
             counts = [(t.some, t.proved) for _, t in points]
             at = [x + 0.06 * (place - (len(found) - 1) / 2) for x, _ in points]
             draw_shares(axes, at, counts, 100.0, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xticks(range(len(SIZES)), SIZES)
         axes.set_xlabel("largest relative change of a coefficient")
-        axes.set_ylabel("systems with solutions\nthat are not real (%)")
-        axes.legend(loc="upper left")
+        axes.set_ylabel("systems with zeros that are not real (%)")
+        axes.set_ylim(-3, 103)
 
     return [
         StudyFigure(
             "real",
             "Systems that lose real zeros",
-            "Random squares with perturbed coefficients: the share of systems with zeros that are "
-            "not real, with exact 95 % intervals.",
+            "The figure shows the share of systems with zeros that are not real, with exact 95 % "
+            "intervals: branch systems of random squares with changed coefficients.",
             shares,
         )
     ]

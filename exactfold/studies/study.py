@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
-from exactfold.errors import UsageError
+from exactfold.errors import RowNumbersError
 from exactfold.verdict import PROVED, UNDECIDED
 from exactfold.wording import counted
 
@@ -65,8 +65,9 @@ class StudyFigure:
     """A figure of a study: `draw(axes)` draws it on axes of Matplotlib, in the style of the report.
 
     `name` names its file. `width` and `height` are in inches. With `panels` = (rows, columns) other
-    than (1, 1), `draw` gets a list of axes, row by row. What is drawn is a picture; the numbers
-    that are proved stand in the tables.
+    than (1, 1), `draw` gets a list of axes, row by row. What is drawn with a label is named in a
+    legend beside its axes. What is drawn is a picture; the numbers that are proved stand in the
+    tables.
     """
 
     name: str
@@ -118,21 +119,40 @@ class Study:
     def chosen(
         self,
         sizes: Iterable[int] | None = None,
-        number: int | None = None,
+        number: int | Mapping[int, int] | None = None,
         *,
         extend: bool = False,
     ) -> dict[int, int]:
         """How many rows of each size: those of the study, of these `sizes` only, or this `number`.
 
-        Raises `UsageError` for a size that the study has no number for, where none is given.
+        A `number` by size replaces those of the study for the sizes that it names; with neither
+        `sizes` nor `extend` these are all sizes. Raises `RowNumbersError` for a size that has no
+        number, and for a number of a size that is not among `sizes`.
+
+        >>> from exactfold.studies.registry import study_named
+        >>> study_named("table1").chosen(range(2, 6), {4: 30, 5: 7})
+        {2: 100, 3: 5000, 4: 30, 5: 7}
         """
         known = {**self.numbers, **(self.extended if extend else {})}
-        wanted = sorted(set(sizes)) if sizes is not None else sorted(known)
-        if number is not None:
+        by_size = number if isinstance(number, Mapping) else {}
+        if sizes is not None:
+            wanted = sorted(set(sizes))
+        elif by_size and not extend:
+            wanted = sorted(by_size)
+        else:
+            wanted = sorted({*known, *by_size})
+        if number is not None and not isinstance(number, Mapping):
             return dict.fromkeys(wanted, number)
+        beside = sorted(by_size.keys() - set(wanted))
+        if beside:
+            raise RowNumbersError(
+                f"there is a number of rows for size {beside[0]}, which is not one of the sizes "
+                "asked for"
+            )
+        known.update(by_size)
         missing = [size for size in wanted if size not in known]
         if missing:
-            raise UsageError(
+            raise RowNumbersError(
                 f"the study {self.name} has no number of rows for size {missing[0]}: give --number"
             )
         return {size: known[size] for size in wanted}
@@ -154,16 +174,16 @@ def digest(value: object) -> str:
     return hashlib.sha256(canonical(value).encode("utf-8")).hexdigest()
 
 
-_COLOURS = ("#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da39", "#e3c01a")
+_COLOURS = ("#440154", "#3b4cc0", "#2a8fd0", "#1fa187", "#5fae2c", "#d9a400", "#e8702a", "#c62828")
 
 
 def of_size(size: int) -> dict[str, str]:
-    """The colour of a number of interior vertices in figures: from dark to light, 2 to 9.
+    """The colour of a number of interior vertices in figures: violet to red, 2 to 9.
 
-    From 10 on the same again, with dashes.
+    From 10 on the same again, with dashes; 1 is grey.
 
     >>> of_size(2), of_size(10)
     ({'color': '#440154'}, {'color': '#440154', 'linestyle': '--'})
     """
-    colour = {"color": _COLOURS[(size - 2) % len(_COLOURS)]}
+    colour = {"color": _COLOURS[(size - 2) % len(_COLOURS)] if size > 1 else "#8c8c8c"}
     return colour if size < 10 else {**colour, "linestyle": "--"}

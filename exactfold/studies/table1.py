@@ -252,6 +252,8 @@ def _median(histogram: dict[int, int]) -> int:
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of squares with branches that share their letters, and the digits needed."""
     tallies = {size: t for size, t in tallied(rows, _Tally, interior_of).items() if t.digits}
+    if not tallies:
+        return []
 
     def shares(axes: Any) -> None:
         for label, points in (
@@ -261,20 +263,19 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             shift = 0.0 if not PAPER.keys() & tallies else 0.12 if label == "here" else -0.12
             for place, (size, (count, number)) in enumerate(points.items()):
                 low, high = interval(count, number)
-                colour = "C0" if label == "here" else "C1"
                 share = count / number
                 axes.errorbar(
                     size + shift,
                     100 * share,
                     [[100 * (share - low)], [100 * (high - share)]],
                     fmt="o" if label == "here" else "s",
-                    color=colour,
+                    color="C0" if label == "here" else "black",
+                    markerfacecolor="C0" if label == "here" else "none",
                     label=label if not place else None,
                 )
         axes.set_xlabel("interior vertices $V_i$")
         axes.set_ylabel("squares with equal letters (%)")
         axes.set_xticks(sorted(tallies))
-        axes.legend(loc="upper left")
 
     def digits(axes: Any) -> None:
         most = max(t.digits for t in tallies.values())
@@ -287,21 +288,20 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         axes.set_xlabel("decimals of the unit vectors")
         axes.set_ylabel("squares told apart (%)")
         axes.set_xticks(range(most + 1))
-        axes.legend()
 
     return [
         StudyFigure(
             "letters",
             "Squares with branches that share their mountains and valleys",
-            "Shares of random squares with two branches whose letters agree, with exact 95 % "
-            "intervals.",
+            "The figure shows the share of random squares with two branches whose letters agree, "
+            "in the paper and here, with exact 95 % intervals.",
             shares,
         ),
         StudyFigure(
             "digits",
             "Decimals that tell all branches of a square apart",
-            "Of the unit vectors of fold angles: the share of squares for which so many are "
-            "enough.",
+            "The figure shows the share of squares all of whose branches are told apart by so many "
+            "decimals of their unit vectors of fold angles.",
             digits,
         ),
     ]

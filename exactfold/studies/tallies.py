@@ -1,12 +1,13 @@
-"""What several studies do with their rows: adding them up by size, and two kinds of curves."""
+"""What several studies do with their rows: adding them up by size, and kinds of curves."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import nan
 from typing import Any, Protocol, TypeVar
 
 from exactfold.studies.statistics import interval
-from exactfold.studies.study import Row
+from exactfold.studies.study import Row, of_size
 
 
 class _Tally(Protocol):
@@ -37,6 +38,45 @@ def draw_distribution(axes: Any, values: Sequence[float], **style: Any) -> None:
     shares = [100 * k / len(ordered) for k in range(len(ordered) + 1)]
     ordered = [*ordered[:1], *ordered]
     axes.plot(ordered, shares, drawstyle="steps-post", **style)
+
+
+def draw_distributions(axes: Any, values: Mapping[int, Sequence[float]]) -> None:
+    """The distribution of each size, all curves from the least value of all to the largest."""
+    every = [value for some in values.values() for value in some]
+    for size, some in values.items():
+        ordered = [min(every), *sorted(some), max(every)]
+        shares = [100 * k / len(some) for k in range(len(some) + 1)]
+        shares.append(100.0)
+        label = f"$V_i = {size}$"
+        axes.plot(ordered, shares, drawstyle="steps-post", label=label, **of_size(size))
+    axes.set_ylim(-3, 103)
+
+
+def draw_rare(
+    axes: Any, places: Sequence[float], counts: Sequence[tuple[int, int]], **style: Any
+) -> None:
+    """Shares (found, number) in per cent on a logarithmic axis, with exact 95 % intervals.
+
+    Where none was found, an open triangle is the upper end of the interval.
+    """
+    style = {"marker": "o", **style}
+    label = style.pop("label")
+    some = [place for place, (found, _) in zip(places, counts, strict=True) if found]
+    if some:
+        kept = [(found, number) if found else (1, 0) for found, number in counts]
+        middle = [100 * found / number if number else nan for found, number in kept]
+        bounds = [interval(found, number) if number else (nan, nan) for found, number in kept]
+        below = [m - 100 * low for m, (low, _) in zip(middle, bounds, strict=True)]
+        above = [100 * high - m for m, (_, high) in zip(middle, bounds, strict=True)]
+        axes.errorbar(places, middle, [below, above], label=label, **style)
+    none = [
+        (place, 100 * interval(0, number)[1])
+        for place, (found, number) in zip(places, counts, strict=True)
+        if not found
+    ]
+    if none:
+        style |= {"marker": "v", "markerfacecolor": "none", "linestyle": "none"}
+        axes.plot(*zip(*none, strict=True), label=None if some else label, **style)
 
 
 def draw_shares(

@@ -121,6 +121,10 @@ def test_the_shell_completes_names_files_and_methods(tmp_path: Path) -> None:
     assert completed("exactfold count --method ", tmp_path) == list(METHODS)
     assert completed("exactfold count --method n", tmp_path) == ["newton"]  # not a former name
     assert set(completed("exactfold ex", tmp_path)) == {"examples", "export"}
+    assert completed("exactfold study table1 --sizes ", tmp_path) == ["2-8"]
+    by_size = "2:100,3:5000,4-6:1000,7:300,8:50"
+    assert completed("exactfold study table1 --number ", tmp_path) == [by_size]
+    assert completed("exactfold study --number ", tmp_path) == []
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -15,6 +15,8 @@ import pytest
 from running import BAD_INPUT, INVALID, PROVED, USAGE, error_class, run
 from test_schemas import valid
 
+from exactfold.commands.parameters import sizes
+from exactfold.commands.row_numbers import read_numbers, written_numbers, written_sizes
 from exactfold.studies import StudyTable, all_studies, table1
 from exactfold.studies.registry import MODULES
 
@@ -68,6 +70,43 @@ def test_rows_are_written_as_csv(here, done):
     assert rows[0]["pairs_of_signs"] == "true"
 
 
+def test_numbers_by_size(here):
+    found = run("study", "table1", "--number", "2:2,3:1", "--workers", "1")
+    assert found.exit_code == PROVED
+    assert "3 rows of seed 0, 3 computed now" in found.stdout
+    more = run(*SMALL, "--number", "2-3:2", "--json")
+    assert json.loads(more.stdout)["numbers"] == {"2": 2, "3": 2}
+    assert json.loads(more.stdout)["computed"] == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("0", "0 is less than 1"),
+        ("", "'' is not a whole number"),
+        ("5,", "'5' has no number after a colon"),
+        ("5:3,2", "'2' has no number after a colon"),
+        ("2-4:3,3:1", "size 3 has two numbers"),
+        ("4-2:1", "'4-2' ends before it begins"),
+        ("0:4", "sizes are from 1 on, not 0"),
+        ("2:-1", "-1 is less than 0"),
+        ("2-9999999999:1", "'2-9999999999' are more than 1000 sizes"),
+        ("3:x", "'x' is not a whole number"),
+    ],
+)
+def test_numbers_that_cannot_be_read(here, text, said):
+    found = run("study", "table1", "--number", text, "--json")
+    assert (found.exit_code, error_class(found)) == (USAGE, "RowNumbersError")
+    assert f"--number: {said}; write one number for all sizes" in found.stderr
+    assert os.listdir() == []
+
+
+@pytest.mark.parametrize("text", ["2", "2-5,8", "1-3,7,9-12"])
+def test_sizes_are_written_as_they_are_read(text):
+    assert written_sizes(sizes(text)) == text
+    assert written_numbers(read_numbers(f"{text.split(',')[-1]}:4")) == f"{text.split(',')[-1]}:4"
+
+
 @pytest.mark.slow
 def test_rows_are_written_as_parquet(here, done):
     parquet = pytest.importorskip("pyarrow.parquet")
@@ -79,12 +118,12 @@ def test_rows_are_written_as_parquet(here, done):
 
 @pytest.mark.slow
 def test_the_report_is_one_file_and_pictures_are_svg_and_pdf(here, done):
-    files = ("--html", "a.html", "--figures", "pictures")
+    files = ("--number", "2:3,3:3", "--html", "a.html", "--figures", "pictures")
     assert run(*SMALL, "--journal", done, *files).exit_code == PROVED
     page = Path("a.html").read_text(encoding="utf-8")
     assert page.count("<svg") == 2
     assert "src=" not in page
-    assert "exactfold study table1 --sizes 2,3 --number 3 --journal" in page
+    assert "exactfold study table1 --sizes 2-3 --number 2-3:3 --journal" in page
     names = sorted(os.listdir("pictures"))
     assert names == [f"table1-{k}.{e}" for k in ("digits", "letters") for e in ("pdf", "svg")]
     ElementTree.parse("pictures/table1-digits.svg")
@@ -134,7 +173,9 @@ def test_a_row_that_differs_is_said(here, done, monkeypatch):
     [
         (("nothing",), USAGE, "UnknownStudyError"),
         (("table1", "--row", "00"), BAD_INPUT, "UnknownRowError"),
-        (("table1", "--sizes", "40"), USAGE, "UsageError"),
+        (("table1", "--sizes", "40"), USAGE, "RowNumbersError"),
+        (("table1", "--sizes", "2", "--number", "3:1"), USAGE, "RowNumbersError"),
+        (("table1", "--number", "3:0"), USAGE, "UsageError"),
         (("table1", "--row", "00", "--seed", "2"), USAGE, "UsageError"),
         (("--seed", "2"), USAGE, "UsageError"),
         (("table1", "--csv", "a.txt"), USAGE, "UsageError"),

@@ -19,6 +19,7 @@ from exactfold.errors import (
     ForeignRowsError,
     JournalInUseError,
     RowFailedError,
+    RowNumbersError,
     UnknownRowError,
     UnknownStudyError,
     UnwritableFileError,
@@ -225,6 +226,12 @@ def test_sizes_and_numbers_are_chosen():
     assert sum(study.chosen(extend=True).values()) == sum(study.numbers.values()) + 6000
     with pytest.raises(UsageError, match="no number of rows for size 9: give --number"):
         study.chosen([9])
+    assert study.chosen(number={5: 7, 20: 0}) == {5: 7, 20: 0}
+    assert study.chosen([4, 5], {5: 7}) == {4: 1000, 5: 7}
+    extended = study.chosen(number={5: 7, 20: 1}, extend=True)
+    assert extended == {**study.numbers, **study.extended, 5: 7, 20: 1}
+    with pytest.raises(RowNumbersError, match="for size 5, which is not one of the sizes"):
+        study.chosen([2, 3], {2: 1, 5: 7})
 
 
 def test_no_row_is_named_twice():

@@ -1,0 +1,104 @@
+"""Numbers of rows of a study as they are written: 1000, or by size 2-4:1000,5:200."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from exactfold.errors import RowNumbersError
+
+MOST_SIZES = 1000
+"""That a command takes; a longer range is a slip."""
+
+_FORMS = "write one number for all sizes, such as 1000, or numbers by size, such as 2-4:1000,5:200"
+
+
+def read_sizes(text: str) -> range:
+    """One size from 1 on, or a range of sizes such as 2-4; raises `RowNumbersError`.
+
+    >>> read_sizes("2-4")
+    range(2, 5)
+    """
+    first, _, last = text.strip().partition("-")
+    low, high = _whole(first), _whole(last or first)
+    if low < 1:
+        raise RowNumbersError(f"sizes are from 1 on, not {low}")
+    if high < low:
+        raise RowNumbersError(f"{text.strip()!r} ends before it begins")
+    if high - low >= MOST_SIZES:
+        raise RowNumbersError(f"{text.strip()!r} are more than {MOST_SIZES} sizes")
+    return range(low, high + 1)
+
+
+def read_numbers(text: str) -> int | dict[int, int]:
+    """The number of rows of all sizes, or those of each size; raises `RowNumbersError`.
+
+    >>> read_numbers("1000"), read_numbers("2-4:1000,5:200")
+    (1000, {2: 1000, 3: 1000, 4: 1000, 5: 200})
+    """
+    try:
+        return _numbers(text)
+    except RowNumbersError as error:
+        raise RowNumbersError(f"--number: {error}; {_FORMS}") from None
+
+
+def _numbers(text: str) -> int | dict[int, int]:
+    if ":" not in text and "," not in text:
+        number = _whole(text)
+        if number < 1:
+            raise RowNumbersError(f"{number} is less than 1")
+        return number
+    found: dict[int, int] = {}
+    for part in text.split(","):
+        sizes, colon, number_text = part.partition(":")
+        if not colon:
+            raise RowNumbersError(f"{part.strip()!r} has no number after a colon")
+        number = _whole(number_text)
+        if number < 0:
+            raise RowNumbersError(f"{number} is less than 0")
+        for size in read_sizes(sizes):
+            if size in found:
+                raise RowNumbersError(f"size {size} has two numbers")
+            found[size] = number
+    return found
+
+
+def _whole(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise RowNumbersError(f"{text.strip()!r} is not a whole number") from None
+
+
+def written_sizes(sizes: Iterable[int]) -> str:
+    """Sizes as `--sizes` takes them, ranges put together.
+
+    >>> written_sizes([2, 3, 4, 8])
+    '2-4,8'
+    """
+    return ",".join(_range(first, last) for first, last, _ in _runs(dict.fromkeys(sizes, 0)))
+
+
+def written_numbers(numbers: int | Mapping[int, int]) -> str:
+    """Numbers as `--number` takes them.
+
+    >>> written_numbers(7), written_numbers({2: 1000, 3: 1000, 4: 1000, 5: 200})
+    ('7', '2-4:1000,5:200')
+    """
+    if isinstance(numbers, int):
+        return str(numbers)
+    return ",".join(f"{_range(first, last)}:{number}" for first, last, number in _runs(numbers))
+
+
+def _range(first: int, last: int) -> str:
+    return str(first) if first == last else f"{first}-{last}"
+
+
+def _runs(numbers: Mapping[int, int]) -> list[tuple[int, int, int]]:
+    """First and last of sizes that follow each other and have the same number, and this number."""
+    runs: list[tuple[int, int, int]] = []
+    for size, number in sorted(numbers.items()):
+        if runs and runs[-1][1:] == (size - 1, number):
+            runs[-1] = (runs[-1][0], size, number)
+        else:
+            runs.append((size, size, number))
+    return runs
