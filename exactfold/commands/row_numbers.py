@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from exactfold.errors import RowNumbersError
+from exactfold.errors import NotANumberError, RowNumbersError
+from exactfold.exact.numbers import parse_whole
 
 MOST_SIZES = 1000
 """That a command takes; a longer range is a slip."""
@@ -64,9 +65,9 @@ def _numbers(text: str) -> int | dict[int, int]:
 
 def _whole(text: str) -> int:
     try:
-        return int(text)
-    except ValueError:
-        raise RowNumbersError(f"{text.strip()!r} is not a whole number") from None
+        return parse_whole(text)
+    except NotANumberError as error:
+        raise RowNumbersError(str(error)) from None
 
 
 def written_sizes(sizes: Iterable[int]) -> str:
