@@ -227,7 +227,9 @@ class Wanted:
                 yield
         except KeyboardInterrupt:
             stopped(again)
-        except (WorkerDiedError, UnwritableFileError, RowFailedError) as error:
+        except RowFailedError as error:
+            raise RowFailedError(f"{error}; the same command tries them again") from None
+        except (WorkerDiedError, UnwritableFileError) as error:
             raise type(error)(f"{error}; {again}") from None
         except Exception as error:
             if not is_shortage(error):

@@ -13,6 +13,7 @@ from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.branches.letters import LETTERS
 from exactfold.branches.result import BranchCount
+from exactfold.count.by_theorem import IN_MEMORY, is_too_many
 from exactfold.count.collect import count_branches
 from exactfold.count.conveyor import LISTED_BITS, Conveyor
 from exactfold.errors import NotCountedError
@@ -61,7 +62,8 @@ class Lines:
     def of(cls, pattern: CreasePattern) -> Lines:
         """All branches, proved as by `count_branches`, and read from arrays where that is possible.
 
-        Raises as `count_branches` does.
+        UNDECIDED for more than 2^20 branches, which are not kept in memory. Raises as
+        `count_branches` does.
 
         >>> from exactfold.pattern.families import two_vertex
         >>> lines = Lines.of(two_vertex())
@@ -70,6 +72,8 @@ class Lines:
         >>> bool(lines.errors.max() < 1e-9)
         True
         """
+        if is_too_many(pattern, IN_MEMORY):
+            return _one_by_one(count_branches(pattern))
         try:
             conveyor = Conveyor.of(pattern, bits=LISTED_BITS)
         except NotCountedError:

@@ -240,3 +240,9 @@ def test_decay_is_fitted():
 def test_the_whole_table_agrees_with_the_paper():
     run = run_study("table1", workers=2)
     assert {line[-1] for line in run.tables[1].rows} == {"agree"}
+
+
+def test_squares_with_too_many_branches_for_the_memory_are_undecided():
+    (recipe,) = table1.STUDY.recipes(0, {21: 1})
+    row = table1.row(recipe)
+    assert (row["status"], row["distinct"]) == ("undecided", None)
