@@ -122,7 +122,9 @@ def _tails(script: Script) -> None:
         r"\text{``the tails of the distributions of angles between branches \dots\ appear to decay "
         r"exponentially, rather than as a Gaussian''}",
         note="data of the paper. On our samples the tails are much heavier than those of random "
-        "points, which is what can be said of them; the law of decay is not settled",
+        "points. Fitted to exp(-b x^p) (docs/studies.md, 1,000 squares of a size, 95 % intervals), "
+        "they are no Gaussians; p is 0.25 to 0.70 for Vi = 6, about 1 for 7 and 8, above 1 from 9 "
+        "on: exponential is a stage, not the law",
     )
 
 
