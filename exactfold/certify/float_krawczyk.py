@@ -30,6 +30,7 @@ import numpy as np
 import numpy.typing as npt
 
 from exactfold.arrays import BoolArray, FloatArray, IntArray
+from exactfold.certify.box import IsolatingBox
 from exactfold.problem.quadratic import QuadraticSystem
 
 UNPROVED = -1
@@ -71,6 +72,11 @@ class FloatBoxes:
     def radii(self) -> FloatArray:
         """The radii as doubles, exactly."""
         return np.asarray(np.ldexp(1.0, (self.exponents - self.bits).astype(np.intc)))
+
+    def box(self, row: int) -> IsolatingBox:
+        """The box of a row that is proved."""
+        radius = 1 << int(self.exponents[row])
+        return IsolatingBox(tuple(self.centers[row].tolist()), (), radius, self.bits)
 
 
 @dataclass(frozen=True)

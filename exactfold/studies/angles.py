@@ -330,7 +330,7 @@ STUDY: Final = Study(
     "Appendix D: angles between the branches of random squares",
     1,
     {size: number for size, (number, *_) in PAPER.items()},
-    {7: 1000, 8: 1000, 9: 300, 10: 300, 11: 100, 12: 100, 13: 30, 14: 30},
+    {7: 1000, 8: 1000, 9: 1000, 10: 1000, 11: 300, 12: 300, 13: 100, 14: 100},
     square_recipes,
     row,
     tables,

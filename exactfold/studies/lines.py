@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from itertools import islice
+from fractions import Fraction
 
 import numpy as np
 import numpy.typing as npt
 
 from exactfold.arrays import FloatArray
-from exactfold.branches.branch import Branch
+from exactfold.branches.angles import FoldAngles, fold_angles
 from exactfold.branches.letters import LETTERS
 from exactfold.branches.result import BranchCount
+from exactfold.branches.roots import BoxRoot
+from exactfold.certify.box import IsolatingBox
+from exactfold.certify.float_krawczyk import FloatBoxes
 from exactfold.count.by_theorem import IN_MEMORY, is_too_many
 from exactfold.count.collect import count_branches
 from exactfold.count.conveyor import LISTED_BITS, Conveyor
@@ -33,7 +36,7 @@ _U = 2.0**-53
 _UP = 1.0 + 2.0**-20
 _VALUES = {letter: UNKNOWN if sign is None else sign for sign, letter in LETTERS.items()}
 _BITS = 80
-"""Bits of the bounds that are asked for where branches come one by one."""
+"""Bits of the bounds that are asked for where branches come one by one, or are sharpened."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,8 @@ class Lines:
     within `errors` of the true ones in the Euclidean norm. Interior vertices and folds in the order
     of the pattern. If `status` is PROVED these are all branches, each once, and
     `with_multiplicity` is the number of solutions with multiplicity; otherwise there are no rows.
-    `branch(row)` is the branch of a row, where branches were not asked for one by one.
+    `angles(rows)` computes the fold angles of rows anew from sharp bounds, up to a common sign;
+    None where `directions` come from such bounds.
     """
 
     pattern: CreasePattern
@@ -56,7 +60,7 @@ class Lines:
     directions: FloatArray
     errors: FloatArray
     with_multiplicity: int | None
-    branch: Callable[[int], Branch] | None = field(compare=False)
+    angles: Callable[[Sequence[int]], list[FoldAngles]] | None = field(compare=False)
 
     @classmethod
     def of(cls, pattern: CreasePattern) -> Lines:
@@ -85,9 +89,9 @@ class Lines:
 
         Those of `directions` where there are none better.
         """
-        if self.branch is None:
+        if self.angles is None:
             return self.directions[rows], self.errors[rows]
-        return _measured(self.pattern, [self.branch(row) for row in rows])
+        return _measured(self.pattern, self.angles(rows))
 
     @property
     def distinct(self) -> int | None:
@@ -113,6 +117,8 @@ def _by_blocks(conveyor: Conveyor) -> Lines | None:
     points = np.empty((total, conveyor.size + 1))
     radii = np.empty(total)
     points[:, -1] = 1.0
+    boxes: list[FloatBoxes] = []
+    exact: dict[int, IsolatingBox] = {}
     vertices = [pattern.interior.index(v) for v in problem.foldable]
     places = {fold: k for k, fold in enumerate(pattern.folds)}
     labels = problem.labels
@@ -123,11 +129,12 @@ def _by_blocks(conveyor: Conveyor) -> Lines | None:
             return None
         rows = slice(index * count, (index + 1) * count)
         found = np.where(block.valleys, 1, -1).astype(np.int8)
+        boxes.append(block.boxes)
         points[rows, :-1] = block.boxes.points
         radii[rows] = block.boxes.radii
         for j, root in block.exact.items():
             found[j] = [_VALUES[letter] for letter in root.assignment]
-            box = root.box
+            exact[index * count + j] = box = root.box
             points[index * count + j, :-1] = [x / (1 << box.bits) for x in box.real]
             radii[index * count + j] = (box.radius / (1 << box.bits)) * _UP
             radii[index * count + j] += _U * float(np.abs(points[index * count + j]).max())
@@ -135,11 +142,33 @@ def _by_blocks(conveyor: Conveyor) -> Lines | None:
         signs[rows, vertices] = sign_vectors(index * count, count, conveyor.size)
     directions, errors = _directions(problem, points, radii)
 
-    def branch(row: int) -> Branch:
-        block = conveyor.prove(row // count)
-        return next(islice(conveyor.branches(block), row % count, None))
+    def angles(rows: Sequence[int]) -> list[FoldAngles]:
+        wide = [exact.get(row) or boxes[row // count].box(row % count) for row in rows]
+        return _sharp_angles(problem, wide, letters[rows])
 
-    return Lines(pattern, PROVED, signs, letters, directions, errors, 1 << pattern.Vi, branch)
+    return Lines(pattern, PROVED, signs, letters, directions, errors, 1 << pattern.Vi, angles)
+
+
+def _sharp_angles(
+    problem: Problem, boxes: Sequence[IsolatingBox], letters: SignArray
+) -> list[FoldAngles]:
+    """Fold angles of the zeros in boxes of the chart, from boxes within these of `_BITS` bits.
+
+    From the given box where no sharper one is proved within it.
+    """
+    from exactfold.certify.exact_krawczyk import krawczyk  # FLINT, for this alone
+
+    pattern, rows = problem.pattern, problem.height_rows(problem.chart)
+    centres = [[Fraction(x, 1 << box.bits) for x in box.real] for box in boxes]
+    system, found = problem.chart.system, []
+    results = krawczyk(system, centres, precisions=(_BITS,), reach=None)
+    for box, sharp, row in zip(boxes, results, letters, strict=True):
+        same = isinstance(sharp, IsolatingBox) and sharp.is_inside(box)
+        root = BoxRoot(sharp if same else box)
+        flat = {fold: "F" for fold, x in zip(pattern.folds, row.tolist(), strict=True) if not x}
+        heights = {v: root.enclose(height) for v, height in rows.items()}
+        found.append(fold_angles(pattern, heights, flat))
+    return found
 
 
 def _directions(
@@ -194,7 +223,8 @@ def _one_by_one(result: BranchCount) -> Lines:
     pattern = result.pattern
     proved = result.status is PROVED and bool(result.branches)
     branches = list(result.branches) if proved else []
-    directions, errors = _measured(pattern, branches)
+    angles = [branch.sharpened(_BITS).fold_angles for branch in branches]
+    directions, errors = _measured(pattern, angles)
     return Lines(
         pattern,
         result.status,
@@ -211,15 +241,16 @@ def _one_by_one(result: BranchCount) -> Lines:
     )
 
 
-def _measured(pattern: CreasePattern, branches: Sequence[Branch]) -> tuple[FloatArray, FloatArray]:
-    """Unit vectors of the fold angles of branches, from sharp bounds, and error bounds."""
-    bends = np.empty((len(branches), len(pattern.folds)))
-    errors = np.zeros(len(branches))
-    for k, branch in enumerate(branches):
-        angles = branch.sharpened(_BITS).fold_angles
-        bends[k] = [float(angles.bends[fold]) for fold in pattern.folds]
+def _measured(
+    pattern: CreasePattern, angles: Sequence[FoldAngles]
+) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors of fold angles with sharp bounds, and error bounds."""
+    bends = np.empty((len(angles), len(pattern.folds)))
+    errors = np.zeros(len(angles))
+    for k, found in enumerate(angles):
+        bends[k] = [float(found.bends[fold]) for fold in pattern.folds]
         for fold, bend in zip(pattern.folds, bends[k].tolist(), strict=True):
-            low, high = angles.densities[fold]
+            low, high = found.densities[fold]
             middle = (low + high) / 2
             if middle:
                 errors[k] += float((high - low) / 2) * abs(bend / float(middle)) * _UP

@@ -69,11 +69,11 @@ def test_angles_are_those_of_exact_numbers(size, seed):
     assert sum(bins) == found["lines"] * (found["lines"] - 1) // 2
 
 
-def lines_of(vectors, errors, branch=None):
+def lines_of(vectors, errors, angles=None):
     vectors = np.array(vectors, dtype=float)
     none = np.zeros((len(vectors), 0), dtype=np.int8)
     pattern = random_square(2, 0)
-    return Lines(pattern, PROVED, none, none, vectors, np.array(errors), None, branch)
+    return Lines(pattern, PROVED, none, none, vectors, np.array(errors), None, angles)
 
 
 def at(angle):
@@ -115,7 +115,7 @@ def test_doubtful_pairs_are_decided_by_sharper_roots():
     blurred = replace(lines, errors=np.full(len(lines.errors), 0.1))
     assert pair_angles(blurred).bins == pair_angles(lines).bins
     assert pair_angles(blurred).unclear == 0
-    assert pair_angles(replace(blurred, branch=None)).unclear > 0
+    assert pair_angles(replace(blurred, angles=None)).unclear > 0
 
 
 def test_a_single_line_has_no_angles():
