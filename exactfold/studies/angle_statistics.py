@@ -116,14 +116,28 @@ def distance(first: FloatArray, second: FloatArray) -> FloatArray:
     return np.asarray(np.abs(first - second).sum(axis=-1) / 2)
 
 
-def permuted(first: AnglesOfSize, second: AnglesOfSize) -> float:
-    """The p-value of the distance of two sizes, squares exchanged at random."""
-    both, number = np.vstack([first.shares, second.shares]), len(first.shares)
+def exchanged(
+    first: AnglesOfSize, second: AnglesOfSize, numbers: tuple[int, int] | None = None
+) -> FloatArray:
+    """Distances that chance makes: `numbers` of squares drawn at random from both sizes together.
+
+    By default as many as there are of each, so that squares are exchanged between the two.
+    """
+    number, other = numbers or (len(first.shares), len(second.shares))
+    both = np.vstack([first.shares, second.shares])
     source = np.random.default_rng([first.size, second.size])
-    seen = distance(first.mean, second.mean)
-    total, larger = both.sum(axis=0), 0
+    found = []
     for _ in range(RESAMPLED):
-        some = both[source.permutation(len(both))[:number]].sum(axis=0)
-        other = (total - some) / (len(both) - number)
-        larger += bool(distance(some / number, other) >= seen)
-    return (larger + 1) / (RESAMPLED + 1)
+        order = source.permutation(len(both))
+        some, others = both[order[:number]], both[order[number : number + other]]
+        found.append(distance(some.mean(axis=0), others.mean(axis=0)))
+    return np.array(found)
+
+
+def p_value(seen: float, by_chance: FloatArray) -> float:
+    """How often chance makes a distance at least as large, the one that is seen counted in.
+
+    >>> p_value(0.5, np.array([0.25, 0.5, 0.75]))
+    0.75
+    """
+    return (int((by_chance >= seen).sum()) + 1) / (len(by_chance) + 1)

@@ -19,7 +19,8 @@ from exactfold.studies.angle_statistics import (
     angles_by_size,
     distance,
     ends_of,
-    permuted,
+    exchanged,
+    p_value,
     tail_power,
     uniform,
 )
@@ -35,6 +36,8 @@ _CENTRE = BINS // 8
 """Bins next to a right angle that are called orthogonal here: up to pi / 16 from it."""
 _TAIL = BINS // 4
 """Bins next to 0 that are called a tail: up to pi / 8."""
+_LAST = max(PAPER)
+"""The last size in the paper's figure of all sizes; larger ones have a panel of their own."""
 
 
 def row(recipe: Recipe) -> dict[str, Any]:
@@ -73,6 +76,12 @@ def _between(values: FloatArray, digits: int = 3) -> str:
     return f"{low:.{digits}f} to {high:.{digits}f}"
 
 
+def _between_of(values: FloatArray) -> str:
+    """The same to four digits, for multiples of any size."""
+    low, high = ends_of(values)
+    return f"{low:#.4g} to {high:#.4g}"
+
+
 def _orthogonal(sizes: list[AnglesOfSize]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
     for s in sizes:
@@ -107,16 +116,17 @@ def _parts(sizes: list[AnglesOfSize]) -> StudyTable:
         flat, again = uniform(s.size), s.resampled(s.shares)
         cells: list[Cell] = [s.size]
         for part in (slice(BINS - _CENTRE, BINS), slice(0, _TAIL)):
-            expected = flat[part].sum()
+            here, expected = s.mean[part].sum(), flat[part].sum()
             cells += [
-                f"{s.mean[part].sum() / expected:.3f}",
-                _between(again[:, part].sum(axis=1) / expected),
+                f"{100 * here:.2f}",
+                f"{here / expected:#.4g}",
+                _between_of(again[:, part].sum(axis=1) / expected),
             ]
         lines.append(tuple(cells))
     return StudyTable(
         "parts",
         "Pairs near a right angle and in the tails, as multiples of the uniform prediction",
-        ("Vi", "orthogonal", "interval", "tail", "interval"),
+        ("Vi", "orthogonal, %", "multiple", "interval", "tail, %", "multiple", "interval"),
         tuple(lines),
         ("orthogonal: within pi / 16 of pi / 2; tail: below pi / 8.",),
     )
@@ -147,26 +157,29 @@ def _pairs(sizes: list[AnglesOfSize]) -> list[tuple[AnglesOfSize, AnglesOfSize]]
 def _neighbours(sizes: list[AnglesOfSize]) -> StudyTable:
     lines = []
     for a, b in _pairs(sizes):
+        seen, chance = float(distance(a.mean, b.mean)), exchanged(a, b)
         apart = distance(a.resampled(a.shares), b.resampled(b.shares))
         expected = distance(uniform(a.size), uniform(b.size))
         lines.append(
             (
                 f"{a.size} and {b.size}",
-                f"{distance(a.mean, b.mean):.4f}",
+                f"{seen:.4f}",
                 _between(apart, 4),
-                f"{permuted(a, b):.3f}",
+                f"{np.median(chance):.4f}",
+                f"{p_value(seen, chance):.3f}",
                 f"{expected:.4f}",
             )
         )
     return StudyTable(
         "neighbours",
         "How far the distributions of neighbouring sizes are apart (total variation)",
-        ("Vi", "distance", "interval", "p", "uniform"),
+        ("Vi", "distance", "interval", "chance", "p", "uniform"),
         tuple(lines),
         (
-            "p: permutation test; below 0.01 the sizes differ. uniform: the distance of the "
-            "uniform predictions. Where few squares are drawn the distance is large by chance "
-            "alone, and the interval is not around the true one.",
+            "chance: the median distance after squares are exchanged at random between the two "
+            "sizes; p: permutation test, where sizes differ if it is below 0.01. uniform: the "
+            "distance of the uniform predictions. Where few squares are drawn the distance is "
+            "large by chance alone, and the interval is not around the true one.",
         ),
     )
 
@@ -177,18 +190,11 @@ def _sentences(sizes: list[AnglesOfSize]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = [_less_orthogonal(sizes)]
     if 6 in by_size:
         lines += _six(by_size[6])
-    for first, second, differ in ((6, 7, False), (7, 8, True)):
+    for first, second, differ in ((6, 7, False), (6, 8, True), (7, 8, True)):
         if first in by_size and second in by_size:
-            p = permuted(by_size[first], by_size[second])
-            words = "differ significantly" if differ else "very nearly coincide"
-            apart = distance(by_size[first].mean, by_size[second].mean)
-            number = f"distance {apart:.3f}, p = {p:.3f}"
-            sentence = f"Vi = {first} and {second} {words}"
-            lines.append((sentence, number, verdict((p < 0.01) == differ)))
+            lines.append(_apart(by_size[first], by_size[second], differ))
     if 7 in by_size and 8 in by_size:
-        ratio = by_size[8].pairs / by_size[7].pairs
-        sentence = "Vi = 7 and 8 have comparable numbers of pairs"
-        lines.append((sentence, f"{ratio:.2f} as many", verdict(0.5 <= ratio <= 2)))
+        lines += _data(by_size[7], by_size[8])
     lines.append(_with_itself(sizes))
     return StudyTable(
         "sentences",
@@ -196,10 +202,40 @@ def _sentences(sizes: list[AnglesOfSize]) -> StudyTable:
         ("", "number", "verdict"),
         tuple(lines),
         (
-            "Numbers are those of the tables above. A verdict is not decided where the interval "
-            "does not tell; sizes differ where p is below 0.01.",
+            "Numbers are those of the tables above, for the squares of this run. A verdict is not "
+            "decided where the interval does not tell; sizes differ where p is below 0.01, as any "
+            "two do once there are squares enough.",
         ),
     )
+
+
+def _apart(first: AnglesOfSize, second: AnglesOfSize, differ: bool) -> tuple[Cell, ...]:
+    """That two sizes very nearly coincide, or differ significantly."""
+    words = "differ significantly" if differ else "very nearly coincide"
+    seen, chance = float(distance(first.mean, second.mean)), exchanged(first, second)
+    p = p_value(seen, chance)
+    number = f"distance {seen:.3f}, by chance {np.median(chance):.3f}, p = {p:.3f}"
+    return f"Vi = {first.size} and {second.size} {words}", number, verdict((p < 0.01) == differ)
+
+
+def _data(seven: AnglesOfSize, eight: AnglesOfSize) -> list[tuple[Cell, ...]]:
+    """That there are enough data for Vi = 8: the squares of the paper, whatever this run has."""
+    squares = PAPER[7][0], PAPER[8][0]
+    pairs = [s.pairs / len(s.shares) * n for s, n in zip((seven, eight), squares, strict=True)]
+    ratio = pairs[1] / pairs[0]
+    lines: list[tuple[Cell, ...]] = [
+        (
+            "Vi = 7 and 8 have comparable numbers of pairs",
+            f"{ratio:.2f} as many, with {squares[1]} squares and {squares[0]}",
+            verdict(0.5 <= ratio <= 2),
+        )
+    ]
+    if len(seven.shares) >= squares[0] and len(eight.shares) >= squares[1]:
+        seen = float(distance(seven.mean, eight.mean))
+        most = float(np.quantile(exchanged(seven, eight, squares), 0.99))
+        number = f"distance {seen:.3f}; {squares[1]} squares and {squares[0]}: chance to {most:.3f}"
+        lines.append(("Vi = 8 differs not for lack of data", number, verdict(seen > most)))
+    return lines
 
 
 def _less_orthogonal(sizes: list[AnglesOfSize]) -> tuple[Cell, ...]:
@@ -269,7 +305,15 @@ def _above(ends: tuple[float, float], value: float) -> bool | None:
 
 
 def _listed(sizes: list[int]) -> str:
-    return ", ".join(map(str, sizes)) or "none"
+    """Sizes as a text, three or more in a row by the first and the last."""
+    runs: list[list[int]] = []
+    for size in sizes:
+        if runs and size == runs[-1][-1] + 1:
+            runs[-1].append(size)
+        else:
+            runs.append([size])
+    texts = (f"{r[0]} to {r[-1]}" if len(r) > 2 else ", ".join(map(str, r)) for r in runs)
+    return ", ".join(texts) or "none"
 
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
@@ -284,12 +328,16 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         both = np.concatenate([shares, shares[::-1]]) / 2
         return np.where(both > 0, both / WIDTH, np.nan)
 
-    def everything(axes: Any) -> None:
-        for s in sizes:
-            style = of_size(s.size)
-            axes.plot(middles, density(s.mean), label=f"$V_i = {s.size}$", **style)
-        _angle_axis(axes)
-        axes.legend(ncols=2)
+    parts = [[s for s in sizes if s.size <= _LAST], [s for s in sizes if s.size >= _LAST]]
+    if sizes[-1].size <= _LAST or sizes[0].size >= _LAST:
+        parts = [sizes]
+
+    def everything(panels: Any) -> None:
+        for axes, some in zip(panels if len(parts) > 1 else [panels], parts, strict=True):
+            for s in some:
+                axes.plot(middles, density(s.mean), label=f"$V_i = {s.size}$", **of_size(s.size))
+            _angle_axis(axes)
+            axes.legend(ncols=2)
 
     one = next((s for s in sizes if s.size == 6), sizes[-1])
 
@@ -313,6 +361,8 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             "Angles between branches by the number of interior vertices",
             "Pairs of different branches, each line in both directions; every square counts alike.",
             everything,
+            width=5.0 * len(parts),
+            panels=(1, len(parts)),
         ),
     ]
 

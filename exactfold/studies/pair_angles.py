@@ -117,7 +117,7 @@ class _Tally:
         self.cells: IntArray = np.zeros(_CELLS + 1, dtype=np.int64)
         self.bins: IntArray = np.zeros(BINS, dtype=np.int64)
         self.unclear = 0
-        self._pending: list[tuple[IntArray, IntArray]] = []
+        self._pending: list[IntArray] = []
         self._places = np.empty(_ROWS * _COLUMNS, dtype=np.int64)
         self._unsure = _unsure(_reach(lines.directions, *[lines.errors.max(keepdims=True)] * 2))
 
@@ -132,9 +132,10 @@ class _Tally:
         reach = _reach(self.lines.directions, errors[rows], errors[columns])
         bins, clear = _bins(tile.scaled[near] / _CELLS, reach)
         self.bins += np.bincount(bins[clear], minlength=BINS)
-        self._pending.append((rows[~clear], columns[~clear]))
-        if sum(len(rows) for rows, _ in self._pending) > _PENDING:
-            self._settle()
+        if not clear.all():
+            self._pending.append(np.array([rows[~clear], columns[~clear]]))
+            if sum(pairs.shape[1] for pairs in self._pending) > _PENDING:
+                self._settle()
 
     def closed(self) -> tuple[IntArray, int]:
         """All pairs by bin, and how many of them are unclear."""
@@ -146,16 +147,17 @@ class _Tally:
 
     def _settle(self) -> None:
         """Decide what was put off, from sharper roots."""
-        rows, columns = (np.concatenate(part) for part in zip(*self._pending, strict=True))
+        if not self._pending:
+            return
+        pairs = np.concatenate(self._pending, axis=1)
         self._pending.clear()
-        if rows.size:
-            which, places = np.unique(np.concatenate([rows, columns]), return_inverse=True)
-            directions, errors = self.lines.sharper(which.tolist())
-            i, j = places[: len(rows)], places[len(rows) :]
-            cosines = np.abs((directions[i] * directions[j]).sum(axis=1))
-            bins, clear = _bins(cosines, _reach(directions, errors[i], errors[j]))
-            self.bins += np.bincount(bins, minlength=BINS)
-            self.unclear += int((~clear).sum())
+        which, places = np.unique(pairs, return_inverse=True)
+        directions, errors = self.lines.sharper(which.tolist())
+        i, j = places.reshape(pairs.shape)
+        cosines = np.abs((directions[i] * directions[j]).sum(axis=1))
+        bins, clear = _bins(cosines, _reach(directions, errors[i], errors[j]))
+        self.bins += np.bincount(bins, minlength=BINS)
+        self.unclear += int((~clear).sum())
 
 
 def _reach(directions: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from exactfold import PROVED, count_branches, random_square
-from exactfold.studies import angle_statistics, angles
+from exactfold.studies import angle_statistics, angles, pair_angles as counting
 from exactfold.studies.angle_statistics import distance, uniform
 from exactfold.studies.lines import Lines
 from exactfold.studies.pair_angles import BINS, pair_angles
@@ -69,6 +69,22 @@ def test_angles_are_those_of_exact_numbers(size, seed):
     assert sum(bins) == found["lines"] * (found["lines"] - 1) // 2
 
 
+def test_a_square_with_nine_vertices_is_counted_as_from_its_branches():
+    """Bends of listed branches, to nine digits; on this square no pair is so near an edge."""
+    pattern = random_square(9, 90000000)
+    bends = [list(branch.fold_angles.bends.values()) for branch in count_branches(pattern)]
+    vectors = np.array(bends, dtype=float)
+    vectors /= np.linalg.norm(vectors, axis=1)[:, None]
+    cosines = np.minimum(np.abs(vectors @ vectors.T), 1)[np.triu_indices(512, 1)]
+    places = np.arccos(cosines) / (pi / 2 / BINS)
+    inner = (places > 0.5) & (places < BINS - 0.5)
+    assert np.abs(places - np.rint(places))[inner].min() > 1e-6
+    found = row(9, 90000000)
+    assert found["angles"] == np.bincount(places.astype(int), minlength=BINS).tolist()
+    assert (found["lines"], found["unclear"]) == (512, 0)
+    assert found["mean_square"] == pytest.approx(float((cosines**2).mean()), rel=1e-5)
+
+
 def lines_of(vectors, errors, angles=None):
     vectors = np.array(vectors, dtype=float)
     none = np.zeros((len(vectors), 0), dtype=np.int8)
@@ -116,6 +132,33 @@ def test_doubtful_pairs_are_decided_by_sharper_roots():
     assert pair_angles(blurred).bins == pair_angles(lines).bins
     assert pair_angles(blurred).unclear == 0
     assert pair_angles(replace(blurred, angles=None)).unclear > 0
+
+
+@pytest.mark.parametrize("number", [2, 7, 8, 9, 40, 41, 100])
+def test_pairs_are_counted_once_however_they_are_tiled(monkeypatch, number):
+    """Small tiles, and pairs put off that are decided a few at a time."""
+    monkeypatch.setattr(counting, "_ROWS", 8)
+    monkeypatch.setattr(counting, "_COLUMNS", 32)
+    monkeypatch.setattr(counting, "_PENDING", 3)
+    vectors = np.random.default_rng(number).normal(size=(number, 5))
+    vectors /= np.linalg.norm(vectors, axis=1)[:, None]
+    cosines = np.abs(vectors @ vectors.T)[np.triu_indices(number, 1)]
+    places = (np.arccos(cosines) / (pi / 2 / BINS)).astype(int)
+    expected = tuple(np.bincount(places, minlength=BINS).tolist())
+    for error, unclear in ((1e-12, 0), (1e-3, None), (np.inf, len(places))):
+        found = pair_angles(lines_of(vectors, [error] * number))
+        assert found.bins == expected
+        assert unclear is None or found.unclear == unclear
+
+
+def test_errors_of_both_lines_tell_whether_a_pair_is_clear():
+    """One vague line makes its own pairs unclear, and no other ones."""
+    width = pi / 2 / BINS
+    vectors = [at(0), at(5 * width + 1e-7), at(7 * width + 2e-7)]
+    for errors, unclear in (([1e-9] * 3, 0), ([1e-6, 1e-9, 1e-9], 2), ([1e-9, 1e-9, 1e-6], 2)):
+        found = pair_angles(lines_of(vectors, errors))
+        assert (found.bins[5], found.bins[7], found.bins[2]) == (1, 1, 1)
+        assert found.unclear == unclear
 
 
 def test_a_single_line_has_no_angles():
@@ -169,7 +212,7 @@ def test_tails_are_told_apart(power, gaussian, exponential):
 def test_sizes_that_differ_are_told_from_those_that_do_not():
     rows = sample(6, 20, 1.0, 1) + sample(7, 20, 1.0, 2) + sample(8, 20, 2.0, 3)
     neighbours, sentences = angles.tables(rows)[3:]
-    assert [float(line[3]) < 0.01 for line in neighbours.rows] == [False, True]
+    assert [float(line[4]) < 0.01 for line in neighbours.rows] == [False, True]
     verdicts = {line[0]: line[-1] for line in sentences.rows}
     assert verdicts["Vi = 6 and 7 very nearly coincide"] == "agreed"
     assert verdicts["Vi = 7 and 8 differ significantly"] == "agreed"
@@ -209,3 +252,54 @@ def test_pairs_of_a_branch_with_itself_are_told():
     )
     near = [{**row, "angles": [6] + [0] * (BINS - 1)} for row in sample(2, 3, 1.0, 1)]
     assert angles.tables(near + rows[3:])[4].rows[-1][-1] == "not agreed"
+
+
+def verdicts_of(rows):
+    return {line[0]: line[1:] for line in angles.tables(rows)[4].rows}
+
+
+def test_sentences_are_judged_with_sizes_that_the_paper_does_not_have():
+    rows = sample(6, 12, 1.0, 1) + sample(7, 12, 1.0, 2) + sample(8, 12, 2.0, 3)
+    more = rows + sample(9, 12, 2.0, 4) + sample(11, 3, 2.0, 5)
+    before, after = verdicts_of(rows), verdicts_of(more)
+    assert before.keys() == after.keys()
+    changed = {name for name in before if before[name] != after[name]}
+    assert changed == {
+        "branches are less orthogonal than uniform ones",
+        "small Vi: angles near 0 and pi, of each branch with itself",
+    }
+    number, _ = after["branches are less orthogonal than uniform ones"]
+    assert number == "less for Vi = 9, 11; more for 6 to 8"
+    assert after["Vi = 6 and 8 differ significantly"][1] == "agreed"
+    pairs = [line[0] for line in angles.tables(more)[3].rows]
+    assert pairs == ["6 and 7", "7 and 8", "8 and 9"]
+
+
+def test_data_are_judged_by_the_numbers_of_squares_in_the_paper():
+    """300 squares and 50; with four times as many pairs in a square, as two sizes have."""
+
+    def sized(number, power, seed):
+        rows = sample(8, number, power, seed)
+        return [{**row, "angles": [4 * x for x in row["angles"]]} for row in rows]
+
+    lack = "Vi = 8 differs not for lack of data"
+    enough = "Vi = 7 and 8 have comparable numbers of pairs"
+    seven = sample(7, 300, 1.0, 1)
+    assert verdicts_of(seven + sized(60, 2.0, 2))[lack][1] == "agreed"
+    same = verdicts_of(seven + sized(60, 1.0, 2))
+    assert same[lack][1] == "not agreed"
+    assert same[enough] == ("0.67 as many, with 50 squares and 300", "agreed")
+    assert verdicts_of(seven + sample(8, 60, 1.0, 2))[enough][1] == "not agreed"
+    assert lack not in verdicts_of(seven + sized(49, 2.0, 2))
+
+
+def test_sizes_beyond_the_paper_have_a_panel_of_their_own():
+    rows = [line for n in (6, 8) for line in sample(n, 2, 1.0, n)]
+    assert [figure.panels for figure in angles.figures(rows)] == [(1, 1), (1, 1)]
+    wide = angles.figures(rows + sample(9, 2, 1.0, 9))[1]
+    assert (wide.panels, wide.width) == ((1, 2), 10.0)
+
+
+def test_an_extended_run_goes_on_to_fourteen_vertices():
+    assert set(angles.STUDY.chosen(extend=True)) == set(range(2, 15))
+    assert set(angles.STUDY.chosen()) == set(range(2, 9))
