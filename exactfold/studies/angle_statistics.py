@@ -24,6 +24,15 @@ RESAMPLED: Final = 400
 WIDTH: Final = np.pi / 2 / BINS
 """Of a bin."""
 
+TAIL: Final = BINS // 4
+"""Bins next to 0 that are called a tail: up to pi / 8."""
+
+CENTRE: Final = BINS // 8
+"""Bins next to a right angle that are called orthogonal: up to pi / 16 from it."""
+
+LEVEL: Final = 0.01
+"""Sizes differ where a p-value is below this."""
+
 _FIT = 3 * BINS // 4
 """Bins whose shape is fitted: from 0 to 3 pi / 8."""
 _POWERS = np.arange(0.05, 4.0001, 0.05)
@@ -91,6 +100,12 @@ def ends_of(values: FloatArray) -> tuple[float, float]:
     return float(low), float(high)
 
 
+def between(values: FloatArray, digits: int = 3) -> str:
+    """These ends as a text."""
+    low, high = ends_of(values)
+    return f"{low:.{digits}f} to {high:.{digits}f}"
+
+
 def tail_power(means: FloatArray) -> FloatArray:
     """For each distribution the p for which log share = a - b x^p fits best, x from pi / 2.
 
@@ -116,10 +131,20 @@ def distance(first: FloatArray, second: FloatArray) -> FloatArray:
     return np.asarray(np.abs(first - second).sum(axis=-1) / 2)
 
 
+def apart(first: FloatArray, second: FloatArray) -> FloatArray:
+    """How far distributions are apart: total variation, and the difference of their tails.
+
+    >>> apart(np.eye(BINS)[0], np.eye(BINS)[-1])
+    array([1., 1.])
+    """
+    tails = np.abs((first - second)[..., :TAIL].sum(axis=-1))
+    return np.stack([distance(first, second), tails], axis=-1)
+
+
 def exchanged(
     first: AnglesOfSize, second: AnglesOfSize, numbers: tuple[int, int] | None = None
 ) -> FloatArray:
-    """Distances that chance makes: `numbers` of squares drawn at random from both sizes together.
+    """How far chance sets `numbers` of squares `apart`, drawn from both sizes together.
 
     By default as many as there are of each, so that squares are exchanged between the two.
     """
@@ -130,14 +155,14 @@ def exchanged(
     for _ in range(RESAMPLED):
         order = source.permutation(len(both))
         some, others = both[order[:number]], both[order[number : number + other]]
-        found.append(distance(some.mean(axis=0), others.mean(axis=0)))
+        found.append(apart(some.mean(axis=0), others.mean(axis=0)))
     return np.array(found)
 
 
-def p_value(seen: float, by_chance: FloatArray) -> float:
-    """How often chance makes a distance at least as large, the one that is seen counted in.
+def p_values(seen: FloatArray, by_chance: FloatArray) -> FloatArray:
+    """How often chance is at least as far in each column, what is seen counted in.
 
-    >>> p_value(0.5, np.array([0.25, 0.5, 0.75]))
-    0.75
+    >>> p_values(np.array([0.5, 1.0]), np.array([[0.25, 0.5], [0.5, 0.5], [0.75, 0.5]]))
+    array([0.75, 0.25])
     """
-    return (int((by_chance >= seen).sum()) + 1) / (len(by_chance) + 1)
+    return np.asarray(((by_chance >= seen).sum(axis=0) + 1) / (len(by_chance) + 1))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -97,7 +98,7 @@ def _tiles(directions: FloatArray) -> Iterator[_Tile]:
         rows = larger[top : top + _ROWS]
         bottom = top + len(rows)
         edges = [top, *range(bottom, count, _COLUMNS), count]
-        for left, right in zip(edges[:-1], edges[1:], strict=True):
+        for left, right in pairwise(edges):
             width = right - left
             products = space[: len(rows) * width].reshape(len(rows), width)
             np.matmul(rows, directions[left:right].T, out=products)

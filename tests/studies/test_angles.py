@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import acos, pi
 
 import mpmath
@@ -9,7 +10,8 @@ import numpy as np
 import pytest
 
 from exactfold import PROVED, count_branches, random_square
-from exactfold.studies import angle_statistics, angles, pair_angles as counting
+from exactfold.studies import angle_statistics, angles
+from exactfold.studies import pair_angles as counting
 from exactfold.studies.angle_statistics import distance, uniform
 from exactfold.studies.lines import Lines
 from exactfold.studies.pair_angles import BINS, pair_angles
@@ -122,16 +124,31 @@ def test_equal_and_orthogonal_lines_are_never_unclear():
     assert (found.bins[0], found.bins[-1], found.unclear) == (1, 2, 0)
 
 
-@pytest.mark.slow
-def test_doubtful_pairs_are_decided_by_sharper_roots():
+@pytest.mark.parametrize(
+    ("size", "seed"),
+    [
+        (3, 0),
+        (4, 1312),  # with a triangle that stays flat
+        pytest.param(5, 80, marks=pytest.mark.slow),
+    ],
+)
+def test_doubtful_pairs_are_decided_by_sharper_roots(size, seed):
     """With bounds that are useless every pair is computed anew, and the result is the same."""
-    from dataclasses import replace
-
-    lines = Lines.of(random_square(3, 0))
+    lines = Lines.of(random_square(size, seed))
     blurred = replace(lines, errors=np.full(len(lines.errors), 0.1))
     assert pair_angles(blurred).bins == pair_angles(lines).bins
     assert pair_angles(blurred).unclear == 0
     assert pair_angles(replace(blurred, angles=None)).unclear > 0
+
+
+def test_sharper_directions_are_within_the_bounds_of_the_first():
+    lines = Lines.of(random_square(4, 7))
+    rows = [0, 5, 11, 15]
+    sharp, errors = lines.sharper(rows)
+    first = lines.directions[rows]
+    first = first * np.sign((first * sharp).sum(axis=1))[:, None]
+    assert (np.linalg.norm(first - sharp, axis=1) <= lines.errors[rows] + errors).all()
+    assert errors.max() < 1e-13
 
 
 @pytest.mark.parametrize("number", [2, 7, 8, 9, 40, 41, 100])
@@ -271,8 +288,33 @@ def test_sentences_are_judged_with_sizes_that_the_paper_does_not_have():
     number, _ = after["branches are less orthogonal than uniform ones"]
     assert number == "less for Vi = 9, 11; more for 6 to 8"
     assert after["Vi = 6 and 8 differ significantly"][1] == "agreed"
+    assert after["Vi = 8 stands out, not 7"][1] == "agreed"
     pairs = [line[0] for line in angles.tables(more)[3].rows]
     assert pairs == ["6 and 7", "7 and 8", "8 and 9"]
+
+
+def test_seven_stands_out_where_its_tails_fall_most():
+    rows = sample(6, 12, 1.0, 1) + sample(7, 12, 2.0, 2) + sample(8, 12, 2.0, 3)
+    assert verdicts_of(rows)["Vi = 8 stands out, not 7"][1] == "not agreed"
+    rows = sample(6, 12, 1.0, 1) + sample(7, 12, 1.0, 2) + sample(8, 12, 1.0, 3)
+    assert verdicts_of(rows)["Vi = 8 stands out, not 7"][1] == "not decided"
+
+
+def test_sizes_differ_whose_tails_do():
+    """Squares that are alike in the bulk differ at random; tails that are twice as high tell."""
+    source = np.random.default_rng(0)
+
+    def rows(size, tail):
+        bins = source.integers(50, 2000, size=(12, BINS))
+        bins[:, : BINS // 4] = tail
+        lines = sample(size, 12, 1.0, 1)
+        return [{**line, "angles": b.tolist()} for line, b in zip(lines, bins, strict=True)]
+
+    made = rows(7, 10) + rows(8, 20)
+    number, found = verdicts_of(made)["Vi = 7 and 8 differ significantly"]
+    line = angles.tables(made)[3].rows[0]
+    assert float(line[4]) > 0.01 > float(line[7])
+    assert (found, f"p = {line[4]};" in number) == ("agreed", True)
 
 
 def test_data_are_judged_by_the_numbers_of_squares_in_the_paper():
