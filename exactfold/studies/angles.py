@@ -115,7 +115,7 @@ def _parts(sizes: list[AnglesOfSize]) -> StudyTable:
         for part in (slice(BINS - CENTRE, BINS), slice(0, TAIL)):
             here, expected = s.mean[part].sum(), flat[part].sum()
             cells += [
-                f"{100 * here:.2f}",
+                f"{100 * here:.2f} %",
                 f"{here / expected:#.4g}",
                 _multiples(again[:, part].sum(axis=1) / expected),
             ]
@@ -123,7 +123,7 @@ def _parts(sizes: list[AnglesOfSize]) -> StudyTable:
     return StudyTable(
         "parts",
         "Pairs near a right angle and in the tails, as multiples of the uniform prediction",
-        ("Vi", "orthogonal, %", "multiple", "interval", "tail, %", "multiple", "interval"),
+        ("Vi", "orthogonal", "multiple", "interval", "tail", "multiple", "interval"),
         tuple(lines),
         ("orthogonal: within pi / 16 of pi / 2; tail: below pi / 8.",),
     )
@@ -200,13 +200,19 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     if sizes[-1].size <= _LAST or sizes[0].size >= _LAST:
         parts = [sizes]
 
+    shown = np.array(
+        [density(s.mean) for s in sizes if s.pairs > _MANY] or [density(sizes[0].mean)]
+    )
+    limits = max(float(np.nanmin(shown)) / 1.5, 1e-4), 3.0
+
     def everything(panels: Any) -> None:
         for axes, some in zip(panels if len(parts) > 1 else [panels], parts, strict=True):
             for s in some:
                 style = {**of_size(s.size), "linewidth": 1.2 if s.pairs > _MANY else 0.5}
                 axes.plot(middles, density(s.mean), label=f"$V_i = {s.size}$", **style)
             _angle_axis(axes)
-            axes.legend(ncols=2)
+            axes.set_ylim(*limits)
+            axes.legend(ncols=2, loc="lower center")
 
     one = next((s for s in sizes if s.size == 6), sizes[-1])
 

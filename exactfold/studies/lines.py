@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from operator import mul
 
 import numpy as np
 import numpy.typing as npt
 
 from exactfold.arrays import FloatArray
-from exactfold.branches.angles import FoldAngles, fold_angles
+from exactfold.branches.branch import Branch
 from exactfold.branches.letters import LETTERS
 from exactfold.branches.result import BranchCount
-from exactfold.branches.roots import BoxRoot
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.float_krawczyk import FloatBoxes
 from exactfold.count.by_theorem import IN_MEMORY, is_too_many
@@ -49,8 +49,8 @@ class Lines:
     within `errors` of the true ones in the Euclidean norm. Interior vertices and folds in the order
     of the pattern. If `status` is PROVED these are all branches, each once, and
     `with_multiplicity` is the number of solutions with multiplicity; otherwise there are no rows.
-    `angles(rows)` computes the fold angles of rows anew from sharp bounds, up to a common sign;
-    None where `directions` come from such bounds.
+    `sharp(rows)` are directions and errors of rows, computed anew from boxes of `_BITS` bits; None
+    where `directions` come from such boxes.
     """
 
     pattern: CreasePattern
@@ -60,7 +60,7 @@ class Lines:
     directions: FloatArray
     errors: FloatArray
     with_multiplicity: int | None
-    angles: Callable[[Sequence[int]], list[FoldAngles]] | None = field(compare=False)
+    sharp: Callable[[Sequence[int]], tuple[FloatArray, FloatArray]] | None = field(compare=False)
 
     @classmethod
     def of(cls, pattern: CreasePattern) -> Lines:
@@ -89,9 +89,9 @@ class Lines:
 
         Those of `directions` where there are none better.
         """
-        if self.angles is None:
+        if self.sharp is None:
             return self.directions[rows], self.errors[rows]
-        return _measured(self.pattern, self.angles(rows))
+        return self.sharp(rows)
 
     @property
     def distinct(self) -> int | None:
@@ -142,33 +142,70 @@ def _by_blocks(conveyor: Conveyor) -> Lines | None:
         signs[rows, vertices] = sign_vectors(index * count, count, conveyor.size)
     directions, errors = _directions(problem, points, radii)
 
-    def angles(rows: Sequence[int]) -> list[FoldAngles]:
+    def sharp(rows: Sequence[int]) -> tuple[FloatArray, FloatArray]:
         wide = [exact.get(row) or boxes[row // count].box(row % count) for row in rows]
-        return _sharp_angles(problem, wide, letters[rows])
+        return _sharp_directions(problem, _sharpened(problem, wide), letters[rows])
 
-    return Lines(pattern, PROVED, signs, letters, directions, errors, 1 << pattern.Vi, angles)
+    return Lines(pattern, PROVED, signs, letters, directions, errors, 1 << pattern.Vi, sharp)
 
 
-def _sharp_angles(
-    problem: Problem, boxes: Sequence[IsolatingBox], letters: SignArray
-) -> list[FoldAngles]:
-    """Fold angles of the zeros in boxes of the chart, from boxes within these of `_BITS` bits.
-
-    From the given box where no sharper one is proved within it.
-    """
+def _sharpened(problem: Problem, boxes: Sequence[IsolatingBox]) -> list[IsolatingBox]:
+    """Boxes of `_BITS` bits in the given ones, of the same zeros; these if none is proved."""
     from exactfold.certify.exact_krawczyk import krawczyk  # FLINT, for this alone
 
-    pattern, rows = problem.pattern, problem.height_rows(problem.chart)
     centres = [[Fraction(x, 1 << box.bits) for x in box.real] for box in boxes]
-    system, found = problem.chart.system, []
-    results = krawczyk(system, centres, precisions=(_BITS,), reach=None)
-    for box, sharp, row in zip(boxes, results, letters, strict=True):
-        same = isinstance(sharp, IsolatingBox) and sharp.is_inside(box)
-        root = BoxRoot(sharp if same else box)
-        flat = {fold: "F" for fold, x in zip(pattern.folds, row.tolist(), strict=True) if not x}
-        heights = {v: root.enclose(height) for v, height in rows.items()}
-        found.append(fold_angles(pattern, heights, flat))
+    found = krawczyk(problem.chart.system, centres, precisions=(_BITS,), reach=None)
+    return [
+        sharp if isinstance(sharp, IsolatingBox) and sharp.is_inside(box) else box
+        for sharp, box in zip(found, boxes, strict=True)
+    ]
+
+
+@dataclass(frozen=True)
+class _Bend:
+    """The bend of a fold at (x, 1): the row of integers times (x, 1), times `length` / `below`."""
+
+    row: tuple[int, ...]
+    below: int
+    length: float
+
+
+def _bends(problem: Problem) -> list[_Bend]:
+    """The bends of all folds of the pattern at points of the chart."""
+    pattern, rows = problem.pattern, problem.height_rows(problem.chart)
+    flat, unit = over_common_denominator(x for row in rows.values() for x in row)
+    size = len(flat) // len(rows)
+    heights = {v: flat[k * size : (k + 1) * size] for k, v in enumerate(rows)}
+    found = []
+    for fold in pattern.folds:
+        weights = fold_functional(pattern, fold)
+        left, right = pattern.opposite(fold)
+        row = (sum(w * heights[v][k] for v, w in weights.items()) for k in range(size))
+        below = weights[left] * weights[right] * unit
+        found.append(_Bend(tuple(row), below, _length(pattern, fold)))
     return found
+
+
+def _sharp_directions(
+    problem: Problem, boxes: Sequence[IsolatingBox], letters: SignArray
+) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors of fold angles in boxes, and error bounds.
+
+    Values at centres are integers, rounded once; a proved flat fold is 0. With the length, off by
+    2 u, and its product a bend is off by at most 4 u of its size and what the box adds.
+    """
+    folds = _bends(problem)
+    slopes = [sum(map(abs, fold.row[:-1])) for fold in folds]
+    bends, errors = np.zeros(letters.shape), np.zeros(len(boxes))
+    for j, (box, row) in enumerate(zip(boxes, letters.tolist(), strict=True)):
+        point = (*box.real, 1 << box.bits)
+        for k, (fold, slope, letter) in enumerate(zip(folds, slopes, row, strict=True)):
+            if letter:
+                below = fold.below << box.bits
+                bends[j, k] = sum(map(mul, fold.row, point)) / below * fold.length
+                errors[j] += abs(box.radius * slope / below) * fold.length * _UP
+                errors[j] += 4 * _U * abs(bends[j, k])
+    return _units(bends, errors * _UP)
 
 
 def _directions(
@@ -181,19 +218,8 @@ def _directions(
     is at most r sum_k |B_k| + c |B| |z| for c = 3 (n + 5) u; and a vector within e of one of length
     l has a direction within 2 e / (l - e) of it, to which rounding adds less than (F + 4) u.
     """
-    pattern, rows = problem.pattern, problem.height_rows(problem.chart)
-    size = points.shape[1]
-    flat, unit = over_common_denominator(x for row in rows.values() for x in row)
-    heights = {v: flat[k * size : (k + 1) * size] for k, v in enumerate(rows)}
-    matrix = np.empty((len(pattern.folds), size))
-    for k, fold in enumerate(pattern.folds):
-        weights = fold_functional(pattern, fold)
-        left, right = pattern.opposite(fold)
-        below = weights[left] * weights[right] * unit
-        length = _length(pattern, fold)
-        for column in range(size):
-            value = sum(w * heights[v][column] for v, w in weights.items())
-            matrix[k, column] = value / below * length
+    rows = [[x / fold.below * fold.length for x in fold.row] for fold in _bends(problem)]
+    matrix, size = np.array(rows), points.shape[1]
     absolute = np.abs(matrix)
     bends = points @ matrix.T
     off = radii[:, None] * absolute[:, :-1].sum(axis=1)
@@ -223,8 +249,7 @@ def _one_by_one(result: BranchCount) -> Lines:
     pattern = result.pattern
     proved = result.status is PROVED and bool(result.branches)
     branches = list(result.branches) if proved else []
-    angles = [branch.sharpened(_BITS).fold_angles for branch in branches]
-    directions, errors = _measured(pattern, angles)
+    directions, errors = _measured(pattern, branches)
     return Lines(
         pattern,
         result.status,
@@ -241,16 +266,15 @@ def _one_by_one(result: BranchCount) -> Lines:
     )
 
 
-def _measured(
-    pattern: CreasePattern, angles: Sequence[FoldAngles]
-) -> tuple[FloatArray, FloatArray]:
-    """Unit vectors of fold angles with sharp bounds, and error bounds."""
-    bends = np.empty((len(angles), len(pattern.folds)))
-    errors = np.zeros(len(angles))
-    for k, found in enumerate(angles):
-        bends[k] = [float(found.bends[fold]) for fold in pattern.folds]
+def _measured(pattern: CreasePattern, branches: Sequence[Branch]) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors of the fold angles of branches, from sharp bounds, and error bounds."""
+    bends = np.empty((len(branches), len(pattern.folds)))
+    errors = np.zeros(len(branches))
+    for k, branch in enumerate(branches):
+        angles = branch.sharpened(_BITS).fold_angles
+        bends[k] = [float(angles.bends[fold]) for fold in pattern.folds]
         for fold, bend in zip(pattern.folds, bends[k].tolist(), strict=True):
-            low, high = found.densities[fold]
+            low, high = angles.densities[fold]
             middle = (low + high) / 2
             if middle:
                 errors[k] += float((high - low) / 2) * abs(bend / float(middle)) * _UP

@@ -87,11 +87,11 @@ def test_a_square_with_nine_vertices_is_counted_as_from_its_branches():
     assert found["mean_square"] == pytest.approx(float((cosines**2).mean()), rel=1e-5)
 
 
-def lines_of(vectors, errors, angles=None):
+def lines_of(vectors, errors, sharp=None):
     vectors = np.array(vectors, dtype=float)
     none = np.zeros((len(vectors), 0), dtype=np.int8)
     pattern = random_square(2, 0)
-    return Lines(pattern, PROVED, none, none, vectors, np.array(errors), None, angles)
+    return Lines(pattern, PROVED, none, none, vectors, np.array(errors), None, sharp)
 
 
 def at(angle):
@@ -138,7 +138,7 @@ def test_doubtful_pairs_are_decided_by_sharper_roots(size, seed):
     blurred = replace(lines, errors=np.full(len(lines.errors), 0.1))
     assert pair_angles(blurred).bins == pair_angles(lines).bins
     assert pair_angles(blurred).unclear == 0
-    assert pair_angles(replace(blurred, angles=None)).unclear > 0
+    assert pair_angles(replace(blurred, sharp=None)).unclear > 0
 
 
 def test_sharper_directions_are_within_the_bounds_of_the_first():
