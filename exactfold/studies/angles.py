@@ -73,10 +73,14 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
     return [make(sizes) for make in made]
 
 
+def _multiple(value: float) -> str:
+    """Four digits, or all before the point."""
+    return f"{value:#.4g}" if value < 1000 else f"{value:.0f}"
+
+
 def _multiples(values: FloatArray) -> str:
-    """The ends of an interval to four digits, whatever their size."""
-    low, high = ends_of(values)
-    return f"{low:#.4g} to {high:#.4g}"
+    """The same for both ends of an interval."""
+    return " to ".join(map(_multiple, ends_of(values)))
 
 
 def _orthogonal(sizes: list[AnglesOfSize]) -> StudyTable:
@@ -116,7 +120,7 @@ def _parts(sizes: list[AnglesOfSize]) -> StudyTable:
             here, expected = s.mean[part].sum(), flat[part].sum()
             cells += [
                 f"{100 * here:.2f} %",
-                f"{here / expected:#.4g}",
+                _multiple(here / expected),
                 _multiples(again[:, part].sum(axis=1) / expected),
             ]
         lines.append(tuple(cells))

@@ -163,7 +163,7 @@ class _Tally:
 
 def _reach(directions: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:
     """t of `pair_angles` for directions with these errors."""
-    return (first + second) * _UP + (directions.shape[1] + 16) * _U
+    return np.asarray((first + second) * _UP + (directions.shape[1] + 16) * _U)
 
 
 def _unsure(reach: FloatArray) -> BoolArray:
