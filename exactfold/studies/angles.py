@@ -216,7 +216,6 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
                 axes.plot(middles, density(s.mean), label=f"$V_i = {s.size}$", **style)
             _angle_axis(axes)
             axes.set_ylim(*limits)
-            axes.legend(ncols=2, loc="lower center")
 
     one = next((s for s in sizes if s.size == 6), sizes[-1])
 
@@ -225,7 +224,6 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         axes.plot(middles, density(uniform(one.size)), color="0.6", label="uniform")
         _angle_axis(axes)
         axes.set_ylim(bottom=1e-3)
-        axes.legend()
 
     return [
         StudyFigure(
