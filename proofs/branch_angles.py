@@ -123,8 +123,8 @@ def _tails(script: Script) -> None:
         r"exponentially, rather than as a Gaussian''}",
         note="data of the paper. On our samples the tails are much heavier than those of random "
         "points. Fitted to exp(-b x^p) (docs/studies.md, 1,000 squares of a size, 95 % intervals), "
-        "p is 0.25 to 0.70 for Vi = 6, about 1 for 7 and 8, above 1 for 9 and 10, and below 2, that "
-        "of a Gaussian, for all of these: exponential is a stage, not the law",
+        "p is 0.25 to 0.70 for Vi = 6, about 1 for 7 and 8, above 1 for 9 and 10, and below 2, "
+        "that of a Gaussian, for all of these: exponential is a stage, not the law",
     )
 
 
