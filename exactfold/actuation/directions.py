@@ -10,7 +10,7 @@ from math import isqrt, lcm
 
 import numpy as np
 
-from exactfold.arrays import BigArray, FloatArray
+from exactfold.arrays import BigArray, BoolArray, FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.branches.roots import BoxRoot
 from exactfold.exact.numbers import over_common_denominator
@@ -81,6 +81,12 @@ class Directions:
         """The middles of the bounds as floats, which prove nothing."""
         middles: FloatArray = ((self.lows + self.highs) / (2 << BITS)).astype(float)
         return middles
+
+    @cached_property
+    def moving(self) -> BoolArray:
+        """The folds that bend on some branch: torques on others do no work."""
+        moving: BoolArray = ((self.lows != 0) | (self.highs != 0)).any(axis=0)
+        return moving
 
     def with_row(self, place: int, other: Directions) -> Directions:
         """The same with row `place` replaced by the only row of another."""

@@ -11,11 +11,11 @@ import numpy as np
 
 from exactfold.actuation.choices import CreaseChoice
 from exactfold.actuation.directions import Directions
-from exactfold.actuation.orthogonal import dimension_bounds, independent_rows, orthogonal_torques
+from exactfold.actuation.orthogonal import alone
 from exactfold.actuation.powers import Powers, exact_weights, margin_bound, rivals
 from exactfold.actuation.programs import largest_margin
 from exactfold.actuation.result import Actuation, Bounds, checked_torques, outward
-from exactfold.arrays import BoolArray, FloatArray
+from exactfold.arrays import FloatArray
 from exactfold.branches.branch import Branch
 from exactfold.count.collect import count_branches
 from exactfold.count.find import BranchFinder, Signs
@@ -82,20 +82,31 @@ def actuate(
     size = finder.problem.size
     wanted = finder.signs(signs, up)
     _check(pattern, creases, torques, nodes)
+    require_few(size)
+    named = finder.find(wanted, progress=progress)
+    if named.root is None:
+        raise UnprovedRivalsError(f"the branch is not proved: {named.reason}")
+    branches = proved_branches(pattern, progress)
+    return Search(pattern, named, branches, size + 1, creases, torques, nodes, progress).found(
+        start
+    )
+
+
+def require_few(size: int) -> None:
+    """Raise `TooManyRivalsError` if too many vertices can pop."""
     if size > MOST_FOLDABLE:
         raise TooManyRivalsError(
             f"{size} vertices can pop: exactfold compares a branch with its rivals where at most "
             f"{MOST_FOLDABLE} can, as every branch is a rival and there are 2^{size}"
         )
-    named = finder.find(wanted, progress=progress)
-    if named.root is None:
-        raise UnprovedRivalsError(f"the branch is not proved: {named.reason}")
+
+
+def proved_branches(pattern: CreasePattern, progress: Progress | None) -> list[Branch]:
+    """All branches; raises `UnprovedRivalsError` if they are not proved."""
     count = count_branches(pattern, progress=progress)
     if count.status is not PROVED:
         raise UnprovedRivalsError(f"not all branches are proved: {count.reason}")
-    return _Search(
-        pattern, named, list(count.branches), size + 1, creases, torques, nodes, progress
-    ).found(start)
+    return list(count.branches)
 
 
 def _check(
@@ -116,7 +127,7 @@ def _check(
         raise UsageError("all torques are 0")
 
 
-class _Search:
+class Search:
     """The work of one call; `branches` are sharpened where that is needed."""
 
     def __init__(
@@ -133,13 +144,13 @@ class _Search:
         self.pattern, self.named, self.branches, self.size = pattern, named, branches, size
         self.creases, self.nodes, self.progress = creases, nodes, progress
         self.given = None if torques is None else checked_torques(pattern, torques)
-        self.say("fold angles")
+        self._say("fold angles")
         self.own = Directions.of([named])
         self.directions = Directions.of(branches)
         self.place = self._matched()
         self.deciding: set[int] = set()
 
-    def say(self, stage: str) -> None:
+    def _say(self, stage: str) -> None:
         if self.progress is not None:
             self.progress(stage, 0, 0)
 
@@ -166,7 +177,7 @@ class _Search:
 
     def found(self, start: float) -> Actuation:
         """The answer."""
-        self.say("torques")
+        self._say("torques")
         torques, best = self._torques()
         margin = self._margin(torques)
         for bits in _SHARPER:
@@ -175,17 +186,12 @@ class _Search:
             self._sharpen({*self.deciding, *self._close(torques)} - {self.place}, bits)
             torques, best = self._torques()
             margin = self._margin(torques)
-        self.say("orthogonal torques")
-        others = [b for b in range(len(self.branches)) if b != self.place]
-        independent, _ = independent_rows(self.directions, others) or ([], [])
-        dimension = dimension_bounds(self.branches, others, len(independent), self.size)
-        orthogonal = None
-        if dimension[0] > 0:
-            orthogonal = orthogonal_torques(self.directions, self.place, independent, self._moving)
+        self._say("orthogonal torques")
+        found = alone(self.directions, self.branches, self.place, self.size)
         margin, (_, best) = outward(margin), outward((best, best))
-        status, reason = _judged(margin, torques)
+        status, reason = judged(margin, torques)
         signs = [branch.sign_text for branch in self.branches]
-        names = tuple(signs[b] for b in independent)
+        names = tuple(signs[b] for b in found.independent)
         signs[self.place] = self.named.sign_text
         return Actuation(
             self.pattern,
@@ -197,28 +203,21 @@ class _Search:
             best,
             self.creases,
             self.given is not None,
-            dimension,
+            found.dimension,
             names,
-            orthogonal,
+            found.orthogonal,
             self.directions,
             self.place,
             tuple(signs),
             time.perf_counter() - start,
         )
 
-    @property
-    def _moving(self) -> BoolArray:
-        """The folds that bend on some branch: torques on others do no work."""
-        low, high = self.directions.lows, self.directions.highs
-        moving: BoolArray = ((low != 0) | (high != 0)).any(axis=0)
-        return moving
-
     def _torques(self) -> tuple[list[Fraction], Fraction]:
         """Torques, and the bound of all margins."""
         rays = rivals(self.directions, self.place)
         units: FloatArray = self.directions.middles
         gaps = units[self.place] - np.array([sign * units[b] for b, sign in rays])
-        allowed = self._moving
+        allowed = self.directions.moving
         if self.creases is not None and self.creases < int(allowed.sum()):
             search = CreaseChoice(self.directions, self.place, rays, gaps, allowed, self.creases)
             choice = search.best(self.nodes, self.progress)
@@ -254,7 +253,7 @@ class _Search:
         return np.flatnonzero(close).tolist()
 
 
-def _judged(margin: Bounds, torques: Sequence[Fraction]) -> tuple[Verdict, str]:
+def judged(margin: Bounds, torques: Sequence[Fraction]) -> tuple[Verdict, str]:
     """What the margin says of the torques."""
     if not any(torques):
         return UNDECIDED, "no torques on so few creases that prefer the branch were found"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -76,6 +76,59 @@ def _is_regular(low: BigArray, high: BigArray) -> bool:
     unit = np.array([one * (i == j) for i in range(size) for j in range(size)], dtype=object)
     errors = abs(c @ (low + high) - unit.reshape(size, size)) + abs(c) @ (high - low)
     return bool(max(errors.sum(axis=1)) < one)
+
+
+@dataclass(frozen=True)
+class Alone:
+    """Of the torques that do no work on any branch but one: bounds of their dimension, and proof.
+
+    `independent`: the places of other branches that are proved to be linearly independent.
+    """
+
+    dimension: tuple[int, int]
+    independent: list[int]
+    orthogonal: OrthogonalTorques | None
+
+
+def alone(
+    directions: Directions,
+    branches: Sequence[Branch],
+    place: int,
+    size: int,
+    independent: list[int] | None = None,
+) -> Alone:
+    """What is proved of the torques that do no work on any branch but that at `place`.
+
+    `size` is the dimension of all first-order motions. `independent`: other branches that have
+    been proved to be independent, if some are known.
+    """
+    others = [b for b in range(len(branches)) if b != place]
+    if independent is None:
+        independent, _ = independent_rows(directions, others) or ([], [])
+    dimension = dimension_bounds(branches, others, len(independent), size)
+    orthogonal = None
+    if dimension[0] > 0:
+        orthogonal = orthogonal_torques(directions, place, independent, directions.moving)
+    return Alone(dimension, independent, orthogonal)
+
+
+def alone_each(directions: Directions, branches: Sequence[Branch], size: int) -> Iterator[Alone]:
+    """`alone` for each branch.
+
+    Two disjoint sets of `size` independent branches, as there are in general if there are so many
+    branches, prove all: one of them is without the branch in question.
+    """
+    places = range(len(branches))
+    full: list[list[int]] = []
+    for _ in range(2):
+        rest = [b for b in places if not any(b in rows for rows in full)]
+        rows, _ = independent_rows(directions, rest) or ([], [])
+        if len(rows) < size:
+            break
+        full.append(rows)
+    for place in places:
+        known = next((rows for rows in full if place not in rows), None)
+        yield alone(directions, branches, place, size, known)
 
 
 def dimension_bounds(

@@ -12,11 +12,17 @@ from fractions import Fraction
 import numpy as np
 
 from exactfold.actuation.directions import BITS, Directions
-from exactfold.arrays import BigArray, FloatArray
+from exactfold.arrays import BigArray, FloatArray, IntArray
 from exactfold.exact.numbers import over_common_denominator
 
 _SMALL = 1e-12
 """Weights below this are left out."""
+
+TORQUE_DIGITS = 12
+"""Digits after the point of torques of all branches."""
+
+_TORQUE_BITS, _UNIT_BITS = 20, 30
+"""Bits after the point of torques and of components of unit vectors in 64-bit integers."""
 
 Bounds = tuple[Fraction, Fraction]
 Ray = tuple[int, int]
@@ -32,14 +38,18 @@ class Powers:
     unit: int
 
     @classmethod
-    def of(cls, directions: Directions, torques: Sequence[Fraction]) -> Powers:
-        """The powers of torques, in the order of the folds."""
+    def of(
+        cls,
+        directions: Directions,
+        torques: Sequence[Fraction],
+        places: slice | Sequence[int] = slice(None),
+    ) -> Powers:
+        """The powers of torques, in the order of the folds, on the branches at `places`."""
         integers, common = over_common_denominator(torques)
         tau = np.array(integers, dtype=object)
         up, down = np.maximum(tau, 0), np.minimum(tau, 0)
-        low = directions.lows @ up + directions.highs @ down
-        high = directions.highs @ up + directions.lows @ down
-        return cls(low, high, common << BITS)
+        lows, highs = directions.lows[places], directions.highs[places]
+        return cls(lows @ up + highs @ down, highs @ up + lows @ down, common << BITS)
 
     def bounds(self, place: int) -> Bounds:
         """Bounds of the power on one branch, along the ray shown."""
@@ -65,6 +75,34 @@ def rivals(directions: Directions, chosen: int) -> list[Ray]:
     """All rays but the one shown of branch `chosen`."""
     others = [b for b in range(len(directions)) if b != chosen]
     return [(chosen, -1), *((b, sign) for b in others for sign in (1, -1))]
+
+
+def leading_rivals(
+    directions: Directions, places: Sequence[int], torques: IntArray
+) -> list[list[int]]:
+    """For the branch at each place and its row of torques, the others that may have most power.
+
+    Torques are in units of 10^-12 and at most 1. A ray of a branch that is left out has less power
+    than the largest rival. Proved in integers of 64 bits: for t and u rounded to t' and u' with
+    |t - t'| <= 2^-20 and |u - u'| <= 2^-30 + w, where w is half the width of the widest bounds of a
+    component, t . u and t' . u' differ by at most F (2^-20 + 2^-30 + w) on F folds.
+    """
+    if np.abs(torques).max(initial=0) > 10**TORQUE_DIGITS:
+        raise ArithmeticError("torques are larger than 1")
+    tau = (torques << _TORQUE_BITS) // 10**TORQUE_DIGITS
+    lows, highs = directions.lows, directions.highs
+    units = (lows + highs >> 1 + BITS - _UNIT_BITS).astype(np.int64)
+    bits = _TORQUE_BITS + _UNIT_BITS
+    width = (int((highs - lows).max()) >> 1 + BITS - bits) + 1
+    reach = len(directions.folds) * ((1 << _UNIT_BITS) + (1 << _TORQUE_BITS) + width)
+    powers = tau @ units.T
+    found = []
+    for b, values in zip(places, powers, strict=True):
+        row = np.abs(values)
+        row[b] = -values[b]
+        close = np.flatnonzero(row >= row.max() - 2 * reach).tolist()
+        found.append([r for r in close if r != b])
+    return found
 
 
 Weights = Sequence[tuple[Ray, Fraction]]

@@ -1,141 +1,206 @@
 """Self-folding: whether torques can single out a branch, and the best margin over its rivals.
 
-A row is one random square and one of its branches, drawn at random (docs/actuation.md).
+A row is one random square with all its branches, each for one of its two rays: the opposite one has
+the same dimension and margin (docs/actuation.md, 6).
 """
 
 from __future__ import annotations
 
-import random
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from fractions import Fraction
 from typing import Any, Final
 
-from exactfold.actuation.drive import actuate
+import numpy as np
+
+from exactfold.actuation.every import actuate_all
 from exactfold.errors import UnprovedRivalsError
 from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
 from exactfold.studies.tallies import draw_distribution, interior_of, tallied
 from exactfold.verdict import PROVED, UNDECIDED
 
+_DOWN = Context(prec=5, rounding=ROUND_FLOOR)
+_UP = Context(prec=2, rounding=ROUND_CEILING)
+
 
 def row(recipe: Recipe) -> dict[str, Any]:
-    """What torques do for one branch of one random square.
+    """What torques do for every branch of one random square.
 
-    `signs`: its vertex signs. `dimension`: proved bounds of the dimension of the torques that do no
-    work on any other branch (Tachi and Hull). `margin`: a proved lower bound of the margin of the
-    torques found, all at most 1, and `best` a proved upper bound of all margins.
+    `dimensions`: [low, high, branches] with proved bounds of the dimension of the torques that do
+    no work on any other branch (Tachi and Hull), and how many branches have them. `margins`: proved
+    lower bounds of the margins of the torques found, all at most 1, rounded down to five digits, in
+    the order of `count_branches`; `weakest` are the vertex signs of the branch with the least.
+    `gap`: the most by which a proved upper bound of all margins exceeds such a margin before it is
+    rounded, and `share` the most as a share of the bound, both rounded up to two digits.
     """
     pattern = square_of(recipe)
-    rng = random.Random(int(recipe["seed"]))
-    signs = "".join(rng.choice("+-") for _ in pattern.foldable_vertices)
-    found = {"signs": signs, "folds": len(pattern.folds), "rigid": pattern.Vt}
+    found: dict[str, Any] = {
+        "status": str(UNDECIDED),
+        "folds": len(pattern.folds),
+        "rigid": pattern.Vt,
+        "dimensions": None,
+        "margins": None,
+        "weakest": None,
+        "gap": None,
+        "share": None,
+    }
     try:
-        result = actuate(pattern, signs)
+        results = actuate_all(pattern)
     except UnprovedRivalsError:
-        return {
-            **found,
-            "status": str(UNDECIDED),
-            "dimension": None,
-            "margin": None,
-            "best": None,
-        }
+        return found
+    if any(result.status is not PROVED for result in results):
+        return found
+    dimensions = Counter(result.orthogonal_dimension for result in results)
+    gaps = [result.best - result.margin[0] for result in results]
     return {
         **found,
         "status": str(PROVED),
-        "dimension": list(result.orthogonal_dimension),
-        "margin": float(result.margin[0]),
-        "best": float(result.best),
+        "dimensions": [[*bounds, number] for bounds, number in sorted(dimensions.items())],
+        "margins": [_rounded(result.margin[0], _DOWN) for result in results],
+        "weakest": min(results, key=lambda result: result.margin[0]).branch.sign_text,
+        "gap": _rounded(max(gaps), _UP),
+        "share": _rounded(
+            max(gap / result.best for gap, result in zip(gaps, results, strict=True)), _UP
+        ),
     }
+
+
+def _rounded(number: Fraction, context: Context) -> float:
+    return float(context.divide(Decimal(number.numerator), Decimal(number.denominator)))
 
 
 @dataclass
 class _Tally:
     """What the rows of one size add up to."""
 
-    branches: int = 0
+    squares: int = 0
     undecided: int = 0
     dimensions: Counter[str] = field(default_factory=Counter)
     margins: list[float] = field(default_factory=list)
-    slack: float = 0.0
+    weakest: list[float] = field(default_factory=list)
+    gap: float = 0.0
+    share: float = 0.0
 
     def add(self, row: Row) -> None:
         """One more row."""
-        self.branches += 1
+        self.squares += 1
         if row["status"] != str(PROVED):
             self.undecided += 1
             return
-        low, high = row["dimension"]
-        self.dimensions["open" if low != high else str(low)] += 1
-        self.margins.append(row["margin"])
-        self.slack = max(self.slack, row["best"] - row["margin"])
+        for low, high, number in row["dimensions"]:
+            kind = "0" if high == 0 else "positive" if low > 0 else "open"
+            self.dimensions[kind] += number
+        self.margins += row["margins"]
+        self.weakest.append(min(row["margins"]))
+        self.gap = max(self.gap, row["gap"])
+        self.share = max(self.share, row["share"])
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """The dimension of Tachi and Hull, and the best margins."""
+    """The dimension of Tachi and Hull, the best margins, and the least one of each square."""
     tallies = tallied(rows, _Tally, interior_of)
+    proved = {n: t for n, t in tallies.items() if t.margins}
     dimensions = tuple(
         (
             n,
-            t.branches,
-            t.branches - t.undecided,
+            t.squares,
+            t.squares - t.undecided,
+            len(t.margins),
             t.dimensions["0"],
-            sum(k for d, k in t.dimensions.items() if d not in ("0", "open")),
+            t.dimensions["positive"],
+            f"{100 * t.dimensions['positive'] / max(1, len(t.margins)):.2g}",
             t.dimensions["open"],
         )
         for n, t in tallies.items()
-    )
-    margins = tuple(
-        (
-            n,
-            f"{min(t.margins):.3g}",
-            f"{sorted(t.margins)[len(t.margins) // 2]:.3g}",
-            f"{max(t.margins):.3g}",
-            f"{t.slack:.0e}",
-        )
-        for n, t in tallies.items()
-        if t.margins
     )
     return [
         StudyTable(
             "dimensions",
             "Torques that do no work on any other branch",
-            ("Vi", "branches", "proved", "dimension 0", "positive", "not decided"),
+            (
+                "Vi",
+                "squares",
+                "proved",
+                "branches",
+                "dimension 0",
+                "positive",
+                "%",
+                "not decided",
+            ),
             dimensions,
-            ("Their dimension modulo torques that do no work on any motion, for one branch each.",),
+            ("Their dimension modulo torques that do no work on any motion, for every branch.",),
         ),
         StudyTable(
             "margins",
             "Best margins of a branch over all others",
-            ("Vi", "least", "median", "largest", "gap to the bound"),
-            margins,
+            ("Vi", "branches", *_FIVE, "gap", "share"),
+            tuple(
+                (n, len(t.margins), *_five(t.margins), f"{t.gap:.1e}", f"{t.share:.1e}")
+                for n, t in proved.items()
+            ),
             (
                 "Torques of size at most 1 on all folds; the margin is the power along the branch "
-                "less the largest along another one. Proved lower bounds, which are the best but "
-                "for the gap.",
+                "less the largest along another ray. Proved lower bounds; no torques do better by "
+                "more than the gap, or by more than this share of the best.",
+            ),
+        ),
+        StudyTable(
+            "weakest",
+            "The branch of each square that is hardest to single out: its best margin",
+            ("Vi", "squares", *_FIVE, "of the median"),
+            tuple(
+                (
+                    n,
+                    len(t.weakest),
+                    *_five(t.weakest),
+                    f"{np.median(t.weakest) / np.median(t.margins):.2g}",
+                )
+                for n, t in proved.items()
+            ),
+            (
+                "of the median: the median here as a share of the median of all branches, in the "
+                "table above.",
             ),
         ),
     ]
 
 
+_FIVE: Final = ("least", "quartile", "median", "quartile", "largest")
+
+
+def _five(values: Sequence[float]) -> tuple[Cell, ...]:
+    return tuple(f"{x:.3g}" for x in np.quantile(values, [0, 0.25, 0.5, 0.75, 1]).tolist())
+
+
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
-    """The distribution of the best margins."""
+    """The distributions of the best margins, of all branches and of the weakest of each square."""
     tallies = {n: t for n, t in tallied(rows, _Tally, interior_of).items() if t.margins}
 
-    def margins(axes: Any) -> None:
-        for n, tally in tallies.items():
-            draw_distribution(axes, tally.margins, label=f"$V_i = {n}$", **of_size(n))
-        axes.set_xlabel("best margin, torques of size at most 1")
-        axes.set_ylabel("branches with a smaller margin (%)")
-        axes.set_ylim(0, 100)
-        axes.legend(loc="lower right")
+    def margins(panels: Any) -> None:
+        kinds = ("branches", "squares"), ("all branches", "the weakest of each square")
+        for axes, kind, title in zip(panels, *kinds, strict=True):
+            for n, tally in tallies.items():
+                values = tally.margins if kind == "branches" else tally.weakest
+                draw_distribution(axes, values, label=f"$V_i = {n}$", **of_size(n))
+            axes.set_xscale("log")
+            axes.set_title(title)
+            axes.set_xlabel("best margin, torques of size at most 1")
+            axes.set_ylabel(f"{kind} with a smaller margin (%)")
+            axes.set_ylim(0, 100)
+        panels[0].legend(loc="upper left")
 
     return [
         StudyFigure(
             "margins",
             "Best margins of a branch over all others",
-            "The share of branches of random squares whose best margin is smaller.",
+            "The share of branches of random squares whose best margin is smaller, and the share "
+            "of squares with a branch whose best margin is smaller.",
             margins,
+            width=8.0,
+            panels=(1, 2),
         )
     ]
 
@@ -143,9 +208,9 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
 STUDY: Final = Study(
     "selffold",
     "Self-folding: torques that prefer a branch to all others",
-    1,
-    dict.fromkeys(range(2, 9), 200),
-    {9: 100, 10: 100},
+    2,
+    {2: 1000, 3: 1000, 4: 1000, 5: 500, 6: 300, 7: 150, 8: 80},
+    {9: 20, 10: 10},
     square_recipes,
     row,
     tables,

@@ -143,6 +143,7 @@ TAKES_PATTERN = {
     "count.find_branch": ("+-",),
     "count.count_shapes": ({4: 1},),
     "actuation.actuate": ("+-",),
+    "actuation.actuate_all": (),
     "assignment.match": ("MVVUUUU",),
 }
 

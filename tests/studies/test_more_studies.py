@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from exactfold import count_branches, random_square
+from exactfold.actuation import actuate
 from exactfold.algebra.groebner_bases import quotient_algebra
 from exactfold.algebra.hermite import hermite_counts
 from exactfold.problem import BranchSystem, perturbed
 from exactfold.rigidity.functionals import saddle_functional
-from exactfold.studies import motions, mv, run_study
+from exactfold.studies import motions, mv, run_study, selffold
 from exactfold.studies import perturbed as perturbed_study
 from exactfold.studies.flat import has_straight_folds
 from exactfold.studies.lines import Lines
@@ -154,19 +155,50 @@ def test_what_the_paper_says_of_most_systems_is_judged_by_the_largest_change(los
     ] * 2
 
 
-def test_margins_are_no_smaller_than_those_of_torques_along_the_branch():
-    """The unit vector of fold angles itself, as a torque, has at most the best margin."""
-    run = run_study("selffold", numbers={2: 1, 4: 1})
+def test_margins_of_all_branches_are_those_of_one_at_a_time():
+    """Against the linear programs of `actuate`; torques along the branch do no better."""
+    run = run_study("selffold", numbers={2: 1, 3: 1})
     for row in run.rows:
+        branches = count_branches(square_of(row)).branches
         lines = Lines.of(square_of(row))
-        signs = [1 if sign == "+" else -1 for sign in row["signs"]]
-        (own,) = np.flatnonzero((lines.signs == signs).all(axis=1))
-        direction = lines.directions[own]
-        powers = np.abs(lines.directions @ direction) / np.abs(direction).max()
-        margin = powers[own] - np.delete(powers, own).max()
-        assert margin <= row["best"] + 1e-9
-        assert row["margin"] <= row["best"] < row["margin"] + 1e-4
-        assert row["dimension"] == [0, 0]
+        assert row["dimensions"] == [[0, 0, len(branches)]]
+        weakest = row["margins"].index(min(row["margins"]))
+        assert row["weakest"] == branches[weakest].sign_text
+        for branch, margin in zip(branches, row["margins"], strict=True):
+            one = actuate(branch.pattern, branch.vertex_signs)
+            assert float(one.margin[0]) * (1 - 1e-4) <= margin + row["gap"]
+            assert margin <= float(one.best)
+            assert float(one.best) * (1 - row["share"]) <= margin * (1 + 1e-4)
+            signs = list(branch.vertex_signs.values())
+            (own,) = np.flatnonzero((lines.signs == signs).all(axis=1))
+            direction = lines.directions[own]
+            powers = np.abs(lines.directions @ direction) / np.abs(direction).max()
+            assert powers[own] - np.delete(powers, own).max() <= float(one.best) + 1e-9
+    table = columns(run, "margins")
+    for k, row in enumerate(run.rows):
+        ordered = sorted(row["margins"])
+        assert table["branches"][k] == len(ordered)
+        assert float(table["least"][k]) == pytest.approx(ordered[0], rel=0.01)
+        assert float(table["largest"][k]) == pytest.approx(ordered[-1], rel=0.01)
+        assert columns(run, "weakest")["least"][k] == table["least"][k]
+    assert columns(run, "dimensions")["positive"] == (0, 0)
+
+
+def test_branches_that_torques_can_drive_alone_are_counted():
+    rows = [
+        {
+            "interior": 4,
+            "status": "proved",
+            "dimensions": [[0, 0, 2], [0, 1, 1], [1, 1, 1]],
+            "margins": [0.1, 0.2, 0.3, 0.4],
+            "gap": 1e-9,
+            "share": 1e-8,
+        },
+        {"interior": 4, "status": "undecided"},
+    ]
+    dimensions, _, weakest = selffold.tables(rows)
+    assert dimensions.rows == ((4, 2, 1, 4, 2, 1, "25", 1),)
+    assert weakest.rows[0][1:3] == (1, "0.1")
 
 
 @pytest.mark.slow
