@@ -3,10 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from exactfold.arrays import FloatArray, IndexArray
+from exactfold.studies.lines import Lines
+
+NEAR: Final = 1e-5
+"""Lower bounds from doubles that are above this are good enough."""
+
+WIDE: Final = 1e-8
+"""Errors of directions that are sharpened in any case where lines are near each other."""
+
+CLEAR: Final = 1 - 1e-6
+"""How near the bounds of a least distance are to each other in the end, where roots allow it."""
 
 _ROWS = 512
 _U = 2.0**-53
@@ -14,11 +25,15 @@ _U = 2.0**-53
 
 @dataclass(frozen=True)
 class ClosestPair:
-    """Bounds of the least distance, and a pair of rows that has it, or nearly so."""
+    """Bounds of the least distance, and a pair of rows that has it, or nearly so.
+
+    `rows`: those of all pairs that may have it, for what is known.
+    """
 
     low: float
     high: float
     pair: tuple[int, int]
+    rows: tuple[int, ...]
 
     @property
     def digits(self) -> int | None:
@@ -78,4 +93,27 @@ def closest_pair(directions: FloatArray, errors: FloatArray) -> ClosestPair | No
         off = float(errors[i] + errors[j]) + (size + 4) * _U
         bounds.append((distance + off, max(0.0, distance - off), (i, j)))
     high, _, pair = min(bounds)
-    return ClosestPair(min(low for _, low, _ in bounds), high, pair)
+    near_rows = {row for _, low, both in bounds if low <= high for row in both}
+    return ClosestPair(min(low for _, low, _ in bounds), high, pair, tuple(sorted(near_rows)))
+
+
+def closest_lines(lines: Lines) -> ClosestPair | None:
+    """The closest pair of the lines of a pattern, from sharper roots where they are close.
+
+    Roots are sharpened where the bound from below would be under 10^-5, or where there is none:
+    first those with wide errors, then those of all pairs that may be the closest, until none is
+    left.
+    """
+    pair = closest_pair(lines.directions, lines.errors)
+    if pair is None or pair.low > NEAR:
+        return pair
+    directions, errors = lines.directions.copy(), lines.errors.copy()
+    rows = set(np.flatnonzero(errors > WIDE).tolist()) or set(pair.rows)
+    done: set[int] = set()
+    while rows:
+        more = sorted(rows)
+        directions[more], errors[more] = lines.sharper(more)
+        done |= rows
+        pair = closest_pair(directions, errors) or pair
+        rows = set() if pair.low >= CLEAR * pair.high else set(pair.rows) - done
+    return pair

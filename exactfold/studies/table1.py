@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from exactfold.studies.closest import closest_pair
+from exactfold.studies.closest import closest_lines
 from exactfold.studies.lines import UNKNOWN, Lines, SignArray
 from exactfold.studies.squares import square_of, square_recipes
 from exactfold.studies.statistics import agreement, interval, interval_text, same_probability
@@ -64,7 +64,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
         letters, signs = same_side(lines.letters, lines.signs)
         found["with_letters"] = _repeated(letters)
         found["with_signs"] = _repeated(np.hstack([letters, signs]))
-    pair = closest_pair(lines.directions, lines.errors)
+    pair = closest_lines(lines)
     if pair is not None and pair.digits is not None:
         found["closest"] = float(f"{pair.low * (1 - 1e-5):.5e}")
         found["digits"] = pair.digits
@@ -113,6 +113,7 @@ class _Tally:
     flat: int = 0
     unclear: int = 0
     as_in_caption: int = 0
+    not_apart: int = 0
     closest: float = 2.0
     closest_seed: int = 0
     digits: int = 0
@@ -137,6 +138,7 @@ class _Tally:
         else:
             self.letters += row["with_letters"] > 0
             self.signs += row["with_signs"] > 0
+        self.not_apart += row["digits"] is None and row["distinct"] > 1
         if row["digits"] is not None:
             self.digits = max(self.digits, row["digits"])
             self.histogram[row["digits"]] += 1
@@ -227,6 +229,7 @@ def _distances(tallies: dict[int, _Tally]) -> StudyTable:
         for size, t in tallies.items()
         if t.digits
     )
+    left = sum(t.not_apart for t in tallies.values())
     return StudyTable(
         "distances",
         "How close branches come",
@@ -236,6 +239,10 @@ def _distances(tallies: dict[int, _Tally]) -> StudyTable:
             "The distance of two branches is that of their unit vectors of fold angles, up to "
             "sign; all branches of a square are told apart by so many decimals of these. The "
             "paper used up to 690.",
+            *(
+                [f"squares whose branches are not all told apart, not counted here: {left}."]
+                * (left > 0)
+            ),
         ),
     )
 
@@ -310,7 +317,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
 STUDY: Final = Study(
     "table1",
     "Table I: branches of random squares, counted with proof",
-    1,
+    2,
     {size: number for size, (number, *_) in PAPER.items()},
     dict.fromkeys(range(9, 15), 1000),
     square_recipes,

@@ -12,7 +12,7 @@ from exactfold.branches.letters import UPSIDE_DOWN
 from exactfold.data import example_path
 from exactfold.pattern.loading import as_pattern
 from exactfold.studies import run_study, table1
-from exactfold.studies.closest import closest_pair
+from exactfold.studies.closest import closest_lines, closest_pair
 from exactfold.studies.lines import Lines
 from exactfold.studies.statistics import decay, interval, same_probability
 
@@ -240,6 +240,39 @@ def test_decay_is_fitted():
 def test_the_whole_table_agrees_with_the_paper():
     run = run_study("table1", workers=2)
     assert {line[-1] for line in run.tables[1].rows} == {"agree"}
+
+
+def test_close_branches_are_told_apart_by_sharper_roots():
+    """A box of this square is wider than two of its branches are apart."""
+    lines = Lines.of(random_square(6, 60003620))
+    assert closest_pair(lines.directions, lines.errors).low == 0
+    found = closest_lines(lines)
+    rows = found.pair
+    exact = [branch.sharpened(200).fold_angles for branch in _branches(lines, rows)]
+    u, v = (np.array([float(a.bends[fold]) for fold in lines.pattern.folds]) for a in exact)
+    u, v = u / np.linalg.norm(u), v / np.linalg.norm(v)
+    distance = min(np.linalg.norm(u - v), np.linalg.norm(u + v))
+    assert found.low - 1e-14 <= distance <= found.high + 1e-14
+    assert found.low > (1 - 1e-6) * found.high
+    assert table1.row({"interior": 6, "seed": 60003620, "denominator": 1024})["digits"] == 5
+
+
+def _branches(lines, rows):
+    """The branches of rows, by their vertex signs from either side."""
+    counted = count_branches(lines.pattern).branches
+    signs = [tuple(b.vertex_signs[v] for v in lines.pattern.interior) for b in counted]
+    for row in rows:
+        wanted = tuple(lines.signs[row].tolist())
+        yield counted[signs.index(wanted)]
+
+
+def test_squares_that_are_not_told_apart_are_named():
+    row = {"interior": 6, "status": "proved", "rigid": 0, "flat": 0, "distinct": 64}
+    row |= {"with_multiplicity": 64, "pairs_of_signs": True, "with_letters": 0, "with_signs": 0}
+    measured = row | {"closest": 0.1, "digits": 1, "seed": 1}
+    table = table1.STUDY.tables([measured, row | {"closest": None, "digits": None}])[-1]
+    assert table.notes[-1] == "squares whose branches are not all told apart, not counted here: 1."
+    assert len(table1.STUDY.tables([measured])[-1].notes) == len(table.notes) - 1
 
 
 def test_squares_with_too_many_branches_for_the_memory_are_undecided():
