@@ -123,8 +123,13 @@ def margin_bound(
     `barred`, none that leave these folds alone. Weak duality: the margin of tau is at most
     sum_r w_r tau . (u - u_r) = tau . g for weights w_r >= 0 with sum 1 on rivals r; and tau . g is
     at most the sum of |g_e|, over the `most` largest of the limited folds and all others, as
-    |tau_e| <= 1. Every choice of weights gives a true bound.
+    |tau_e| <= 1. Every choice of weights gives a true bound. Raises `ArithmeticError` for weights
+    that are negative, do not add up to 1, or are not on rivals: the ray itself is none.
     """
+    places = range(len(directions.lows))
+    for place, sign in (ray for ray, _ in weights):
+        if (place, sign) == (chosen, 1) or place not in places or sign not in (-1, 1):
+            raise ArithmeticError("a weight is on the branch itself, or on no ray")
     integers, common = over_common_denominator(weight for _, weight in weights)
     if min(integers, default=0) < 0 or sum(integers) != common:
         raise ArithmeticError("weights of rivals are negative, or do not add up to 1")

@@ -85,6 +85,9 @@ class QuadraticForm:
     def __setattr__(self, name: str, value: object) -> None:
         raise FrozenInstanceError(f"a form does not change: {name}")
 
+    def __delattr__(self, name: str) -> None:
+        raise FrozenInstanceError(f"a form does not change: {name}")
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, QuadraticForm):
             return NotImplemented
@@ -113,6 +116,9 @@ class QuadraticForm:
 
     def polar(self, a: Mapping[int, Fraction], b: Mapping[int, Fraction]) -> Fraction:
         """The symmetric bilinear form B(a, b) with B(h, h) = Q(h)."""
+        if not self._is_rational(a, b):
+            row = self.functional(a)
+            return sum((row[v] * b[v] for v in self.labels if b[v]), Fraction(0))
         right, below = over_common_denominator(b[v] for v in self.labels)
         images, denominator = self._images(a)
         value = sum(x * y for x, y in zip(images, right, strict=True))
@@ -124,6 +130,12 @@ class QuadraticForm:
 
     def functional(self, a: Mapping[int, Fraction]) -> dict[int, Fraction]:
         """The linear functional h -> B(a, h), as coefficients by label."""
+        if not self._is_rational(a):
+            terms = {
+                v: zip(row, self.labels, strict=True)
+                for v, row in zip(self.labels, self.matrix, strict=True)
+            }
+            return {v: sum((m * a[u] for m, u in row), Fraction(0)) for v, row in terms.items()}
         images, denominator = self._images(a)
         return {v: Fraction(x, denominator) for v, x in zip(self.labels, images, strict=True)}
 
@@ -137,6 +149,14 @@ class QuadraticForm:
         images, denominator = self._images(a)
         common = gcd(denominator, *images)
         return {v: x // common for v, x in zip(self.labels, images, strict=True)}
+
+    def _is_rational(self, *points: Mapping[int, object]) -> bool:
+        """Whether all is in fractions: floats, symbols and other fields take the entries singly."""
+        values = (point[v] for point in points for v in self.labels)
+        return all(isinstance(x, int | Fraction) for x in values) and (
+            "integers" in vars(self)
+            or all(isinstance(x, int | Fraction) for row in self.matrix for x in row)
+        )
 
     def _images(self, a: Mapping[int, Fraction]) -> tuple[list[int], int]:
         """M a, in integers over a common denominator."""

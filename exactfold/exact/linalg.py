@@ -101,6 +101,7 @@ def sum_of_squares(matrix: Matrix) -> list[tuple[Fraction, list[Fraction]]]:
     >>> [(int(w), [int(x) for x in row]) for w, row in sum_of_squares([[2, 2], [2, 1]])]
     [(2, [1, 1]), (-1, [0, 1])]
     """
+    _check_symmetric(matrix)
     size = len(matrix)
     flat, denominator = over_common_denominator(x for row in matrix for x in row)
     integers = [flat[k * size : (k + 1) * size] for k in range(size)]
@@ -157,5 +158,7 @@ def inertia_by_elimination(matrix: Matrix) -> Inertia:
 
 def _check_symmetric(matrix: Matrix) -> None:
     size = len(matrix)
-    if any(matrix[i][j] != matrix[j][i] for i in range(size) for j in range(i)):
+    if any(len(row) != size for row in matrix) or any(
+        matrix[i][j] != matrix[j][i] for i in range(size) for j in range(i)
+    ):
         raise ValueError("the matrix of a quadratic form must be symmetric")

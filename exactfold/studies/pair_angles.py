@@ -34,7 +34,7 @@ _EDGES: FloatArray = np.cos(np.arange(BINS - 1, 0, -1) * (np.pi / 2 / BINS))
 class PairAngles:
     """How many pairs of different branches have an angle in each bin.
 
-    `unclear` of these may be in the next bin, as bounds did not tell. `mean_square` approximates
+    `unclear` of these may be in other bins, as bounds did not tell. `mean_square` approximates
     the mean of cos^2 of the angle, 0 if there are no pairs.
     """
 

@@ -102,6 +102,10 @@ def test_weights_that_are_no_weights_are_refused():
     for wrong in ([Fraction(1, 2)], [Fraction(3, 2), Fraction(-1, 2)], []):
         with pytest.raises(ArithmeticError, match="add up"):
             margin_bound(DIRECTIONS, 0, list(zip(rays, wrong, strict=False)))
+    last = len(DIRECTIONS.lows) - 1
+    for chosen, ray in ((0, (0, 1)), (last, (-1, 1)), (0, (1, 2)), (0, (last + 1, 1))):
+        with pytest.raises(ArithmeticError, match="itself"):  # the first two: best would be 0
+            margin_bound(DIRECTIONS, chosen, [(ray, Fraction(1))])
     exact = exact_weights(rays, np.full(len(rays), 0.1))
     assert sum(weight for _, weight in exact) == 1
 

@@ -116,6 +116,17 @@ def test_forms_from_integers_are_those_from_fractions_and_do_not_change():
     assert form != form.matrix
     with pytest.raises(FrozenInstanceError):
         form.labels = (1, 2)
+    with pytest.raises(FrozenInstanceError):
+        del form.labels
+
+
+def test_forms_take_values_of_other_kinds():
+    form = curvature_form(two_vertex(), 4)
+    heights = {v: Fraction(v * v, 3) for v in form.labels}
+    floats = {v: float(height) for v, height in heights.items()}
+    assert form(floats) == pytest.approx(float(form(heights)))
+    symbols = {v: sympy.Symbol(f"h{v}") for v in form.labels}
+    assert sympy.expand(form(symbols) - form.to_sympy(symbols)) == 0
 
 
 def test_curvature_forms_do_not_depend_on_the_way_they_are_computed():
