@@ -77,32 +77,35 @@ def _on_cluster(
     from distributed import KilledWorker, as_completed
 
     left, needed = iter(jobs), version("exactfold")
-    alone: deque[J] = deque()  # of a bunch that killed its workers: which job it was, is not known
-    under_way: dict[Any, list[J]] = {}
+    suspects: deque[J] = deque()  # under way where workers died: each runs again by itself
+    under_way: dict[Any, tuple[list[J], bool]] = {}  # the jobs, and whether nothing else runs
     ended = as_completed(loop=client.loop)
     bunch = 1
 
     def fill() -> None:
         most = _AHEAD * max(1, sum(client.nthreads().values()))
         while len(under_way) < most:
-            some = [alone.popleft()] if alone else list(islice(left, bunch))
+            by_itself = bool(suspects)
+            if by_itself and under_way:
+                break
+            some = [suspects.popleft()] if by_itself else list(islice(left, bunch))
             if not some:
                 break
             future = client.submit(_checked, needed, work, some, pure=False)
-            under_way[future] = some
+            under_way[future] = some, by_itself
             ended.add(future)
 
     try:
         fill()
         for future in ended:
-            some = under_way.pop(future)
+            some, by_itself = under_way.pop(future)
             try:
                 results, seconds = future.result()
             except KilledWorker:
-                if len(some) > 1:
-                    alone.extend(some)
-                else:
+                if by_itself:
                     yield some[0], WorkerDiedError(_DIED)
+                else:
+                    suspects.extend(some)
             else:
                 bunch = max(1, min(2 * len(some), int(_BUNCH * len(some) / max(seconds, 1e-9))))
                 yield from zip(some, results, strict=True)

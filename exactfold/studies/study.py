@@ -108,7 +108,7 @@ class Study:
 
         >>> from exactfold.studies.registry import study_named
         >>> study_named("table1").id_of({"interior": 4, "seed": 0, "denominator": 1024})
-        'fd848fb1597c9886'
+        '546be50257729877'
         """
         return digest([self.name, self.version, recipe])[:16]
 

@@ -15,11 +15,12 @@ from typer.testing import CliRunner
 from exactfold import random_square, write_fold
 from exactfold.cli import app
 from exactfold.count import on_dask as engine_module
+from exactfold.count import pools
 from exactfold.count.conveyor import Conveyor
 from exactfold.count.on_dask import dask_engine, prove_block
 from exactfold.count.stream import stream_branches
 from exactfold.data import example_path
-from exactfold.errors import ClusterError, DaskMissingError
+from exactfold.errors import ClusterError, DaskMissingError, WorkerDiedError
 from exactfold.evidence.streamed import block_line
 
 TWO = example_path("two-vertex")
@@ -181,3 +182,64 @@ def test_a_task_is_a_block_and_knows_its_version(monkeypatch: pytest.MonkeyPatch
         assert (block.index, block.steps, block.boxes.centers.size) == (index, expected.steps, 0)
     with pytest.raises(ClusterError, match="not other"):
         prove_block(("other", *spec[1:]), 0)
+
+
+class StandIn:
+    """What a pool needs of dask: tasks end in their order, and deaths blame their neighbours."""
+
+    class KilledWorker(Exception):
+        """A task was there whenever a worker died."""
+
+    loop = None
+
+    def __init__(self, deadly: int) -> None:
+        self.deadly, self.tasks, self.bunches = deadly, [], []
+
+    def nthreads(self) -> dict[str, int]:
+        return {"one": 1}
+
+    def submit(self, function: object, *args: object, pure: bool) -> Task:
+        self.bunches.append(list(args[-1]))
+        return Task(self, function, args)
+
+    def as_completed(self, loop: object) -> StandIn:
+        return self
+
+    def add(self, task: Task) -> None:
+        self.tasks.append(task)
+
+    def __iter__(self) -> StandIn:
+        return self
+
+    def __next__(self) -> Task:
+        if not self.tasks:
+            raise StopIteration
+        self.dying = any(self.deadly in task.jobs for task in self.tasks[:2])
+        return self.tasks.pop(0)
+
+
+class Task:
+    """A task of it."""
+
+    def __init__(self, client: StandIn, function: object, args: tuple[object, ...]) -> None:
+        self.client, self.function, self.args, self.jobs = client, function, args, args[-1]
+
+    def result(self) -> object:
+        if self.client.dying:
+            raise self.client.KilledWorker
+        return self.function(*self.args)
+
+
+def test_short_jobs_go_in_bunches_and_only_the_deadly_one_is_blamed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Jobs beside it, in its bunch or on the same worker, are run again, each by itself."""
+    client = StandIn(40)
+    monkeypatch.setitem(sys.modules, "distributed", client)
+    found = dict(pools._on_cluster(client, lambda k: k**2, range(200)))
+    assert isinstance(found.pop(40), WorkerDiedError)
+    assert found == {k: k**2 for k in range(200) if k != 40}
+    assert [len(bunch) for bunch in client.bunches[:5]] == [1, 1, 1, 2, 2]
+    assert [40] in client.bunches
+    assert sum(40 in bunch for bunch in client.bunches) == 2
+    assert sum(map(len, client.bunches)) < 300
