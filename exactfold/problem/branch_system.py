@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import gcd, lcm
+from typing import Any
 
 from exactfold.errors import CollinearPointsError, NotApplicableError, UsageError
 from exactfold.exact.forms import QuadraticForm
@@ -209,20 +210,21 @@ class Chart:
 
     def restrict(self, functional: Mapping[int, int | Fraction]) -> list[Fraction]:
         """A linear functional of the heights as (c_1, ..., c_n, c_0) on (x, 1)."""
-        row: list[int | Fraction] = [0] * (len(self.variables) + 1)
-        for v, weight in functional.items():
-            for k, a in self._integer_rows[v].items():
-                row[k] += weight * a
-        return [Fraction(value) / self._unit for value in row]
+        return [Fraction(value) / self._unit for value in self._in_units(functional)]
 
     def integer_row(self, functional: Mapping[int, int]) -> tuple[int, ...]:
         """A positive multiple of `restrict` of an integer functional, the least with integers."""
-        row = [0] * (len(self.variables) + 1)
+        row = self._in_units(functional)
+        common = gcd(self._unit, *row)
+        return tuple(value // common for value in row)
+
+    def _in_units(self, functional: Mapping[int, Any]) -> list[Any]:
+        """`restrict` times `_unit`: integers where the functional has integers."""
+        row: list[Any] = [0] * (len(self.variables) + 1)
         for v, weight in functional.items():
             for k, a in self._integer_rows[v].items():
                 row[k] += weight * a
-        common = gcd(self._unit, *row)
-        return tuple(value // common for value in row)
+        return row
 
 
 def _collinear(pattern: CreasePattern, vertices: Sequence[int]) -> bool:

@@ -27,7 +27,10 @@ def spokes(
 def integer_spokes(
     pattern: CreasePattern, vertex: int
 ) -> tuple[tuple[int, ...], list[tuple[int, int]], int]:
-    """The same with vectors times the least integer that makes all points integers, behind them."""
+    """Neighbours, spokes in integers, and the unit: `spokes` has them divided by the unit.
+
+    The unit is the least positive integer that makes the coordinates of all points integers.
+    """
     ring = _ring(pattern, vertex)
     points, unit = pattern.integer_vertices
     x, y = points[vertex]
