@@ -17,9 +17,11 @@ is left out.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from math import frexp
+from threading import RLock
 
 import numpy as np
 from flint import arb, arb_series, ctx
@@ -163,7 +165,7 @@ class PanelPieces:
         return self._about(low + width / 2, width / 2)
 
     def _about(self, middle: float, half: float) -> PanelPiece | None:
-        with ctx.workprec(_BITS), _capped():
+        with _capped(), ctx.workprec(_BITS):
             try:
                 here = self._turns(arb(middle))
                 rests = self._rests(middle, half)
@@ -247,15 +249,22 @@ class PanelPieces:
         return found
 
 
-class _capped:  # noqa: N801
-    """Series with as many terms as are needed here."""
+_CAPPING = RLock()
 
-    def __enter__(self) -> None:
-        self.before = ctx.cap
-        ctx.cap = _CAP
 
-    def __exit__(self, *_: object) -> None:
-        ctx.cap = self.before
+@contextmanager
+def _capped() -> Iterator[None]:
+    """Series with as many terms as are needed here.
+
+    FLINT has one number of terms for all threads, and takes terms beyond it for 0. So only one
+    thread at a time is in here.
+    """
+    with _CAPPING:
+        before, ctx.cap = ctx.cap, _CAP
+        try:
+            yield
+        finally:
+            ctx.cap = before
 
 
 def _polynomial(series: arb_series, rest: arb, half: float) -> Turned:
