@@ -9,77 +9,102 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import ExitStack, closing
-from multiprocessing import get_context
-from typing import Any, NamedTuple
+from multiprocessing import get_context, parent_process
+from typing import Any, NamedTuple, Protocol
 
 from .compact_blocks import CompactSheet
 from .compact_lines import lines, read_header, read_object
 from .reading import CertificateError, FormatError, UnfinishedError, keys, refusing, require
 
-_sheet: CompactSheet | None = None  # of a worker process
-
-
-def start_worker(header: str) -> None:
-    """Rebuild the sheet in a worker process."""
-    global _sheet
-    _sheet = CompactSheet(read_header(header))
-
-
-def check_line(text: str, number: int) -> str | None:
-    """Verify one block in a worker process: None, or why it does not hold."""
-    if _sheet is None:
-        raise RuntimeError("the worker was not started")
-    try:
-        with refusing(f"in block {number}"):
-            _sheet.check_block(_sheet.decode(text, number))
-    except CertificateError as error:
-        return str(error)
-    return None
-
-
 Said = Generator[str | None, None, None]
-"""What is wrong with each block, or None."""
+"""What is wrong with each part of a file, or None."""
+
+
+class Verifier(Protocol):
+    """What verifies the parts of one file, and holds all that is known of this file."""
+
+    def refusal(self, text: str, number: int) -> str | None:
+        """Verify the line of one part: None, or why it does not hold."""
+
+
+class Engine(NamedTuple):
+    """How the parts of a file are verified.
+
+    `verifier(header)` makes the verifier of one file, from its first line; it is a function or a
+    class that worker processes can import. They are started only if there are `least` parts for
+    each. `share(engine, workers, header, parts)` starts them and yields what their verifiers say of
+    the parts, in order.
+    """
+
+    verifier: Callable[[str], Verifier]
+    least: int
+    share: Share
+
+
+Share = Callable[[Engine, int, str, Iterator[tuple[str, int]]], Said]
+
+
+def here(engine: Engine, header: str, parts: Iterator[tuple[str, int]]) -> Said:
+    """Parts verified in this process, by a verifier that nobody else knows."""
+    verifier = engine.verifier(header)
+    for text, number in parts:
+        yield verifier.refusal(text, number)
 
 
 def on_processes(
-    engine: Engine, workers: int, header: str, blocks: Iterator[tuple[str, int]]
+    engine: Engine, workers: int, header: str, parts: Iterator[tuple[str, int]]
 ) -> Said:
-    """Blocks checked in several processes, at most two waiting for each."""
+    """Parts verified in several processes of this check, at most two waiting for each."""
     with ExitStack() as stack:
-        pool = ProcessPoolExecutor(workers, get_context("spawn"), engine.start, (header,))
+        pool = ProcessPoolExecutor(
+            workers, get_context("spawn"), _become_worker, (engine.verifier, header)
+        )
         stack.callback(pool.shutdown, cancel_futures=True)
         waiting: deque[Future[str | None]] = deque()
-        for text, number in blocks:
-            waiting.append(pool.submit(engine.work, text, number))
+        for text, number in parts:
+            waiting.append(pool.submit(_in_worker, text, number))
             while len(waiting) > 2 * workers:
                 yield waiting.popleft().result()
         while waiting:
             yield waiting.popleft().result()
 
 
-Share = Callable[["Engine", int, str, Iterator[tuple[str, int]]], Said]
+_of_this_worker: Verifier | None = None
+"""In a worker process of `on_processes`: the verifier of the one file for which it was started."""
 
 
-class Engine(NamedTuple):
-    """What verifies the blocks: `start(header)` in each process, then `work(text, number)`.
-
-    Processes are started only if there are `least` blocks for each. `share(engine, workers, header,
-    blocks)` starts them and yields what they say of the blocks, in order.
-    """
-
-    start: Callable[[str], None]
-    work: Callable[[str, int], str | None]
-    least: int
-    share: Share = on_processes
+def _become_worker(verifier: Callable[[str], Verifier], header: str) -> None:
+    """The first thing that a worker process does; no other process may do it."""
+    global _of_this_worker
+    if parent_process() is None or _of_this_worker is not None:
+        raise RuntimeError("only a new worker process may keep the verifier of a file")
+    _of_this_worker = verifier(header)
 
 
-def _here(engine: Engine, header: str, blocks: Iterator[tuple[str, int]]) -> Said:
-    engine.start(header)
-    for text, number in blocks:
-        yield engine.work(text, number)
+def _in_worker(text: str, number: int) -> str | None:
+    """What a worker process does with each part."""
+    if _of_this_worker is None:
+        raise RuntimeError("this process is not a worker of a check")
+    return _of_this_worker.refusal(text, number)
 
 
-INTEGERS = Engine(start_worker, check_line, 1)
+class IntegerVerifier:
+    """Verifies the blocks of one file in integers."""
+
+    def __init__(self, header: str) -> None:
+        self.sheet = CompactSheet(read_header(header))
+
+    def refusal(self, text: str, number: int) -> str | None:
+        """Verify one block: None, or why it does not hold."""
+        try:
+            with refusing(f"in block {number}"):
+                self.sheet.check_block(self.sheet.decode(text, number))
+        except CertificateError as error:
+            return str(error)
+        return None
+
+
+INTEGERS = Engine(IntegerVerifier, 1, on_processes)
 """All in integers, by the standard library alone."""
 
 
@@ -141,7 +166,7 @@ def _check_blocks(
     if workers > 1 and blocks >= engine.least * workers:
         said = engine.share(engine, workers, header, there())
     else:
-        said = _here(engine, header, there())
+        said = here(engine, header, there())
     with closing(said):
         for reason in said:
             if reason is not None:

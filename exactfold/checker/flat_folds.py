@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Iterable
 from fractions import Fraction
 
 from .linear import kernel, matrix_of, rational_sqrt
 from .sheet import Edge, Sheet
 
+MOST_KNOWN = 4096
+"""So many answers of `forced_flat` a sheet remembers at a time."""
 
-@functools.lru_cache(maxsize=4096)  # many branches ask with the same signs
+
 def flat_at(
     sheet: Sheet, vertex: int, folds: tuple[Edge, ...], signs: tuple[int | None, ...]
 ) -> list[Edge]:
-    """The answer of `forced_flat`, remembered."""
-    return forced_flat(sheet, vertex, folds, signs)
+    """The answer of `forced_flat`, which the sheet remembers: many branches ask the same."""
+    known, question = sheet.forced_flat, (vertex, folds, signs)
+    if question not in known:
+        if len(known) >= MOST_KNOWN:
+            known.clear()
+        known[question] = forced_flat(sheet, vertex, folds, signs)
+    return known[question]
 
 
 def forced_flat(

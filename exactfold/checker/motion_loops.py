@@ -9,11 +9,11 @@ makes loops that are given a matching, complete if all 2^(n + 1) names occur in 
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from contextlib import closing
 from typing import Any
 
-from .compact import Engine, Share, on_processes
+from .compact import Engine, Share, here, on_processes
 from .compact_lines import read_object
 from .formats import LOOPS, LOOPS_VERSION
 from .motion import check_steps, framework, walked
@@ -94,28 +94,21 @@ class LoopSheet:
 
 # --- files ---------------------------------------------------------------------------------------
 
-_sheet: LoopSheet | None = None  # of a worker process
 
+class LoopVerifier:
+    """Verifies the loops of one file."""
 
-def start_worker(header: str) -> None:
-    """Rebuild the sheet in a worker process."""
-    global _sheet
-    _sheet = LoopSheet(read_header(header))
+    def __init__(self, header: str) -> None:
+        self.sheet = LoopSheet(read_header(header))
 
-
-def check_line(text: str, number: int) -> str | None:
-    """Verify one loop in a worker process: None, or why it does not hold."""
-    if _sheet is None:
-        raise RuntimeError("the worker was not started")
-    try:
-        with refusing():
-            _sheet.check_loop(read_object(text, "a loop"))
-    except CertificateError as error:
-        return f"loop {number}: {error}"
-    return None
-
-
-ENGINE = Engine(start_worker, check_line, 1)
+    def refusal(self, text: str, number: int) -> str | None:
+        """Verify one loop: None, or why it does not hold."""
+        try:
+            with refusing():
+                self.sheet.check_loop(read_object(text, "a loop"))
+        except CertificateError as error:
+            return f"loop {number}: {error}"
+        return None
 
 
 class Matching:
@@ -168,7 +161,11 @@ def check_lines(
         except (CertificateError, FormatError) as error:
             late.append(error)
 
-    said = share(ENGINE, workers, first, loops()) if workers > 1 else _here(first, loops())
+    engine = Engine(LoopVerifier, 1, share)
+    if workers > 1:
+        said = engine.share(engine, workers, first, loops())
+    else:
+        said = here(engine, first, loops())
     with closing(said):
         for reason in said:
             if reason is not None:
@@ -191,12 +188,6 @@ def check_lines(
         claim = claims[key]
         require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
     return facts
-
-
-def _here(header: str, lines: Iterator[tuple[str, int]]) -> Generator[str | None, None, None]:
-    start_worker(header)
-    for text, number in lines:
-        yield check_line(text, number)
 
 
 def summary(claims: dict[str, Any]) -> str:

@@ -28,6 +28,7 @@ class Sheet:
         self.points = points
         self.next: dict[int, dict[int, int]] = {v: {} for v in points}
         self._forms: dict[int, Form] = {}
+        self.forced_flat: dict[tuple[object, ...], list[Edge]] = {}  # kept by `flat_folds.flat_at`
         for a, b, c in triangles:
             require(len({a, b, c}) == 3 and {a, b, c} <= points.keys(), f"bad face {(a, b, c)}")
             require(turn(points[a], points[b], points[c]) > 0, f"face {(a, b, c)} is not positive")

@@ -42,7 +42,7 @@ def check_compact(
     Raises `checker.CertificateError` if a claim is not supported, `CertificateFormatError` if the
     file is not a compact certificate or was altered, `UnreadableFileError`, `WorkerDiedError`.
     """
-    engine = _FLOATS if fast else compact.INTEGERS._replace(share=shared)
+    engine = FLOATS if fast else compact.INTEGERS._replace(share=shared)
     name = path if name is None else name
     try:
         return compact.check(os.fspath(path), workers, engine)
@@ -107,20 +107,9 @@ class FastChecker:
         return None
 
 
-_fast: FastChecker | None = None  # of a worker process
+def _fast(header: str) -> FastChecker:
+    return FastChecker(CompactSheet(read_header(header)))
 
 
-def start_fast_worker(header: str) -> None:
-    """Rebuild the sheet in a worker process."""
-    global _fast
-    _fast = FastChecker(CompactSheet(read_header(header)))
-
-
-def check_line_fast(text: str, number: int) -> str | None:
-    """Verify one block in a worker process: None, or why it does not hold."""
-    if _fast is None:
-        raise RuntimeError("the worker was not started")
-    return _fast.refusal(text, number)
-
-
-_FLOATS = compact.Engine(start_fast_worker, check_line_fast, LEAST, shared)
+FLOATS = compact.Engine(_fast, LEAST, shared)
+"""In floats first, by `FastChecker`."""

@@ -9,20 +9,23 @@ from exactfold.crew import in_order
 
 
 class _Started:
-    """What each process does with blocks: the start once, then the work."""
+    """What each process does with parts: it makes its own verifier of the file, then asks it.
+
+    The verifier is in the copy that a worker process was sent, and goes with this process.
+    """
 
     def __init__(self, engine: compact.Engine, header: str) -> None:
-        self.engine, self.header, self.started = engine, header, False
+        self.engine, self.header = engine, header
+        self.verifier: compact.Verifier | None = None
 
-    def __call__(self, block: tuple[str, int]) -> str | None:
-        if not self.started:
-            self.engine.start(self.header)
-            self.started = True
-        return self.engine.work(*block)
+    def __call__(self, part: tuple[str, int]) -> str | None:
+        if self.verifier is None:
+            self.verifier = self.engine.verifier(self.header)
+        return self.verifier.refusal(*part)
 
 
 def shared(
-    engine: compact.Engine, workers: int, header: str, blocks: Iterator[tuple[str, int]]
+    engine: compact.Engine, workers: int, header: str, parts: Iterator[tuple[str, int]]
 ) -> compact.Said:
     """Parts of a file checked in several processes, in their order; raises as `in_order`."""
-    return in_order(workers, _Started(engine, header), blocks, 3)
+    return in_order(workers, _Started(engine, header), parts, 3)

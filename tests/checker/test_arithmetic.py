@@ -339,6 +339,20 @@ def test_flat_folds_of_a_cross_and_of_a_generic_vertex() -> None:
         assert set(flat_folds.flat_at(sheet, 4, folds, signs)) == expected
 
 
+def test_a_sheet_remembers_which_folds_are_flat_up_to_a_limit(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(flat_folds, "MOST_KNOWN", 2)
+    sheet, _ = read_sheet(given("listing-cross")["pattern"])
+    folds = ((0, 4), (1, 4), (2, 4), (3, 4))
+    for side, most in ((1, 1), (0, 2), (0, 2), (-1, 1), (0, 2)):
+        signs = (side, None, None, None)
+        first = flat_folds.flat_at(sheet, 4, folds, signs)
+        assert first == flat_folds.forced_flat(sheet, 4, folds, signs)
+        assert flat_folds.flat_at(sheet, 4, folds, signs) is first
+        assert len(sheet.forced_flat) == most
+
+
 def random_star(source: random.Random, spokes: int) -> Sheet:
     """A vertex 0 with as many neighbours around it, all angles below pi."""
     while True:

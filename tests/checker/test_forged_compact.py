@@ -253,35 +253,52 @@ def test_every_claim_is_compared() -> None:
 # --- workers -------------------------------------------------------------------------------------
 
 
-def test_a_worker_that_was_not_started_checks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compact, "_sheet", None)
-    with pytest.raises(RuntimeError, match="the worker was not started"):
-        compact.check_line("{}", 0)
+def test_only_a_new_worker_keeps_the_verifier_of_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    header, text = (json.dumps(part) for part in given_lines(FOUR)[:2])
+    not_kept = "only a new worker process may keep the verifier of a file"
+    with pytest.raises(RuntimeError, match=not_kept):
+        compact._become_worker(compact.IntegerVerifier, header)
+    with pytest.raises(RuntimeError, match="this process is not a worker of a check"):
+        compact._in_worker(text, 0)
+    monkeypatch.setattr(compact, "parent_process", lambda: "as in a worker")
+    monkeypatch.setattr(compact, "_of_this_worker", None)  # forgotten after the test
+    compact._become_worker(compact.IntegerVerifier, header)
+    assert compact._in_worker(text, 0) is None
+    with pytest.raises(RuntimeError, match=not_kept):
+        compact._become_worker(compact.IntegerVerifier, header)
 
 
-def test_what_workers_answer() -> None:
+def test_what_verifiers_answer() -> None:
     parts = given_lines(FOUR)
-    compact.start_worker(json.dumps(parts[0]))
+    verifier = compact.IntegerVerifier(json.dumps(parts[0]))
     text = json.dumps(parts[2])
-    assert compact.check_line(text, 1) is None
-    assert compact.check_line(text, 0) == "block 0 is expected, but here is block 1"
+    assert verifier.refusal(text, 1) is None
+    assert verifier.refusal(text, 0) == "block 0 is expected, but here is block 1"
     bad = json.dumps({**parts[2], "open": [["a", "b"]]})
-    assert compact.check_line(bad, 1) == "malformed: TypeError in block 1"
+    assert verifier.refusal(bad, 1) == "malformed: TypeError in block 1"
 
 
 def test_engines_may_be_others() -> None:
     started, seen = [], []
 
-    def work(text: str, number: int) -> str | None:
-        seen.append((json.loads(text)["block"], number))
-        return "no" if number == 2 else None
+    class Verifier:
+        def __init__(self, header: str) -> None:
+            started.append(header)
 
-    engine = compact.Engine(started.append, work, 1)
+        def refusal(self, text: str, number: int) -> str | None:
+            seen.append((json.loads(text)["block"], number))
+            return "no" if number == 2 else None
+
+    engine = compact.Engine(Verifier, 1, compact.on_processes)
     with pytest.raises(CertificateError, match=r"^no$"):
         compact.check(str(FIXTURES / f"{FOUR}.txt"), 1, engine)
     assert seen == [(0, 0), (1, 1), (2, 2)]
     assert [json.loads(text) for text in started] == given_lines(FOUR)[:1]
-    engine = compact.Engine(started.append, lambda text, number: None, 5)
+
+    def share(*_: object) -> compact.Said:
+        raise AssertionError("processes are started")
+
+    engine = compact.INTEGERS._replace(least=5, share=share)
     claims = checker.verify(FIXTURES / f"{FOUR}.txt", 2, engine)  # too few blocks for processes
     assert claims == given_lines(FOUR)[-1]["claims"]
     assert base64.b64decode(given_lines(FOUR)[1]["radii"])

@@ -184,10 +184,6 @@ def test_several_processes_say_the_same() -> None:
     parts[1]["length"] = "100"
     with pytest.raises(CertificateError, match=r"^loop 0: it is shorter than claimed$"):
         motion_loops.check_lines(lines(io.BytesIO(chained(parts))), 2)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(motion_loops, "_sheet", None)
-        with pytest.raises(RuntimeError):
-            motion_loops.check_line("{}", 0)
 
 
 def test_keys() -> None:
