@@ -139,6 +139,19 @@ def integer(value: Any) -> int:
     return value
 
 
+def same(claim: Any, fact: Any) -> bool:
+    """Whether a claim equals a fact, and holds integers where the fact does, not true or false."""
+    if isinstance(fact, dict):
+        return (
+            isinstance(claim, dict)
+            and claim.keys() == fact.keys()
+            and all(same(claim[key], fact[key]) for key in fact)
+        )
+    if isinstance(fact, list):
+        return isinstance(claim, list) and len(claim) == len(fact) and all(map(same, claim, fact))
+    return type(claim) is type(fact) and bool(claim == fact)
+
+
 def text_of(value: Any) -> str:
     """`value` if it is a string."""
     if not isinstance(value, str):
