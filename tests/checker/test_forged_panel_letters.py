@@ -73,7 +73,10 @@ def test_what_is_said(name: str, text: str) -> None:
 
 def test_what_is_said_of_the_first_order_and_of_no_letter() -> None:
     claims = verified(given("starting-part"))
-    assert "; to first order 2 can fold together, 2 never; sha256" in checker.summary(claims)
+    assert (
+        "; to first order 2 are shown to fold together, 2 never to fold; sha256"
+        in checker.summary(claims)
+    )
     claims = verified(moving("flat", [None], "UFU"))
     assert checker.summary(claims).startswith("VALID: no fold of 3 folds is asked to fold; sha256")
 
@@ -396,6 +399,27 @@ def test_folds_that_never_fold_are_shown_to_stay_flat() -> None:
     stopped(document, "step 0: the sum at fold 1-4 is on the wrong side")
 
 
+@pytest.mark.parametrize("letters", ["UFU", "UUU"])
+def test_folds_that_are_not_asked_to_fold_are_none_that_never_do(letters: str) -> None:
+    document = moving("flat", [None], letters)
+    document["claims"]["never"] = [[1, 4]]
+    stopped(document, "fold 1-4 is no mountain or valley")
+
+
+@pytest.mark.parametrize(
+    "claims",
+    [
+        {"together": [[1, 4]]},
+        {"together": []},
+        {"never": [[2, 4]]},
+        {"never": []},
+    ],
+)
+def test_all_folds_are_listed_that_are_shown_to_go_together_or_never(claims: Document) -> None:
+    stopped(part(**claims), "not all folds that are shown to go together, or never, are listed")
+    verified(part(**NOTHING))
+
+
 def test_a_motion_shows_that_folds_go_together() -> None:
     densities = part()["evidence"]["densities"]
     turned = [[i, j, [str(-int(x))]] for i, j, [x] in densities]
@@ -406,7 +430,7 @@ def test_a_motion_shows_that_folds_go_together() -> None:
     longer = [[i, j, [str(2 * int(x))]], *densities[1:]]
     stopped(part(densities=longer), "the folds at vertex 4 do not close")
     stopped(part(densities=[], together=[[1, 4]]), "fold 1-4 does not go its way")
-    stopped(part(together=[[0, 4], [1, 4]]), "fold 0-4 does not go its way")
+    stopped(part(together=[[0, 4], [1, 4], [3, 4]]), "fold 0-4 does not go its way")
     document = part(together=[[1, 4]])
     document["claims"]["letters"] = "MUVU"
     stopped(document, "fold 1-4 does not go its way")
