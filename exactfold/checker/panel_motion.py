@@ -100,10 +100,10 @@ class Panels(FacePairs):
         sheet = drive.sheet
         faces: list[Triangle] = []
         names: list[tuple[int, ...]] = []
-        self.triangles: dict[frozenset[int], list[Triangle]] = {}
+        self.triangles: dict[tuple[int, ...], list[Triangle]] = {}
         for panel in sheet.panels:
             some = cut(sheet, panel)
-            self.triangles[frozenset(panel)] = some
+            self.triangles[_from_least(panel)] = some
             faces += some
             names += [panel] * len(some)
         body = dict(zip(sheet.panels, places.bodies, strict=True))
@@ -114,17 +114,26 @@ class Panels(FacePairs):
 
 
 def _check_crossing(panels: Panels, places: Places, end: Fraction, claim: Any) -> None:
-    """An edge of one of two panels runs through the other at the parameter `end`."""
+    """An edge of one of two panels runs through the other at the parameter `end`.
+
+    Each has its corners, counter-clockwise from any of them.
+    """
     require(claim["folds"] == [], "a contact has no folds")
     touching = []
     for face in items(claim["faces"], "faces", 2):
-        corners = frozenset(natural(v, "corner") for v in items(face, "face"))
+        corners = _from_least(tuple(natural(v, "corner") for v in items(face, "face")))
         touching.append(panels.triangles.get(corners, []))
     piece = places.piece(end - end / (1 << 20), end)
     through = piece is not None and any(
         panels.crossing(piece, end, a, b) for a in touching[0] for b in touching[1]
     )
     require(through, "no side runs through the other panel")
+
+
+def _from_least(corners: tuple[int, ...]) -> tuple[int, ...]:
+    """The same corners in the same order round a panel, the one with the smallest number first."""
+    first = corners.index(min(corners))
+    return corners[first:] + corners[:first]
 
 
 def _check_closing(drive: Drive, clock: Clock, claim: Any) -> None:
@@ -134,6 +143,7 @@ def _check_closing(drive: Drive, clock: Clock, claim: Any) -> None:
         tuple(natural(v, "vertex") for v in items(fold, "fold", 2))
         for fold in items(claim["folds"], "folds")
     ]
+    require(len(set(folds)) == len(folds), "a fold that closes is named twice")
     modes = [mode for mode in drive.modes if mode.linear and clock.closes(mode.driver)]
     closed = {fold for mode in modes for fold in mode.folds}
     require(closed.issuperset(folds), "a fold is not known to close")

@@ -264,6 +264,22 @@ def test_what_is_no_panel_or_fold() -> None:
 
     stopped(forged("closing", other_fold), "a fold is not known to close")
 
+    def fold_twice(claims: Document, evidence: Document) -> None:
+        claims["contact"]["folds"] = claims["contact"]["folds"][:1] * 2
+
+    stopped(forged("closing", fold_twice), "a fold that closes is named twice")
+
+
+@pytest.mark.parametrize("corners", [[0, 2, 3, 1, 1], [0, 0, 2, 3, 1], [0, 3, 2, 1], [1, 3, 2, 0]])
+def test_a_panel_that_touches_has_each_corner_once_and_in_order(corners: list[int]) -> None:
+    def changed(claims: Document, evidence: Document) -> None:
+        claims["contact"]["faces"][0] = corners
+
+    document = forged("flaps", changed)
+    stopped(document, "no side runs through the other panel")
+    document["claims"]["contact"]["faces"][0] = [3, 1, 0, 2]
+    assert "3-1-0-2 and 4-6-7-5 do by" in checker.summary(verified(document))
+
 
 def test_keys() -> None:
     for name, place, message in (
