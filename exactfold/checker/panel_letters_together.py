@@ -20,8 +20,9 @@ def check_never(
 ) -> bool:
     """Verify that folds stay flat in all these motions: as vectors show, one after the other.
 
-    Returns whether all folds with a letter of which this is shown are claimed. The sums of a step are 0 at free folds and not on the side of the letter at others; those that
-    are not 0 show that their folds stay flat, and later sums at these may be anything.
+    The sums of a step are 0 at free folds and not on the side of the letter at others; those that
+    are not 0 show that their folds stay flat, and later sums at these may be anything. Returns
+    whether all folds with a letter of which this is shown are claimed.
     """
     live = {pair(v, u) for v, around in near.items() for u in around}
     flat = {e for e in wanted if e not in live and not sheet.border.issuperset(e)}
