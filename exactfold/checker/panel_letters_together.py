@@ -11,7 +11,7 @@ from typing import Any
 
 from .panel_letters_refuted import SIDES, numbers
 from .panel_sheet import Edge, Near, PanelSheet, pair, read_edges
-from .reading import items, require
+from .reading import items, natural, require
 from .towers import Number
 
 
@@ -30,7 +30,7 @@ def check_never(
         total: dict[Edge, Number] = {}
         for v, values in items(step, "a step"):
             x, y = numbers(sheet, values, 2)
-            for u in near[v]:
+            for u in near[natural(v, "a vertex")]:
                 a, b = sheet.vector(v, u)
                 fold, value = pair(v, u), x * a + y * b
                 total[fold] = total[fold] + value if fold in total else value
@@ -56,7 +56,8 @@ def check_together(
     live = {pair(v, u) for v, around in near.items() for u in around}
     densities: dict[Edge, Number] = {}
     for entry in given:
-        i, j, value = items(entry, "a density", 3)
+        *ends, value = items(entry, "a density", 3)
+        i, j = (natural(v, "a vertex") for v in ends)
         require((i, j) in live, f"fold {i}-{j} has a density and is flat or free")
         (densities[i, j],) = numbers(sheet, [value], 1)
         against = densities[i, j].sign() == -SIDES.get(wanted[i, j], 0) != 0

@@ -111,7 +111,11 @@ def test_keys_of_motions() -> None:
     [
         ([["refuted", 7]], "malformed: IndexError while checking"),
         ([["at", 0]], "malformed: KeyError while checking"),
-        ([["at", [9]]], "malformed: TypeError while checking"),
+        ([["at", [9]]], "a vertex is not a natural number"),
+        ([["at", True]], "a vertex is not a natural number"),
+        ([["split", True]], "a vertex is not a natural number"),
+        ([["curved", True]], "a vertex is not a natural number"),
+        ([["flat", True, 4]], "a vertex is not a natural number"),
         ([[]], "malformed: ValueError while checking"),
         (["at"], "a step is not a list"),
         ([["level", 9]], "a step of the tree is 'level'"),
@@ -447,3 +451,18 @@ def test_a_fold_that_stays_flat_has_no_density() -> None:
 def test_folds_are_sorted() -> None:
     refused(part(never=[[2, 4], [0, 4]]), "never are not sorted")
     refused(part(together=[[1, 4], [1, 4]]), "together are not sorted")
+
+
+def test_numbers_are_not_truth_values() -> None:
+    """Python takes True for 1."""
+    message = "a vertex is not a natural number"
+    refused(part(densities=[[True, 4, ["1"]], [3, 4, ["1"]]]), message)
+    refused(part(flat=[[[True, [["1"], ["0"]]]]]), message)
+    for key in ("planes", "heights"):
+        entry = {"signs": [], "planes": [], "heights": [], key: [[True, [["1"], ["0"]]]]}
+        refused(part(refuted=[entry]), message)
+    refused(
+        part(refuted=[{"signs": [[4, True]], "planes": [], "heights": []}]),
+        "True is not an integer",
+    )
+    refused(part(refuted=[{"signs": [[True, 1]], "planes": [], "heights": []}]), message)
