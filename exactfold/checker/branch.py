@@ -178,7 +178,9 @@ def summary(claims: dict[str, Any]) -> str:
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
     shown = signs if len(signs) <= 60 else signs[:60] + "..."
     decided = len(claims["assignment"]) - claims["assignment"].count("U")
-    what = "shape with these angle deficits" if "curvature" in claims else "branch"
+    what = "solution over the border in the file" if claims["gauge"] == "rim" else "branch"
+    if "curvature" in claims:
+        what = "shape over the border in the file, with these angle deficits,"
     return (
         f"VALID: exactly one {what} has the vertex signs {shown} ({len(signs)}); "
         f"{decided} of {len(claims['assignment'])} letters decided; sha256 {claims['sha256']}"

@@ -40,7 +40,9 @@ class RootClass:
         require(all(len(w) < len(self.p) for w in self.w), "a numerator has too high a degree")
         flat = set(items(entry["flat"], "flat vertices"))
         require(
-            len(flat) == len(entry["flat"]) and flat <= set(system.sheet.interior),
+            len(flat) == len(entry["flat"])
+            and all(type(v) is int for v in flat)
+            and flat <= set(system.sheet.interior),
             "the flat vertices are no inner vertices, or appear twice",
         )
         z = [*self.w, self.slope]

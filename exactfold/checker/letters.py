@@ -18,7 +18,7 @@ from .branch import Place
 from .branch_proof import Proof
 from .formats import LETTERS, LETTERS_VERSION
 from .letters_refuted import Signs, Stars
-from .reading import counted, document, integer, items, keys, refusing, require
+from .reading import counted, document, integer, items, keys, natural, refusing, require
 from .sheet import Edge, read_sheet
 
 Half = tuple[tuple[int, ...], int]
@@ -97,7 +97,8 @@ class _Search:
         stack: list[Signs] = [{}]
         for step in tree:
             signs = stack.pop()
-            kind, *at = items(step, "a step")
+            kind, *given = items(step, "a step")
+            at = [natural(k, "a number of a step") for k in given]
             if kind == "leaf":
                 require(self.place.fixed, "a leaf needs a sheet with four corners")
                 require(signs.keys() == self.inside, "a leaf has not the signs of all vertices")

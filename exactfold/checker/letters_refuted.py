@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from .reading import items, keys, parse_integer, require
+from .reading import items, keys, natural, parse_integer, require
 from .sheet import Edge, Sheet, turn
 
 Signs = dict[int, int]
@@ -34,8 +34,8 @@ class Stars:
         keys(entry, "signs heights", name)
         signs: Signs = {}
         for v, sign in items(entry["signs"], "signs"):
-            require(sign in (1, -1), f"{name}: {sign!a} is no sign")
-            signs[v] = sign
+            require(type(sign) is int and abs(sign) == 1, f"{name}: {sign!a} is no sign")
+            signs[natural(v, "a vertex")] = sign
         if entry["heights"] is None:
             ((v, sign),) = signs.items()
             require(self._is_bowl(v, sign), f"{name}: the star may be on a solution")
@@ -60,7 +60,7 @@ class Stars:
         """By hub: the heights of its neighbours, as integers, which may be multiplied."""
         heights: dict[int, dict[int, int]] = {}
         for v, star in items(entries, "heights"):
-            ring = self.sheet.star(v)  # a KeyError at the boundary
+            ring = self.sheet.star(natural(v, "a vertex"))  # a KeyError at the boundary
             texts = items(star, "heights of a star", len(ring))
             heights[v] = {w: parse_integer(z) for w, z in zip(ring, texts, strict=True)}
         return heights

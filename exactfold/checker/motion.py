@@ -49,7 +49,8 @@ def read(data: Any) -> dict[str, Any]:
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
-    Returns the claims and the SHA-256 of the pattern. The claims are: the half-branch with these
+    Returns the claims, the SHA-256 of the pattern, and how many `tubes` there are between the first
+    piece and the end, arcs through nodes not counted. The claims are: the half-branch with these
     vertex signs and this side, 1 or -1, is that of one simple branch, and from the flat state on it
     is followed by one analytic curve of configurations, all regular, which is at least `length`
     long in the space of the vertices (unit of the sheet, one triangle held). `side` is the sign of
@@ -113,7 +114,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
         shown_to_be = given_end == (len(tubes) + 1, 0)
         require(shown_to_be, "the motion is not shown to be clear up to its node")
     above = {"pinned": equations.pinned} if heights else {}
-    return {"sha256": digest, "tubes": len(tubes), **above, **claims}
+    passed = len(tubes) - sum(map(is_node, tubes))
+    return {"sha256": digest, "tubes": passed, **above, **claims}
 
 
 def _to_the_node(equations: LengthEquations, path: Path, claim: Any, entry: Any) -> Arc:

@@ -153,7 +153,7 @@ def said(claims: dict[str, Any]) -> str:
     if "contact" not in claims:
         return text
     contact = claims["contact"]
-    last = shown(contact["time"][1])
+    last = shown(contact["time"][1], up=True)
     if contact["kind"] == "contact":
         return f"{text}, {' and '.join(str(tuple(f)) for f in contact['faces'])} do by {last}"
     return f"{text}, the fold {tuple(contact['folds'][0])} is closed by {last}"

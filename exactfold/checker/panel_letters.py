@@ -35,8 +35,9 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
     Returns the claims and the SHA-256 of the pattern. The claims are: whether there is a motion to
     second order with these letters, by fold in lexicographic order, "U" for any; whether true
-    motions begin like this, "undecided" if nothing is claimed; and folds that can go their way
-    together to first order where none goes against its letter, and that never do.
+    motions begin like this, "undecided" if nothing is claimed; and the folds with a letter of which
+    the evidence shows that they can go their way together to first order where none goes against
+    its letter, and that they never do; nothing of these if both lists are empty.
     """
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, "letters starts truly together never", "claims")
@@ -60,9 +61,13 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
         cases = Cases(sheet, near, wanted, true=starts == "proved")
         few = cases.cover(items(evidence["refuted"], "refuted"), items(evidence["tree"], "tree"))
         require(truly == "undecided" or few, "that says nothing of true motions")
-    check_never(sheet, near, wanted, claims["never"], items(evidence["flat"], "flat"))
-    densities = items(evidence["densities"], "densities")
-    check_together(sheet, near, wanted, claims["together"], densities)
+    steps, densities = (items(evidence[key], key) for key in ("flat", "densities"))
+    whole = check_never(sheet, near, wanted, claims["never"], steps)
+    whole = check_together(sheet, near, wanted, claims["together"], densities) and whole
+    listed = claims["together"] or claims["never"]
+    require(
+        whole or not listed, "not all folds that are shown to go together, or never, are listed"
+    )
     return {"sha256": digest, "interior": len(sheet.interior), **claims}
 
 
@@ -76,7 +81,9 @@ def summary(claims: dict[str, Any]) -> str:
     answer = "starts" if claims["starts"] == "proved" else "does not start"
     together, never = len(claims["together"]), len(claims["never"])
     first = (
-        f"; to first order {together} can fold together, {never} never" if together + never else ""
+        f"; to first order {together} are shown to fold together, {never} never to fold"
+        if together + never
+        else ""
     )
     return (
         f"VALID: the sheet of rigid panels {answer} to fold with the {asked} asked for on {folds}, "

@@ -17,7 +17,7 @@ from .panel_lines import Line, lines_at
 from .panel_loops import MOST_ORDER, Loops
 from .panel_modes import Modes, corners_of, name
 from .panel_sheet import Edge, Near, PanelSheet, Vector, cross, pair
-from .reading import items, keys, natural, parse_rational, require
+from .reading import integer, items, keys, natural, parse_rational, require
 from .towers import Number
 
 SIDES = {"V": 1, "M": -1}
@@ -58,7 +58,7 @@ class Cases:
             state = stack.pop()
             kind, *at = items(step, "a step")
             if kind == "split":
-                (v,) = at
+                (v,) = (natural(v, "a vertex") for v in at)
                 stack += [State(state.signs | {v: s}, state.lines, state.sides) for s in (-1, 1)]
             elif kind == "refuted":
                 (k,) = at
@@ -67,20 +67,20 @@ class Cases:
                 require(contained, f"set {k} is not contained in the signs")
                 named |= vertices
             elif kind == "curved":
-                (v,) = at
+                (v,) = (natural(v, "a vertex") for v in at)
                 own = {self.wanted[pair(v, u)] for u in self.near[v]}
                 curved = len(self.near[v]) > 3 and own in ({"M"}, {"V"})
                 require(curved, f"the star of {v} may be on a motion")
                 named.add(v)
             elif kind == "at":
-                (v,) = at
+                (v,) = (natural(v, "a vertex") for v in at)
                 named.add(v)
                 stack += self._chosen(state, v)
             elif kind == "loop":
                 self._check_loop(state, *at)
             else:
                 require(kind == "flat", f"a step of the tree is {kind!a}")
-                i, j = at
+                i, j = (natural(v, "a vertex") for v in at)
                 flat = (i, j) not in self.live and not self.sheet.border.issuperset((i, j))
                 held = flat and self.wanted[i, j] in SIDES
                 require(held, f"fold {i}-{j} may fold, or has no letter")
@@ -133,13 +133,13 @@ class Cases:
         keys(entry, "signs planes heights", what)
         signs: Signs = {}
         for v, sign in items(entry["signs"], "signs"):
-            signs[v] = sign  # those of a case are 1 and -1 only
+            signs[natural(v, "a vertex")] = integer(sign)  # those of a case are 1 and -1 only
         heights: dict[int, dict[int, Number]] = {}
         for v, values in items(entry["planes"], "planes"):
-            y = numbers(self.sheet, values, 2)
-            heights[v] = {u: _product(y, self.sheet.vector(v, u)) for u in self.near[v]}
+            y, near = numbers(self.sheet, values, 2), self.near[natural(v, "a vertex")]
+            heights[v] = {u: _product(y, self.sheet.vector(v, u)) for u in near}
         for v, values in items(entry["heights"], "heights"):
-            around = sorted(self.near[v])
+            around = sorted(self.near[natural(v, "a vertex")])
             heights[v] = dict(zip(around, numbers(self.sheet, values, len(around)), strict=True))
             self._check_nappe(v, signs[v], heights[v], what)
         strict = False

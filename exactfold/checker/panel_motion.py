@@ -8,7 +8,6 @@ another, or folds are closed (docs/panel_motion.md, 5 and 6).
 from __future__ import annotations
 
 from fractions import Fraction
-from math import degrees
 from typing import Any
 
 from .formats import MOST_TESTS, PANEL_MOTION, PANEL_MOTION_VERSION, RATED_VERSION
@@ -19,7 +18,17 @@ from .panel_drive import Drive
 from .panel_places import Piece, Places, shrunk
 from .panel_sheet import read_panels
 from .panel_times import Clock, OneRate, Rates, time_of
-from .reading import counted, document, items, keys, natural, parse_rational, refusing, require
+from .reading import (
+    counted,
+    document,
+    items,
+    keys,
+    natural,
+    parse_rational,
+    refusing,
+    require,
+    rounded,
+)
 
 _NARROWEST = 1 << GRID - 15
 _NAMED = 3
@@ -100,10 +109,10 @@ class Panels(FacePairs):
         sheet = drive.sheet
         faces: list[Triangle] = []
         names: list[tuple[int, ...]] = []
-        self.triangles: dict[frozenset[int], list[Triangle]] = {}
+        self.triangles: dict[tuple[int, ...], list[Triangle]] = {}
         for panel in sheet.panels:
             some = cut(sheet, panel)
-            self.triangles[frozenset(panel)] = some
+            self.triangles[_from_least(panel)] = some
             faces += some
             names += [panel] * len(some)
         body = dict(zip(sheet.panels, places.bodies, strict=True))
@@ -114,17 +123,26 @@ class Panels(FacePairs):
 
 
 def _check_crossing(panels: Panels, places: Places, end: Fraction, claim: Any) -> None:
-    """An edge of one of two panels runs through the other at the parameter `end`."""
+    """An edge of one of two panels runs through the other at the parameter `end`.
+
+    Each has its corners, counter-clockwise from any of them.
+    """
     require(claim["folds"] == [], "a contact has no folds")
     touching = []
     for face in items(claim["faces"], "faces", 2):
-        corners = frozenset(natural(v, "corner") for v in items(face, "face"))
+        corners = _from_least(tuple(natural(v, "corner") for v in items(face, "face")))
         touching.append(panels.triangles.get(corners, []))
     piece = places.piece(end - end / (1 << 20), end)
     through = piece is not None and any(
         panels.crossing(piece, end, a, b) for a in touching[0] for b in touching[1]
     )
     require(through, "no side runs through the other panel")
+
+
+def _from_least(corners: tuple[int, ...]) -> tuple[int, ...]:
+    """The same corners in the same order round a panel, the one with the smallest number first."""
+    first = corners.index(min(corners))
+    return corners[first:] + corners[:first]
 
 
 def _check_closing(drive: Drive, clock: Clock, claim: Any) -> None:
@@ -134,6 +152,7 @@ def _check_closing(drive: Drive, clock: Clock, claim: Any) -> None:
         tuple(natural(v, "vertex") for v in items(fold, "fold", 2))
         for fold in items(claim["folds"], "folds")
     ]
+    require(len(set(folds)) == len(folds), "a fold that closes is named twice")
     modes = [mode for mode in drive.modes if mode.linear and clock.closes(mode.driver)]
     closed = {fold for mode in modes for fold in mode.folds}
     require(closed.issuperset(folds), "a fold is not known to close")
@@ -146,13 +165,13 @@ def summary(claims: dict[str, Any]) -> str:
     drivers = ", ".join(f"{i}-{j}" for i, j in claims["drivers"][:_NAMED])
     more = f" and {len(claims['drivers']) - _NAMED} more" if claims["drivers"][_NAMED:] else ""
     rates = " at rates of their own" if "rates" in claims else ""
-    times = [
-        float(parse_rational(t))
-        for t in ([claims["clear"]] if contact is None else contact["time"])
+    times = [parse_rational(t) for t in ([claims["clear"]] if contact is None else contact["time"])]
+    pi = time_of(Fraction(1))
+    turns = [
+        bound(180 * t / end for end in pi) for t, bound in zip(times, (min, max), strict=False)
     ]
     angles = [
-        f"{t} ({a} degrees)"
-        for t, a in zip(_told_apart(times), _told_apart(list(map(degrees, times))), strict=True)
+        f"{t} ({a} degrees)" for t, a in zip(_told_apart(times), _told_apart(turns), strict=True)
     ]
     text = (
         f"VALID: the panels fold, {number} of {len(letters)}, driven by {drivers}{more}{rates}; "
@@ -166,10 +185,13 @@ def summary(claims: dict[str, Any]) -> str:
     return f"{text}; sha256 {claims['sha256']}"
 
 
-def _told_apart(values: list[float]) -> list[str]:
-    """Numbers with six digits, or as many as it takes to make them different."""
+def _told_apart(values: list[Fraction]) -> list[str]:
+    """Numbers with six digits, or as many as make them different: the first rounded down, then up.
+
+    They are bounds, from below and from above.
+    """
     for digits in range(6, 17):
-        found = [f"{value:.{digits}g}" for value in values]
+        found = [rounded(value, digits, up=k > 0) for k, value in enumerate(values)]
         if len(set(found)) == len(found):
             break
     return found

@@ -18,7 +18,7 @@ from .panel_leaves import Verified, verified_part
 from .panel_loops import MOST_ORDER, Loops
 from .panel_modes import Modes, Support, corners_of, name, named
 from .panel_sheet import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
-from .reading import FormatError, counted, document, items, keys, natural, refusing, require
+from .reading import FormatError, counted, document, items, keys, natural, refusing, require, same
 
 MOST_LISTED = 1 << 12  # modes of one support that are looked at one by one
 MOST_SUPPORTS = 1 << 15
@@ -84,7 +84,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     if claims["rigid"] == "undecided":  # which claims nothing
         facts["rigid"] = "undecided"
     for key, fact in facts.items():
-        require(_same(claims[key], fact), f"claim {key} = {claims[key]!a}, but it is {fact!a}")
+        require(same(claims[key], fact), f"claim {key} = {claims[key]!a}, but it is {fact!a}")
     return dict(claims)
 
 
@@ -92,19 +92,6 @@ def _rigid(second: dict[str, int], true: dict[str, int] | None, moves: object) -
     if set(second) == {"0"} or (true is not None and set(true) == {"0"}):
         return "proved"
     return "refuted" if moves else "undecided"
-
-
-def _same(claim: Any, fact: Any) -> bool:
-    """Equal, and whole numbers where there are whole numbers."""
-    if isinstance(fact, dict):
-        return (
-            isinstance(claim, dict)
-            and claim.keys() == fact.keys()
-            and all(_same(claim[key], fact[key]) for key in fact)
-        )
-    if isinstance(fact, list):
-        return isinstance(claim, list) and len(claim) == len(fact) and all(map(_same, claim, fact))
-    return type(claim) is type(fact) and bool(claim == fact)
 
 
 def _parts(sheet: PanelSheet, large: list[Near], given: list[Any]) -> list[Verified]:
@@ -145,7 +132,7 @@ def _paired(found: Sequence[Support], given: list[Any]) -> list[tuple[Support, d
         require(folds in entries, f"{named(support)} is missing")
         for key, fact in (("vertices", list(support.vertices)), ("count", support.count)):
             claim = entries.get(folds, {}).get(key, fact)
-            require(_same(claim, fact), f"{key} of {named(support)}: {claim!a}, but it is {fact!a}")
+            require(same(claim, fact), f"{key} of {named(support)}: {claim!a}, but it is {fact!a}")
     return [(support, entries[folds]) for folds, support in known.items() if folds in entries]
 
 
@@ -166,7 +153,7 @@ def _extending(loops: Loops, support: Support, entry: dict[str, Any]) -> tuple[i
         ]
         good = sum(verdict is True for verdict in verdicts)
     shown = f"{good} modes of {named(support)} extend, not {number!a}"
-    require(number is None or _same(number, good), shown)
+    require(number is None or same(number, good), shown)
     return good, number is not None
 
 

@@ -19,12 +19,13 @@ from .formats import PIECES, PIECES_VERSION
 from .panel_sheet import PanelSheet, pair
 from .panel_spaces import Spaces
 from .pieces_flat import Signs, solutions
-from .reading import counted, document, items, keys, natural, refusing, require
+from .reading import counted, document, items, keys, natural, refusing, require, same
 from .reduced import check_convex
 from .sheet import read_sheet
 from .towers import Tower
 
 MOST_VERTICES = 16
+_REFLECTED = str.maketrans("+-", "-+")
 Cube = tuple[int, int]
 """All sign vectors that agree with the second number on the bits of the first."""
 
@@ -38,10 +39,11 @@ def read(data: Any) -> dict[str, Any]:
 def check(data: dict[str, Any]) -> dict[str, Any]:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
-    Returns the claims and the SHA-256 of the pattern. The claims are: `vertices` can pop; the
-    solutions, without the flat state, fall into `at_least` to `at_most` pieces; each of `joints` is
-    the signs of a solution, "0" at flat stars, up to reflection; no others join sign vectors that
-    differ at one vertex of `complete` only.
+    Returns the claims, the SHA-256 of the pattern, and the `chord` that joins all, if there is one.
+    The claims are: `vertices` can pop; the solutions, without the flat state, fall into `at_least`
+    to `at_most` pieces; `joints` are the signs of all solutions with flat stars that the evidence
+    shows, "0" at these stars, each up to reflection, and none that joins only what another joins;
+    no others join sign vectors that differ at one vertex of `complete` only.
     """
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
@@ -51,9 +53,10 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     require(len(place.sheet.boundary) > 4, "there are fewer than five boundary vertices")
     check_convex(place.sheet)
     search = _Search(place)
-    require(claims["vertices"] == search.vertices, "other vertices can pop")
-    if evidence["chord"] is not None:
-        i, j = items(evidence["chord"], "chord", 2)
+    require(same(claims["vertices"], search.vertices), "other vertices can pop")
+    chord = evidence["chord"]
+    if chord is not None:
+        i, j = (natural(v, "a vertex") for v in items(chord, "chord", 2))
         require((i, j) in search.chords, "no fold from border to border is named")
         low = high = 1
     else:
@@ -61,12 +64,25 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
         for entry in items(evidence["flat"], "flat"):
             search.hold(entry)
         low, high = search.bounds()
-    for text in items(claims["joints"], "joints"):
-        require(text in search.joints, f"the joint {text!a} is not shown")
-    require(claims["complete"] == sorted(search.complete), "other vertices are complete")
+    _check_joints(items(claims["joints"], "joints"), search)
+    complete = same(claims["complete"], sorted(search.complete))
+    require(complete, "other vertices are complete")
     shown = f"the evidence shows {low} to {high} pieces"
-    require((claims["at_least"], claims["at_most"]) == (low, high), shown)
-    return {"sha256": digest, "interior": len(given.interior), **claims}
+    require(same([claims["at_least"], claims["at_most"]], [low, high]), shown)
+    more = {} if chord is None else {"chord": chord}
+    return {"sha256": digest, "interior": len(given.interior), **more, **claims}
+
+
+def _check_joints(listed: list[Any], search: _Search) -> None:
+    """The joints that are listed are the largest that are shown, each once up to reflection."""
+    largest = search.largest()
+    known: set[str] = set()
+    for text in listed:
+        require(text in largest, f"the joint {text!a} is not shown, or another one joins more")
+        require(text not in known, f"the joint {text!a} is listed twice, or with its reflection")
+        known |= {text, text.translate(_REFLECTED)}
+    left = sorted(largest - known)
+    require(not left, f"the joint {left[:1]} is not listed")
 
 
 class _Search:
@@ -100,7 +116,7 @@ class _Search:
             joints, found = solutions(spaces, spaces.first_order, parts)
             for signs in joints:
                 self._add(signs)
-        for v in items(entry["complete"], "complete"):
+        for v in (natural(v, "a vertex") for v in items(entry["complete"], "complete")):
             require(found, f"not all solutions with vertex {v} flat are shown")
             require(self._near([v]) == near, f"other folds may bend with vertex {v} flat")
             self.complete.add(v)
@@ -126,12 +142,25 @@ class _Search:
             mask = sum(1 << k for k, value in enumerate(values) if value)
             self.cubes.add((mask, sum(1 << k for k, value in enumerate(values) if value > 0)))
 
+    def largest(self) -> set[str]:
+        """The joints that join sign vectors which no other joint joins, with their reflections."""
+        return {
+            text
+            for text in self.joints
+            if not any(_within(text, other) for other in self.joints if other != text)
+        }
+
     def bounds(self) -> tuple[int, int]:
         """The least and the largest number of pieces."""
         high = components(len(self.vertices), self.cubes)
         kept = [k for k, v in enumerate(self.vertices) if v in self.complete]
         cut = {(_bits(mask, kept), _bits(value, kept)) for mask, value in self.cubes}
         return components(len(kept), cut), high
+
+
+def _within(joint: str, other: str) -> bool:
+    """Whether a joint joins only what another one joins."""
+    return all(b in (a, "0") for a, b in zip(joint, other, strict=True))
 
 
 def _bits(number: int, kept: list[int]) -> int:
@@ -161,8 +190,9 @@ def summary(claims: dict[str, Any]) -> str:
     low, high = claims["at_least"], claims["at_most"]
     graphs = 1 << len(claims["vertices"])
     pieces = counted(high, "piece", "pieces") if low == high else f"{low} to {high} pieces"
-    joints = counted(len(claims["joints"]), "joint", "joints")
+    joints = f"with {counted(len(claims['joints']), 'joint', 'joints')} shown"
+    if "chord" in claims:
+        joints = "joined by the fold {}-{} from border to border".format(*claims["chord"])
     return (
-        f"VALID: the solutions are {graphs} graphs in {pieces}, with {joints}; "
-        f"sha256 {claims['sha256']}"
+        f"VALID: the solutions are {graphs} graphs in {pieces}, {joints}; sha256 {claims['sha256']}"
     )

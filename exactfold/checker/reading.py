@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
+from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from typing import Any, NoReturn
 
@@ -139,6 +140,19 @@ def integer(value: Any) -> int:
     return value
 
 
+def same(claim: Any, fact: Any) -> bool:
+    """Whether a claim equals a fact, and holds integers where the fact does, not true or false."""
+    if isinstance(fact, dict):
+        return (
+            isinstance(claim, dict)
+            and claim.keys() == fact.keys()
+            and all(same(claim[key], fact[key]) for key in fact)
+        )
+    if isinstance(fact, list):
+        return isinstance(claim, list) and len(claim) == len(fact) and all(map(same, claim, fact))
+    return type(claim) is type(fact) and bool(claim == fact)
+
+
 def text_of(value: Any) -> str:
     """`value` if it is a string."""
     if not isinstance(value, str):
@@ -157,11 +171,14 @@ def digits(n: int) -> str:
     return digits(high) + digits(low).rjust(half, "0")
 
 
-def shown(text: str) -> str:
-    """A rational number in six digits, also one that is too large for a float."""
-    value = parse_rational(text)
-    try:
-        return f"{float(value):.6g}"
-    except OverflowError:
-        whole = digits(abs(int(value)))
-        return f"{'-' if value < 0 else ''}{whole[0]}.{whole[1:6]}e+{len(whole) - 1}"
+def shown(text: str, *, up: bool = False) -> str:
+    """A rational number in six digits: rounded down, as what is at least so large, or up."""
+    return rounded(parse_rational(text), 6, up=up)
+
+
+def rounded(value: Fraction, places: int, *, up: bool) -> str:
+    """A number in so many digits, rounded down or up, also one that is too large for a float."""
+    context = Context(places, ROUND_CEILING if up else ROUND_FLOOR, MIN_EMIN, MAX_EMAX)
+    quotient = context.divide(Decimal(value.numerator), Decimal(value.denominator))
+    short = context.normalize(quotient)
+    return f"{short:f}" if -5 < short.adjusted() < places else f"{short:e}"

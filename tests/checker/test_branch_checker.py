@@ -71,7 +71,7 @@ def test_a_given_rim_is_accepted() -> None:
     rim = {v: Fraction(v * v + 1, 3) for v in pattern.boundary}
     claims = checker.check(branch_certificate(find_branch(pattern, "+-+", rim=rim)))
     assert claims["gauge"] == "rim"
-    assert checker.summary(claims).startswith("VALID: exactly one branch")
+    assert checker.summary(claims).startswith("VALID: exactly one solution over the border")
 
 
 def shifted(text: str, by: int) -> str:

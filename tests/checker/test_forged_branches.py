@@ -36,6 +36,9 @@ def test_claims_come_with_the_pattern() -> None:
     assert checker.summary(long).startswith(
         f"VALID: exactly one branch has the vertex signs {'+' * 60}... (61); 1 of 3 letters"
     )
+    assert checker.summary(verified(given("branch-rim"))).startswith(
+        "VALID: exactly one solution over the border in the file has the vertex signs +-+ (3);"
+    )
     exact = {**claims, "vertex_signs": [-1] * 60}
     assert f"signs {'-' * 60} (60);" in checker.summary(exact)
 

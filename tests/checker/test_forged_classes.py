@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
 from typing import Any
 
@@ -20,12 +21,15 @@ from forge import (
     verified,
     without,
 )
+from sheets import relabelled
 
+from exactfold import certificate, count_branches
 from exactfold.checker.equations import BranchSystem
 from exactfold.checker.flat_sheets import FlatSheets
 from exactfold.checker.reading import CertificateError
 from exactfold.checker.sheet import Sheet, read_sheet
 from exactfold.checker.stress import check_finite
+from exactfold.pattern.families import flat_vertex_square
 
 PATH, VERTEX = "algebraic-bent-off-path", "algebraic-flat-vertex-groebner"
 BOXES, FLAT = "algebraic-grid", "algebraic-flat-box"
@@ -210,6 +214,17 @@ def test_flat_vertices_made_up(flat: list[Any], message: str) -> None:
     drop_roots(forged, lambda root: root["class"] == 1, 2)
     made = stopped_by(forged, message)
     assert made["claims"]["distinct"] == 1
+
+
+def test_a_flat_vertex_is_a_number() -> None:
+    """Python takes True for 1."""
+    sheet = relabelled(flat_vertex_square(), (0, 5, 2, 3, 4, 1))
+    forged = json.loads(json.dumps(certificate(count_branches(sheet))))
+    verified(forged)
+    [entry] = forged["evidence"]["classes"]
+    assert entry["flat"] == [1]
+    entry["flat"] = [True]
+    stopped_by(forged, FLAT_VERTICES)
 
 
 def test_the_order_is_that_of_the_vertex() -> None:

@@ -17,7 +17,7 @@ from exactfold.checker import motion, motion_boxes, motion_contacts, motion_leng
 from exactfold.checker.motion_bounds import dot
 from exactfold.checker.motion_contacts import check_contacts
 from exactfold.checker.motion_lengths import GRID, ONE, Path
-from exactfold.checker.reading import CertificateError
+from exactfold.checker.reading import CertificateError, shown
 from exactfold.count.find import find_branch
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import first_contact
@@ -110,12 +110,13 @@ def test_what_is_claimed_is_proved(name: str) -> None:
     low, high = map(Fraction, claims["contact"]["time"])
     assert 0 < low < high < low * Fraction(10001, 10000)
     line = checker.summary(claims)
-    assert f"; no two faces touch before {float(low):.6g}, " in line
+    before, by = shown(str(low)), shown(str(high), up=True)
+    assert f"; no two faces touch before {before}, " in line
     faces = [tuple(face) for face in claims["contact"]["faces"]]
     ends = {
         "fold": f"the fold {tuple(claims['contact']['folds'][0]) if name == 'fold' else ''} is "
-        f"closed by {float(high):.6g}; ",
-        "contact": f"{faces[0]} and {faces[1]} do by {float(high):.6g}; ",
+        f"closed by {by}; ",
+        "contact": f"{faces[0]} and {faces[1]} do by {by}; ",
     }
     assert ends["fold" if name == "fold" else "contact"] in line
     shared = len(set(faces[0]) & set(faces[1]))

@@ -24,7 +24,8 @@ def test_shapes_are_accepted() -> None:
     for name in (SHAPE, TRIANGLES):
         claims = verified(given(name))
         assert claims["gauge"] == "rim"
-        assert checker.summary(claims).startswith("VALID: exactly one shape with these angle")
+        what = "shape over the border in the file, with these angle deficits,"
+        assert checker.summary(claims).startswith(f"VALID: exactly one {what} has the vertex ")
 
 
 def test_a_negative_deficit() -> None:

@@ -19,7 +19,7 @@ from exactfold.checker.motion_bounds import Bounds
 from exactfold.checker.motion_equations import LengthEquations
 from exactfold.checker.motion_paths import Path, chord
 from exactfold.checker.motion_tubes import Ball, Start, Tube
-from exactfold.checker.reading import CertificateError, FormatError
+from exactfold.checker.reading import CertificateError, FormatError, shown
 from exactfold.checker.sheet import read_sheet
 from exactfold.count.find import find_branch
 from exactfold.motion.tracks import follow_proved
@@ -54,10 +54,9 @@ def test_claims_come_with_the_pattern(name: str) -> None:
     digest = read_sheet(document["pattern"])[1]
     assert claims == {**document["claims"], "tubes": tubes, "sha256": digest}
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
-    length = float(Fraction(claims["length"]))
     assert checker.summary(claims) == (
         f"VALID: the motion along the half-branch {signs} ({len(signs)}), side +, is one curve "
-        f"without a gap of length {length:.6g} or more; {tubes} tubes; sha256 {digest}"
+        f"without a gap of length {shown(claims['length'])} or more; {tubes} tubes; sha256 {digest}"
     )
 
 

@@ -17,7 +17,7 @@ from exactfold.checker import motion, motion_contacts
 from exactfold.checker.motion_contacts import check_contacts
 from exactfold.checker.motion_stretches import Arc, stretches_of
 from exactfold.checker.motion_tubes import Ball
-from exactfold.checker.reading import CertificateError
+from exactfold.checker.reading import CertificateError, shown
 from exactfold.count.find import find_branch
 from exactfold.motion.contact_claims import certificate_with_contact
 from exactfold.motion.contacts import first_contact
@@ -63,9 +63,8 @@ def test_what_is_claimed_is_proved() -> None:
     claims = verified(given())
     assert claims["node"] == {"flat": [FLAT], "clear": True}
     line = checker.summary(claims)
-    clear = float(Fraction(claims["clear"]))
     assert f" or more, to a node where vertex {FLAT} is flat; " in line
-    when = f"which is at {clear:.6g} or later"
+    when = f"which is at {shown(claims['clear'])} or later"
     assert f"; no two faces touch before the node, {when}, nor at it; " in line
     assert "to a node where vertices 5 and 7 are flat;" in checker.summary(
         {**claims, "node": {"flat": [5, 7], "clear": False}}

@@ -73,7 +73,10 @@ def test_what_is_said(name: str, text: str) -> None:
 
 def test_what_is_said_of_the_first_order_and_of_no_letter() -> None:
     claims = verified(given("starting-part"))
-    assert "; to first order 2 can fold together, 2 never; sha256" in checker.summary(claims)
+    assert (
+        "; to first order 2 are shown to fold together, 2 never to fold; sha256"
+        in checker.summary(claims)
+    )
     claims = verified(moving("flat", [None], "UFU"))
     assert checker.summary(claims).startswith("VALID: no fold of 3 folds is asked to fold; sha256")
 
@@ -108,7 +111,11 @@ def test_keys_of_motions() -> None:
     [
         ([["refuted", 7]], "malformed: IndexError while checking"),
         ([["at", 0]], "malformed: KeyError while checking"),
-        ([["at", [9]]], "malformed: TypeError while checking"),
+        ([["at", [9]]], "a vertex is not a natural number"),
+        ([["at", True]], "a vertex is not a natural number"),
+        ([["split", True]], "a vertex is not a natural number"),
+        ([["curved", True]], "a vertex is not a natural number"),
+        ([["flat", True, 4]], "a vertex is not a natural number"),
         ([[]], "malformed: ValueError while checking"),
         (["at"], "a step is not a list"),
         ([["level", 9]], "a step of the tree is 'level'"),
@@ -396,6 +403,27 @@ def test_folds_that_never_fold_are_shown_to_stay_flat() -> None:
     stopped(document, "step 0: the sum at fold 1-4 is on the wrong side")
 
 
+@pytest.mark.parametrize("letters", ["UFU", "UUU"])
+def test_folds_that_are_not_asked_to_fold_are_none_that_never_do(letters: str) -> None:
+    document = moving("flat", [None], letters)
+    document["claims"]["never"] = [[1, 4]]
+    stopped(document, "fold 1-4 is no mountain or valley")
+
+
+@pytest.mark.parametrize(
+    "claims",
+    [
+        {"together": [[1, 4]]},
+        {"together": []},
+        {"never": [[2, 4]]},
+        {"never": []},
+    ],
+)
+def test_all_folds_are_listed_that_are_shown_to_go_together_or_never(claims: Document) -> None:
+    stopped(part(**claims), "not all folds that are shown to go together, or never, are listed")
+    verified(part(**NOTHING))
+
+
 def test_a_motion_shows_that_folds_go_together() -> None:
     densities = part()["evidence"]["densities"]
     turned = [[i, j, [str(-int(x))]] for i, j, [x] in densities]
@@ -406,7 +434,7 @@ def test_a_motion_shows_that_folds_go_together() -> None:
     longer = [[i, j, [str(2 * int(x))]], *densities[1:]]
     stopped(part(densities=longer), "the folds at vertex 4 do not close")
     stopped(part(densities=[], together=[[1, 4]]), "fold 1-4 does not go its way")
-    stopped(part(together=[[0, 4], [1, 4]]), "fold 0-4 does not go its way")
+    stopped(part(together=[[0, 4], [1, 4], [3, 4]]), "fold 0-4 does not go its way")
     document = part(together=[[1, 4]])
     document["claims"]["letters"] = "MUVU"
     stopped(document, "fold 1-4 does not go its way")
@@ -423,3 +451,18 @@ def test_a_fold_that_stays_flat_has_no_density() -> None:
 def test_folds_are_sorted() -> None:
     refused(part(never=[[2, 4], [0, 4]]), "never are not sorted")
     refused(part(together=[[1, 4], [1, 4]]), "together are not sorted")
+
+
+def test_numbers_are_not_truth_values() -> None:
+    """Python takes True for 1."""
+    message = "a vertex is not a natural number"
+    refused(part(densities=[[True, 4, ["1"]], [3, 4, ["1"]]]), message)
+    refused(part(flat=[[[True, [["1"], ["0"]]]]]), message)
+    for key in ("planes", "heights"):
+        entry = {"signs": [], "planes": [], "heights": [], key: [[True, [["1"], ["0"]]]]}
+        refused(part(refuted=[entry]), message)
+    refused(
+        part(refuted=[{"signs": [[4, True]], "planes": [], "heights": []}]),
+        "True is not an integer",
+    )
+    refused(part(refuted=[{"signs": [[True, 1]], "planes": [], "heights": []}]), message)

@@ -38,7 +38,10 @@ def test_what_is_claimed_is_proved(name: str) -> None:
     line = checker.summary(claims)
     assert line.startswith("VALID: the panels fold, ")
     low = float(Fraction(claims["clear"]))
-    ends = {"flaps": "0-2-3-1 and 4-6-7-5 do by ", "closing": "the folds are closed by 3.14159"}
+    ends = {
+        "flaps": "0-2-3-1 and 4-6-7-5 do by ",
+        "closing": "the folds are closed by 3.1416 (180.001 degrees)",
+    }
     ends["rated"] = ends["flaps"]
     assert ("contact" in claims) == (name in ends)
     if name in ends:
@@ -67,7 +70,7 @@ def test_a_fold_that_is_not_named_closes_in_modes_that_are_not_linear() -> None:
         "faces": [],
         "folds": [],
     }
-    assert ", a fold is closed by 3.14159 (180 degrees)" in checker.summary(verified(document))
+    assert ", a fold is closed by 3.1416 (180.001 degrees)" in checker.summary(verified(document))
     document["claims"]["contact"]["folds"] = document["claims"]["drivers"]
     stopped(document, "a fold is not known to close")
 
@@ -263,6 +266,22 @@ def test_what_is_no_panel_or_fold() -> None:
         claims["contact"]["folds"] = [[0, 2]]
 
     stopped(forged("closing", other_fold), "a fold is not known to close")
+
+    def fold_twice(claims: Document, evidence: Document) -> None:
+        claims["contact"]["folds"] = claims["contact"]["folds"][:1] * 2
+
+    stopped(forged("closing", fold_twice), "a fold that closes is named twice")
+
+
+@pytest.mark.parametrize("corners", [[0, 2, 3, 1, 1], [0, 0, 2, 3, 1], [0, 3, 2, 1], [1, 3, 2, 0]])
+def test_a_panel_that_touches_has_each_corner_once_and_in_order(corners: list[int]) -> None:
+    def changed(claims: Document, evidence: Document) -> None:
+        claims["contact"]["faces"][0] = corners
+
+    document = forged("flaps", changed)
+    stopped(document, "no side runs through the other panel")
+    document["claims"]["contact"]["faces"][0] = [3, 1, 0, 2]
+    assert "3-1-0-2 and 4-6-7-5 do by" in checker.summary(verified(document))
 
 
 def test_keys() -> None:

@@ -68,6 +68,8 @@ def test_what_is_claimed_is_proved() -> None:
     assert Fraction(claims["clear"]) > Fraction("0.65")
     said = checker.summary(claims)
     assert f" or more, through a node where vertex {FLAT} is flat; no two faces touch" in said
+    steps = given()["evidence"]["tubes"]
+    assert f"; {len(steps) - 1} tubes; sha256" in said  # the arc through the node is none
 
 
 @pytest.mark.slow

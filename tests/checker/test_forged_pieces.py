@@ -91,13 +91,15 @@ def with_parts(document: Document, parts: list[Any]) -> Document:
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("pentagon", "4 graphs in 2 pieces, with 1 joint"),
-        ("complex", "16 graphs in 6 pieces, with 6 joints"),
-        ("family", "4 graphs in 2 pieces, with 1 joint"),
-        ("roots", "8 graphs in 2 pieces, with 1 joint"),
-        pytest.param("antiprism", "64 graphs in 12 pieces, with 40 joints", marks=pytest.mark.slow),
-        ("chord", "2 graphs in 1 piece, with 0 joints"),
-        ("triangle", "8 graphs in 4 pieces, with 2 joints"),
+        ("pentagon", "4 graphs in 2 pieces, with 1 joint shown"),
+        ("complex", "16 graphs in 6 pieces, with 6 joints shown"),
+        ("family", "4 graphs in 2 pieces, with 1 joint shown"),
+        ("roots", "8 graphs in 2 pieces, with 1 joint shown"),
+        pytest.param(
+            "antiprism", "64 graphs in 12 pieces, with 40 joints shown", marks=pytest.mark.slow
+        ),
+        ("chord", "2 graphs in 1 piece, joined by the fold 1-2 from border to border"),
+        ("triangle", "8 graphs in 4 pieces, with 2 joints shown"),
     ],
 )
 def test_what_is_said(name: str, text: str) -> None:
@@ -128,7 +130,7 @@ def test_a_pattern_by_name() -> None:
 
 def test_bounds_are_said_as_such() -> None:
     claims = {"vertices": [5, 6], "at_least": 1, "at_most": 3, "joints": [], "sha256": "0"}
-    said = "VALID: the solutions are 4 graphs in 1 to 3 pieces, with 0 joints; sha256 0"
+    said = "VALID: the solutions are 4 graphs in 1 to 3 pieces, with 0 joints shown; sha256 0"
     assert checker.summary(claims) == said
 
 
@@ -210,7 +212,7 @@ def test_a_fold_from_border_to_border_is_not_kept_quiet() -> None:
 def test_joints_bounds_and_complete_vertices() -> None:
     document = piece("pentagon")
     document["claims"]["joints"] = ["0-", "-0"]
-    stopped(document, "the joint '-0' is not shown")
+    stopped(document, "the joint '-0' is not shown, or another one joins more")
     stopped(sealed(piece("pentagon"), ["0-"], 3, 3), "the evidence shows 2 to 2 pieces")
     stopped(sealed(piece("pentagon"), ["0-"], 2, 3), "the evidence shows 2 to 2 pieces")
     document = piece("pentagon")
@@ -219,6 +221,38 @@ def test_joints_bounds_and_complete_vertices() -> None:
     turned = piece("pentagon")
     turned["claims"]["joints"] = ["0+"]
     verified(turned)
+
+
+def test_the_joints_are_all_that_are_shown() -> None:
+    stopped(sealed(piece("pentagon"), [], 2, 2), "the joint ['0+'] is not listed")
+    document = piece("triangle")
+    document["claims"]["joints"].remove("-0-")
+    stopped(document, "the joint ['+0+'] is not listed")
+
+
+@pytest.mark.parametrize("again", ["0-", "0+"])
+def test_a_joint_is_listed_once_up_to_reflection(again: str) -> None:
+    document = sealed(piece("pentagon"), ["0-", again], 2, 2)
+    stopped(document, f"the joint {again!r} is listed twice, or with its reflection")
+
+
+def test_a_joint_that_joins_less_than_another_is_not_listed() -> None:
+    """With vertex 6 flat alone a solution has these signs, but 00- and 00+ join more."""
+    document = piece("roots")
+    document["claims"]["joints"].append("0+-")
+    stopped(document, "the joint '0+-' is not shown, or another one joins more")
+
+
+def test_numbers_are_not_truth_values() -> None:
+    """Python takes True for 1."""
+    document = piece("chord")
+    document["claims"]["at_least"] = True
+    refused(document, "the evidence shows 1 to 1 pieces")
+    document["claims"] |= {"at_least": 1, "at_most": True}
+    refused(document, "the evidence shows 1 to 1 pieces")
+    document = piece("chord")
+    document["evidence"]["chord"] = [True, 2]
+    refused(document, "a vertex is not a natural number")
 
 
 # --- stars held flat -----------------------------------------------------------------------------
