@@ -113,7 +113,7 @@ def entry(statement: Statement, proof: Proof) -> str:
     """One statement with its ruling, correction, note and what it rests on."""
     ruling = statement.ruling.value.capitalize()
     lines = [f"**{statement.key}** ({where(statement)}). *{ruling}; {proof.kind(statement)}.*", ""]
-    lines.append(f"- printed: {mathematics(statement.printed)}")
+    lines += printed(statement)
     if statement.corrected:
         lines.append(f"- correct: {mathematics(statement.corrected)}")
     if statement.note:
@@ -131,11 +131,17 @@ def where(statement: Statement) -> str:
     return f"{statement.place}{number}"
 
 
+def printed(statement: Statement) -> list[str]:
+    """What the paper prints, and the formula that is put together from it if there is one."""
+    lines = [f"- printed: {mathematics(statement.source)}"]
+    return [*lines, f"- that is: {mathematics(statement.printed)}"] if statement.quoted else lines
+
+
 def erratum(statement: Statement, proof: Proof) -> str:
     """One erratum: place, severity, what is printed, what to print instead, why, and the proof."""
     severity = statement.severity.value if statement.severity else ""
     lines = [f"**{statement.key}** ({where(statement)}). *{severity.capitalize()}.*", ""]
-    lines.append(f"- printed: {mathematics(statement.printed)}")
+    lines += printed(statement)
     if statement.corrected:
         lines.append(f"- correct: {mathematics(statement.corrected)}")
     else:
@@ -200,7 +206,8 @@ def pages() -> dict[str, str]:
         f"{len(papers)} statements of the paper: {summary}. {len(stated) - len(papers)} statements "
         "of exactfold come last. Each says what it rests on, and its steps are run by a machine "
         f"(`python -m proofs`, {len(steps)} steps; {tested} of them test exact cases rather than "
-        f"prove, and say so). What is given as printed is what the paper prints, word by word. "
+        f"prove, and say so). What is given as printed is what the paper prints, word by word; "
+        'a formula that is put together from it follows after "that is". '
         f"{formulas} statements are formulas that a step evaluates, and with one small mistake in "
         f"them, {mutants} in all, they do not hold, but for a few that are true as well, each with "
         "its reason in the tests; the others are in words. All other steps "
@@ -234,6 +241,7 @@ MEANINGS = {
     Severity.CONSTANT: "a number, a range or a label that changes what is computed",
     Severity.CONDITION: "true under a condition that is not stated",
     Severity.CLAIM: "not true in the sense in which it is used",
+    Severity.REMARK: "said with reserve (\u201cseem\u201d, \u201croughly\u201d), and not borne out",
 }
 
 
@@ -242,8 +250,9 @@ STANDARD = (
     "admits. If it says that it is about generic patterns, special ones that break it are named in "
     "a note and do not count against it; if it does not say so, one exact counterexample does. "
     "Where the paper draws a conclusion (\u201cwe have thus shown\u201d), the inference is judged "
-    "as well. What the paper calls conjectural is judged like the rest. Reports of its "
-    "computations are taken as reported, and compared with samples of our own."
+    "as well. What the paper calls conjectural is judged like the rest; a remark "
+    "that it makes with reserve is named as such. Reports of its computations are taken as "
+    "reported, and compared with samples of our own."
 )
 
 

@@ -2,7 +2,7 @@
 
     python docs/read_paper.py PAPER.tex [CORRECTED.tex]
 
-What a statement gives as printed has to stand in the source word by word and formula by formula
+What a statement quotes has to stand in the source word by word and formula by formula
 (`proofs/quotations.py`); every passage that `proofs/replacements.py` replaces has to stand there
 once. Then the digests with which the tests compare are written to `tests/proofs/quotations.json`,
 and the source with all replacements to a second file, if one is named.
@@ -31,7 +31,7 @@ def main(arguments: list[str]) -> int:
         f"{s.key}: {part}"
         for s in statements
         if s.key not in UNPRINTED
-        for part in missing(s.printed, paper)
+        for part in missing(s.source, paper)
     ]
     corrected = paper
     for key, pairs in REPLACEMENTS.items():
@@ -42,7 +42,7 @@ def main(arguments: list[str]) -> int:
     print("\n".join(wrong) or f"{len(statements)} statements and {len(REPLACEMENTS)} replacements")
     if wrong:
         return 1
-    digests = {s.key: digest(s.printed) for s in statements}
+    digests = {s.key: digest(s.source) for s in statements}
     text = json.dumps(digests, indent=0, sort_keys=True)
     (HERE.parent / "tests" / "proofs" / "quotations.json").write_text(text + "\n", encoding="utf-8")
     if len(arguments) > 1:

@@ -226,9 +226,10 @@ def _folds(script: Script) -> None:
         r"N_F=3(V_i-V_t+1)",
         r"N_F=3(V_i-V_t)+1",
         at=_squares(),
+        quoted=r"\text{``the number of folds (internal edges) for a triangulated square is }"
+        r"3(V_i-V_t+1)\text{''}",
         note="one vertex has 4 folds, not 6; agrees with Appendix D, 3Vi + 1; folds inside "
-        "triangulated "
-        "triangles not counted",
+        "triangulated triangles not counted",
         code="CreasePattern.folds",
         severity=Severity.CONSTANT,
     )

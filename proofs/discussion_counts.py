@@ -269,6 +269,17 @@ def _orthogonality(script: Script) -> None:
         equation="11",
     )
     state(
+        "V.10",
+        "Section V, first paragraph",
+        r"\text{``setting the equilibrium dihedral angle of each fold to a nonzero value''}",
+        r"\text{the equilibrium folding angle, the deviation of the dihedral angle from }\pi",
+        note="the dihedral angle of a fold is pi in the unfolded state, so that it is not 0 "
+        "anyway. The formula that follows has folding angles, which are 0 there",
+        severity=Severity.TYPO,
+        contradiction="unfolded if all dihedral angles are pi (Section II A), and the folding "
+        "angle in the first displayed formula of Section V",
+    )
+    state(
         "V.7",
         "Section V",
         r"\text{``in generic triangulated patterns with }D=1\text{, the number of branches "

@@ -178,16 +178,20 @@ def _curvature(script: Script) -> None:
         [sum(m[i][i] for i in range(5)) for m in matrices]
         == [sign * Fraction(-123, 40), sign * Fraction(-5, 108)]
         and all(inertia(m) == (1, 1, 3) for m in matrices),
-        of="IIB.25",
+        against="IIB.25",
     )
     script.state(
         "IIB.25",
         "Section II B, on the eigenvector",
         r"\text{``This eigenvector gives a set of displacements that maximizes the change "
         r"in the Gaussian curvature''}",
-        note="K among displacements of norm 1. Not always |K|: the eigenvalue of largest magnitude "
-        "can be negative, as for spokes (0,-3), (2,1), (1,1), (-3,1)",
-        code="curvature_form",
+        r"\text{among displacements of one norm it maximizes the Gaussian curvature, and not "
+        r"always the size of its change}",
+        "the curvature can change more at an eigenvalue of the other sign, as for the spokes "
+        "(0,-3), (2,1), (1,1), (-3,1), whose link is convex: the two eigenvalues of K that are not "
+        "0 have the sum -5/108",
+        "curvature_form",
+        severity=Severity.CONDITION,
     )
     script.state(
         "IIB.26",

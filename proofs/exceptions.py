@@ -72,12 +72,18 @@ def enclosed(disk: Iterable[Triangle], size: int) -> set[frozenset[int]]:
 
     A component without corners of what is left without `size` vertices, which are not the rim.
     """
+    return {part for parts in separating(disk, size).values() for part in parts}
+
+
+def separating(disk: Iterable[Triangle], size: int) -> dict[tuple[int, ...], set[frozenset[int]]]:
+    """The sets of `size` vertices, but the rim, that part others from the corners; and these."""
     edges = graph(disk)
-    found: set[frozenset[int]] = set()
+    found: dict[tuple[int, ...], set[frozenset[int]]] = {}
     for ring in combinations(sorted(edges), size):
         if set(ring) != RIM:
             left = edges.subgraph(set(edges) - set(ring))
-            found |= {frozenset(part) for part in nx.connected_components(left) if not part & RIM}
+            inside = {frozenset(p) for p in nx.connected_components(left) if not p & RIM}
+            found |= {ring: inside} if inside else {}
     return found
 
 
@@ -260,6 +266,18 @@ def _case_analysis(script: Script) -> None:
         "flat on a branch, two or more vertices are on lines through two neighbours, or all stars "
         "inside a 4-cycle around the vertex are flat",
         len(stars) == 33 and all(is_settled(disk, v, size) for disk, v in stars),
+        of="T.12",
+    )
+    sides = script.alter("a diagonal of a 4-cycle joined", 4, 5)
+    script.certificate(
+        "up to 5 interior vertices: opposite vertices of a 4-cycle with vertices inside are not "
+        "joined, neither inside it nor outside",
+        all(
+            graph(disk).subgraph(ring).number_of_edges() == sides
+            for n in range(1, 6)
+            for disk in triangulations(n)
+            for ring in separating(disk, 4)
+        ),
         of="T.12",
     )
     script.certificate(

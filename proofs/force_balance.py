@@ -47,6 +47,7 @@ def prove(change: str | None = None) -> Proof:
     _rim(script)
     _crossed_ladders(script)
     _telescope(script)
+    _small_triangle(script)
     return script.proof()
 
 
@@ -194,6 +195,10 @@ def _rim(script: Script) -> None:
         over=[_rim_forces(wheel(4))],
         at=map(_rim_forces, drawn(4, 5)),
         functions=[rf"F_{{rim,\parallel{side}}}" for side in ("", ",-", ",+")],
+        quoted=r"F_{rim,\parallel}=-(\cot\eta_{i-1,i}+\cot\eta_{i,i+1})/L_i\text{ \dots\ }"
+        r"=F_{rim,\parallel,-}+F_{rim,\parallel,+}\text{ \dots\ }"
+        r"F_{rim,\parallel,-}=-\cot\eta_{i-1,i}/L_i\text{ \dots\ }"
+        r"F_{rim,\parallel,+}=-\cot\eta_{i,i+1}/L_i",
         equation="B5 to B7",
     )
     sign = script.alter("first piece with the cotangent added", 1, -1)
@@ -212,6 +217,9 @@ def _rim(script: Script) -> None:
         r"\csc\alpha_{i-1,i}/L_{i-1}-\cot\alpha_{i-1,i}/L_i=\cot\eta_{i-1,i}/L_i",
         over=[wheel(4), wheel(5)],
         at=drawn(4, 5),
+        quoted=r"\text{``The first piece is }\csc\alpha_{i-1,i}/L_{i-1}-\cot\alpha_{i-1,i}/L_i"
+        r"\text{'' \dots\ ``the first part of the force along the spoke edge (Eq. "
+        r"(\ref{eq:firstpiece})) cancels }F_{rim,\parallel,-}\text{''}",
         note="Eq. (firstpiece) is minus F_{rim,-} = -cot(eta_{i-1,i})/L_i; for acute, right "
         "and obtuse angles. The second piece is its mirror image",
         equation="B8",
@@ -326,6 +334,34 @@ def _telescope(script: Script) -> None:
         note="short proof for every closed star with c_j != 0, back-tracks and any winding too: "
         "d_{j+1} - (s_j/L_j^2) d_j = (c_j/L_j^2) J d_j telescopes at the hub, cancels at the rim",
         code="wheel_stress",
+    )
+
+
+def _small_triangle(script: Script) -> None:
+    """The sides of the triangle of the induction, where a spoke is taken out of five."""
+    five: list[tuple[Any, Any]] = [(1, 0), ("4/5", "3/5"), ("7/25", "24/25"), (-1, 0), (0, -1)]
+    i = script.alter("a spoke taken out that is not beside the first", 1, 2)
+    full, less = wheel_stress(star(*five), 5), wheel_stress(star(*five[:i], *five[i + 1 :]), 4)
+    sides = [full[(1, 5)], full[(0, 5)] - less[(0, 4)], full[(2, 5)] - less[(1, 4)]]
+    script.counterexample(
+        "five unit spokes, cos alpha_12 = cos alpha_23 = 4/5, i = 2: sigma_i = 2/3, Delta "
+        "sigma_{i-1} = Delta sigma_{i+1} = -5/12",
+        sides == [Fraction(2, 3), Fraction(-5, 12), Fraction(-5, 12)],
+        against="B.26",
+    )
+    script.state(
+        "B.26",
+        "Appendix B, induction, the small triangle",
+        r"\text{``there is a closed triangle with side lengths }\Delta\sigma_{i-1}="
+        r"\sigma_{i-1}-\sigma^0_{i-1}\text{, }\Delta\sigma_{i+1}=\sigma_{i+1}-\sigma^0_{i+1}"
+        r"\text{, and }\sigma_i\text{''}",
+        r"\text{the side lengths are }|\Delta\sigma_{i-1}|\text{, }|\Delta\sigma_{i+1}|\text{ and "
+        r"}|\sigma_i|\text{; where }\sigma_i>0\text{ both differences are negative}",
+        "as sigma_i/sin beta_i = -Delta sigma_{i-1}/sin alpha_{i,i+1} (B.20), and the sines are "
+        "positive if alpha_{i-1,i} + alpha_{i,i+1} < pi (B.22). Example: five unit spokes (1,0), "
+        "(4/5,3/5), (7/25,24/25), (-1,0), (0,-1), the second taken out: 2/3, -5/12, -5/12",
+        severity=Severity.TYPO,
+        rests="B.20",
     )
 
 

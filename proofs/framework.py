@@ -86,6 +86,7 @@ class Proof:
                     "key": s.key,
                     "place": s.place,
                     "printed": s.printed,
+                    "quoted": s.quoted,
                     "ruling": s.ruling.value,
                     "corrected": s.corrected,
                     "note": s.note,
@@ -272,8 +273,9 @@ def stated(proof: Proof, s: Statement) -> list[str]:
     where = f"{s.place}, Eq. ({s.equation})" if s.equation else s.place
     lines = [
         f"  {s.key}  {s.ruling.value}; {proof.kind(s)}: {where}",
-        f"      printed:   {s.printed}",
+        f"      printed:   {s.source}",
     ]
+    lines += [f"      that is:   {s.printed}"] if s.quoted else []
     lines += [f"      corrected: {s.corrected}"] if s.corrected else []
     lines += [f"      severity:  {s.severity.value}"] if s.severity else []
     lines += [f"      note:      {s.note}"] if s.note else []

@@ -158,14 +158,30 @@ def _small(script: Script, levels: list[set[Triangulation]]) -> None:
         and not is_h1(frozenset(hypar.triangles)),
         of="IV.10",
     )
+    inner = script.alter("vertices of degree 3 inside", 3, 2)
+    chords = [
+        t
+        for t in levels[3]
+        if t not in _eligible(levels[3]) and all(d > inner for v, d in degrees(t).items() if v > 3)
+    ]
+    script.counterexample(
+        "Vi = 3: with a chord there are triangulations without interior vertices of degree 3, a "
+        f"flat octahedron on one side of it ({len(chords)}, rooted), and none is H1",
+        len(chords) == 4 and not any(map(is_h1, chords)),
+        against="IV.10",
+    )
     script.state(
         "IV.10",
         "Section IV",
         r"\text{``all }V_i=1,2,3\text{ triangulations are H1''}",
-        note="of a 4-gon, without interior vertices of degree 3 and without chords; by "
-        "enumeration. "
-        f"Rooted: (H1, all) = {shares} for Vi = 1 to 4. It fails first at Vi = 4",
-        code="families.h1_sequence",
+        r"\text{all triangulations of a square with }V_i=1,2,3\text{ without interior vertices of "
+        r"degree 3 and without folds between corners are H1}",
+        "by enumeration; rooted: (H1, all) = "
+        f"{shares} for Vi = 1 to 4. It fails first at Vi = 4. With a fold between corners it fails "
+        "for a flat octahedron on one side of it, and with five corners for a single vertex. "
+        "Section II C leaves such folds out, but not in the butterflies of this section",
+        "families.h1_sequence",
+        severity=Severity.CONDITION,
     )
     script.state(
         "IV.11",

@@ -204,6 +204,9 @@ def _induction_formulas(script: Script) -> None:
         r"i-1,i}+\alpha_{i,i+1})}{L_{i-1}}",
         over=[without(5)],
         at=[without(5, numbers=True)],
+        quoted=r"\Delta\sigma_{i-1}\text{ \dots\ }=\frac{\csc\alpha_{i-1,i}}{L_i}-\frac{\csc("
+        r"\alpha_{i-1,i}+\alpha_{i,i+1})}{L_{i+1}}-\frac{\cot\alpha_{i-1,i}-\cot(\alpha_{i-1,i}+"
+        r"\alpha_{i,i+1})}{L_{i-1}}",
         note="and its mirror image Delta sigma_{i+1}; defined unless alpha_{i-1,i} + "
         "alpha_{i,i+1} = pi",
         equation="B18 and B19",
@@ -265,7 +268,7 @@ def _induction_step(script: Script) -> None:
         r"\beta_i=\pi-\alpha_{i-1,i}-\alpha_{i,i+1}",
         over=[without(5)],
         at=[without(5, numbers=True)],
-        note="a triangle if this is positive; for its sides and the law of sines see B.20",
+        note="a triangle if this is positive; for its sides see B.26, for the law of sines B.20",
     )
     script.formula(
         "B.20",
@@ -276,10 +279,8 @@ def _induction_step(script: Script) -> None:
         over=[without(5)],
         at=[without(5, numbers=True)],
         note="sin(beta_i) is +sin(alpha_{i-1,i} + alpha_{i,i+1}); in the last display only the "
-        "leftmost "
-        "side needs the sign. (Or beta_i = alpha_{i-1,i} + alpha_{i,i+1} - pi, which mends both.) "
-        "The sides are sigma_i and sigma^0 - sigma = -Delta sigma, of the sign of sigma_i if "
-        "alpha_{i-1,i} + alpha_{i,i+1} < pi. Example: five unit spokes (1,0), (4/5,3/5), "
+        "leftmost side needs the sign. (Or beta_i = alpha_{i-1,i} + alpha_{i,i+1} - pi, which "
+        "mends both.) For the sides see B.26. Example: five unit spokes (1,0), (4/5,3/5), "
         "(7/25,24/25), (-1,0), (0,-1), the second taken out: 25/36 against -25/36",
         equation="B20",
         severity=Severity.TYPO,

@@ -83,6 +83,7 @@ def _minors(script: Script) -> None:
         over=[{**wheel(5), "j": j} for j in (1, 2, 3)],
         at=[{**names, "j": j} for names in drawn(6) for j in (0, 1, 2, 3)],
         functions=["chi"],
+        quoted=r"\chi(j)\text{ ``is also an expression for }\Delta_j\text{ of the stress matrix''}",
         note="chi(n) is the determinant on h_2, ..., h_{n-1}: Delta_0 = chi(2) = 1, and the last "
         "minor is Delta_{N-2} = chi(N)",
         code="kapovich_millson",
@@ -100,8 +101,11 @@ def _minors(script: Script) -> None:
         over=[wheel(4), wheel(5)],
         at=drawn(4, 5, 6),
         functions=["chi"],
-        note="the cosecant is that of the last angle of the numerator, also in 'negative iff "
-        "alpha_{j-1,j} < 0'; the ratios use the angles 23 to N-1,N only, not 12 and N1",
+        quoted=r"\frac{\Delta_{j+1}}{\Delta_j}=\frac{\csc\alpha_{j-1,j}}{L_j^2}\frac{"
+        r"\sin(\sum_{n=1}^{j}\alpha_{n,n+1})}{\sin(\sum_{n=1}^{j-1}\alpha_{n,n+1})}",
+        note="the range is ours; the cosecant is that of the last angle of the numerator, also in "
+        "'negative iff alpha_{j-1,j} < 0'; the ratios use the angles 23 to N-1,N only, not 12 and "
+        "N1",
         equation="C9",
         severity=Severity.TYPO,
     )
@@ -237,6 +241,7 @@ def _vanishing(script: Script) -> None:
         r"\sum_{n=1}^{N-1}\alpha_{n,n+1}=2\pi-\alpha_{N,1}",
         r"\sum_{n=1}^{N-1}\alpha_{n,n+1}=2\pi w-\alpha_{N,1}",
         at=[_winding_star(5, 1), _winding_star(5, 2), _winding_star(7, 3)],
+        quoted=r"\text{``the angle sum in }\chi(N)\text{ is equal to }2\pi-\alpha_{N,1}\text{''}",
         note="the theorem is about any winding w; the sine of the sum is the same",
         severity=Severity.TYPO,
     )
@@ -313,13 +318,21 @@ def _changes(script: Script) -> None:
     script.identity(
         "(f - 2w - 1) + (b + 2w - 1) + 3 = N + 1 with f + b = N; f = N, b = 0, w = 1: (N - 3, 1)",
         (f - 2 * w - 1) + (b + 2 * w - 1) + 3 - size,
-        of="C.20",
+        of="C.20 C.24",
+    )
+    script.state(
+        "C.24",
+        "Appendix C, proof of Theorem KM",
+        r"\text{``the defining symmetric matrix is }(n+1)\times(n+1)\text{ and }f+b=n\text{''}",
+        r"\text{the defining symmetric matrix is }(N+1)\times(N+1)\text{ and }f+b=N",
+        "the number of folds is N; n is the index of the sums",
+        severity=Severity.TYPO,
+        contradiction="N folds in all of Appendix C, and f = N a few lines before",
     )
     script.state(
         "C.20",
-        "Appendix C, after Theorem 1 and in its proof",
-        r"\text{``the defining symmetric matrix is }(n+1)\times(n+1)\text{ and "
-        r"}f+b=n\text{'' \dots\ ``We showed above the case of this theorem when "
+        "Appendix C, after Theorem 1",
+        r"\text{``We showed above the case of this theorem when "
         r"}f=N,b=0\text{ and }w=1\text{, and in fact our sign convention for the sign of "
         r"the quadratic form also agrees with theirs''}",
         note="with the sign of Appendix C: (N - 3, 1); Eq. (compat) has the other sign (IIB.21)",

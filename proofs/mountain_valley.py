@@ -278,7 +278,7 @@ def _examples(script: Script) -> None:
         "spokes (1,0), (1,1), (0,1), (-1,-2): no branch is VVVM or MMMV, although the angles from "
         "the first to the second and from the second to the third are below pi",
         letters.isdisjoint({odd, odd.translate(str.maketrans("MV", "VM"))}) and len(letters) == 2,
-        of="IIIC.6",
+        against="IIIC.6",
     )
     script.state(
         "IIIC.6",
@@ -287,9 +287,13 @@ def _examples(script: Script) -> None:
         r"in counter-clockwise order around the vertex such that the angles between "
         r"}c_1,c_2,c_3\text{ are between 0 and }\pi\text{ and }c_1,c_2,c_3\text{ have the "
         r"same sign (all mountains or all valleys) and }c_4\text{ has the opposite sign''}",
-        note="all three angles, also that from c_3 to c_1, which holds c_4: the directions of one "
-        "sign lie in no closed half-plane. With two angles only three folds within a right angle "
-        "would do",
+        r"\text{the three angles from }c_1\text{ to }c_2\text{, from }c_2\text{ to }c_3\text{ and "
+        r"from }c_3\text{ to }c_1\text{ are between 0 and }\pi",
+        "which angles are meant is not said. With the first two alone three folds within a right "
+        "angle would do, and no vertex folds so. The third holds c_4: the directions of one sign "
+        "lie in no closed half-plane",
+        severity=Severity.CONDITION,
+        words="theorem in proofs/mountain_valley.py",
     )
     script.state(
         "IIIC.3",

@@ -216,12 +216,12 @@ def _transversality(script: Script) -> None:
         r"}V_i\text{ internal vertices intersect transversely'' \dots\ ``This should be "
         r"true generically, and in all of the numerical examples considered in this paper "
         r"this is indeed the case''}",
-        r"\text{transversely along a branch iff no vertex star is flat on it; so nowhere where "
-        r"}V_t>0",
+        r"\text{for a convex border, transversely along a branch iff no vertex star is flat on it; "
+        r"for any border nowhere where }V_t>0",
         "triangulated triangles persist under small changes, and the paper's samples hold four. "
-        "The dimension is D all the same for a convex boundary (IIC.1). Nonsingular where no star "
-        "is flat: docs/theorem.md, Theorem 2 (c); that generic patterns without triangulated "
-        "triangles have no flat stars is not used here",
+        "The dimension is D all the same for a convex border (IIC.1). Nonsingular where no star is "
+        "flat: docs/theorem.md, Theorem 2 (c), which is about convex borders; that generic "
+        "patterns without triangulated triangles have no flat stars is not used here",
         "BranchSystem",
         severity=Severity.CONDITION,
         words="docs/theorem.md, Theorem 2 (c)",

@@ -8,7 +8,7 @@ d_4 of the plane.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
@@ -21,7 +21,7 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.rings import ring
 
-from exactfold.exact.linalg import Inertia, inertia_by_elimination
+from exactfold.exact.linalg import Inertia, inertia_by_elimination, nullspace
 from proofs.framework import Proof, Script, run
 
 NAME = "panels"
@@ -64,7 +64,9 @@ def prove(change: str | None = None) -> Proof:
         "T.54",
         "docs/panels.md, 1 (inertia)",
         r"\text{on the local motions: }(1,N-3,0),\ (0,N-3,1)\text{ or }(0,N-2,0)",
-        note="all sectors below pi, one of pi, one above; proved for triangles in C.1 and C.8",
+        note="folds not all on one line: all sectors below pi, one of pi, one above; proved for "
+        "triangles in C.1 and C.8. One fold has no local motion but 0, a straight pair one line of "
+        "them, with K = 0",
         code="Star.foldable",
         rests="C.11",
     )
@@ -333,57 +335,50 @@ def _inertia(script: Script) -> None:
     swapped = script.alter("positive and negative exchanged", False, True)
 
     def found(star: Sequence[tuple[int, int]]) -> Inertia:
-        """K_v in the densities of the folds without two that are not parallel."""
-        count = len(star)
-
-        def cross(i: int, j: int) -> Fraction:
-            return Fraction(star[i][0] * star[j][1] - star[i][1] * star[j][0])
-
-        i, j = next(pair for pair in combinations(range(count), 2) if cross(*pair))
-        basis = []
-        for k in range(count):
-            if k not in (i, j):
-                row = [Fraction(0)] * count
-                row[k] = Fraction(1)
-                row[i], row[j] = cross(j, k) / cross(i, j), -cross(i, k) / cross(i, j)
-                basis.append(row)
+        """K_v on the densities with sum w_j d_j = 0."""
+        pairs = list(combinations(range(len(star)), 2))
+        cross = {(i, j): star[i][0] * star[j][1] - star[i][1] * star[j][0] for i, j in pairs}
+        basis = nullspace([[Fraction(d[axis]) for d in star] for axis in (0, 1)])
         matrix = [
-            [
-                sum(
-                    (
-                        (a[m] * b[n] + a[n] * b[m]) * cross(m, n)
-                        for m, n in combinations(range(count), 2)
-                    ),
-                    Fraction(0),
-                )
-                for b in basis
-            ]
+            [sum((a[m] * b[n] + a[n] * b[m]) * cross[m, n] for m, n in pairs) for b in basis]
             for a in basis
         ]
         return inertia_by_elimination(matrix)
 
     def stars(case: str) -> Iterator[list[tuple[int, int]]]:
         circle = [(4, 0), (3, 2), (2, 3), (-1, 3), (-3, 2), (-4, 0), (-3, -2), (0, -5), (2, -2)]
-        for count in (3, 4, 5, 6):
+        for count in (1, 2, 3, 4, 5, 6):
             for star in combinations(circle, count):
                 turns = [
                     (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
                     for a, b in zip(star, (*star[1:], star[0]), strict=True)
                 ]
-                if any(t < 0 for t, _ in turns):
+                if not any(t for t, _ in turns):
+                    kind = "line"
+                elif any(t < 0 for t, _ in turns):
                     kind = "above"
                 else:
                     kind = "straight" if any(t == 0 and d < 0 for t, d in turns) else "below"
                 if kind == case:
                     yield list(star)
 
-    expected = {"below": (1, -3, 0), "straight": (0, -3, 1), "above": (0, -2, 0)}
-    texts = {"below": "all sectors below pi", "straight": "one of pi", "above": "one above pi"}
+    zero_on_a_line = script.alter("as many motions on one line", -1, -2)
+    expected: dict[str, Callable[[int], Inertia]] = {
+        "below": lambda n: (1, n - 3, 0),
+        "straight": lambda n: (0, n - 3, 1),
+        "above": lambda n: (0, n - 2, 0),
+        "line": lambda n: (0, 0, n + zero_on_a_line),
+    }
+    texts = {
+        "below": "all sectors below pi",
+        "straight": "one of pi",
+        "above": "one above pi",
+        "line": "one fold, or a straight pair",
+    }
 
     def agree(case: str) -> Iterator[bool]:
         for star in stars(case):
-            up, down, zero = expected[case]
-            down += len(star)
+            up, down, zero = expected[case](len(star))
             yield found(star) == ((down, up, zero) if swapped else (up, down, zero))
 
     for case, text in texts.items():

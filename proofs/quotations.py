@@ -1,14 +1,15 @@
 r"""The words and formulas that are printed in the paper, compared with its source.
 
-What a statement gives as printed is cut at dots, quotation marks and signs of equality; each
-fragment has to stand in the LaTeX source of the paper, apart from spaces, fonts, braces, square
-brackets, underscores, and how lines of formulas are aligned. The source is no part of this project:
-`docs/read_paper.py` reads it and keeps a digest of each statement, with which the tests compare.
+What a statement gives as printed (`Statement.source`) is cut at dots, quotation marks and between
+formulas; each fragment has to stand in the LaTeX source of the paper, apart from spaces, fonts,
+braces, square brackets, underscores, and how lines of formulas are aligned. The source is no part
+of this project: `docs/read_paper.py` reads it and keeps a digest of each statement, with which the
+tests compare.
 
 >>> fragments(r"D=V_{e}-3\text{, ``which is \dots\ small''}")
-['D', 'Ve-3', 'whichis', 'small']
->>> stands_in(r"V_{e}-3\text{ is}", r"\[D = V_e - 3.\] This is")
-False
+['D=Ve-3', 'whichis', 'small']
+>>> stands_in(r"D=V_{e}-3", r"\[D = V_e - 3.\] This is"), stands_in("D=3", "D = V_e = 3")
+(True, False)
 """
 
 from __future__ import annotations
@@ -25,8 +26,7 @@ _GONE = re.compile(
     r"\\(?:nonumber|cdot|mathbf|bm|boldsymbol|textrm|mathrm|text|textit|em|big|Big|quad|qquad)"
     r"(?![a-zA-Z])|\\[\\,;! ]|[{}$&~_\s]|(?<!\\)[\[\]]"
 )
-_RANGE = re.compile(r",\s*\\q?quad\s*[a-z]=[^=]*\\dots.*$")
-_CUT = re.compile(r"\\dots|``|''|[,;]\\quad|=")
+_CUT = re.compile(r"\\dots|``|''|[,;]\\quad")
 
 
 def plain(latex: str) -> str:
@@ -36,7 +36,7 @@ def plain(latex: str) -> str:
 
 def fragments(printed: str) -> list[str]:
     """What has to stand in the paper, in the order in which a statement gives it."""
-    found = (plain(part).strip(",;:.") for part in _CUT.split(_RANGE.sub("", printed)))
+    found = (plain(part).strip(",;:.") for part in _CUT.split(printed))
     return [part for part in found if part]
 
 

@@ -16,11 +16,27 @@ REPLACEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
             r"along the edge $(n,m)$ and the sum is taken over all edges in the network",
         ),
     ),
+    "IIA.12": (
+        (
+            "the displacements allowed here can only change the stretching energy to at most "
+            "sixth-order",
+            "the displacements allowed here, with the in-plane displacements that belong to them, "
+            "change the stretching energy at eighth order only",
+        ),
+    ),
     "IIB.21": (
         (
             "exactly one of which is negative (Ref.",
             r"exactly one of which is positive (negative with the opposite sign of $\bm{\sigma}$, "
             r"as from here on and in Appendix \ref{app:quadratic}; Ref.",
+        ),
+    ),
+    "IIB.25": (
+        (
+            "This eigenvector gives a set of displacements that maximizes the change in the "
+            "Gaussian curvature.",
+            "Among displacements of a given norm this eigenvector gives those that maximize the "
+            "Gaussian curvature (others can change it by more, to negative values).",
         ),
     ),
     "IIB.27": (
@@ -69,8 +85,9 @@ REPLACEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
         (
             "This should be true generically, and in all of the numerical examples considered in "
             "this paper this is indeed the case.",
-            "They do so along a branch if and only if no vertex star is flat on it; so nowhere "
-            "where the crease pattern contains a triangulated triangle.",
+            "For a convex border they do so along a branch if and only if no vertex star is flat "
+            "on it; for any border they do so nowhere where the crease pattern contains a "
+            "triangulated triangle.",
         ),
     ),
     "IIC.15": (("(singular when $D>1$)", "(singular unless the cone is a linear space)"),),
@@ -114,12 +131,27 @@ REPLACEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
             "collinear, a cross of four folds of that sign in place of either).",
         ),
     ),
+    "IIIC.6": (
+        (
+            r"such that the angles between $c_1,c_2,c_3$ are between 0 and $\pi$ and",
+            r"such that the three angles from $c_1$ to $c_2$, from $c_2$ to $c_3$ and from $c_3$ "
+            r"to $c_1$ are between 0 and $\pi$ and",
+        ),
+    ),
     "IV.4": (
         (
             "there are always two distinct folded configurations of $T'$.",
             r"there are two distinct folded configurations of $T'$ near the unfolded state if the "
             r"angle of $T$ at $v_2$ is less than $\pi$, and if it is larger and $v_2$ has degree 3 "
             r"in $T$ or (to second order) $V_e=4$; if it is $\pi$ there may be only one.",
+        ),
+    ),
+    "IV.10": (
+        (
+            "under our restriction of no interior degree-3 vertices, all $V_i=1,2,3$ "
+            "triangulations are H1",
+            "under our restrictions of no interior degree-3 vertices and no folds joining external "
+            "vertices, all triangulations of a square with $V_i=1,2,3$ are H1",
         ),
     ),
     "IV.12": (
@@ -165,6 +197,13 @@ REPLACEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
             "the $2^{V_i}-1$ undesired branches span the $(V_i+1)$-dimensional space of foldings.",
         ),
     ),
+    "V.10": (
+        (
+            "setting the equilibrium dihedral angle of each fold to a nonzero value",
+            r"setting the equilibrium folding angle of each fold, the deviation of its dihedral "
+            r"angle from $\pi$, to a nonzero value",
+        ),
+    ),
     "B.6": (
         (
             r"$\sigma_{i,i+1}\sin\eta_{i,i+1}=-\sigma_{i-1,i}\sin\eta{i-1,i}$",
@@ -200,6 +239,17 @@ REPLACEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
             r"lines, where $\sigma_1=\sigma_3$ and $\sigma_2=\sigma_4$.)",
         ),
     ),
+    "B.26": (
+        (
+            r"there is a closed triangle with side lengths $\Delta\sigma_{i-1}=\sigma_{i-1}-"
+            r"\sigma^0_{i-1}$, $\Delta\sigma_{i+1}=\sigma_{i+1}-\sigma^0_{i+1}$, and "
+            r"$\sigma_i$ and",
+            r"there is a closed triangle with side lengths $|\Delta\sigma_{i-1}|$, "
+            r"$|\Delta\sigma_{i+1}|$, and $|\sigma_i|$, where $\Delta\sigma_{i-1}=\sigma_{i-1}-"
+            r"\sigma^0_{i-1}$ and $\Delta\sigma_{i+1}=\sigma_{i+1}-\sigma^0_{i+1}$ are negative if "
+            r"$\sigma_i>0$, and positive if $\sigma_i<0$, and",
+        ),
+    ),
     "C.3": (
         (
             r"Let us consider the quadratic form in Eq.~(\ref{constraint}). This form has",
@@ -219,6 +269,14 @@ REPLACEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
             r"\lambda_m = f - 2 |g| \cos \left( \frac{m \pi}{N-1} \right)",
         ),
         ("for $m$ ranging from $1$ to $N-1$", "for $m$ ranging from $1$ to $N-2$"),
+    ),
+    "C.9": (
+        (
+            r"\lambda_m = 2 \frac{\csc \left(2 \pi/N \right)}{L^2} \left[ \cos \left( \frac{2 \pi}"
+            r"{N} \right) -  \cos \left( \frac{m \pi}{N-1} \right) \right].",
+            r"\lambda_m = 2 \frac{\csc \left(2 \pi/N \right)}{L^2} \left[ \cos \left( \frac{2 \pi}"
+            r"{N} \right) -  \cos \left( \frac{m \pi}{N-1} \right) \right],\quad m=1,\dots,N-2.",
+        ),
     ),
     "C.13": (
         (
@@ -266,6 +324,12 @@ REPLACEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
             "places the outer edges under tension, and spoke $n$ under compression where the link "
             "polygon is strictly convex at $n$ (it is unstressed where the polygon is straight "
             "there, and under tension where it is reflex there).",
+        ),
+    ),
+    "C.24": (
+        (
+            r"the defining symmetric matrix is $(n+1)\times(n+1)$ and $f+b=n$",
+            r"the defining symmetric matrix is $(N+1)\times(N+1)$ and $f+b=N$",
         ),
     ),
     "D.5": (

@@ -25,6 +25,8 @@ class Severity(Enum):
     """True under a condition that is not stated."""
     CLAIM = "wrong claim"
     """Not true in the sense in which it is used."""
+    REMARK = "remark"
+    """Said with reserve ("seem", "roughly"), and not borne out by further computations."""
 
 
 class How(Enum):
@@ -46,11 +48,12 @@ class Statement:
 
     `key` numbers it within the paper, as in "C.4" for the fourth statement of Appendix C;
     `corrected` is empty if it holds as printed, or cannot be mended; `code` names what in exactfold
-    implements it, `equation` is its number in the paper. What it rests on besides the steps that
-    name it: `rests` (keys of other statements), `cited` (a theorem of others) and `words` (where a
-    proof is written out that is not run); `contradiction` names another place of the paper that
-    says something else, which no step has to refute. The ruling is set when a
-    proof is finished.
+    implements it, `equation` is its number in the paper. Where `printed` is a formula that is put
+    together from what stands in the paper, `quoted` is what stands there. What it rests on besides
+    the steps that name it: `rests` (keys of other statements), `cited` (a theorem of others) and
+    `words` (where a proof is written out that is not run); `contradiction` names another place of
+    the paper that says something else, which no step has to refute. The ruling is set when a proof
+    is finished.
     """
 
     key: str
@@ -65,7 +68,13 @@ class Statement:
     cited: str = ""
     words: str = ""
     contradiction: str = ""
+    quoted: str = ""
     ruling: Ruling = Ruling.AS_PRINTED
+
+    @property
+    def source(self) -> str:
+        """What stands in the paper, word by word."""
+        return self.quoted or self.printed
 
     @property
     def is_own(self) -> bool:

@@ -69,6 +69,8 @@ def _equal_angles(script: Script) -> None:
         "Appendix C, eigenvalues of the Toeplitz matrix",
         r"\lambda_m=f+2|g|\cos(\frac{m\pi}{N-1}),\quad m=1,\dots,N-1",
         r"\lambda_m=f-2|g|\cos(\frac{m\pi}{N-1}),\quad m=1,\dots,N-2",
+        quoted=r"\lambda_m=f+2|g|\cos(\frac{m\pi}{N-1})\text{ ``for }m\text{ ranging from }1"
+        r"\text{ to }N-1\text{''}",
         at=map(equal_angles, (3, 4, 5, 6)),
         note="range: the matrix has N-2 rows; m = N-1 is no eigenvalue (N = 4, L = 1: -2 or 2 "
         "besides 1 and -1). Label: with the plus sign lambda_m is the lambda_{N-1-m} of Eq. "
@@ -81,11 +83,17 @@ def _equal_angles(script: Script) -> None:
         "C.9",
         "Appendix C, Eq. (equalangleeigs)",
         r"\lambda_m=2\frac{\csc(2\pi/N)}{L^2}\left[\cos(\frac{2\pi}{N})-\cos("
+        r"\frac{m\pi}{N-1})\right],\quad m=1,\dots,N-1",
+        r"\lambda_m=2\frac{\csc(2\pi/N)}{L^2}\left[\cos(\frac{2\pi}{N})-\cos("
         r"\frac{m\pi}{N-1})\right],\quad m=1,\dots,N-2",
         at=map(equal_angles, (3, 4, 5, 6)),
-        note="for m = 1, ..., N-2, and from C.8 as corrected: the printed line before it would "
-        "give cos(2 pi/N) + cos(m pi/(N-1))",
+        quoted=r"\text{``for }m\text{ ranging from }1\text{ to }N-1\text{'' \dots\ }"
+        r"\lambda_m=2\frac{\csc(2\pi/N)}{L^2}\left[\cos(\frac{2\pi}{N})-\cos("
+        r"\frac{m\pi}{N-1})\right]",
+        note="the range is that of C.8, and too large by one. It follows from C.8 as corrected: "
+        "the printed line before it would give cos(2 pi/N) + cos(m pi/(N-1))",
         equation="C8",
+        severity=Severity.CONSTANT,
     )
     k, j = symbols("k j")  # N = 3 + k, m = 2 + j with k, j >= 0
     N, m = k + 3, 2 + script.alter("m from 1", j, j - 1)

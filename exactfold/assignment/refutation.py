@@ -133,8 +133,9 @@ def refuted_at(
 
     It can pop up only if its mountains lie in no closed half-plane, unless all other folds stay
     flat, and one of its folds is a valley: turned round for down. The first is refuted by the
-    wedge -(n . x)_+, which lies in the up nappe; the second, a text, because a star without a
-    valley is concave, and has K_v > 0 then unless it is flat or bent along one straight line.
+    wedge -(n . x)_+, which lies in the up nappe (docs/assignment.md, The search); the second, a
+    text, because a star without a valley is concave, and has K_v > 0 then unless it is flat or bent
+    along one straight line.
     """
     ring, d = spokes(sheet, vertex)
     letter = [letters[min(vertex, w), max(vertex, w)] for w in ring]

@@ -75,7 +75,7 @@ class BranchCount(Page):
     `with_multiplicity` the solutions of the branch system with multiplicity, `real` and `nonreal`
     its distinct solutions by reality. `true_branches` is PROVED when the count is also that of the
     true configuration space (docs/mathematics.md, True branches), and `true_bounds` are bounds of
-    the number of true branches for D = 1 (docs/any_border.md, Theorem 8). `dimension` and `degree`
+    the number of true branches for D = 1 (docs/any_border.md, Theorem 9). `dimension` and `degree`
     are those of the cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi
     where that is proved (docs/mathematics.md, Single vertex), else None. `branches` holds every
     branch decided, all of them if PROVED and D = 1; for D > 1 a branch is not a line, and none is

@@ -53,7 +53,8 @@ Proof. rewrite cross_IZR. now apply (IZR_neq _ 0). Qed.
 """
 
 _BRANCHES = """
-(** At most 2^{n} branches, all real; as many if no star is flat on any of them. *)
+(** At most 2^{n} branches, all real.  That they are as many is in the file with all certificates
+    (`--all`), which show that no star is flat on any of them. *)
 Theorem at_most : exists l : list vec, length l = 2 ^ {n} /\\
   (forall h, In h l <-> representative this_sheet {d} h) /\\
   forall z, complex_solution this_sheet z ->
@@ -61,17 +62,6 @@ Theorem at_most : exists l : list vec, length l = 2 ^ {n} /\\
 Proof.
   pose proof (at_most_2_to_the_n this_sheet {a} {b} {c} {d} eq_refl corners) as H.
   rewrite size in H. exact H.
-Qed.
-
-Theorem exactly :
-  (forall h, representative this_sheet {d} h ->
-    forall v, In v (inside sheet_drawing) -> ~ flat_star this_sheet v h) ->
-  exists l : list vec, length l = 2 ^ {n} /\\ NoDup l /\\
-    forall h, In h l <-> representative this_sheet {d} h.
-Proof.
-  intros NF. destruct (branches this_sheet {a} {b} {c} {d} eq_refl corners NF)
-    as (l & Len & Once & Sol & _).
-  rewrite size in Len. exists l. exact (conj Len (conj Once Sol)).
 Qed.
 """
 
@@ -87,8 +77,9 @@ def to_coq(pattern: PatternLike) -> str:
 
     Coordinates are integers, in the unit that makes them so. Coq decides by computation that the
     hypotheses of the theorem hold (`check` in `proofs/formal/Drawing.v`). With three or four
-    corners the branches are bounded as well. Raises `NotApplicableError` if the border is not
-    convex, and the errors of `load`.
+    corners the branches are bounded as well. That there are exactly 2^n is not stated here: it is
+    false if some star is flat on a branch, and `branches_to_coq` has the certificates that show
+    that none is. Raises `NotApplicableError` if the border is not convex, and the errors of `load`.
 
     >>> print(to_coq("two-vertex").splitlines()[8])
       points := [(0, 0); (840, 0); (840, 840); (0, 840); (280, 336); (525, 480)]%Z;

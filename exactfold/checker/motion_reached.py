@@ -1,4 +1,4 @@
-"""That driven folds reach their angles: they are beyond them at the end (docs/motion.md, 10)."""
+"""That driven angles reach their sizes: they are larger at the end (docs/motion.md, 10)."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ def check_reached(equations: LengthEquations, drive: Drive, here: Ball) -> None:
     """Raise unless all driven folds are bent as far as claimed, or farther, in a box at the end.
 
     There g <= -2 w for one of them, and so for all, and they are valleys or mountains as claimed.
+    So at some time before all of these angles have exactly the sizes claimed. Nothing is said of
+    the side to which the folds are bent at that time.
     """
     bits, k = equations.bits, len(equations.edges) + drive.most
     u, e = equations.flat[k], equations.along(here.centre)[k]
@@ -22,7 +24,7 @@ def check_reached(equations: LengthEquations, drive: Drive, here: Ball) -> None:
     g = sum(2 * a * x + x * x for a, x in zip(u, e, strict=True))
     g += sum((2 * abs(a) + 2 * abs(x) + r) * r for a, x, r in zip(u, e, wide, strict=True))
     beyond = Fraction(g, 2 << 2 * bits) * equations.unit**2 <= -2 * drive.weight
-    require(beyond, "the driven folds are not proved to reach their angles")
+    require(beyond, "the driven folds are not proved to reach the sizes of their angles")
     boxes = _boxes(equations, here)
     for fold, pair, q in zip(drive.folds, drive.diagonals, drive.squares, strict=True):
         right = volume_sign(boxes, *fold, *pair) * q > 0

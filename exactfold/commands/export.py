@@ -22,7 +22,7 @@ from exactfold.commands.patterns import read
 from exactfold.commands.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say
 from exactfold.count.find import find_branches
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
 from exactfold.pattern.fold_writing import write_text
@@ -162,9 +162,17 @@ FEW = 64
 
 
 def _refuse_uncounted(pattern: CreasePattern, force: bool) -> None:
-    """Raise `UsageError`, before any branch is looked for, if Coq cannot count them or not soon."""
+    """Raise before any branch is looked for if Coq cannot count them, or not soon.
+
+    `NotApplicableError` if a vertex lies in a triangulated triangle, else `UsageError`.
+    """
     if pattern.Ve != 4:
         raise UsageError(f"--all is for sheets with four corners, not {pattern.Ve}")
+    if flat := sorted(pattern.interior_set - set(pattern.foldable_vertices)):
+        raise NotApplicableError(
+            f"vertex {flat[0]} lies in a triangulated triangle and is flat on every branch: the "
+            "formal proof counts branches of sheets on which no vertex can stay flat"
+        )
     if 2**pattern.Vi > FEW and not force:
         raise UsageError(
             f"{pattern.Vi} interior vertices have {2**pattern.Vi} sign vectors, and Coq takes a "

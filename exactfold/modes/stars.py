@@ -65,10 +65,10 @@ class Star:
     def foldable(self) -> tuple[int, ...]:
         """Positions of the folds that can fold here; the others are flat in every real motion.
 
-        The form on the N - 2 dimensional space of local motions has inertia (1, N-3, 0) if all
-        sectors are less than pi, (0, N-3, 1) if one is pi and (0, N-2, 0) if one exceeds pi: then
-        only the straight pair at that sector folds, or nothing. Three folds with all sectors below
-        pi have a definite form.
+        If not all folds lie on one line, the form on the N - 2 dimensional space of local motions
+        has inertia (1, N-3, 0) if all sectors are less than pi, (0, N-3, 1) if one is pi and
+        (0, N-2, 0) if one exceeds pi: then only the straight pair at that sector folds, or nothing.
+        Three folds with all sectors below pi have a definite form.
 
         >>> Star(0, ((0, 1), (0, 2), (0, 3)), ((1, 0), (0, 1), (-1, 0))).foldable()
         (0, 2)

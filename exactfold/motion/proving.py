@@ -104,9 +104,9 @@ class MotionProof:
 
     @property
     def reached(self) -> bool | None:
-        """Whether driven folds are proved to reach the angles of the drive; None without a drive.
+        """Whether driven angles are proved to reach the sizes in the drive; None without a drive.
 
-        At the end they are beyond them, all to the right side (docs/motion.md, 10).
+        At the end they are that large or larger, all to the right side (docs/motion.md, 10).
         Of the one fold that is driven on a sheet with four corners nothing is said.
         """
         return None if self.track is None or self.track.drive is None else self.track.reached

@@ -124,7 +124,8 @@ class Track:
     def reached(self) -> bool:
         """Whether driven folds are proved to be at the angles of the drive or beyond, at the end.
 
-        So they have these angles at some configuration of the track.
+        So at some configuration of the track all these angles have exactly their sizes. On which
+        side the folds are bent there is not said (docs/motion.md, 10).
         """
         last = self.steps[-1] if self.steps else None
         if self.drive is None or isinstance(last, Passage):

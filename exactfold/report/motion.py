@@ -105,7 +105,7 @@ def _proof(proof: MotionProof | PanelProof) -> RenderableType:
     for text in filter(None, (proof.through_text, proof.end_text)):
         parts[0] += f", {text}"
     if proof.reached:
-        parts[0] += ", on which the driven folds reach their angles"
+        parts[0] += ", on which the driven angles reach the sizes asked for"
     contact = proof.contact
     if contact is not None and contact.event is None and proof.passed:
         parts.append(f"no two faces touch before {float(contact.clear):.8g}, then some may")

@@ -19,5 +19,5 @@ Definition others :=
    simple_iff_no_flat_star, different_sign_vectors, list_of_solutions, rigid,
    every_solution_on_a_branch, branch_has_one_representative, at_most_2_to_the_n,
    two_branches_per_pair, krawczyk_nonsingular, unique, cone_positive, sheet_of, Example.shapes, Example.at_most,
-   Example.exactly, boxed, no_star_is_flat, the_branch).
+   boxed, no_star_is_flat, the_branch).
 Print Assumptions others.

@@ -35,7 +35,8 @@ Lemma corners : cross (sub (at_R sheet_drawing 2) (at_R sheet_drawing 1))
   (sub (at_R sheet_drawing 3) (at_R sheet_drawing 1)) <> 0%R.
 Proof. rewrite cross_IZR. now apply (IZR_neq _ 0). Qed.
 
-(** At most 2^2 branches, all real; as many if no star is flat on any of them. *)
+(** At most 2^2 branches, all real.  That they are as many is in the file with all certificates
+    (`--all`), which show that no star is flat on any of them. *)
 Theorem at_most : exists l : list vec, length l = 2 ^ 2 /\
   (forall h, In h l <-> representative this_sheet 0 h) /\
   forall z, complex_solution this_sheet z ->
@@ -43,15 +44,4 @@ Theorem at_most : exists l : list vec, length l = 2 ^ 2 /\
 Proof.
   pose proof (at_most_2_to_the_n this_sheet 1 2 3 0 eq_refl corners) as H.
   rewrite size in H. exact H.
-Qed.
-
-Theorem exactly :
-  (forall h, representative this_sheet 0 h ->
-    forall v, In v (inside sheet_drawing) -> ~ flat_star this_sheet v h) ->
-  exists l : list vec, length l = 2 ^ 2 /\ NoDup l /\
-    forall h, In h l <-> representative this_sheet 0 h.
-Proof.
-  intros NF. destruct (branches this_sheet 1 2 3 0 eq_refl corners NF)
-    as (l & Len & Once & Sol & _).
-  rewrite size in Len. exists l. exact (conj Len (conj Once Sol)).
 Qed.

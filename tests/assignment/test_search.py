@@ -13,6 +13,8 @@ from exactfold.assignment.refutation import refuted_at
 from exactfold.data import example_path
 from exactfold.errors import UsageError
 from exactfold.pattern.families import single_vertex
+from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.timelike import round_cone
 from exactfold.verdict import PROVED, UNDECIDED
 
 TURNED = str.maketrans("+-MV", "-+VM")
@@ -117,6 +119,28 @@ def test_too_many_sign_vectors_are_undecided():
         assert found.status is UNDECIDED
         assert found.open_signs
         assert found.leaves <= most
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_wedge_that_is_linear_on_each_face_is_in_the_up_nappe(seed):
+    """K = 0 where its line runs along spokes, else K > 0 (docs/assignment.md, The search)."""
+    rng = random.Random(seed)
+    circle = [(4, 0), (3, 2), (2, 3), (-1, 3), (-3, 2), (-4, 0), (-3, -2), (0, -5), (2, -3)]
+    while True:
+        spokes = sorted(rng.sample(range(9), rng.randint(3, 7)))
+        d = [circle[k] for k in spokes]
+        crosses = [a[0] * b[1] - a[1] * b[0] for a, b in zip(d, (*d[1:], d[0]), strict=True)]
+        if min(crosses) > 0:
+            break
+    size = len(d)
+    star = CreasePattern([*d, (0, 0)], [(k, (k + 1) % size, size) for k in range(size)])
+    form, up = curvature_form(star, size), round_cone(star, size)
+    normals = [(-y, x) for x, y in d] + [(rng.randint(-9, 9), rng.randint(1, 9)) for _ in range(9)]
+    for nx, ny in normals:
+        z = {k: Fraction(-max(nx * x + ny * y, 0)) for k, (x, y) in enumerate([*d, (0, 0)])}
+        along = [any(nx * x + ny * y == 0 < s * (nx * y - ny * x) for x, y in d) for s in (1, -1)]
+        assert form.polar(up, z) > 0
+        assert form(z) == 0 if all(along) else form(z) > 0
 
 
 def test_a_vertex_whose_folds_are_all_mountains():

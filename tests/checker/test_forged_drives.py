@@ -69,7 +69,7 @@ def test_only_the_ratio_of_the_squares_is_kept() -> None:
     assert verified(_with(squares=[str(q / 2) for q in squares]))
     more = [str(q * 60) for q in squares]
     assert verified(_with(squares=more, reached=False))
-    message = "the driven folds are not proved to reach their angles"
+    message = "the driven folds are not proved to reach the sizes of their angles"
     with without(message):
         verified(_with(squares=more))
     refused(_with(squares=more), message)

@@ -270,6 +270,11 @@ def test_a_branch_is_written_for_coq():
         (["two-vertex", "--json"], USAGE, "--json does not go with --coq"),
         (["random-8", "--all"], USAGE, "have 256 sign vectors, and Coq takes a second or more"),
         (["flat-vertex", "--all"], USAGE, "vertex 5 is flat on the branch with the signs +0"),
+        (
+            ["flat-octahedron", "--all"],
+            USAGE,
+            "vertex 7 lies in a triangulated triangle and is flat",
+        ),
         (["flat-vertex", "--signs", "++"], USAGE, "do not show that vertex 5 is bent"),
         (["two-vertex", "-o", "two-vertex.v"], USAGE, "which two-vertex.v cannot be"),
         (["two-vertex", "-o", "two_vertex.coq"], USAGE, "which two_vertex.coq cannot be"),

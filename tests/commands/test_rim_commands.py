@@ -122,7 +122,7 @@ def test_folds_drive_a_sheet(here: Path) -> None:
     assert done.exit_code == 0
     said = " ".join(done.stdout.split())
     assert "driven 1-5 to 6, 2-6 to -5 degrees; sines of half the angles in ratio" in said
-    assert "on which the driven folds reach their angles" in said
+    assert "on which the driven angles reach the sizes asked for" in said
     assert "folds 1-5, 2-6 have the angles of the drive" in said
     assert "no branch was named (--signs, --up): this is the first that was found" in done.stderr
     claims = checker.check(checker.load(Path("c.json").read_text()))

@@ -182,6 +182,27 @@ def rational_turn(x):
     return (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
 
 
+@pytest.mark.parametrize(
+    ("tips", "linear"),
+    [
+        ([(1, 0), (1, 1), (-2, 0), (-1, -1)], {2: [True, True]}),  # two lines, Q = 4
+        ([(1, 0), (0, 1), (-2, 0), (0, -3)], {2: [True, True]}),  # perpendicular ones, Q = 0
+        ([(1, 0), (-1, 2), (-3, 0), (-1, -2)], {2: [True], 4: [True]}),  # one line, Q = 0
+        ([(1, 0), (-1, 2), (-3, 0), (1, -1)], {2: [True], 4: [False]}),  # one line, Q = -18
+        ([(1, 0), (3, 4), (-63, 16), (5, -12)], {4: [True, True]}),  # no line, Q = 0
+        ([(2, 1), (-1, 3), (-2, -3), (1, -4)], {4: [False, False]}),  # no line, Q = 567
+    ],
+)
+def test_four_active_folds_stay_in_proportion_where_the_vertex_folds_flat(tips, linear):
+    """A straight crease that folds alone does so whatever Q is (docs/panel_motion.md, 1)."""
+    components = panel_components(decompose(one_vertex(*tips)))
+    found = {}
+    for k, component in enumerate(components, 1):
+        motion = follow_panels(decompose(one_vertex(*tips)), component=k, frames=2)
+        found.setdefault(component.folds, []).append(motion.closes is PROVED)
+    assert found == linear
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_a_vertex_with_four_folds_is_a_spherical_four_bar_linkage(seed):
     """Both sides of each diagonal of the linkage, by the spherical law of cosines."""

@@ -11,6 +11,7 @@ from sheets import reflex_corners, star_in, wheel
 
 from exactfold import count_branches, find_branch, load
 from exactfold.errors import FlatVertexError
+from exactfold.exact.linalg import rank
 from exactfold.motion import find_loops, follow_proved
 from exactfold.motion.angles import fold_angles_of
 from exactfold.motion.framework import Framework
@@ -61,6 +62,53 @@ def test_what_folds_flat_is_what_reflections_close():
             assert folds_flat(star, closed) == closes(star, closed), closed
             found.add((len(closed), folds_flat(star, closed)))
     assert {(0, True), (1, False), (2, True), (2, False), (4, True), (4, False)} <= found
+
+
+@pytest.mark.parametrize(
+    ("corners", "edges", "fixed"),
+    [
+        ([(3, 1), (-1, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)], (0, 0)),
+        ([(3, 1), (-1, 2)], [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)], (0, 1)),  # a diagonal
+        ([(3, 1), (-1, 2)], [(0, 1), (1, 2), (2, 3), (3, 0), *((v, 4) for v in range(4))], (1, 0)),
+        (
+            [(3, 1), (-1, 2), (9, 0), (0, 8)],
+            [
+                *[(0, 1), (1, 4), (4, 5), (5, 0), (2, 3), (3, 6), (6, 7), (7, 2)],
+                *[(0, 2), (1, 3), (4, 6), (5, 7), (0, 3), (1, 6), (4, 7), (5, 2)],
+            ],
+            (0, 0),  # a ring between two quadrilaterals
+        ),
+    ],
+)
+def test_lengths_split_where_a_half_turn_in_space_maps_a_part_to_itself(corners, edges, fixed):
+    """Exact ranks in a configuration with this symmetry: docs/motions.md, Proposition."""
+    rng, m = random.Random(3), len(corners)
+    flat = [*corners, *((-x, -y) for x, y in corners)] + [(0, 0)] * fixed[0]
+    middle = 2 * m
+    image = [(v + m) % middle if v < middle else v for v in range(len(flat))]
+    assert {frozenset(image[v] for v in e) for e in edges} == set(map(frozenset, edges))
+    heights = [rng.randint(-5, 5) for _ in range(m)]
+    place = [(*p, z) for p, z in zip(flat, heights * 2 + [7] * fixed[0], strict=True)]
+    turn = (-1, -1, 1)
+    found = []
+    for side in (1, -1):
+        moves = []
+        for v in range(len(flat)):
+            for axis in range(3):
+                move = [[0, 0, 0] for _ in flat]
+                move[v][axis] += 1
+                move[image[v]][axis] += side * turn[axis]
+                moves.append([*chain(*move)])
+        rows = [
+            [
+                sum((place[i][a] - place[j][a]) * (y[3 * i + a] - y[3 * j + a]) for a in range(3))
+                for i, j in edges
+            ]
+            for y in moves
+        ]
+        found.append((rank(moves), rank(rows)))
+    e = (len(edges) - fixed[1]) // 2
+    assert found == [(3 * m + fixed[0], e + fixed[1]), (3 * m + 2 * fixed[0], e)]
 
 
 @pytest.mark.slow

@@ -18,6 +18,7 @@ from exactfold.count import hand_over
 from exactfold.count.true_bounds import with_true_bounds
 from exactfold.errors import NotApplicableError
 from exactfold.modes.stars import Star, edge_of, stars
+from exactfold.motion import follow_proved
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import flat_vertex_square, single_vertex, waterbomb
 from exactfold.pattern.opening import panels
@@ -26,6 +27,7 @@ from exactfold.pieces import Joint, Pieces, find_pieces, flat_stars, joining
 from exactfold.pieces.cubes import components
 from exactfold.pieces.no_zero import have_no_common_zero
 from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.functionals import saddle_functional
 
 
 def pentagon(seed: int, inside: int) -> CreasePattern:
@@ -239,6 +241,28 @@ def test_a_double_line_that_is_one_true_curve():
     result = count_branches(flat_vertex_square())
     assert (result.distinct, result.with_multiplicity) == (3, 4)
     assert (result.true_bounds, result.true_branches) == ((3, 3), PROVED)
+
+
+def test_a_branch_without_a_saddle_is_the_start_of_a_true_one():
+    """With a reflex corner the saddle may be 0: true branches are not counted by its sign.
+
+    The border is (-1, 0), (3, -3), (-5, 6), (-5, 1) about (0, 0), with the reflex corner 0.
+    """
+    corners = [(-1, 0), (3, -3), (-5, 6), (-5, 1), (0, 0)]
+    dart = CreasePattern(corners, [(k, (k + 1) % 4, 4) for k in range(4)])
+    result = count_branches(dart)
+    assert (result.true_bounds, result.true_branches) == ((2, 2), PROVED)
+    form, saddle = curvature_form(dart, 4), saddle_functional(dart)
+    solutions = [(0, 0, 0, 0, -1), (4, 0, 0, 0, 3)]
+    values = []
+    for heights in solutions:
+        h = {v: Fraction(x) for v, x in enumerate(heights)}
+        assert form(h) == 0
+        assert any(form.functional(h).values())
+        values.append(sum(Fraction(weight) * h[v] for v, weight in saddle.items()))
+    assert values == [0, 4]
+    for branch in result.branches:
+        assert follow_proved(branch, until=0.01).status is PROVED
 
 
 def test_a_double_line_that_is_not_shown_to_be_one_curve():

@@ -82,7 +82,7 @@ def test_every_proof_holds_and_the_pages_show_it() -> None:
     assert [wrong for claim in claims for wrong in unexplained(claim)] == []
     assert set(SURVIVORS) <= {claim.key for claim in claims}
     digests = json.loads(QUOTATIONS.read_text(encoding="utf-8"))
-    assert {s.key: digest(s.printed) for s in statements if not s.is_own} == digests
+    assert {s.key: digest(s.source) for s in statements if not s.is_own} == digests
     assert set(UNPRINTED) <= {claim.key for claim in claims}
     for claim in claims:
         check_replacement(claim)
@@ -225,13 +225,13 @@ def test_a_word_or_a_sign_that_the_paper_does_not_print_is_noticed() -> None:
     digests = json.loads(QUOTATIONS.read_text(encoding="utf-8"))
     for name in ("vertex_forms", "kapovich_millson"):
         for statement in load(name).statements:
-            assert digest(statement.printed) == digests[statement.key]
+            assert digest(statement.source) == digests[statement.key]
             for wrong in (
-                statement.printed.replace("+", "-", 1),
-                statement.printed.replace("the", "no", 1),
-                "0" + statement.printed,
+                statement.source.replace("+", "-", 1),
+                statement.source.replace("the", "no", 1),
+                "0" + statement.source,
             ):
-                assert wrong == statement.printed or digest(wrong) != digests[statement.key]
+                assert wrong == statement.source or digest(wrong) != digests[statement.key]
 
 
 def test_rulings_that_do_not_follow_are_refused() -> None:
