@@ -10,8 +10,8 @@ from scipy.spatial import cKDTree
 
 from exactfold.arrays import FloatArray, IntArray
 from exactfold.drawing.drawing import Drawing, Line
-from exactfold.drawing.mending import floats, used
-from exactfold.drawing.splitting import crossing_pairs
+from exactfold.drawing.mending import floats, near_pairs, used
+from exactfold.drawing.splitting import check_pairs, crossing_pairs
 
 GAP: Final = 4.0
 """A distance is clear if no other is between it and this many times it."""
@@ -60,7 +60,7 @@ def _misses(drawing: Drawing, within: float) -> FloatArray:
     through = [k in clear[v] for v, k in zip(*spots.tolist(), strict=True)]
     found.append(at[~np.array(through, dtype=bool)])
     tree = cKDTree(ends)
-    pairs = tree.query_pairs(within, output_type="ndarray")
+    pairs = near_pairs(tree, within)
     found.append(np.hypot(*(ends[pairs[:, 0]] - ends[pairs[:, 1]]).T))
     return np.concatenate(found)
 
@@ -71,13 +71,15 @@ def _beside(
     """Spots and lines, of shape (2, n), that are near, beside the inside; and their distances."""
     order = np.argsort(spots[:, 0], kind="stable")
     xs = spots[order, 0]
+    ends = places[[line[:2] for line in lines]][:, :, 0].reshape(-1, 2)
+    low, high = ends.min(axis=1, initial=np.inf), ends.max(axis=1, initial=-np.inf)
+    check_pairs(xs, low - within, high + within)
     near: list[IntArray] = [np.empty((2, 0), dtype=np.int64)]
     distances: list[FloatArray] = [np.empty(0)]
     for k, (a, b, _) in enumerate(lines):
         chord = places[b] - places[a]
         length = float(np.hypot(*chord))
-        low, high = sorted((places[a][0], places[b][0]))
-        here = order[np.searchsorted(xs, low - within) : np.searchsorted(xs, high + within)]
+        here = order[np.searchsorted(xs, low[k] - within) : np.searchsorted(xs, high[k] + within)]
         offset = spots[here] - places[a]
         across = np.abs(offset[:, 0] * chord[1] - offset[:, 1] * chord[0]) / max(length, 1e-300)
         along = offset @ chord / max(length, 1e-300)
