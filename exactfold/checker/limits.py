@@ -23,7 +23,7 @@ LARGEST, SMALLEST = 50, 50  # powers of ten: a drawing is from 1e-50 to 1e50 lar
 # --- drawings ------------------------------------------------------------------------------------
 MOST_LINES = 500_000  # of a drawing
 MOST_CROSSINGS = 100_000  # of lines of a drawing
-MOST_PAIRS = 5 * 10**8  # of lines above one another, compared by arrays of floats
+MOST_PAIRS = 2 * 10**9  # of lines above one another, compared by arrays of floats
 MOST_NEAR = 5 * 10**7  # pairs of points nearer than what may be merged
 MOST_COMPARED = 10**9  # pairs of edges above one another, compared one by one
 MOST_FRAMES = 1000  # of a FOLD file that are looked at for a flat one
@@ -34,4 +34,5 @@ MOST_TEXT = 4000  # characters of an attribute or of a style, and of the transfo
 MOST_TRANSFORMS = 2 * 10**7  # characters of the transforms of all elements
 
 # --- sheets of certificates ----------------------------------------------------------------------
+MOST_ABOVE = 1 << 27  # pairs of edges above one another, whose boxes are compared
 MOST_MEETINGS = 1 << 20  # pairs of edges whose boxes meet, compared exactly

@@ -123,9 +123,9 @@ def test_one_crossing_more_than_is_read(monkeypatch):
 
 
 def test_lines_above_one_another():
-    text = "\n".join(f"2 0 {k} 100000 {k}" for k in range(30_000))
+    text = "\n".join(f"2 0 {k} 100000 {k}" for k in range(50_000))
     drawing = parse_drawing(text, "a.cp")
-    message = r"lie above one another to be compared: [0-9]+ pairs, and 500000000 are the most"
+    message = r"lie above one another to be compared: [0-9]+ pairs, and 2000000000 are the most"
     for call in (
         lambda: splitting.crossing_pairs(mending.floats(drawing.points), drawing.lines),
         lambda: splitting.split(drawing, 1e-6),
