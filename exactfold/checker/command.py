@@ -35,13 +35,12 @@ from .formats import (
     LETTERS,
     LISTING,
     LOOPS,
-    MOST_LINE,
     MOTION,
     PANEL_LETTERS,
     PANEL_MOTION,
     PIECES,
 )
-from .limits import MOST_BYTES
+from .limits import MOST_BYTES, MOST_LINE
 from .reading import (
     CertificateError,
     FormatError,

@@ -11,7 +11,8 @@ from fractions import Fraction
 from math import degrees
 from typing import Any
 
-from .formats import MOST_TESTS, PANEL_MOTION, PANEL_MOTION_VERSION, RATED_VERSION
+from .formats import PANEL_MOTION, PANEL_MOTION_VERSION, RATED_VERSION
+from .limits import MOST_TESTS
 from .motion_faces import FacePairs
 from .motion_lengths import GRID
 from .panel_cut import Triangle, cut

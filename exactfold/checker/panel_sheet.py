@@ -122,7 +122,7 @@ class PanelSheet:
             return upper[b] - upper[a] or -cross(spokes[a], spokes[b]).sign()
 
         turned = sorted(near, key=cmp_to_key(order))
-        for u, w in zip(turned, [*turned[1:], turned[0]], strict=True):
+        for u, w in zip(turned, [*turned[1:], *turned[:1]], strict=True):
             alike = u != w and cross(spokes[u], spokes[w]).sign() == 0
             apart = not alike or dot(spokes[u], spokes[w]).sign() < 0
             (i, j), (k, m) = sorted((pair(v, u), pair(v, w)))
