@@ -107,6 +107,10 @@ class CutEdgeError(FoldError):
     """An edge between two faces that the file declares a cut or a boundary."""
 
 
+class TooLargeError(InputError):
+    """A file asks for more than a limit; the message names the limit, and what the file has."""
+
+
 class UnknownFormatError(InputError):
     """A file in no format that is read; the message lists those that are."""
 

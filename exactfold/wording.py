@@ -42,3 +42,14 @@ def agreeing(number: int, verb: str) -> str:
     ('stays', 'stay')
     """
     return verb if number == 1 else plural(verb)
+
+
+def visible(text: str) -> str:
+    """Text for a terminal: what is neither printed nor the end of a line is written as an escape.
+
+    >>> print(visible("sheet\x1b[2J.fold"))
+    sheet\\x1b[2J.fold
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)

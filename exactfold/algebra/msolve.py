@@ -21,7 +21,7 @@ from exactfold.algebra.exact_solution import RootClass
 from exactfold.algebra.modular import PRIMES, modular_quotient
 from exactfold.bridges.export import to_msolve
 from exactfold.errors import MsolveFailedError, MsolveMissingError, NotApplicableError
-from exactfold.exact.numbers import parse_rational
+from exactfold.exact.numbers import long_integer
 from exactfold.exact.univariate import from_rational_poly
 from exactfold.problem.quadratic import QuadraticSystem
 
@@ -101,7 +101,7 @@ def parse_output(text: str) -> Parametrisation | None:
         # A list as in JSON but for the quotes; integers of any length.
         data = json.loads(
             text.strip().removesuffix(":").replace("'", '"'),
-            parse_int=lambda number: int(parse_rational(number)),
+            parse_int=long_integer,
             parse_float=_no_integer,
             parse_constant=_no_integer,
         )

@@ -19,7 +19,7 @@ the pieces of a sheet with more than four (`pieces`, docs/certificate.md), all m
 rigid panels (`panels`, docs/certificate.md), the true motion along one branch (`motion`,
 docs/motion.md), one of rigid panels (`panel_motion`, docs/panel_motion.md), and the loops of true
 motions through the flat state (`motion_loops`, docs/motions.md).
-`formats` owns their names, versions and limits.
+`formats` owns their names and versions, `limits` how much one file may ask for.
 
 Floating point is used to choose the matrices and weights of Krawczyk's and of Newton's test, which
 may be any, and nowhere else.

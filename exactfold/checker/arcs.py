@@ -19,10 +19,11 @@ from itertools import product
 from math import lcm
 from typing import Any, TypeAlias
 
+from . import limits
 from .reading import require
 from .sheet import Edge, Sheet, turn
 
-MOST_OPEN = 1 << 12
+MOST_OPEN = limits.MOST_OPEN
 """Most ways to complete open letters that are looked at."""
 
 Heights: TypeAlias = Sequence[int]

@@ -14,6 +14,7 @@ from __future__ import annotations
 from itertools import product
 from typing import Any
 
+from . import limits
 from .arcs import Arcs, Word
 from .branch import Place
 from .formats import ASSIGNMENTS, ASSIGNMENTS_VERSION
@@ -21,7 +22,7 @@ from .reading import counted, document, items, keys, parse_integer, refusing, re
 from .reduced import check_convex
 from .sheet import Edge, Sheet, read_sheet, turn
 
-MOST_VERTICES = 8
+MOST_VERTICES = limits.ASSIGNED_VERTICES
 """Most vertices that can pop."""
 
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
 from .equations import BranchSystem
-from .formats import MOST_BITS
 from .krawczyk import Krawczyk
+from .limits import MOST_BITS
 from .reading import items, keys, natural, parse_integer, require, text_of
 
 

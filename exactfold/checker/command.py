@@ -35,13 +35,21 @@ from .formats import (
     LETTERS,
     LISTING,
     LOOPS,
-    MOST_LINE,
     MOTION,
     PANEL_LETTERS,
     PANEL_MOTION,
     PIECES,
 )
-from .reading import CertificateError, FormatError, UnfinishedError, plain, read_json
+from .limits import MOST_BYTES, MOST_LINE
+from .reading import (
+    CertificateError,
+    FormatError,
+    LimitError,
+    UnfinishedError,
+    at_most,
+    plain,
+    read_json,
+)
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
 
@@ -68,6 +76,8 @@ def load(text: str) -> dict[str, Any]:
         data = read_json(text)
         known: dict[str, Any] = _reader(data if isinstance(data, dict) else {}).read(data)
         return known
+    except LimitError:
+        raise
     except FormatError as error:
         raise FormatError(_stranger(text) or error) from None
 
@@ -119,9 +129,10 @@ def verify(
         if _is_compact(first):
             return compact.check_lines(lines(stream, first), workers, engine)
         try:
-            text = (first + stream.read()).decode()
+            text = (first + stream.read(MOST_BYTES + 1 - len(first))).decode()
         except UnicodeDecodeError as error:
             raise FormatError(error) from None
+    at_most(len(text), MOST_BYTES, "the bytes of the file")
     return check(load(text))
 
 
@@ -200,8 +211,8 @@ def main(arguments: list[str]) -> int:
     """Check one file and print the verdict; the exit code.
 
     0: every claim holds; 1: some claim is not supported, or the file is not finished; 2: wrong
-    usage; 3: not a certificate; 70: a worker process died, memory is short, or a defect of this
-    program.
+    usage; 3: not a certificate, or one beyond the limits; 70: a worker process died, memory is
+    short, or a defect of this program.
     """
     workers = arguments[1] if len(arguments) == 2 else "1"
     usable = workers.isascii() and workers.isdecimal() and len(workers) < 5
@@ -213,6 +224,9 @@ def main(arguments: list[str]) -> int:
     except CertificateError as error:
         print(refusal(error))
         return 1
+    except LimitError as error:
+        print(plain(error), file=sys.stderr)
+        return 3
     except (FormatError, OSError) as error:
         print(f"not a certificate: {plain(error)}", file=sys.stderr)
         return 3

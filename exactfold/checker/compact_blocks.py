@@ -17,16 +17,9 @@ from .boxes import Box, read_box
 from .compact_lines import read_object
 from .equations import BranchSystem, read_chart
 from .flat_folds import close_flat
-from .formats import (
-    COUNTS,
-    MOST_BLOCK,
-    MOST_DIGITS,
-    MOST_UNITS,
-    MOST_UNKNOWNS,
-    MOST_WIDTH,
-    UNPROVED,
-)
+from .formats import COUNTS, UNPROVED
 from .krawczyk import Krawczyk
+from .limits import MOST_BLOCK, MOST_DIGITS, MOST_UNITS, MOST_UNKNOWNS, MOST_WIDTH
 from .listing import agrees, digit
 from .reading import CertificateError, items, keys, natural, require, text_of
 from .sheet import facts_of, read_sheet

@@ -6,7 +6,8 @@ import hashlib
 from collections.abc import Iterator
 from typing import IO, Any
 
-from .formats import COMPACT, COMPACT_VERSION, MOST_LINE
+from .formats import COMPACT, COMPACT_VERSION
+from .limits import MOST_LINE
 from .reading import FormatError, document, read_json
 
 

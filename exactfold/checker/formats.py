@@ -1,4 +1,4 @@
-"""Formats, versions and limits of certificates: writers take them from here."""
+"""Formats and versions of certificates: writers take them from here."""
 
 from __future__ import annotations
 
@@ -40,20 +40,6 @@ RATED_VERSION = 2
 
 LOOPS, LOOPS_VERSION = "exactfold loops", 1
 """The loops of true motions through the flat state, line by line (docs/motions.md)."""
-
-# Bounds on the memory and the work that one file can ask for.
-MOST_BITS = 1 << 14  # of a box in a listing, and digits of its numbers
-MOST_UNITS = 52  # bits of the boxes in a compact block, and the largest radius byte
-MOST_WIDTH = 8  # bytes of a centre
-MOST_BLOCK = 1 << 16  # roots in a block
-MOST_UNKNOWNS = 40
-MOST_LINE = 1 << 25  # bytes of a line
-MOST_TUBES = 1 << 12  # of a motion
-MOST_WORK = 1 << 34  # of a motion: products of numbers of 256 bits, nearly; under an hour
-MOTION_BITS = 1 << 11  # of a motion
-MOST_TESTS = 1 << 23  # of contacts of a motion: of two faces, or to place a vertex; under an hour
-NODE_WORK = 16  # tubes that a node is counted for
-MOST_DIGITS = 4000  # of an exact root in a block, and its bits
 
 UNPROVED = 255
 """The radius byte of a root that is given under "exact"."""

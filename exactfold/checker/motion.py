@@ -14,7 +14,8 @@ from fractions import Fraction
 from itertools import zip_longest
 from typing import Any
 
-from .formats import MOST_TUBES, MOST_WORK, MOTION, MOTION_BITS, MOTION_VERSION, NODE_WORK
+from .formats import MOTION, MOTION_VERSION
+from .limits import MOST_TUBES, MOST_WORK, MOTION_BITS, NODE_WORK
 from .motion_contacts import check_contacts, said
 from .motion_drive import Drive, driven_of
 from .motion_equations import LengthEquations

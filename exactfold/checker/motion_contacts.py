@@ -11,7 +11,7 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import Any
 
-from .formats import MOST_TESTS
+from .limits import MOST_TESTS
 from .motion_boxes import flat_of, nearer, volume_sign
 from .motion_equations import LengthEquations
 from .motion_faces import FacePairs, Hinge

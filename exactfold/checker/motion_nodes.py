@@ -13,7 +13,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import lcm
 
-from .formats import MOTION_BITS
+from .limits import MOTION_BITS
 from .motion_bounds import (
     INVERSE_BITS,
     WEIGHT_BITS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from .formats import MOTION_BITS
+from .limits import MOTION_BITS
 from .motion_equations import SPARE, LengthEquations
 from .motion_nodes import NodeTube
 from .motion_patches import Patch

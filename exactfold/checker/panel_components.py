@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from . import limits
 from .reading import require
 
-MOST_SETS = 1 << 20
+MOST_SETS = limits.MOST_SETS
 
 Weighted = Sequence[tuple[tuple[int, ...], int]]
 """The vertices of each support, and how many modes it stands for."""

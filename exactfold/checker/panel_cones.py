@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import chain, combinations, islice
 
+from . import limits
 from .intervals import Interval
 from .panel_reduction import BITS, enclosed, reduced, rest_of
 from .panel_sheet import Edge
@@ -22,7 +23,7 @@ SHIFTS = 40
 DIRECTIONS = 24
 SWEEPS = 3
 KEPT = 4
-MOST_FORMS = 16
+MOST_FORMS = limits.CONE_FORMS
 
 Place = dict[Edge, Interval]
 """A motion, enclosed; what is left out is 0."""

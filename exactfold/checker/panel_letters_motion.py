@@ -13,6 +13,7 @@ from fractions import Fraction
 from itertools import combinations
 from typing import Any
 
+from . import limits
 from .intervals import Interval
 from .panel_letters_refuted import SIDES, fits, ways
 from .panel_loops import Loops
@@ -21,8 +22,8 @@ from .panel_sheet import Edge, Near, PanelSheet, Vector, connected, cross, pair
 from .reading import integer, items, keys, natural, require
 
 BITS = 128
-MOST_CONDITIONS = 1 << 11
-MOST_SHIFT = 1 << 10
+MOST_CONDITIONS = limits.MOST_CONDITIONS
+MOST_SHIFT = limits.MOST_SHIFT
 
 Row = dict[int, Interval]
 """The entries of a row that are not 0, by the place of the fold."""

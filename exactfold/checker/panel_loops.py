@@ -13,13 +13,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from . import limits
 from .intervals import Interval
 from .panel_modes import Joined, Modes, corners_of, name
 from .panel_sheet import cross, dot
 from .reading import require
 from .towers import Number
 
-MOST_BENT = 6  # transmissions that are not linear, round one loop
+MOST_BENT = limits.MOST_BENT
 MOST_ORDER = 2**MOST_BENT + 1
 _BITS = (256, 1024)
 Series = list[Any]

@@ -11,14 +11,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 
+from . import limits
 from .panel_lines import Line, lines_at
 from .panel_sheet import Edge, PanelSheet, pair, walks
 from .reading import require
 from .towers import Number, Tower
 
-MOST_STEPS = 1 << 20  # of one search
-MOST_ROWS = 1 << 16  # of one table
-MOST_ROOTS = 7  # adjoined at once to prove that a number is 0
+MOST_STEPS = limits.MODE_STEPS
+MOST_ROWS = limits.MODE_ROWS
+MOST_ROOTS = limits.MODE_ROOTS
 Row = tuple[int, ...]
 Folds = dict[Edge, bool]
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from .formats import MOST_TESTS, PANEL_MOTION, PANEL_MOTION_VERSION, RATED_VERSION
+from .formats import PANEL_MOTION, PANEL_MOTION_VERSION, RATED_VERSION
+from .limits import MOST_TESTS
 from .motion_faces import FacePairs
 from .motion_lengths import GRID
 from .panel_cut import Triangle, cut

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from . import limits
 from .intervals import Interval
 from .panel_sheet import Edge
 from .reading import require
 from .towers import Number, Parts, Tower
 
-MOST_ROOTS = 8  # adjoined to have the numbers of two spaces in one field
+MOST_ROOTS = limits.SPACE_ROOTS
 BITS = 256
 
 Vector = Mapping[Edge, Any]

@@ -8,7 +8,8 @@ from functools import cmp_to_key
 from itertools import pairwise
 from typing import Any
 
-from .reading import digits, items, keys, natural, parse_rational, require
+from .limits import MOST_ABOVE, MOST_MEETINGS, MOST_ROOTS
+from .reading import Coordinates, at_most, digits, items, keys, natural, require
 from .towers import Number, Tower
 
 Edge = tuple[int, int]
@@ -120,31 +121,40 @@ class PanelSheet:
         def order(a: int, b: int) -> int:
             return upper[b] - upper[a] or -cross(spokes[a], spokes[b]).sign()
 
-        return sorted(near, key=cmp_to_key(order))
+        turned = sorted(near, key=cmp_to_key(order))
+        for u, w in zip(turned, [*turned[1:], *turned[:1]], strict=True):
+            alike = u != w and cross(spokes[u], spokes[w]).sign() == 0
+            apart = not alike or dot(spokes[u], spokes[w]).sign() < 0
+            (i, j), (k, m) = sorted((pair(v, u), pair(v, w)))
+            require(apart, f"edges {i}-{j} and {k}-{m} meet")
+        return turned
 
     def _check_apart(self) -> None:
-        """No two edges meet but in a common end; compared where their boxes do."""
+        """No two edges without a common end meet; compared where their boxes do."""
         spots = [tuple(c.enclosed(_GRID) for c in point) for point in self.points]
         boxes = []
         for i, j in self.edges:
             low = [min(spots[i][k].low, spots[j][k].low) for k in (0, 1)]
             high = [max(spots[i][k].high, spots[j][k].high) for k in (0, 1)]
             boxes.append((low[0], high[0], low[1], high[1], (i, j)))
+        above = meetings = 0
         active: list[tuple[int, int, int, int, Edge]] = []
         for box in sorted(boxes):
             active = [other for other in active if other[1] >= box[0]]
-            for other in active:
-                if other[2] <= box[3] and box[2] <= other[3]:
-                    (i, j), (k, m) = other[4], box[4]
-                    require(not self._meet(other[4], box[4]), f"edges {i}-{j} and {k}-{m} meet")
+            i, j = box[4]
+            near = [
+                other[4]
+                for other in active
+                if other[2] <= box[3] and box[2] <= other[3] and not {i, j} & {*other[4]}
+            ]
+            above, meetings = above + len(active), meetings + len(near)
+            at_most(above, MOST_ABOVE, "the pairs of edges above one another")
+            at_most(meetings, MOST_MEETINGS, "the pairs of edges whose boxes meet")
+            for k, m in near:
+                require(not self._meet((k, m), box[4]), f"edges {k}-{m} and {i}-{j} meet")
             active.append(box)
 
     def _meet(self, first: Edge, second: Edge) -> bool:
-        shared = set(first) & set(second)
-        if shared:
-            [p], [q], [r] = shared, set(first) - shared, set(second) - shared
-            a, b = self.vector(p, q), self.vector(p, r)
-            return cross(a, b).sign() == 0 and dot(a, b).sign() > 0
         (a1, b1), (a2, b2) = first, second
         one = [self._side(a1, b1, v) for v in second]
         two = [self._side(a2, b2, v) for v in first]
@@ -193,12 +203,14 @@ def read_panels(data: Any) -> tuple[PanelSheet, str]:
     lines = ["exactfold panels 1"]
     tower = Tower()
 
+    coordinate = Coordinates()
+
     def coefficients(value: Any, what: str) -> Number:
-        parts = tuple(parse_rational(c) for c in items(value, what, tower.size))
+        parts = tuple(coordinate(c) for c in items(value, what, tower.size))
         return Number(tower, parts)
 
     for k, value in enumerate(items(data["radicands"], "radicands")):
-        require(k < 6, "the field has more than 6 square roots")
+        require(k < MOST_ROOTS, f"the field has more than {MOST_ROOTS} square roots")
         radicand = coefficients(value, f"radicand {k}")
         require(tower.adjoined(radicand)[0] is not tower, f"radicand {k} is a square")
         lines.append(f"r {_text(radicand)}")

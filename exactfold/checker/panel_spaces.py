@@ -13,13 +13,14 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
+from . import limits
 from .panel_reduction import Vector, inside, reduced, zero
 from .panel_sheet import Edge, PanelSheet, cross, pair
 from .reading import require
 from .towers import Number, Tower
 
-MOST_STEPS = 1 << 22  # products of densities in one search
-MOST_LEAVES = 1 << 12
+MOST_STEPS = limits.SPACE_STEPS
+MOST_LEAVES = limits.SPACE_LEAVES
 
 Motion = dict[Edge, Number]
 """The densities that are not 0."""

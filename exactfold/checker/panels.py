@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from . import limits
 from .formats import LISTING, PANELS, PANELS_VERSION
 from .panel_components import components, times
 from .panel_leaves import Verified, verified_part
@@ -20,8 +21,8 @@ from .panel_modes import Modes, Support, corners_of, name, named
 from .panel_sheet import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
 from .reading import FormatError, counted, document, items, keys, natural, refusing, require, same
 
-MOST_LISTED = 1 << 12  # modes of one support that are looked at one by one
-MOST_SUPPORTS = 1 << 15
+MOST_LISTED = limits.MOST_LISTED
+MOST_SUPPORTS = limits.MOST_SUPPORTS
 
 FACTS = "interior border folds sha256 held flat free second_order true rigid modes"
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from . import limits
 from .branch import Place
 from .formats import PIECES, PIECES_VERSION
 from .panel_sheet import PanelSheet, pair
@@ -24,7 +25,7 @@ from .reduced import check_convex
 from .sheet import read_sheet
 from .towers import Tower
 
-MOST_VERTICES = 16
+MOST_VERTICES = limits.PIECE_VERTICES
 _REFLECTED = str.maketrans("+-", "-+")
 Cube = tuple[int, int]
 """All sign vectors that agree with the second number on the bits of the first."""

@@ -25,6 +25,7 @@ from fractions import Fraction
 from math import lcm
 from typing import Any, NamedTuple
 
+from . import limits
 from .boxes import Box, check_disjoint, read_box
 from .intervals import Interval
 from .krawczyk import Krawczyk, inverse
@@ -34,7 +35,7 @@ from .panel_spaces import Motion, Space, Spaces, folds_of
 from .pieces_rank import have_no_common_zero
 from .reading import CertificateError, items, keys, natural, parse_rational, require
 
-MOST_UNKNOWNS = 9
+MOST_UNKNOWNS = limits.PIECE_UNKNOWNS
 
 Signs = dict[int, int]
 """By vertex; those that are left out are flat."""

@@ -11,8 +11,10 @@ from fractions import Fraction
 from itertools import combinations_with_replacement
 from math import comb, lcm
 
+from . import limits
+
 PRIME = 2147483647
-MOST_MONOMIALS = 500
+MOST_MONOMIALS = limits.MOST_MONOMIALS
 
 
 def have_no_common_zero(forms: Sequence[Sequence[Sequence[Fraction]]]) -> bool:

@@ -9,6 +9,8 @@ from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, ROUND_FLOOR, Context, Dec
 from fractions import Fraction
 from typing import Any, NoReturn
 
+from .limits import LONG_COORDINATE, MOST_COORDINATE, MOST_NUMBER, MOST_PRODUCTS
+
 MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 """What the arithmetic raises on values that nothing else has refused."""
 
@@ -23,6 +25,16 @@ class UnfinishedError(CertificateError):
 
 class FormatError(Exception):
     """The file is not a certificate of a known format and version."""
+
+
+class LimitError(FormatError):
+    """The file asks for more than `limits` allow: nothing is known of its claims."""
+
+
+def at_most(found: int, most: int, what: str) -> None:
+    """Raise `LimitError` for more than the limit of what is counted."""
+    if found > most:
+        raise LimitError(f"not checked: {what}, {found}, are more than the limit, {most}")
 
 
 def require(condition: object, message: str) -> None:
@@ -54,10 +66,11 @@ def counted(number: int, one: str, many: str) -> str:
 
 
 def parse_integer(text: str) -> int:
-    """Exact integer of any length from decimal digits."""
+    """Exact integer from decimal digits; raises `LimitError` for more than `MOST_NUMBER`."""
     sign, digits = (-1, text[1:]) if text[:1] == "-" else (1, text)
     if not (digits.isascii() and digits.isdigit()):
         raise CertificateError(f"{text[:40]!a} is not an integer")
+    at_most(len(digits), MOST_NUMBER, f"the digits of {text[:40]!a}")
     value = 0
     for start in range(0, len(digits), 4000):
         part = digits[start : start + 4000]
@@ -72,6 +85,22 @@ def parse_rational(text: Any) -> Fraction:
     q = parse_integer(denominator) if slash else 1
     require(q > 0, f"{text[:40]!a} has no positive denominator")
     return Fraction(parse_integer(numerator), q)
+
+
+class Coordinates:
+    """Reads the coordinates of one sheet, which are few if they are long."""
+
+    def __init__(self) -> None:
+        self.products = 0
+
+    def __call__(self, text: Any) -> Fraction:
+        """Exact rational from "p" or "p/q"; raises `LimitError`."""
+        above, below = (len(part) for part in text_of(text).partition("/")[::2])
+        at_most(max(above, below), MOST_COORDINATE, "the digits of a coordinate")
+        if max(above, below) > LONG_COORDINATE:
+            self.products += above * max(below, 1)
+            at_most(self.products, MOST_PRODUCTS, "the products of digits in long coordinates")
+        return parse_rational(text)
 
 
 def read_json(text: str) -> Any:

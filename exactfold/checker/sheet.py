@@ -9,7 +9,8 @@ from math import isqrt
 from typing import Any
 
 from .formats import FACTS
-from .reading import digits, items, keys, natural, parse_rational, require
+from .limits import MOST_ABOVE, MOST_MEETINGS
+from .reading import Coordinates, at_most, digits, items, keys, natural, require
 
 Point = tuple[Fraction, Fraction]
 Edge = tuple[int, int]
@@ -75,14 +76,22 @@ class Sheet:
         self._check_simple(list(zip(cycle, cycle[1:] + cycle[:1], strict=True)))
 
     def _check_simple(self, sides: list[Edge]) -> None:
-        """No two sides meet; compared only where their intervals of x do."""
-        spans = {side: sorted(self.points[v][0] for v in side) for side in sides}
-        active: list[Edge] = []
-        for side in sorted(sides, key=lambda side: spans[side]):
-            active = [other for other in active if spans[other][1] >= spans[side][0]]
-            for other in active:
-                require(not self._meet(side, other), f"boundary edges {side}, {other} meet")
-            active.append(side)
+        """No two sides meet; compared only where their intervals of x and of y do."""
+        boxes = []
+        for side in sides:
+            (left, right), (low, high) = (sorted(self.points[v][k] for v in side) for k in (0, 1))
+            boxes.append((left, right, low, high, side))
+        above = meetings = 0
+        active: list[tuple[Fraction, Fraction, Fraction, Fraction, Edge]] = []
+        for box in sorted(boxes):
+            active = [other for other in active if other[1] >= box[0]]
+            near = [other[4] for other in active if other[2] <= box[3] and box[2] <= other[3]]
+            above, meetings = above + len(active), meetings + len(near)
+            at_most(above, MOST_ABOVE, "the pairs of boundary edges above one another")
+            at_most(meetings, MOST_MEETINGS, "the pairs of boundary edges whose boxes meet")
+            for other in near:
+                require(not self._meet(box[4], other), f"boundary edges {box[4]}, {other} meet")
+            active.append(box)
 
     def _meet(self, first: Edge, second: Edge) -> bool:
         shared = set(first) & set(second)
@@ -180,9 +189,10 @@ def read_sheet(data: Any) -> tuple[Sheet, str]:
     """The verified sheet and its SHA-256."""
     keys(data, "vertices triangles", "pattern")
     points: dict[int, Point] = {}
+    coordinate = Coordinates()
     for k, pair in enumerate(items(data["vertices"], "vertices")):
         x, y = items(pair, f"vertex {k}", 2)
-        points[k] = (parse_rational(x), parse_rational(y))
+        points[k] = (coordinate(x), coordinate(y))
     triangles = []
     for face in items(data["triangles"], "triangles"):
         triangles.append(tuple(natural(v, "vertex") for v in items(face, "face", 3)))

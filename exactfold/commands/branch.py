@@ -13,8 +13,9 @@ from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read
 from exactfold.commands.shell import Bar, name_of, one_at_least, say
 from exactfold.count.find import BranchFinder
+from exactfold.drawing.bounds import read_text
 from exactfold.drawing.drawing import Snap
-from exactfold.errors import NotANumberError, NotCountedError, UnreadableFileError, UsageError
+from exactfold.errors import NotANumberError, NotCountedError, UsageError
 from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.verdict import PROVED
@@ -214,12 +215,6 @@ def _indices(option: str, text: str) -> list[int]:
 
 def _lines(path: Path) -> Iterator[tuple[int, str]]:
     """The lines of a text file that are not blank, with their numbers from 1."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise UnreadableFileError(f"cannot read {path}: it is not UTF-8 text") from None
-    except OSError as error:
-        raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
-    for number, line in enumerate(text.split("\n"), 1):
+    for number, line in enumerate(read_text(path).split("\n"), 1):
         if line.strip():
             yield number, line.strip()

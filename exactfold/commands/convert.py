@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from exactfold.commands.patterns import located
-from exactfold.commands.shell import Bar, apart, name_of, said, say
+from exactfold.commands.shell import Bar, apart, name_of, said, say, tell
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import FoldError, PatternError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -59,7 +59,7 @@ class Conversion:
         elif self.as_json:
             print(json.dumps(_summary(opened, made, name_of(self.file), name_of(self.output))))
         else:
-            print("\n".join(lines))
+            tell("\n".join(lines))
 
     def _opened(self) -> Opened:
         try:

@@ -12,7 +12,7 @@ from exactfold.branches.result import BranchCount
 from exactfold.commands.branch import chosen
 from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import located, read_any
-from exactfold.commands.shell import EXIT, STDIN, Bar, apart, name_of, say
+from exactfold.commands.shell import EXIT, STDIN, Bar, apart, name_of, say, tell
 from exactfold.count.ways import count_opened, decompose_opened
 from exactfold.drawing.drawing import Drawing, Snap
 from exactfold.errors import (
@@ -82,7 +82,7 @@ class Wanted:
         if target is None:
             sys.stdout.write(text)
         else:
-            print(f"written: {name_of(target)}")
+            tell(f"written: {name_of(target)}")
         return EXIT[status]
 
     def _target(self) -> Path | None:

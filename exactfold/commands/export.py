@@ -19,7 +19,7 @@ from exactfold.branches.export import AMOUNT, BranchExport, exported
 from exactfold.commands.branch import chosen
 from exactfold.commands.given import NOTHING, Given
 from exactfold.commands.patterns import read
-from exactfold.commands.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say
+from exactfold.commands.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say, tell
 from exactfold.count.find import find_branches
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
@@ -152,8 +152,8 @@ def write_coq(asked: Wanted, everything: bool) -> int:
         sys.stdout.write(text)
     else:
         write_text(output, text)
-        print(f"wrote {output}; after `make -C proofs/formal`, verify it with")
-        print(f"coqc -Q proofs/formal Exactfold {shlex.quote(str(output))}")
+        tell(f"wrote {output}; after `make -C proofs/formal`, verify it with")
+        tell(f"coqc -Q proofs/formal Exactfold {shlex.quote(str(output))}")
     return EXIT[PROVED]
 
 

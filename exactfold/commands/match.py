@@ -17,13 +17,13 @@ from exactfold.assignment.rim_match import RimMatch, can_pop, match_rim
 from exactfold.assignment.search import Match, match
 from exactfold.commands.patterns import read_any, warn
 from exactfold.commands.shell import EXIT, Bar, name_of, say
+from exactfold.drawing.bounds import read_text
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import (
     LettersError,
     NoLettersError,
     NotApplicableError,
     NotCountedError,
-    UnreadableFileError,
 )
 from exactfold.evidence.entries import write_certificate
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -155,7 +155,7 @@ def given_letters(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge
     """
     where = ""
     if text.startswith("@"):
-        where, text = f"{text[1:]}: ", _read(Path(text[1:]))
+        where, text = f"{text[1:]}: ", read_text(text[1:])
     letters = "".join(text.split())
     try:
         return _by_name(pattern, letters) if "=" in letters else _in_order(pattern, letters)
@@ -196,12 +196,3 @@ def _check(fold: Edge, letter: str) -> None:
             f"fold {fold[0]}-{fold[1]} has the letter {letter!r}: M mountain, V valley, F flat and "
             "U free are known"
         )
-
-
-def _read(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise UnreadableFileError(f"cannot read {path}: it is not UTF-8 text") from None
-    except OSError as error:
-        raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None

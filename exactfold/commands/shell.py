@@ -35,6 +35,7 @@ from exactfold.errors import (
 from exactfold.memory import is_shortage, memory_is_limited, shortage
 from exactfold.schemas import headed
 from exactfold.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.wording import visible
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -97,7 +98,12 @@ def _short(error: Exception) -> typer.Exit:
 def say(text: str) -> None:
     """A line on stderr; where that cannot be written nothing is said, and no exit code changes."""
     with suppress(OSError):
-        print(f"exactfold: {text}", file=sys.stderr, flush=True)
+        print(f"exactfold: {visible(text)}", file=sys.stderr, flush=True)
+
+
+def tell(text: str) -> None:
+    """Lines on stdout; escape sequences in names of files do not reach the terminal."""
+    print(visible(text), flush=True)
 
 
 def exit_code(error: Exception) -> int:

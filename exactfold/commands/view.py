@@ -10,7 +10,7 @@ from typing import Any
 from rich.text import Text
 
 from exactfold.commands.patterns import read_any
-from exactfold.commands.shell import Bar, apart, interruptible, name_of, say
+from exactfold.commands.shell import Bar, apart, interruptible, name_of, say, tell
 from exactfold.drawing.drawing import Snap
 from exactfold.errors import UsageError
 from exactfold.pattern.opening import Opened
@@ -18,7 +18,7 @@ from exactfold.report.terminal import show
 from exactfold.verdict import PROVED
 from exactfold.viewer.page import checked_page, write_view
 from exactfold.viewer.server import view_server
-from exactfold.wording import counted
+from exactfold.wording import counted, visible
 from exactfold.workers import available_cores
 
 
@@ -58,7 +58,7 @@ class Wanted:
                 document = write_view(
                     opened,
                     output,
-                    name=name,
+                    name=visible(name),
                     branches=self.branches,
                     frames=self.frames,
                     proving=self.proving,
@@ -69,14 +69,14 @@ class Wanted:
             self._serve(opened, name)
             return
         show(Text(document["answer"]))
-        print(f"written: {name_of(output)}, with {_contents(document)}")
+        tell(f"written: {name_of(output)}, with {_contents(document)}")
 
     def _serve(self, opened: Opened, name: str) -> None:
         with Bar("counting") as bar:
             try:
                 server = view_server(
                     opened,
-                    name=name,
+                    name=visible(name),
                     branches=self.branches,
                     frames=self.frames,
                     proving=self.proving,
@@ -86,7 +86,7 @@ class Wanted:
             except OSError as error:
                 raise UsageError(f"port {self.port or 0}: {error.strerror}") from None
         with server:
-            print(f"{name} is at {server.address} (Ctrl-C ends it)", flush=True)
+            tell(f"{name} is at {server.address} (Ctrl-C ends it)")
             try:
                 with interruptible():
                     server.serve_forever(poll_interval=0.2)

@@ -13,8 +13,8 @@ from exactfold.count.pools import Pool, process_pool
 from exactfold.count.registry import choose
 from exactfold.count.ways import Sheet, count_opened, open_sheet
 from exactfold.data import EXAMPLES, example_path
+from exactfold.drawing.bounds import read_bytes
 from exactfold.drawing.drawing import Snap
-from exactfold.drawing.fold_json import read_bytes
 from exactfold.errors import InputError, NotEnoughMemoryError, UnreadableFileError, UsageError
 from exactfold.memory import is_shortage, shortage
 from exactfold.pattern.opening import Opened, opened

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 from exactfold.branches.result import BranchCount
-from exactfold.checker.formats import MOST_UNKNOWNS
+from exactfold.checker.limits import MOST_UNKNOWNS
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.verdict import UNDECIDED
 

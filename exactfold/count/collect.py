@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from exactfold.branches.branch import Branch
 from exactfold.branches.result import BranchCount, Proof
-from exactfold.checker.formats import MOST_UNKNOWNS
+from exactfold.checker.limits import MOST_UNKNOWNS
 from exactfold.count.attempt import Attempt
 from exactfold.count.by_theorem import IN_MEMORY, is_too_many, too_many
 from exactfold.count.conveyor import LISTED_BITS, Conveyor

@@ -25,7 +25,7 @@ from exactfold.branches.classify import BranchMaker
 from exactfold.branches.roots import BoxRoot
 from exactfold.certify.box import IsolatingBox
 from exactfold.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
-from exactfold.checker.formats import MOST_UNKNOWNS
+from exactfold.checker.limits import MOST_UNKNOWNS
 from exactfold.count.exact_roots import ExactProver
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
@@ -16,6 +16,8 @@ from exactfold.drawing.candidates import field_of
 from exactfold.drawing.drawing import Line, Point
 from exactfold.exact.surds import Number, Surd
 
+_AT_ONCE: Final = 10**6
+"""Pairs of lines that are compared at once."""
 _FLATTEST: Final = 0.05
 """The least sine of the angle at which two lines fix a point."""
 
@@ -91,9 +93,9 @@ def runs(places: FloatArray, lines: Sequence[Line], within: float) -> list[Run]:
         return k
 
     for v, near in around.items():
-        for k, m in combinations(near, 2):
-            if _straight(places, v, _other(lines[k], v), _other(lines[m], v), within):
-                parent[root(k)] = root(m)
+        spokes = places[[_other(lines[k], v) for k in near]] - places[v]
+        for k, m in _straight(spokes, within):
+            parent[root(near[k])] = root(near[m])
     members: dict[int, set[int]] = {}
     for k, line in enumerate(lines):
         members.setdefault(root(k), set()).update((line.start, line.end))
@@ -201,12 +203,16 @@ def _unit(line: ExactLine) -> tuple[float, float]:
     return dx / length, dy / length
 
 
-def _straight(places: FloatArray, v: int, u: int, w: int, within: float) -> bool:
-    (ax, ay), (bx, by) = places[u] - places[v], places[w] - places[v]
-    if ax * bx + ay * by >= 0:
-        return False
-    chord = ((bx - ax) ** 2 + (by - ay) ** 2) ** 0.5
-    return bool(abs(ax * by - ay * bx) <= 2 * within * chord)
+def _straight(spokes: FloatArray, within: float) -> Iterator[tuple[int, int]]:
+    """The pairs of spokes of which one continues the other straight."""
+    step = 1 + _AT_ONCE // len(spokes)
+    x, y = spokes.T
+    for start in range(0, len(spokes), step):
+        ax, ay = x[start : start + step, None], y[start : start + step, None]
+        chord = ((x - ax) ** 2 + (y - ay) ** 2) ** 0.5
+        opposite = (ax * x + ay * y < 0) & (np.abs(ax * y - ay * x) <= 2 * within * chord)
+        for k, m in np.argwhere(np.triu(opposite, start + 1)).tolist():
+            yield start + k, m
 
 
 def _other(line: Line, v: int) -> int:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Final
 
+from exactfold.checker.limits import MOST_FRAMES, MOST_INHERITED
 from exactfold.drawing.drawing import LETTERS, Drawing, Line
 from exactfold.drawing.fold_json import (
     components,
@@ -21,6 +22,7 @@ from exactfold.errors import (
     FoldedStateError,
     MissingCoordinatesError,
     NotFoldError,
+    TooLargeError,
 )
 from exactfold.exact.numbers import shown
 from exactfold.wording import counted
@@ -54,7 +56,14 @@ def read_fold_drawing(text: str) -> Drawing:
     """
     document = fold_document(text)
     refusals: list[Exception] = []
-    for k, frame in enumerate(_frames(document)):
+    stated = _frames(document)
+    for k, chain in enumerate([_chain(stated, k) for k in range(len(stated))]):
+        if k >= MOST_FRAMES:
+            raise TooLargeError(
+                f"none of the first {MOST_FRAMES} frames of {len(stated)} is flat, and no more are "
+                "looked at: leave out the folded ones"
+            )
+        frame = _inherited(stated, chain)
         try:
             return _drawing(frame, _source(document, frame, k))
         except (MissingCoordinatesError, FoldedStateError) as error:
@@ -76,16 +85,17 @@ def _source(document: Mapping[str, Any], frame: Mapping[str, Any], k: int) -> st
 
 
 def _frames(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """The top level and the frames, each with what it inherits from its parent."""
+    """The top level and the frames, as they are stated."""
     stated: list[Mapping[str, Any]] = [document]
     for k, frame in enumerate(list_at(document, "file_frames"), 1):
         if not isinstance(frame, dict):
             raise NotFoldError(f"frame {k} in `file_frames` is {shown(frame)}, not an object")
         stated.append(frame)
-    return [_inherited(stated, k) for k in range(len(stated))]
+    return stated
 
 
-def _inherited(stated: Sequence[Mapping[str, Any]], k: int) -> Mapping[str, Any]:
+def _chain(stated: Sequence[Mapping[str, Any]], k: int) -> list[int]:
+    """A frame, the one it inherits from, the one which that inherits from, and so on."""
     chain = [k]
     while chain[-1] and stated[chain[-1]].get("frame_inherit") is True:
         parent = stated[chain[-1]].get("frame_parent", 0)
@@ -95,12 +105,22 @@ def _inherited(stated: Sequence[Mapping[str, Any]], k: int) -> Mapping[str, Any]
             raise NotFoldError(
                 f"frame {chain[-1]} inherits from frame {parent}, but there are {len(stated)}"
             )
+        if len(chain) > MOST_INHERITED:
+            raise TooLargeError(
+                f"frame {k} inherits through more than {MOST_INHERITED} frames, the most that are "
+                "followed: state in it what it needs"
+            )
         chain.append(parent)
+    return chain
+
+
+def _inherited(stated: Sequence[Mapping[str, Any]], chain: Sequence[int]) -> Mapping[str, Any]:
+    """The first frame of a chain with what it inherits from the others."""
     merged: dict[str, Any] = {}
     for index in reversed(chain):
         merged.update(stated[index])
-    merged["frame_title"] = stated[k].get("frame_title")
-    merged["frame_classes"] = stated[k].get("frame_classes")
+    merged["frame_title"] = stated[chain[0]].get("frame_title")
+    merged["frame_classes"] = stated[chain[0]].get("frame_classes")
     return merged
 
 

@@ -6,8 +6,6 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from os import PathLike
-from pathlib import Path
 from typing import Any, Final
 
 from exactfold.errors import (
@@ -17,7 +15,6 @@ from exactfold.errors import (
     NotJSONError,
     OffPlaneError,
     StaleExactCoordinatesError,
-    UnreadableFileError,
 )
 from exactfold.exact.numbers import parse_rational, shown
 from exactfold.wording import agreeing, counted
@@ -33,15 +30,6 @@ FIELD_KEY: Final = "frame_exactfold:field"
 _PREFIXES: Final = ("file_", "frame_", "vertices_", "edges_", "faces_")
 AGREEMENT: Final = Fraction(1, 10**9)
 """Exact coordinates and floats agree to within this share of the largest float."""
-
-
-def read_bytes(path: str | PathLike[str]) -> bytes:
-    """All of a file; raises `UnreadableFileError`."""
-    try:
-        return Path(path).read_bytes()
-    except (OSError, ValueError) as error:  # ValueError: a null character in the path
-        reason = getattr(error, "strerror", None) or str(error)
-        raise UnreadableFileError(f"cannot read {path}: {reason}") from None
 
 
 @dataclass(frozen=True)

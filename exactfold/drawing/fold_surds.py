@@ -6,9 +6,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
+from exactfold.checker.limits import MOST_ROOTS
 from exactfold.drawing.drawing import Point
 from exactfold.drawing.fold_json import AGREEMENT, FIELD_KEY, SURDS_KEY, list_at
-from exactfold.errors import NotANumberError, StaleExactCoordinatesError, UsageError
+from exactfold.errors import (
+    NotANumberError,
+    StaleExactCoordinatesError,
+    TooLargeError,
+    UsageError,
+)
 from exactfold.exact.numbers import format_rational, parse_rational, shown
 from exactfold.exact.surds import RATIONALS, Surd, SurdField, common_field
 
@@ -73,6 +79,11 @@ def surd_points(document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ..
 
 
 def _field(rows: Sequence[object]) -> SurdField:
+    if len(rows) > MOST_ROOTS:
+        raise TooLargeError(
+            f"the field in `{FIELD_KEY}` has {len(rows)} square roots, and {MOST_ROOTS} are the "
+            "most that are read: give decimals instead"
+        )
     field = RATIONALS
     for k, row in enumerate(rows, 1):
         name = f"the number under r{k} in `{FIELD_KEY}`"

@@ -10,11 +10,12 @@ from scipy.spatial import cKDTree
 
 from exactfold.arrays import FloatArray, IntArray
 from exactfold.drawing.drawing import Drawing, Line
-from exactfold.drawing.mending import floats, used
-from exactfold.drawing.splitting import crossing_pairs
+from exactfold.drawing.mending import floats, near_pairs, used
+from exactfold.drawing.splitting import check_pairs, crossing_pairs
 
 GAP: Final = 4.0
 """A distance is clear if no other is between it and this many times it."""
+_SLACK: Final = 1 + 1e-6
 
 
 def clear_distances(drawing: Drawing, least: float, most: float, gap: float = GAP) -> list[float]:
@@ -60,7 +61,7 @@ def _misses(drawing: Drawing, within: float) -> FloatArray:
     through = [k in clear[v] for v, k in zip(*spots.tolist(), strict=True)]
     found.append(at[~np.array(through, dtype=bool)])
     tree = cKDTree(ends)
-    pairs = tree.query_pairs(within, output_type="ndarray")
+    pairs = near_pairs(tree, within)
     found.append(np.hypot(*(ends[pairs[:, 0]] - ends[pairs[:, 1]]).T))
     return np.concatenate(found)
 
@@ -69,15 +70,22 @@ def _beside(
     spots: FloatArray, places: FloatArray, lines: Sequence[Line], within: float
 ) -> tuple[IntArray, FloatArray]:
     """Spots and lines, of shape (2, n), that are near, beside the inside; and their distances."""
-    order = np.argsort(spots[:, 0], kind="stable")
-    xs = spots[order, 0]
     near: list[IntArray] = [np.empty((2, 0), dtype=np.int64)]
     distances: list[FloatArray] = [np.empty(0)]
+    if not len(spots) or not lines:
+        return near[0], distances[0]
+    order = np.argsort(spots[:, 0], kind="stable")
+    xs, ys = spots[order].T
+    ends = places[[line[:2] for line in lines]]
+    reach = within * _SLACK  # a spot that is near lies in the box of the line, widened by this
+    low, high = ends.min(axis=1) - reach, ends.max(axis=1) + reach
+    check_pairs(xs, low[:, 0], high[:, 0])
+    first, last = np.searchsorted(xs, low[:, 0]), np.searchsorted(xs, high[:, 0], side="right")
     for k, (a, b, _) in enumerate(lines):
         chord = places[b] - places[a]
         length = float(np.hypot(*chord))
-        low, high = sorted((places[a][0], places[b][0]))
-        here = order[np.searchsorted(xs, low - within) : np.searchsorted(xs, high + within)]
+        beside = slice(first[k], last[k])
+        here = order[beside][(ys[beside] >= low[k, 1]) & (ys[beside] <= high[k, 1])]
         offset = spots[here] - places[a]
         across = np.abs(offset[:, 0] * chord[1] - offset[:, 1] * chord[0]) / max(length, 1e-300)
         along = offset @ chord / max(length, 1e-300)

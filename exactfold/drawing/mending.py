@@ -10,8 +10,10 @@ import networkx as nx
 import numpy as np
 from scipy.spatial import cKDTree
 
-from exactfold.arrays import FloatArray
+from exactfold.arrays import FloatArray, IntArray
+from exactfold.checker.limits import MOST_NEAR
 from exactfold.drawing.drawing import Drawing, Line, Point
+from exactfold.errors import TooLargeError
 from exactfold.wording import agreeing, counted
 
 _SHOWN: Final = 5
@@ -78,9 +80,24 @@ def groups_within(places: FloatArray, members: Sequence[int], within: float) -> 
         return []
     tree = cKDTree(places[list(members)])
     graph = nx.Graph()
-    graph.add_edges_from(tree.query_pairs(within))
+    graph.add_edges_from(near_pairs(tree, within).tolist())
     found = [sorted(members[k] for k in group) for group in nx.connected_components(graph)]
     return sorted(found)
+
+
+def near_pairs(tree: cKDTree, within: float) -> IntArray:
+    """The pairs of points of a tree at distances up to `within`, of shape (n, 2).
+
+    Raises `TooLargeError` for too many of them.
+    """
+    count = (tree.count_neighbors(tree, within) - tree.n) // 2
+    if count > MOST_NEAR:
+        raise TooLargeError(
+            f"{count} pairs of points of the drawing nearly coincide, and {MOST_NEAR} are the most "
+            "that are looked at: leave out what is no crease, or give a part of the drawing"
+        )
+    pairs: IntArray = tree.query_pairs(within, output_type="ndarray")
+    return pairs
 
 
 def merged(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:

@@ -9,10 +9,10 @@ from os import PathLike
 from pathlib import PurePath
 from typing import Final
 
+from exactfold.drawing.bounds import check_drawing, read_bytes
 from exactfold.drawing.cp import read_cp
 from exactfold.drawing.drawing import Drawing
 from exactfold.drawing.fold_drawing import read_fold_drawing
-from exactfold.drawing.fold_json import read_bytes
 from exactfold.drawing.opx import read_opx
 from exactfold.drawing.ori import LINES, read_orh, read_ori
 from exactfold.drawing.segments import summary
@@ -53,7 +53,8 @@ def parse_drawing(content: str | bytes, name: str) -> Drawing:
     """The drawing in the content of a file; the ending of `name` counts where the content is mute.
 
     Bytes are UTF-8, UTF-16 with a mark, or what an XML declaration says. Raises
-    `UnknownFormatError`, which lists the formats, and what the reader of the format raises.
+    `UnknownFormatError`, which lists the formats, what the reader of the format raises, and
+    `TooLargeError`.
 
     >>> parse_drawing("1 0 0 1 0", "edge").source
     'read edge: CP, 1 line (1 border)'
@@ -65,6 +66,7 @@ def parse_drawing(content: str | bytes, name: str) -> Drawing:
     text = content if isinstance(content, str) else _decoded(content, name)
     text = text.removeprefix("\ufeff")
     drawing = READERS[_format(text, name)](text)
+    check_drawing(drawing)
     return replace(drawing, source=f"read {name}: {drawing.source}, {summary(drawing)}")
 
 

@@ -100,8 +100,9 @@ def _cycles(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int, ...]]:
             clockwise[v, u] = order[k - 1]
     unseen = dict.fromkeys((v, u) for v in sorted(around) for u in sorted(around[v]))
     cycles = []
-    while unseen:
-        v, u = next(iter(unseen))
+    for v, u in tuple(unseen):
+        if (v, u) not in unseen:
+            continue
         cycle = []
         while (v, u) in unseen:
             del unseen[v, u]

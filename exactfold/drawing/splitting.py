@@ -9,9 +9,11 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from exactfold.arrays import FloatArray
+from exactfold.checker.limits import MOST_CROSSINGS, MOST_PAIRS
 from exactfold.drawing.construction import ExactLine, crossing
 from exactfold.drawing.drawing import Drawing, Line, Point
 from exactfold.drawing.mending import Repair, floats, groups_within, repair, used
+from exactfold.errors import TooLargeError
 from exactfold.exact.surds import Number, Surd
 from exactfold.wording import agreeing, counted
 
@@ -75,6 +77,8 @@ def _junctions(places: FloatArray, lines: Sequence[Line], within: float) -> Junc
     members = members[np.argsort(places[members, 0], kind="stable")]
     spots = places[members]
     found: Junctions = {}
+    ends = places[[line[:2] for line in lines]][:, :, 0].reshape(-1, 2)
+    check_pairs(spots[:, 0], ends.min(axis=1, initial=np.inf), ends.max(axis=1, initial=-np.inf))
     for k, (a, b, _) in enumerate(lines):
         chord = places[b] - places[a]
         length = float(np.hypot(*chord))
@@ -192,7 +196,10 @@ def _crossings(
 
 
 def crossing_pairs(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int, int]]:
-    """Pairs of lines whose insides cross, by floats: each end well off the other line."""
+    """Pairs of lines whose insides cross, by floats: each end well off the other line.
+
+    Raises `TooLargeError` for too many of them.
+    """
     if not lines:
         return []
     a = places[[line.start for line in lines]]
@@ -200,7 +207,8 @@ def crossing_pairs(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int,
     low, high = np.minimum(a, a + d), np.maximum(a, a + d)
     order = np.argsort(low[:, 0], kind="stable")
     starts = low[order, 0]
-    pairs = []
+    check_pairs(starts, low[:, 0], high[:, 0])
+    pairs: list[tuple[int, int]] = []
     for position, k in enumerate(order):
         last = np.searchsorted(starts, high[k, 0], side="right")
         near = order[position + 1 : last]
@@ -212,7 +220,22 @@ def crossing_pairs(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int,
             t = (gap[:, 0] * d[k, 1] - gap[:, 1] * d[k, 0]) / turn
             hit = (s > 0) & (s < 1) & (t > 0) & (t < 1)
         pairs += [(int(k), int(m)) for m in near[hit]]
+        if len(pairs) > MOST_CROSSINGS:
+            raise TooLargeError(
+                f"the lines of the drawing cross each other more than {MOST_CROSSINGS} times, the "
+                "most that are read: give a part of it"
+            )
     return pairs
+
+
+def check_pairs(spots: FloatArray, low: FloatArray, high: FloatArray) -> None:
+    """Raise `TooLargeError` if intervals hold too many of the sorted spots together."""
+    held = np.searchsorted(spots, high, side="right") - np.searchsorted(spots, low, side="left")
+    if (pairs := int(held.sum())) > MOST_PAIRS:
+        raise TooLargeError(
+            f"too many lines of the drawing lie above one another to be compared: {pairs} pairs, "
+            f"and {MOST_PAIRS} are the most: give a part of it"
+        )
 
 
 def _supporting(points: Sequence[Point], line: Line) -> ExactLine:

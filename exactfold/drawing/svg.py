@@ -14,8 +14,10 @@ from xml.etree import ElementTree
 from exactfold.drawing.drawing import Drawing
 from exactfold.drawing.markup import xml_root
 from exactfold.drawing.segments import Place, Segment, drawing_of
-from exactfold.drawing.svg_path import NUMBER, STRAIGHT, path_lines
-from exactfold.errors import CurvedCreaseError, MalformedDrawingError
+from exactfold.drawing.svg_path import NUMBER as NUMERAL
+from exactfold.drawing.svg_path import STRAIGHT, path_lines
+from exactfold.drawing.svg_tree import NAMESPACE, NUMBER, plain_tree
+from exactfold.errors import CurvedCreaseError, MalformedDrawingError, NotANumberError
 from exactfold.exact.numbers import parse_rational, shown
 from exactfold.wording import counted
 
@@ -30,7 +32,7 @@ _COLOURS: Final = {
 }
 _HUES: Final = {0: "M", 60: "F", 120: "C", 240: "V", 300: "U", 360: "M"}
 _NEAR: Final = 20  # degrees of hue
-_LENGTH: Final = re.compile(rf"\s*({NUMBER})\s*([a-z]*)\s*\Z")
+_LENGTH: Final = re.compile(rf"({NUMERAL})\s*([a-z]*)\Z")
 _UNITS: Final = {
     "": Fraction(1),
     "px": Fraction(1),
@@ -40,8 +42,7 @@ _UNITS: Final = {
     "pt": Fraction(4, 3),
     "pc": Fraction(16),
 }
-_POINTS: Final = re.compile(rf"[\s,]*({NUMBER})")
-_NAMESPACE: Final = "http://www.w3.org/2000/svg"
+_POINTS: Final = re.compile(rf"[\s,]*({NUMERAL})")
 _VIEW: Final = ("width", "height", "viewBox", "x", "y")
 _FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
@@ -68,9 +69,10 @@ def read_svg(text: str) -> Drawing:
     taken: Counter[tuple[str, str]] = Counter()
     seen: Counter[str] = Counter()
     unbent = faint = 0
-    for shape in _shapes(text):
-        values, own = shape.values, shape.values["attributes"]
-        tag = own["tag"]
+    shapes, given = _shapes(text)
+    for shape in shapes:
+        values, tag = shape.values, shape.values["attributes"]["tag"]
+        own = given[int(values["attributes"][NUMBER])]
         seen[tag] += 1
         stroke = str(values.get("stroke", "none")).partition("!")[0].strip().lower()
         if values.get("visibility") in ("hidden", "collapse"):
@@ -108,20 +110,24 @@ def read_svg(text: str) -> Drawing:
     return drawing_of(segments, "SVG", remarks)
 
 
-def _shapes(text: str) -> Iterator[Any]:
-    """The shapes that are drawn, with styles and transforms resolved, in the file's own units."""
+def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
+    """The shapes that are drawn, with styles and transforms resolved, in the file's own units.
+
+    Also the attributes of all elements as they are written, by the numbers that the shapes have.
+    """
     from svgelements import SVG, Shape  # here, as loading it takes longer than reading a pattern
 
     root = xml_root(text)
-    if root.tag not in ("svg", f"{{{_NAMESPACE}}}svg"):
-        raise MalformedDrawingError(f"the XML is {shown(root.tag)}, not an svg of {_NAMESPACE}")
+    if root.tag not in ("svg", f"{{{NAMESPACE}}}svg"):
+        raise MalformedDrawingError(f"the XML is {shown(root.tag)}, not an svg of {NAMESPACE}")
     for key in _VIEW:
         root.attrib.pop(key, None)
+    root, given = plain_tree(root)
     try:
         picture = SVG.parse(io.StringIO(ElementTree.tostring(root, "unicode")), reify=False)
     except _FAULTS as error:
         raise MalformedDrawingError(f"the SVG is not understood: {error}") from None
-    return (element for element in picture.elements() if isinstance(element, Shape))
+    return (element for element in picture.elements() if isinstance(element, Shape)), given
 
 
 def _letter(stroke: str) -> tuple[str, bool]:
@@ -162,7 +168,7 @@ def _lines(
             return _sides(_points(own.get("points", ""))), 0
         if tag == "polyline":
             return _sides(_points(own.get("points", "")))[:-1], 0
-    except (CurvedCreaseError, MalformedDrawingError) as error:
+    except (CurvedCreaseError, MalformedDrawingError, NotANumberError) as error:
         raise type(error)(f"{name}: {error}") from None
     return None, 0
 
@@ -182,15 +188,19 @@ def _corners(own: Mapping[str, str]) -> list[Place]:
 
 
 def _points(text: str) -> list[Place]:
-    numbers = [parse_rational(word) for word in _POINTS.findall(text)]
-    if _POINTS.sub("", text).strip(" ,\t\r\n\f") or len(numbers) % 2:
+    words, position, end = [], 0, len(text.rstrip(" ,\t\r\n\f"))
+    while position < end and (match := _POINTS.match(text, position)):
+        words.append(match[1])
+        position = match.end()
+    if position < end or len(words) % 2:
         raise MalformedDrawingError(f"`points` is not pairs of numbers: {shown(text)}")
+    numbers = [parse_rational(word) for word in words]
     return list(zip(numbers[::2], numbers[1::2], strict=True))
 
 
 def _length(own: Mapping[str, str], key: str) -> Fraction:
     text = own.get(key, "0")
-    match = _LENGTH.match(text.lower())
+    match = _LENGTH.match(text.strip().lower())
     if match is None or match[2] not in _UNITS:
         raise MalformedDrawingError(f"{key} is {shown(text)}, not a length")
     return parse_rational(match[1]) * _UNITS[match[2]]
@@ -198,7 +208,10 @@ def _length(own: Mapping[str, str], key: str) -> Fraction:
 
 def _mover(matrix: Any) -> Callable[[Place], Place]:
     """The transform, with the y axis turned upwards."""
-    a, b, c, d, e, f = (Fraction(repr(float(getattr(matrix, key)))) for key in "abcdef")
+    try:
+        a, b, c, d, e, f = (Fraction(repr(float(getattr(matrix, key)))) for key in "abcdef")
+    except _FAULTS:
+        raise MalformedDrawingError("the numbers of a transform are too large") from None
 
     def move(place: Place) -> Place:
         x, y = place

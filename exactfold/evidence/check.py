@@ -12,7 +12,7 @@ from exactfold.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk
 from exactfold.checker import compact
 from exactfold.checker.compact_blocks import Block, CompactSheet
 from exactfold.checker.compact_lines import read_header
-from exactfold.checker.formats import MOST_UNITS
+from exactfold.checker.limits import MOST_UNITS
 from exactfold.checker.reading import CertificateError, FormatError, plain, refusing
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.evidence.sharing import shared

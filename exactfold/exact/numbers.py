@@ -10,6 +10,7 @@ from math import inf, lcm
 from numbers import Rational
 from typing import TypeAlias
 
+from exactfold.checker.limits import MOST_EXPONENT, MOST_NUMBER
 from exactfold.errors import FloatRefusedError, NotANumberError, UsageError
 
 RationalLike: TypeAlias = "int | Fraction | Decimal | str"
@@ -17,12 +18,11 @@ RationalLike: TypeAlias = "int | Fraction | Decimal | str"
 _INTEGER = re.compile(r"[+-]?[0-9]+\Z")
 _QUOTIENT = re.compile(r"([+-]?[0-9]+)/([0-9]+)\Z")
 _DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?\Z")
-_MAX_EXPONENT = 20_000
 _MOST_DIGITS = 4000  # that `int` reads, and prints
 
 
-def _int(text: str) -> int:
-    """Integer of any length; `int` alone stops at 4300 digits."""
+def long_integer(text: str) -> int:
+    """The integer of decimal digits of any length; `int` alone stops at 4300 digits."""
     if len(text) <= _MOST_DIGITS:
         return int(text)
     from flint import fmpz  # here, as loading it takes longer than reading a pattern
@@ -30,10 +30,21 @@ def _int(text: str) -> int:
     return int(fmpz(text.lstrip("+")))
 
 
+def _int(text: str) -> int:
+    """As `long_integer`; raises `NotANumberError` for more digits than a file may ask for."""
+    if (digits := len(text.lstrip("+-"))) > MOST_NUMBER:
+        raise NotANumberError(
+            f"{shown(text)} has {digits} digits, and {MOST_NUMBER} are the most that are read: "
+            "round the number"
+        )
+    return long_integer(text)
+
+
 def parse_rational(text: str) -> Fraction:
     """Exact value of "p", "p/q" or decimal text such as "-1.25e-3".
 
-    Raises `NotANumberError` for anything else, including "NaN", "Infinity" and a zero denominator.
+    Raises `NotANumberError` for anything else, including "NaN", "Infinity" and a zero denominator,
+    and for numbers that are longer than the limits of `exactfold.checker.limits`.
 
     >>> parse_rational("0.1")
     Fraction(1, 10)
@@ -54,8 +65,8 @@ def parse_rational(text: str) -> Fraction:
     decimal = _DECIMAL.match(text)
     if decimal and (decimal[2] or decimal[3]):
         sign, whole, part, power = decimal[1], decimal[2], decimal[3] or "", _int(decimal[4] or "0")
-        if abs(power) > _MAX_EXPONENT:
-            raise NotANumberError(f"{shown(text)} has an exponent beyond {_MAX_EXPONENT}")
+        if abs(power) > MOST_EXPONENT:
+            raise NotANumberError(f"{shown(text)} has an exponent beyond {MOST_EXPONENT}")
         digits = _int(f"{sign}{whole}{part}")
         power -= len(part)
         return Fraction(digits * 10**power) if power >= 0 else Fraction(digits, 10**-power)

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
+from exactfold.drawing.bounds import check_common_denominator, check_coordinates, read_bytes
 from exactfold.drawing.fold_json import (
     SURDS_KEY,
     components,
@@ -18,7 +19,6 @@ from exactfold.drawing.fold_json import (
     fold_document,
     index_lists,
     list_at,
-    read_bytes,
 )
 from exactfold.errors import (
     CutEdgeError,
@@ -135,8 +135,8 @@ def parse_fold(text: str, snap: int | None = None) -> FoldFile:
     that are not listed as edges are folds like any other. Assignments do not change the pattern,
     but an edge between two faces may not be a cut "C" or a boundary "B".
 
-    Raises `NotJSONError`, `NotANumberError`, a subclass of `FoldError`, or one of the
-    `PatternError`s of `CreasePattern`; the message names the vertex, edge or face.
+    Raises `NotJSONError`, `NotANumberError`, a subclass of `FoldError`, `TooLargeError`, or one of
+    the `PatternError`s of `CreasePattern`; the message names the vertex, edge or face.
 
     >>> file = parse_fold('{"vertices_coords": [[0, 0], [0.5, 0], [0, 0.1]],'
     ...                   ' "edges_vertices": [[0, 1], [1, 2], [2, 0]]}')
@@ -205,7 +205,10 @@ def _points(
                 f"vertex {v} has z = {_literal(rows[v])} and vertex 0 has z = {_literal(rows[0])}: "
                 "only a flat sheet in a plane z = constant is read"
             )
-    return [(x, y) for x, y, _ in points], largest, bool(exact)
+    flat = [(x, y) for x, y, _ in points]
+    check_coordinates(flat)
+    check_common_denominator(flat)
+    return flat, largest, bool(exact)
 
 
 def _literal(row: list[Any]) -> str:

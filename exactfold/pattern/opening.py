@@ -10,8 +10,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
+from exactfold.drawing.bounds import check_common_denominator, read_bytes
 from exactfold.drawing.drawing import Drawing, Snap
-from exactfold.drawing.fold_json import read_bytes
 from exactfold.errors import (
     DisconnectedError,
     DuplicateVertexError,
@@ -290,12 +290,16 @@ def triangles(opened: Opened, needs: str) -> CreasePattern:
 
 
 def triangulated(pattern: PanelPattern) -> CreasePattern | None:
-    """The sheet as a `CreasePattern`, None if it has larger panels or irrational coordinates."""
+    """The sheet as a `CreasePattern`, None if it has larger panels or irrational coordinates.
+
+    Raises `TooLargeError` if its coordinates are too long over one denominator.
+    """
     from exactfold.exact.surds import rational
 
     if pattern.field.radicands or any(len(face) != 3 for face in pattern.faces):
         return None
     points = [(rational(x), rational(y)) for x, y in pattern.vertices]
+    check_common_denominator(points)
     try:
         return CreasePattern(points, pattern.faces)
     except MalformedPatternError:

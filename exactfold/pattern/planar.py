@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import cmp_to_key
 
+from exactfold.drawing.bounds import check_compared
 from exactfold.errors import (
     CrossingEdgesError,
     DanglingEdgeError,
@@ -68,6 +69,7 @@ def check_no_crossing(points: Sequence[AnyPoint], edges: Sequence[Edge]) -> None
         x, y = (min(ax[0], bx[0]), max(ax[1], bx[1])), (min(ay[0], by[0]), max(ay[1], by[1]))
         boxes.append((*x, *y, (i, j)))
     boxes.sort()
+    check_compared(boxes)
     clear = _clear_turns(spots)
     active: list[tuple[float, float, float, float, Edge]] = []
     for box in boxes:

@@ -8,6 +8,7 @@ from fractions import Fraction
 from numbers import Integral
 from typing import Any
 
+from exactfold.drawing.bounds import check_compared
 from exactfold.errors import (
     DegenerateFaceError,
     DisconnectedError,
@@ -246,6 +247,7 @@ def embedding(vertices: Sequence[IntPoint], boundary: Sequence[int], rotation: R
         (ax, ay), (bx, by) = vertices[i], vertices[j]
         boxes.append((min(ax, bx), max(ax, bx), min(ay, by), max(ay, by), i, j))
     boxes.sort()
+    check_compared(boxes)
     active: list[tuple[int, int, int, int, int, int]] = []
     for box in boxes:
         active = [other for other in active if other[1] >= box[0]]

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
-from rich.console import Console, RenderableType
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
 from exactfold.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.wording import visible
 
 SHOWN = 32
 """Branches, files and open questions listed unless all are asked for."""
@@ -65,4 +68,15 @@ def show(content: RenderableType) -> None:
 
 def console(*, stderr: bool = False) -> Console:
     """A console without highlighting, so that text and tables stay as written."""
-    return Console(stderr=stderr, highlight=False, emoji=False, markup=False)
+    return _Console(stderr=stderr, highlight=False, emoji=False, markup=False)
+
+
+class _Console(Console):
+    """Names of files, which may hold anything, do not steer the terminal."""
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterable[Segment]:
+        """The segments of what is printed, of which only the console's own are control codes."""
+        for segment in super().render(renderable, options):
+            yield segment if segment.control else segment._replace(text=visible(segment.text))

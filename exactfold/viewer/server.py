@@ -79,9 +79,10 @@ class ViewServer(ThreadingHTTPServer):
         """Where the page is."""
         return f"http://{_LOOPBACK}:{self.server_port}/"
 
-    def is_ours(self, host: str | None) -> bool:
-        """Whether a request names this server as the page does."""
-        return host in (f"{_LOOPBACK}:{self.server_port}", f"localhost:{self.server_port}")
+    def is_ours(self, hosts: Sequence[str]) -> bool:
+        """Whether a request names this server as the page does, once."""
+        ours = (f"{_LOOPBACK}:{self.server_port}", f"localhost:{self.server_port}")
+        return len(hosts) == 1 and hosts[0] in ours
 
     @property
     def page(self) -> bytes:
@@ -120,7 +121,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         """Answer with the page, a motion, or a branch."""
-        if not self.server.is_ours(self.headers.get("Host")):
+        if not self.server.is_ours(self.headers.get_all("Host", [])):
             self._send(HTTPStatus.FORBIDDEN, b"this server is for this machine", "text/plain")
             return
         url = urlsplit(self.path)

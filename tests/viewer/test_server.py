@@ -69,6 +69,21 @@ def test_motions_and_branches_come_on_demand(server):
     assert np.allclose(*frames, atol=1e-6)
 
 
+@pytest.mark.parametrize("others", [["evil.example"], [None], [], ["", ""]])
+def test_of_several_hosts_none_wins(server, others):
+    """None stands for the server itself: also its own name is not to be there twice."""
+    own = f"127.0.0.1:{server.server_port}"
+    hosts = [own if host is None else host for host in others]
+    for order in ([own, *hosts], [*hosts, own]) if others else ([],):
+        connection = HTTPConnection("127.0.0.1", server.server_port, timeout=60)
+        connection.putrequest("GET", "/", skip_host=True)
+        for host in order:
+            connection.putheader("Host", host)
+        connection.endheaders()
+        assert connection.getresponse().status == 403
+        connection.close()
+
+
 @pytest.mark.parametrize(
     ("path", "message"),
     [
