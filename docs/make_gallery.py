@@ -16,20 +16,20 @@ from typing import Final
 from xml.etree import ElementTree
 
 from exactfold import count_branches, count_ways, families, follow, open_pattern
+from exactfold._support.verdict import PROVED
+from exactfold.app.pictures.drawn_ways import DrawnWay
+from exactfold.app.pictures.folded import Amount, folded
+from exactfold.app.pictures.stills import motion_still
+from exactfold.app.pictures.way_sheets import number_listed, sheet_of_ways
+from exactfold.app.report import pattern_picture, ways_of
+from exactfold.app.report.count import answer
+from exactfold.app.report.panels import panels_answer
 from exactfold.branches import BranchCount
-from exactfold.data import BY_OTHERS, DRAWINGS, SHEETS, example_path, examples
 from exactfold.errors import NotFollowedError
-from exactfold.modes import Decomposition
 from exactfold.motion import Motion, PanelMotion, follow_panels
+from exactfold.panels import Decomposition
+from exactfold.pattern.data import BY_OTHERS, DRAWINGS, SHEETS, example_path, examples
 from exactfold.pattern.degenerate import DEGENERATE
-from exactfold.report import pattern_picture, ways_of
-from exactfold.report.count import answer
-from exactfold.report.drawn_ways import DrawnWay
-from exactfold.report.folded import Amount, folded
-from exactfold.report.panels import panels_answer
-from exactfold.report.stills import motion_still
-from exactfold.report.way_sheets import number_listed, sheet_of_ways
-from exactfold.verdict import PROVED
 
 PAGE: Final = Path(__file__).with_name("gallery.md")
 FOLDER: Final = Path(__file__).with_name("gallery")

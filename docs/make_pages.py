@@ -20,26 +20,26 @@ from types import ModuleType
 from typing import Any, Final
 
 import exactfold
-from exactfold.cli import app
-from exactfold.schemas import VERSIONS, schema
+from exactfold._support.schemas import VERSIONS, schema
+from exactfold.app.cli.main import app
 
 FOLDER: Final = Path(__file__).with_name("generated")
 TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
     "counting": (
-        "Counting and branches",
+        "Counting, branches, letters and torques",
         "Load a pattern, count its branches, or find one. Most programs need only this page.",
-        ("", "count", "branches", "assignment"),
+        ("", "branches", "design"),
     ),
     "patterns": (
         "Crease patterns and drawings",
         "Sheets of triangles and of panels, families of them, and drawings in files.",
-        ("pattern", "pattern.families", "drawing", "data"),
+        ("pattern", "pattern.families", "pattern.data"),
     ),
-    "panels": ("Rigid panels", "All ways in which a sheet of panels folds.", ("modes", "pieces")),
+    "panels": ("Rigid panels", "All ways in which a sheet of panels folds.", ("panels",)),
     "motions": (
-        "Motions and torques",
-        "Follow a branch in space, prove the motion, and drive it.",
-        ("motion", "actuation"),
+        "Motions",
+        "Follow a branch in space, and prove the motion.",
+        ("motion",),
     ),
     "studies": (
         "Studies",
@@ -49,27 +49,27 @@ TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
     "evidence": (
         "Certificates",
         "Write a certificate, read it back, and verify it.",
-        ("evidence", "checker"),
+        ("certificates", "checker"),
     ),
     "output": (
         "Tables, pictures and other programs",
         "What the command line prints and draws, the viewer, and files for other programs.",
-        ("report", "viewer", "bridges", "schemas"),
+        ("app.report", "app.viewer", "interop"),
     ),
     "equations": (
         "Equations of a sheet",
         "Exact numbers, stresses, curvature forms, and the system of equations that is solved.",
-        ("problem", "rigidity", "exact"),
+        ("rigidity", "exact"),
     ),
     "solving": (
         "Solving and proving",
         "Solvers propose points; exact tests prove that there is a solution next to them.",
-        ("solve", "algebra", "certify"),
+        ("solve",),
     ),
     "errors": (
         "Verdicts and errors",
         "What is known, and what can go wrong.",
-        ("verdict", "errors"),
+        ("errors",),
     ),
 }
 """Pages of public names: the title, a sentence, and the rooms; the empty name is the package."""

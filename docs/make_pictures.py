@@ -5,21 +5,21 @@ from __future__ import annotations
 from pathlib import Path
 
 from exactfold import PROVED, count_ways, find_branch, follow, load, open_pattern
-from exactfold.data import example_path
-from exactfold.motion import follow_panels
-from exactfold.pattern import CreasePattern
-from exactfold.problem.rims import default_rim
-from exactfold.report import (
+from exactfold.app.pictures.crease_drawing import CreaseDrawing
+from exactfold.app.pictures.crease_lines import crease_lines
+from exactfold.app.pictures.folded import Amount, folded
+from exactfold.app.pictures.svg import element, number, picture, text
+from exactfold.app.pictures.way_sheets import sheet_of_ways
+from exactfold.app.report import (
     branch_way,
     motion_animation,
     motion_stills,
     pattern_picture,
 )
-from exactfold.report.crease_drawing import CreaseDrawing
-from exactfold.report.crease_lines import crease_lines
-from exactfold.report.folded import Amount, folded
-from exactfold.report.svg import element, number, picture, text
-from exactfold.report.way_sheets import sheet_of_ways
+from exactfold.motion import follow_panels
+from exactfold.pattern import CreasePattern
+from exactfold.pattern.data import example_path
+from exactfold.rigidity.equations.boundary_heights import default_rim
 
 FOLDER = Path(__file__).with_name("pictures")
 MOTIONS = {

@@ -11,11 +11,11 @@ starts to fold, proves it, and tells the ways apart by vertex signs and mountain
 ['--', '-+', '+-', '++']
 
 Here is what counting branches takes. The engines are in rooms of their own, such as
-`exactfold.algebra.groebner` and `exactfold.certify.krawczyk`; the documentation lists them all.
+`exactfold.solve.groebner` and `exactfold.solve.krawczyk`; the documentation lists them all.
 """
 
-from exactfold.lazy import attached
+from exactfold._support.lazy import attached as _attached
 
 __version__ = "0.1.0"
 
-__getattr__, __dir__ = attached(__name__)
+__getattr__, __dir__ = _attached(__name__)

@@ -6,7 +6,7 @@ import os
 try:
     import signal
 
-    from exactfold.commands.guard import interrupted, supervised
+    from exactfold.app.shell.guard import interrupted, supervised
 except KeyboardInterrupt:
     os.write(2, b"exactfold: interrupted\n")
     os._exit(130)
@@ -29,7 +29,7 @@ def main() -> None:
     gc.set_threshold(_BETWEEN)
 
     def run() -> None:
-        from exactfold.cli import main as command_line
+        from exactfold.app.cli.main import main as command_line
 
         if loud:
             signal.signal(signal.SIGINT, signal.default_int_handler)

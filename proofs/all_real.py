@@ -19,16 +19,14 @@ from sympy import QQ
 from sympy.polys.fields import field
 
 from exactfold import BranchCount, CreasePattern, random_square
-from exactfold.branches.roots import BoxRoot
-from exactfold.certify import isolate
+from exactfold._support.verdict import PROVED
+from exactfold.branches.values.roots import BoxRoot
 from exactfold.pattern.families import flat_vertex_square
-from exactfold.problem import BranchSystem
-from exactfold.problem.branch_system import Chart, notch_chart
-from exactfold.problem.sign_rows import Functionals
-from exactfold.rigidity import curvature_form, definite_stress
+from exactfold.rigidity import BranchSystem, curvature_form, definite_stress
 from exactfold.rigidity.definite_stresses import disk_multipliers
-from exactfold.solve import homotopy
-from exactfold.verdict import PROVED
+from exactfold.rigidity.equations.branch_system import Chart, notch_chart
+from exactfold.rigidity.equations.sign_rows import Functionals
+from exactfold.solve import homotopy, isolate
 from proofs.chambers import corner_sign, counted, solve
 from proofs.framework import Proof, Script, run
 from proofs.patterns import DART, SPIKY, darts, hostile_patterns, quadrilaterals

@@ -13,8 +13,7 @@ if not __package__:  # run as a file
 
 from exactfold import CreasePattern, count_branches, families
 from exactfold.exact.linalg import inertia
-from exactfold.problem import BranchSystem
-from exactfold.rigidity import curvature_form, definite_stress
+from exactfold.rigidity import BranchSystem, curvature_form, definite_stress
 from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Script, run
 from proofs.statements import Severity

@@ -13,10 +13,10 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.rings import ring
 
-from exactfold.algebra.groebner_bases import groebner
-from exactfold.certify import krawczyk
-from exactfold.certify.box import IsolatingBox
-from exactfold.problem import QuadraticSystem
+from exactfold.rigidity import QuadraticSystem
+from exactfold.solve import krawczyk
+from exactfold.solve.algebraic.groebner_bases import groebner
+from exactfold.solve.certify.box import IsolatingBox
 from proofs.dual_space import dual_space
 from proofs.framework import Proof, Script, run
 

@@ -10,18 +10,17 @@ from functools import lru_cache
 from itertools import product
 
 from exactfold import BranchCount, CreasePattern, count_branches
-from exactfold.branches.branch import Branch
-from exactfold.branches.roots import BoxRoot, EnclosedRoot
-from exactfold.certify import isolate
+from exactfold._support.verdict import PROVED, Verdict
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.roots import BoxRoot, EnclosedRoot
 from exactfold.errors import NotApplicableError
 from exactfold.exact import QuadraticForm
 from exactfold.exact.linalg import Inertia, from_fmpq, inertia, to_flint
 from exactfold.exact.numbers import integer_row
-from exactfold.problem import QuadraticSystem
-from exactfold.rigidity import curvature_form
+from exactfold.rigidity import QuadraticSystem, curvature_form
 from exactfold.rigidity.functionals import vertex_sign_functional
-from exactfold.solve.homotopy_ends import homotopy
-from exactfold.verdict import PROVED, Verdict
+from exactfold.solve import isolate
+from exactfold.solve.numeric.homotopy import homotopy
 
 Heights = dict[int, Fraction]
 

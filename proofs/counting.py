@@ -13,7 +13,7 @@ if not __package__:  # run as a file
 import sympy
 
 from exactfold import CreasePattern, count_branches, families
-from exactfold.problem import BranchSystem
+from exactfold.rigidity import BranchSystem
 from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Script, run
 from proofs.mountain_valley import half_bend, sector

@@ -7,10 +7,10 @@ from itertools import combinations
 
 from flint import fmpq_poly
 
-from exactfold.algebra.exact_solution import RootClass
 from exactfold.errors import DualSpaceError
 from exactfold.exact.univariate import to_rational_poly
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.exact_solution import RootClass
 from proofs.dual_space import (
     DualSpace,
     Exponent,
@@ -129,7 +129,7 @@ def check_complete(system: QuadraticSystem, proofs: Sequence[tuple[RootClass, Du
     Raises `DualSpaceError` if the proof is incomplete, which says nothing about what is missing.
 
     >>> from proofs.dual_space import dual_space
-    >>> from exactfold.algebra.groebner_bases import groebner
+    >>> from exactfold.solve.algebraic.groebner_bases import groebner
     >>> hyperbola = [[0, 0, 0], [0, 1, 0], [0, 0, -1]]
     >>> double_line = [[1, 0, 0], [0, 0, 0], [0, 0, 0]]
     >>> system = QuadraticSystem.from_rational([hyperbola, double_line])

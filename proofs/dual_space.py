@@ -10,11 +10,11 @@ from typing import TypeAlias
 
 from flint import fmpq_poly, fmpz, nmod_poly
 
-from exactfold.algebra.exact_solution import RootClass
 from exactfold.errors import DualSpaceError
 from exactfold.exact.algebraic import NumberField, Vector
 from exactfold.exact.univariate import from_rational_poly, to_rational_poly
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.exact_solution import RootClass
 
 Exponent: TypeAlias = tuple[int, ...]
 Coefficient: TypeAlias = tuple[Fraction, ...]
@@ -63,7 +63,7 @@ def dual_space(system: QuadraticSystem, root_class: RootClass, limit: int) -> Du
 
     Raises `DualSpaceError` if the class is not a zero of the system.
 
-    >>> from exactfold.algebra.groebner_bases import groebner
+    >>> from exactfold.solve.algebraic.groebner_bases import groebner
     >>> parabola_and_axis = QuadraticSystem.from_rational(
     ...     [[[2, 0, 0], [0, 0, -1], [0, -1, 0]], [[0, 0, 0], [0, 1, 0], [0, 0, 0]]])
     >>> [root] = groebner(parabola_and_axis).classes

@@ -16,8 +16,8 @@ import networkx as nx
 import sympy
 
 from exactfold import CreasePattern, count_branches, find_branches
+from exactfold._support.verdict import PROVED
 from exactfold.pattern.crease_pattern import Edge, Triangle
-from exactfold.verdict import PROVED
 from proofs.framework import Proof, Script, run
 
 NAME = "exceptions"

@@ -18,9 +18,9 @@ from sympy import QQ
 from sympy.polys.fields import field
 
 from exactfold import CreasePattern, count_branches, random_square
+from exactfold._support.verdict import PROVED
 from exactfold.pattern.crease_pattern import Triangle
 from exactfold.pattern.families import flat_octahedron_in_square, flat_vertex_square
-from exactfold.verdict import PROVED
 from proofs.framework import Proof, Script, run
 
 NAME = "generic"

@@ -42,7 +42,7 @@ if not __package__:  # run as a file
 import sympy
 
 from exactfold import CreasePattern, count_branches, families, random_square
-from exactfold.branches.result import BranchCount
+from exactfold.branches.values.result import BranchCount
 from proofs.butterfly import DART, FAN, KITE, quadratic
 from proofs.framework import Proof, Script, run
 from proofs.mountain_valley import sector

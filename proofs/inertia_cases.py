@@ -14,8 +14,8 @@ if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from exactfold import BranchCount, CreasePattern, random_square
+from exactfold._support.verdict import PROVED
 from exactfold.exact.linalg import Inertia, inertia_by_elimination
-from exactfold.verdict import PROVED
 from proofs.chambers import (
     Solutions,
     corner_sign,

@@ -28,13 +28,13 @@ from sympy import QQ
 from sympy.polys.fields import field
 
 from exactfold import CreasePattern, count_branches, families
-from exactfold.algebra import groebner
-from exactfold.algebra.exact_solution import ExactSolution, RootClass
 from exactfold.exact.linalg import inertia, nullspace
-from exactfold.problem import BranchSystem, QuadraticSystem
-from exactfold.problem.branch_system import Chart, notch_chart
-from exactfold.problem.sign_rows import Functionals
+from exactfold.rigidity import BranchSystem, QuadraticSystem
 from exactfold.rigidity.definite_stresses import disk_multipliers
+from exactfold.rigidity.equations.branch_system import Chart, notch_chart
+from exactfold.rigidity.equations.sign_rows import Functionals
+from exactfold.solve import groebner
+from exactfold.solve.algebraic.exact_solution import ExactSolution, RootClass
 from proofs.branch_counts import OCTAHEDRON, SQUARE, TWISTED, gram, inner_points, restricted
 from proofs.chambers import jacobian
 from proofs.dual_space import dual_space, taylor_expansions, unit_rank

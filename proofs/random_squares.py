@@ -22,13 +22,13 @@ import numpy as np
 import sympy
 
 from exactfold import CreasePattern, count_branches, random_square
-from exactfold.algebra import groebner
-from exactfold.branches.branch import Branch
-from exactfold.branches.result import BranchCount
-from exactfold.problem import BranchSystem, QuadraticSystem
-from exactfold.problem.perturbation import perturbed
+from exactfold._support.verdict import PROVED
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.result import BranchCount
+from exactfold.rigidity import BranchSystem, QuadraticSystem
+from exactfold.rigidity.equations.perturbation import perturbed
 from exactfold.rigidity.functionals import vertex_sign_functional
-from exactfold.verdict import PROVED
+from exactfold.solve import groebner
 from proofs.framework import Proof, Script, run
 from proofs.h1_shares import reductions, shares
 from proofs.statements import Severity

@@ -12,11 +12,11 @@ if not __package__:  # run as a file
 import sympy
 
 from exactfold import CreasePattern, decompose, families
+from exactfold._support.verdict import REFUTED
 from exactfold.exact.linalg import rank
 from exactfold.pattern import PanelPattern
 from exactfold.rigidity import curvature_form, rigidity_matrix
 from exactfold.rigidity.functionals import fold_functional
-from exactfold.verdict import REFUTED
 from proofs.framework import Proof, Script, run
 from proofs.length_equations import CROSS, Heights, is_solution
 from proofs.statements import Severity

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from exactfold.certify import ball_krawczyk, ball_newton, exact_krawczyk
-from exactfold.certify.box import IsolatingBox, Uncertified
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.verdict import Verdict
+from exactfold._support.verdict import Verdict
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.certify import ball_krawczyk, ball_newton, exact_krawczyk
+from exactfold.solve.certify.box import IsolatingBox, Uncertified
 
 Certify = Callable[..., list[IsolatingBox | Uncertified]]
 Decide = Callable[[QuadraticSystem, IsolatingBox], Verdict]

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
+from exactfold.branches.certificates.check import check_compact
 from exactfold.checker import CertificateError
-from exactfold.checker.compact_blocks import CompactSheet
-from exactfold.checker.compact_lines import digest
-from exactfold.checker.formats import UNPROVED
-from exactfold.evidence.check import check_compact
+from exactfold.checker.branches.compact_blocks import CompactSheet
+from exactfold.checker.core.formats import UNPROVED
+from exactfold.checker.core.lines import digest
 
 Lines = list[dict[str, Any]]
 

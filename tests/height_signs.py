@@ -9,8 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
-from exactfold.arrays import FloatArray
-from exactfold.motion.half_branches import HalfBranch
+from exactfold._support.arrays import FloatArray
+from exactfold.motion.loops.rays import HalfBranch
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functional
 

@@ -13,11 +13,11 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from exactfold.arrays import FloatArray
-from exactfold.motion.angles import fold_angles_of
-from exactfold.motion.curve import Piece, leaving_piece
-from exactfold.motion.framework import Framework
-from exactfold.motion.start import Start
+from exactfold._support.arrays import FloatArray
+from exactfold.motion.curves.angles import fold_angles_of
+from exactfold.motion.curves.curve import Piece, leaving_piece
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.curves.start import Start
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functional
 

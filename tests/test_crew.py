@@ -10,8 +10,8 @@ from multiprocessing.context import SpawnProcess
 
 import pytest
 
-from exactfold import crew
-from exactfold.crew import as_they_end, in_order
+from exactfold._support import shared_work as crew
+from exactfold._support.shared_work import as_they_end, in_order
 from exactfold.errors import NotEnoughMemoryError, WorkerDiedError
 
 

@@ -8,8 +8,8 @@ import sys
 
 import pytest
 
-from exactfold import memory
-from exactfold.memory import is_shortage, shortage
+from exactfold._support import memory
+from exactfold._support.memory import is_shortage, shortage
 
 
 @pytest.mark.parametrize(
@@ -40,7 +40,7 @@ def test_a_shortage_is_told_in_one_line() -> None:
 
 LOADING = """
 import resource
-from exactfold.memory import ROOM, require_room
+from exactfold._support.memory import ROOM, require_room
 require_room()
 resource.setrlimit(resource.RLIMIT_AS, ({megabytes} << 20,) * 2)
 require_room()

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from exactfold.workers import worker_environment
+from exactfold._support.processes import worker_environment
 
 
 def test_the_environment_is_restored(monkeypatch: pytest.MonkeyPatch) -> None:

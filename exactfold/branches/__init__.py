@@ -1,5 +1,5 @@
-"""What the solutions mean."""
+"""Branches of triangulated sheets: counted, found one by one, listed, and certified."""
 
-from exactfold.lazy import attached
+from exactfold._support.lazy import attached as _attached
 
-__getattr__, __dir__ = attached(__name__)
+__getattr__, __dir__ = _attached(__name__)

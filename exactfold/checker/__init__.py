@@ -31,7 +31,7 @@ when it is run.
 TYPE_CHECKING = False  # as in typing, which takes a while to load
 if TYPE_CHECKING:
     from .command import check, is_compact, load, main, summary, verify
-    from .reading import CertificateError, FormatError
+    from .core.reading import CertificateError, FormatError
 
 __all__ = [
     "CertificateError",
@@ -50,7 +50,7 @@ def __getattr__(name: str) -> object:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     if name.endswith("Error"):
-        from . import reading as home
+        from .core import reading as home
     else:
         from . import command as home  # type: ignore[no-redef]
     found: object = getattr(home, name)

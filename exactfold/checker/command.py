@@ -14,21 +14,9 @@ from os import PathLike
 from types import ModuleType
 from typing import Any
 
-from . import (
-    assignments,
-    branch,
-    compact,
-    letters,
-    listing,
-    motion,
-    motion_loops,
-    panel_letters,
-    panel_motion,
-    panels,
-    pieces,
-)
-from .compact_lines import lines
-from .formats import (
+from .branches import branch, compact, listing
+from .branches import connected_components as pieces
+from .core.formats import (
     ASSIGNMENTS,
     BRANCH,
     COMPACT,
@@ -40,8 +28,9 @@ from .formats import (
     PANEL_MOTION,
     PIECES,
 )
-from .limits import MOST_BYTES, MOST_LINE
-from .reading import (
+from .core.limits import MOST_BYTES, MOST_LINE
+from .core.lines import lines
+from .core.reading import (
     CertificateError,
     FormatError,
     LimitError,
@@ -50,6 +39,12 @@ from .reading import (
     plain,
     read_json,
 )
+from .letters import assignments, letters
+from .letters import panels as panel_letters
+from .motion import certificate as motion
+from .motion import loops as motion_loops
+from .motion.panels import certificate as panel_motion
+from .panels import certificate as panels
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
 

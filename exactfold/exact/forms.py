@@ -197,7 +197,7 @@ class QuadraticForm:
         """Q(h) as an expanded SymPy expression with rational coefficients.
 
         `symbols` gives a symbol or expression by label; by default the height of vertex 4 is the
-        symbol `h4`, as in `exactfold.bridges.to_sympy`. Raises `UsageError` if a label has none.
+        symbol `h4`, as in `exactfold.interop.to_sympy`. Raises `UsageError` if a label has none.
 
         >>> form = QuadraticForm((4, 7), ((Fraction(1), Fraction(1)), (Fraction(1), Fraction(0))))
         >>> form.to_sympy()

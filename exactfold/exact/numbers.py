@@ -10,7 +10,7 @@ from math import inf, lcm
 from numbers import Rational
 from typing import TypeAlias
 
-from exactfold.checker.limits import MOST_EXPONENT, MOST_NUMBER
+from exactfold.checker.core.limits import MOST_EXPONENT, MOST_NUMBER
 from exactfold.errors import FloatRefusedError, NotANumberError, UsageError
 
 RationalLike: TypeAlias = "int | Fraction | Decimal | str"
@@ -44,7 +44,7 @@ def parse_rational(text: str) -> Fraction:
     """Exact value of "p", "p/q" or decimal text such as "-1.25e-3".
 
     Raises `NotANumberError` for anything else, including "NaN", "Infinity" and a zero denominator,
-    and for numbers that are longer than the limits of `exactfold.checker.limits`.
+    and for numbers that are longer than the limits of `exactfold.checker.core.limits`.
 
     >>> parse_rational("0.1")
     Fraction(1, 10)

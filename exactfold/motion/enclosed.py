@@ -8,15 +8,15 @@ from fractions import Fraction
 
 import numpy as np
 
-from exactfold.arrays import FloatArray
+from exactfold._support.arrays import FloatArray
 from exactfold.exact.surds import float_bounds
-from exactfold.motion.angles import fold_angles_of, hinges_of
-from exactfold.motion.arclength import in_floats
-from exactfold.motion.framework import Framework
-from exactfold.motion.motion import FrameBounds, Motion
-from exactfold.motion.rim_path import problem_of
-from exactfold.motion.tracks import Frame
-from exactfold.problem.problem import Problem
+from exactfold.motion.curves.angles import fold_angles_of, hinges_of
+from exactfold.motion.curves.boundary_path import problem_of
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.curves.motion import FrameBounds, Motion
+from exactfold.motion.tubes.arclength import in_floats
+from exactfold.motion.tubes.tracks import Frame
+from exactfold.rigidity.equations.problem import Problem
 
 _NEAR = 1e-4
 """In the unit of the framework: how far a motion in floats may be from the proved one."""

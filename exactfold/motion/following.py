@@ -10,8 +10,9 @@ from math import isfinite, radians
 
 import numpy as np
 
-from exactfold.arrays import FloatArray
-from exactfold.branches.branch import Branch
+from exactfold._support.arrays import FloatArray
+from exactfold._support.progress import Progress
+from exactfold.branches.values.branch import Branch
 from exactfold.errors import (
     NotANumberError,
     NotApplicableError,
@@ -20,10 +21,10 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.exact.numbers import approx_number
-from exactfold.motion.curve import Curve, LostCurveError, Piece, continued, leaving_piece
-from exactfold.motion.drive import Drive, not_a_fold
-from exactfold.motion.driven import require_driven
-from exactfold.motion.events import (
+from exactfold.motion.curves.boundary_path import framework_of, problem_of
+from exactfold.motion.curves.curve import Curve, LostCurveError, Piece, continued, leaving_piece
+from exactfold.motion.curves.drive import Drive, not_a_fold
+from exactfold.motion.curves.events import (
     ANGLE,
     CONTACT,
     DEAD_POINT,
@@ -36,15 +37,14 @@ from exactfold.motion.events import (
     Event,
     Watch,
 )
-from exactfold.motion.framework import Framework
-from exactfold.motion.motion import Motion, angles_at, in_space
-from exactfold.motion.rim_path import framework_of, problem_of
-from exactfold.motion.start import Start
-from exactfold.motion.straight_folds import straight_fold
-from exactfold.motion.zeros import zero_of
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.curves.motion import Motion, angles_at, in_space
+from exactfold.motion.curves.start import Start
+from exactfold.motion.curves.straight_folds import straight_fold
+from exactfold.motion.curves.zeros import zero_of
+from exactfold.motion.tubes.driven import require_driven
 from exactfold.pattern.crease_pattern import Edge, Triangle
-from exactfold.problem.problem import Problem
-from exactfold.progress import Progress
+from exactfold.rigidity.equations.problem import Problem
 
 _MOST_PIECES = 20_000
 _AT_ONCE = 1e-9
@@ -85,7 +85,7 @@ def follow(
     is proved. A motion that ends "singular" could not be followed further, which does not mean that
     it ends there.
 
-    >>> from exactfold.count.find import find_branch
+    >>> from exactfold.branches.counting.find import find_branch
     >>> follow(find_branch("two-vertex", "+-"), until="90deg", frames=5)
     <Motion: branch +-, 5 frames to angle at 1.37421>
     """

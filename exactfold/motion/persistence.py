@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from exactfold.motion.framework import Framework
-from exactfold.motion.motion import Motion
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.curves.motion import Motion
 from exactfold.motion.proving import BITS, MotionProof, prove
 from exactfold.pattern.crease_pattern import Triangle
-from exactfold.progress import Progress
-from exactfold.verdict import PROVED
 
 
 def prove_persistently(
@@ -25,7 +25,7 @@ def prove_persistently(
     and so is `MotionProof.motion`. Where floats found a node or a singular configuration at the
     end nothing more is tried. What was tried is in `MotionProof.reason`. Raises as `prove`.
 
-    >>> from exactfold.count.find import find_branch
+    >>> from exactfold.branches.counting.find import find_branch
     >>> from exactfold.motion.following import follow
     >>> branch = find_branch("two-vertex", "+-")
     >>> motion = follow(branch, until="30deg", frames=2)

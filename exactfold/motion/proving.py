@@ -9,25 +9,25 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.certificates.entries import Document, write_certificate
 from exactfold.errors import NotProvedAtTheFlatStateError
-from exactfold.evidence.entries import Document, write_certificate
-from exactfold.motion.arclength import Interval, in_floats
-from exactfold.motion.chain import Step
-from exactfold.motion.contact_claims import certificate_with_contact
-from exactfold.motion.contacts import ContactWatch, FirstContact
+from exactfold.motion.contacts.claims import certificate_with_contact
+from exactfold.motion.contacts.contacts import ContactWatch, FirstContact
+from exactfold.motion.curves.boundary_path import problem_of
+from exactfold.motion.curves.events import CONTACT, DRIVEN, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.curves.motion import Motion
 from exactfold.motion.enclosed import with_enclosed_frames
-from exactfold.motion.events import CONTACT, DRIVEN, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
-from exactfold.motion.framework import Framework
-from exactfold.motion.loop_file import LoopFile
-from exactfold.motion.loop_frames import frame_of
-from exactfold.motion.loop_proofs import Loop, LoopProof
-from exactfold.motion.loops import LoopFinder
-from exactfold.motion.motion import Motion
-from exactfold.motion.passages import Passage
-from exactfold.motion.rim_path import problem_of
-from exactfold.motion.tracks import Frame, Track, follow_proved, half_branch
-from exactfold.progress import Progress
-from exactfold.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.motion.loops.file import LoopFile
+from exactfold.motion.loops.frames import frame_of
+from exactfold.motion.loops.loops import LoopFinder
+from exactfold.motion.loops.proofs import Loop, LoopProof
+from exactfold.motion.tubes.arclength import Interval, in_floats
+from exactfold.motion.tubes.chain import Step
+from exactfold.motion.tubes.passages import Passage
+from exactfold.motion.tubes.tracks import Frame, Track, follow_proved, half_branch
 
 BITS = 64, 128
 """After the point, of the numbers in tubes: what is tried, one after the other."""
@@ -159,7 +159,7 @@ class MotionProof:
 
         >>> import os, tempfile
         >>> from exactfold.checker import summary, verify
-        >>> from exactfold.count.find import find_branch
+        >>> from exactfold.branches.counting.find import find_branch
         >>> from exactfold.motion.following import follow
         >>> proof = prove(follow(find_branch("two-vertex", "+-"), until="return"))
         >>> with tempfile.TemporaryDirectory() as folder:
@@ -232,7 +232,7 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
 
     Raises `UsageError` where the branch is not proved. UNDECIDED says nothing against the motion.
 
-    >>> from exactfold.count.find import find_branch
+    >>> from exactfold.branches.counting.find import find_branch
     >>> from exactfold.motion.following import follow
     >>> proof = prove(follow(find_branch("two-vertex", "+-")))
     >>> proof.status, proof.contact.event.kind, max(proof.motion.bounds.radii) < 1e-14

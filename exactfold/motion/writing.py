@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from exactfold.bridges.fold_frames import MotionFrame, motion_document
-from exactfold.bridges.meshes import animated_gltf, gltf_bytes, obj_text
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import shown
-from exactfold.motion.events import RETURN
-from exactfold.motion.in_motion import SheetInMotion
-from exactfold.motion.motion import Motion
-from exactfold.motion.panel_motion import PanelMotion
+from exactfold.interop.fold_frames import MotionFrame, motion_document
+from exactfold.interop.meshes import animated_gltf, gltf_bytes, obj_text
+from exactfold.motion.curves.events import RETURN
+from exactfold.motion.curves.in_motion import SheetInMotion
+from exactfold.motion.curves.motion import Motion
+from exactfold.motion.panels.motion import PanelMotion
 from exactfold.pattern.fold_writing import checked_target, document_text, write_bytes, write_text
 from exactfold.pattern.triangulating import triangles_of
 
@@ -36,7 +36,7 @@ def write_motion(
     Raises `UsageError` for another ending, `GltfMissingError`, `UnwritableFileError`.
 
     >>> import os, tempfile
-    >>> from exactfold.count.find import find_branch
+    >>> from exactfold.branches.counting.find import find_branch
     >>> from exactfold.motion.following import follow
     >>> motion = follow(find_branch("two-vertex", "+-"), until="90deg", frames=3)
     >>> with tempfile.TemporaryDirectory() as folder:

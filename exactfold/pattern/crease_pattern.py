@@ -10,6 +10,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from exactfold._support.notebook import Picture
 from exactfold.exact.numbers import (
     RationalLike,
     as_rational,
@@ -20,7 +21,6 @@ from exactfold.exact.numbers import (
 from exactfold.pattern import validate
 from exactfold.pattern.graphs import vertex_graph
 from exactfold.pattern.triangulated_triangles import find_triangulated_triangles
-from exactfold.showing import Picture
 
 if TYPE_CHECKING:
     import networkx as nx

@@ -11,15 +11,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
-from exactfold.drawing.bounds import check_common_denominator, check_coordinates, read_bytes
-from exactfold.drawing.fold_json import (
-    SURDS_KEY,
-    components,
-    exact_points,
-    fold_document,
-    index_lists,
-    list_at,
-)
+from exactfold._support.notebook import Picture
+from exactfold._support.plurals import counted
 from exactfold.errors import (
     CutEdgeError,
     DanglingEdgeError,
@@ -33,9 +26,16 @@ from exactfold.errors import (
 )
 from exactfold.exact.numbers import over_common_denominator, shown, snap
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
+from exactfold.pattern.drawing.bounds import check_common_denominator, check_coordinates, read_bytes
+from exactfold.pattern.drawing.formats.fold_json import (
+    SURDS_KEY,
+    components,
+    exact_points,
+    fold_document,
+    index_lists,
+    list_at,
+)
 from exactfold.pattern.validate import rounded_to
-from exactfold.showing import Picture
-from exactfold.wording import counted
 
 OTHER_FORMATS: Final = {
     ".cp": "a CP file (a list of creases, as ORIPA and Oriedita write it)",
@@ -89,7 +89,7 @@ def load_fold(
 
     Messages begin with the `name` of the file, by default its path.
 
-    >>> from exactfold.data import example_path
+    >>> from exactfold.pattern.data import example_path
     >>> load_fold(example_path("two-vertex")).pattern
     <CreasePattern: 2 interior and 4 boundary vertices>
     """

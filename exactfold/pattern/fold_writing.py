@@ -11,10 +11,10 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, SupportsFloat
 
-from exactfold.drawing.fold_json import EXACT_KEY
 from exactfold.errors import NotApplicableError, UnwritableFileError, UsageError
 from exactfold.exact.numbers import format_rational, shown
 from exactfold.pattern.crease_pattern import Edge, Point
+from exactfold.pattern.drawing.formats.fold_json import EXACT_KEY
 
 if TYPE_CHECKING:
     from exactfold.pattern.loading import PatternLike

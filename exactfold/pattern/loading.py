@@ -6,10 +6,10 @@ import os
 from os import PathLike
 from typing import TypeAlias
 
-from exactfold.data import DRAWINGS, SHEETS, example_path
 from exactfold.errors import UnknownPatternError, UsageError
 from exactfold.exact.numbers import shown
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import DRAWINGS, SHEETS, example_path
 from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.opening import open_pattern, triangles
 

@@ -10,8 +10,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from exactfold.drawing.bounds import check_common_denominator, read_bytes
-from exactfold.drawing.drawing import Drawing, Snap
+from exactfold._support.notebook import Picture
+from exactfold._support.plurals import counted
 from exactfold.errors import (
     DisconnectedError,
     DuplicateVertexError,
@@ -30,13 +30,13 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.bounds import check_common_denominator, read_bytes
+from exactfold.pattern.drawing.drawing import Drawing, Snap
 from exactfold.pattern.fold import FoldFile, parse_bytes
-from exactfold.showing import Picture
-from exactfold.wording import counted
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
 if TYPE_CHECKING:
-    from exactfold.drawing.repair import Sheets
+    from exactfold.pattern.drawing.repair import Sheets
     from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 Steps: TypeAlias = "Literal['all', 'least'] | Collection[str]"
@@ -155,7 +155,7 @@ def opened(
             again = partial(opened, raw, name, number=number)
             lines = _meant(file, name)
             return Opened(file.pattern, file.assignment, lines, file.snapped, again=again)
-    from exactfold.drawing.read import parse_drawing
+    from exactfold.pattern.drawing.formats.read import parse_drawing
 
     try:
         drawing = parse_drawing(raw, name)
@@ -203,7 +203,7 @@ def from_drawing(
     A drawing with exact coordinates of its own keeps them, and is repaired only where it is no
     sheet without that; lines F and J join panels all the same.
 
-    >>> from exactfold.drawing.drawing import Line
+    >>> from exactfold.pattern.drawing.drawing import Line
     >>> crossed = Drawing(((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (1, 2)),
     ...     (Line(0, 1, "B"), Line(1, 2, "B"), Line(2, 3, "B"), Line(3, 0, "B"),
     ...      Line(4, 5, "M")), "a square with one crease")
@@ -211,7 +211,7 @@ def from_drawing(
     >>> sheet.sheet, sheet.assignment[4, 5], len(sheet.lines)
     (<PanelPattern: 0 interior vertices, 1 fold, 2 panels>, 'M', 3)
     """
-    from exactfold.drawing.repair import exact_sheets
+    from exactfold.pattern.drawing.repair import exact_sheets
 
     rule: Snap = snap or ("exact" if drawing.exact else "auto")
     attempts = _attempts(drawing, steps, merge)
@@ -228,7 +228,7 @@ def from_drawing(
 
 def _attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Collection[str]]:
     """The sets of steps to try in turn."""
-    from exactfold.drawing.repair import STEPS
+    from exactfold.pattern.drawing.repair import STEPS
 
     if steps == "least":
         return [(), _LEAST] if merge is None else [_LEAST]

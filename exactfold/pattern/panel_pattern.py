@@ -11,12 +11,12 @@ from math import lcm
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
+from exactfold._support.notebook import Picture
+from exactfold._support.plurals import counted
 from exactfold.errors import MalformedPatternError, PinchError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, Surd, SurdField, common_field
 from exactfold.pattern.planar import counter_clockwise, trace_faces
-from exactfold.showing import Picture
-from exactfold.wording import counted
 
 Edge: TypeAlias = tuple[int, int]
 Point: TypeAlias = tuple[Number, Number]

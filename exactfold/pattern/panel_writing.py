@@ -6,15 +6,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from exactfold.drawing.fold_surds import surd_keys
+from exactfold._support.plurals import counted
 from exactfold.errors import NonTriangularFaceError
 from exactfold.exact.surds import rational
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.formats.fold_surds import surd_keys
 from exactfold.pattern.fold_writing import ANGLES, coordinate_keys, double, headed_document
 from exactfold.pattern.opening import Opened, panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.pattern.triangulating import triangulating_edges
-from exactfold.wording import counted
 
 _FOLDS = frozenset("MVFUJ")
 

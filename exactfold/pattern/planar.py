@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import cmp_to_key
 
-from exactfold.drawing.bounds import check_compared
 from exactfold.errors import (
     CrossingEdgesError,
     DanglingEdgeError,
@@ -14,6 +13,7 @@ from exactfold.errors import (
     IsolatedVertexError,
 )
 from exactfold.exact.surds import float_bounds
+from exactfold.pattern.drawing.bounds import check_compared
 from exactfold.pattern.validate import AnyPoint, orientation, segments_meet
 
 Edge = tuple[int, int]

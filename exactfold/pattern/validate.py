@@ -8,7 +8,7 @@ from fractions import Fraction
 from numbers import Integral
 from typing import Any
 
-from exactfold.drawing.bounds import check_compared
+from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import (
     DegenerateFaceError,
     DisconnectedError,
@@ -24,7 +24,7 @@ from exactfold.errors import (
     PinchError,
 )
 from exactfold.exact.numbers import format_rational, shown
-from exactfold.wording import agreeing, counted
+from exactfold.pattern.drawing.bounds import check_compared
 
 Point = tuple[Fraction, Fraction]
 IntPoint = tuple[int, int]

@@ -1,5 +1,5 @@
 """What statics and kinematics say of the flat sheet."""
 
-from exactfold.lazy import attached
+from exactfold._support.lazy import attached as _attached
 
-__getattr__, __dir__ = attached(__name__)
+__getattr__, __dir__ = _attached(__name__)

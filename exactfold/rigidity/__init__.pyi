@@ -4,6 +4,12 @@ from exactfold.rigidity.curvature import curvature_form as curvature_form
 from exactfold.rigidity.curvature import stress_form as stress_form
 from exactfold.rigidity.curvature import wheel_stress as wheel_stress
 from exactfold.rigidity.definite_stresses import definite_stress as definite_stress
+from exactfold.rigidity.equations.branch_system import BranchSystem as BranchSystem
+from exactfold.rigidity.equations.branch_system import Chart as Chart
+from exactfold.rigidity.equations.gauge import Gauge as Gauge
+from exactfold.rigidity.equations.perturbation import perturbed as perturbed
+from exactfold.rigidity.equations.problem import Problem as Problem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem as QuadraticSystem
 from exactfold.rigidity.facts import PatternFacts as PatternFacts
 from exactfold.rigidity.facts import pattern_facts as pattern_facts
 from exactfold.rigidity.projective import ProjectiveImage as ProjectiveImage

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
+from exactfold._support.plurals import counted
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.rigidity.definite_stresses import definite_stress
-from exactfold.verdict import PROVED, UNDECIDED, Verdict
-from exactfold.wording import counted
 
 
 @dataclass(frozen=True)

@@ -6,16 +6,16 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
+from exactfold._support.progress import Progress
+from exactfold._support.schemas import headed
 from exactfold.exact.linalg import Inertia
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.pattern.near_degeneracy import warnings
-from exactfold.progress import Progress
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.self_stress import rigidity_rank
-from exactfold.schemas import headed
 
 
 @dataclass(frozen=True)

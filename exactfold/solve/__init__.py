@@ -1,5 +1,5 @@
-"""Candidates for the branches, in floating point; nothing here is proved."""
+"""From candidates to proofs: numerical solvers, exact engines, and certifiers."""
 
-from exactfold.lazy import attached
+from exactfold._support.lazy import attached as _attached
 
-__getattr__, __dir__ = attached(__name__)
+__getattr__, __dir__ = _attached(__name__)

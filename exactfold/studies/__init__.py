@@ -13,6 +13,6 @@ cluster (`runner`), written as CSV and Parquet (`writing`). To add one:
 3.  Choose the recipes: `square_recipes` are random squares. Raise `version` when rows change.
 """
 
-from exactfold.lazy import attached
+from exactfold._support.lazy import attached as _attached
 
-__getattr__, __dir__ = attached(__name__)
+__getattr__, __dir__ = _attached(__name__)

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from exactfold.arrays import FloatArray, IndexArray
-from exactfold.studies.lines import Lines
+from exactfold._support.arrays import FloatArray, IndexArray
+from exactfold.studies.running.lines import Lines
 
 NEAR: Final = 1e-5
 """Lower bounds from doubles that are above this are good enough."""

@@ -10,18 +10,18 @@ from typing import Any, Final
 
 import numpy as np
 
-from exactfold.arrays import FloatArray
-from exactfold.count.collect import count_branches
+from exactfold._support.arrays import FloatArray
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.counting.collect import count_branches
 from exactfold.motion.following import follow
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import single_vertex, two_vertex
 from exactfold.pattern.random_squares import random_square
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import vertex_sign_functional
-from exactfold.studies.lines import Lines
-from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable
+from exactfold.studies.running.lines import Lines
+from exactfold.studies.running.study import Recipe, Row, Study, StudyFigure, StudyTable
 from exactfold.studies.table1 import same_side
-from exactfold.verdict import PROVED, UNDECIDED
 
 SHOWN: Final = {
     1: "branches in the space of fold angles",

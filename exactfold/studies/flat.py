@@ -16,16 +16,16 @@ from typing import Any, Final
 import networkx as nx
 import numpy as np
 
-from exactfold.count.collect import count_branches
+from exactfold._support.verdict import PROVED
+from exactfold.branches.counting.collect import count_branches
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import collinear_folds
-from exactfold.studies.lines import Lines, SignArray
 from exactfold.studies.nearest import nearest_exception
-from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.statistics import interval_text
-from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
-from exactfold.studies.tallies import draw_distributions, draw_rare, tallied
-from exactfold.verdict import PROVED
+from exactfold.studies.running.lines import Lines, SignArray
+from exactfold.studies.running.squares import square_of, square_recipes
+from exactfold.studies.running.statistics import interval_text
+from exactfold.studies.running.study import Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.running.tallies import draw_distributions, draw_rare, tallied
 
 DENOMINATORS: Final = (16, 64, 256, 1024)
 """Of the grids."""

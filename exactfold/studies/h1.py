@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, Final
 
-from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.statistics import (
+from exactfold._support.verdict import PROVED
+from exactfold.studies.running.squares import square_of, square_recipes
+from exactfold.studies.running.statistics import (
     AGREE,
     agreement,
     decay,
@@ -25,7 +26,15 @@ from exactfold.studies.statistics import (
     same_probability,
     verdict,
 )
-from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
+from exactfold.studies.running.study import (
+    Cell,
+    Recipe,
+    Row,
+    Study,
+    StudyFigure,
+    StudyTable,
+    of_size,
+)
 from exactfold.studies.triangulations import (
     has_chord,
     has_low_vertex,
@@ -34,7 +43,6 @@ from exactfold.studies.triangulations import (
     triangulation,
     types,
 )
-from exactfold.verdict import PROVED
 
 PAPER_NUMBER: Final = 20_000
 PAPER_IRREDUCIBLE: Final = {3: 0, 8: 17_700}

@@ -15,13 +15,13 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from exactfold.studies.lines import UNKNOWN, Lines, SignArray
-from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.statistics import AGREE, interval, p_equals, trend, verdict
-from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable
+from exactfold._support.verdict import PROVED
+from exactfold.studies.running.lines import UNKNOWN, Lines, SignArray
+from exactfold.studies.running.squares import square_of, square_recipes
+from exactfold.studies.running.statistics import AGREE, interval, p_equals, trend, verdict
+from exactfold.studies.running.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable
+from exactfold.studies.running.tallies import interior_of, tallied
 from exactfold.studies.table1 import same_side
-from exactfold.studies.tallies import interior_of, tallied
-from exactfold.verdict import PROVED
 
 
 def row(recipe: Recipe) -> dict[str, Any]:

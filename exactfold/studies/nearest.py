@@ -22,13 +22,13 @@ from typing import Any
 import networkx as nx
 import numpy as np
 
-from exactfold.arrays import FloatArray
-from exactfold.branches.result import BranchCount
-from exactfold.count.find import find_branch
+from exactfold._support.arrays import FloatArray
+from exactfold._support.verdict import PROVED
+from exactfold.branches.counting.find import find_branch
+from exactfold.branches.values.result import BranchCount
 from exactfold.errors import PatternError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.validate import orientation
-from exactfold.verdict import PROVED
 
 Cycle = tuple[int, int, int, int]
 Vector = tuple[Fraction, Fraction]
@@ -68,7 +68,7 @@ def nearest_exception(count: BranchCount) -> Nearest | None:
     and without flat vertices. Corners keep their places. None does not say that there is none, and
     a nearer one is not excluded.
 
-    >>> from exactfold.count.collect import count_branches
+    >>> from exactfold.branches.counting.collect import count_branches
     >>> from exactfold.pattern.random_squares import random_square
     >>> found = nearest_exception(count_branches(random_square(5, seed=4)))
     >>> found.cycle, round(found.distance, 6), found.straight

@@ -1,7 +1,7 @@
 """The control experiment of the paper: how many zeros stay real if the quadrics come from no sheet.
 
 A row is one random square with each coefficient of its branch system multiplied by a random factor
-between 1 - size and 1 + size (`exactfold.problem.perturbed`). All zeros are proved, real or not.
+between 1 - size and 1 + size (`exactfold.rigidity.perturbed`). All zeros are proved, real or not.
 """
 
 from __future__ import annotations
@@ -11,17 +11,25 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from exactfold.branches.roots import BoxRoot
-from exactfold.certify.isolation import isolate
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.perturbation import perturbed
-from exactfold.problem.sign_rows import Functionals
-from exactfold.solve.homotopy_ends import homotopy
-from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.statistics import interval, interval_text, percent, verdict
-from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
-from exactfold.studies.tallies import draw_shares, tallied
-from exactfold.verdict import PROVED
+from exactfold._support.verdict import PROVED
+from exactfold.branches.values.roots import BoxRoot
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.perturbation import perturbed
+from exactfold.rigidity.equations.sign_rows import Functionals
+from exactfold.solve.certify.isolation import isolate
+from exactfold.solve.numeric.homotopy import homotopy
+from exactfold.studies.running.squares import square_of, square_recipes
+from exactfold.studies.running.statistics import interval, interval_text, percent, verdict
+from exactfold.studies.running.study import (
+    Cell,
+    Recipe,
+    Row,
+    Study,
+    StudyFigure,
+    StudyTable,
+    of_size,
+)
+from exactfold.studies.running.tallies import draw_shares, tallied
 
 SIZES: Final = ("0", "1/1000", "1/100", "1/10", "1/2")
 """Of the perturbations: the largest relative change of a coefficient."""

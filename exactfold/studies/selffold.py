@@ -15,12 +15,20 @@ from typing import Any, Final
 
 import numpy as np
 
-from exactfold.actuation.every import actuate_all
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.design.actuation.every import actuate_all
 from exactfold.errors import UnprovedRivalsError
-from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
-from exactfold.studies.tallies import draw_distribution, interior_of, tallied
-from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.studies.running.squares import square_of, square_recipes
+from exactfold.studies.running.study import (
+    Cell,
+    Recipe,
+    Row,
+    Study,
+    StudyFigure,
+    StudyTable,
+    of_size,
+)
+from exactfold.studies.running.tallies import draw_distribution, interior_of, tallied
 
 _DOWN = Context(prec=5, rounding=ROUND_FLOOR)
 _UP = Context(prec=2, rounding=ROUND_CEILING)

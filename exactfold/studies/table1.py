@@ -14,13 +14,26 @@ from typing import Any, Final
 
 import numpy as np
 
+from exactfold._support.verdict import PROVED
 from exactfold.studies.closest import closest_lines
-from exactfold.studies.lines import UNKNOWN, Lines, SignArray
-from exactfold.studies.squares import square_of, square_recipes
-from exactfold.studies.statistics import agreement, interval, interval_text, same_probability
-from exactfold.studies.study import Cell, Recipe, Row, Study, StudyFigure, StudyTable, of_size
-from exactfold.studies.tallies import interior_of, tallied
-from exactfold.verdict import PROVED
+from exactfold.studies.running.lines import UNKNOWN, Lines, SignArray
+from exactfold.studies.running.squares import square_of, square_recipes
+from exactfold.studies.running.statistics import (
+    agreement,
+    interval,
+    interval_text,
+    same_probability,
+)
+from exactfold.studies.running.study import (
+    Cell,
+    Recipe,
+    Row,
+    Study,
+    StudyFigure,
+    StudyTable,
+    of_size,
+)
+from exactfold.studies.running.tallies import interior_of, tallied
 
 PAPER: Final = {
     2: (100, 0, 0, 0),

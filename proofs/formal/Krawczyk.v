@@ -1,6 +1,6 @@
 (** Krawczyk's test: a box that holds exactly one zero of n quadrics in n unknowns.
 
-    It is the test of exactfold/checker/krawczyk.py.  As the equations are of second degree,
+    It is the test of exactfold/checker/core/krawczyk.py.  As the equations are of second degree,
     F(x) - F(y) = F'((x + y) / 2) (x - y) exactly, and no mean value theorem is needed. *)
 From Coq Require Import Reals List Lra Lia Arith FunctionalExtensionality.
 From Exactfold Require Import Sums Vectors.

@@ -24,7 +24,7 @@ if __name__ == "__main__":
 from driving import hinges, model_of
 
 from exactfold import CreasePattern, random_square
-from exactfold.actuation import Actuation, actuate
+from exactfold.design import Actuation, actuate
 
 AMOUNT = 0.02
 """a: the angle in radians to which a torque of 1 drives a fold that is alone."""

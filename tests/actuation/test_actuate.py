@@ -19,7 +19,7 @@ from exactfold import (
     find_branch,
     random_square,
 )
-from exactfold.actuation import actuate
+from exactfold.design import actuate
 from exactfold.errors import (
     FloatRefusedError,
     NotCountedError,
@@ -296,7 +296,7 @@ def test_sheets_without_a_list_of_rivals_are_refused():
 def test_rivals_that_are_not_proved(monkeypatch):
     from dataclasses import replace
 
-    from exactfold.actuation import drive
+    from exactfold.design.actuation import actuate as drive
 
     def unproved(pattern, **_):
         return replace(count_branches(pattern), status=UNDECIDED, reason="for a test")

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from exactfold import PROVED, UNDECIDED, count_branches, random_square
-from exactfold.actuation import Directions, actuate, actuate_all, every
-from exactfold.actuation.interior import largest_margins
-from exactfold.actuation.orthogonal import alone, alone_each
-from exactfold.actuation.powers import Powers, leading_rivals
+from exactfold.design import Directions, actuate, actuate_all
+from exactfold.design.actuation import every
+from exactfold.design.actuation.interior import largest_margins
+from exactfold.design.actuation.orthogonal import alone, alone_each
+from exactfold.design.actuation.powers import Powers, leading_rivals
 from exactfold.errors import NotCountedError, TooManyRivalsError, UnprovedRivalsError
 from exactfold.pattern import degenerate
 from exactfold.pattern.families import flat_vertex_square, single_vertex, two_vertex
@@ -146,7 +147,7 @@ def test_independent_branches_are_the_same_for_few_and_none_contain_the_branch()
 
 
 def test_programs_are_solved_in_parts_as_well(monkeypatch):
-    from exactfold.actuation import interior
+    from exactfold.design.actuation import interior
 
     units = DIRECTIONS.middles
     whole = list(largest_margins(units, np.arange(8)))
@@ -164,7 +165,7 @@ def test_sheets_without_a_list_of_rivals_are_refused(monkeypatch):
         actuate_all(random_square(13, seed=1))
     with pytest.raises(NotCountedError, match="boundary"):
         actuate_all("waterbomb")
-    from exactfold.actuation import drive
+    from exactfold.design.actuation import actuate as drive
 
     unproved = replace(count_branches(two_vertex()), status=UNDECIDED, reason="for a test")
     monkeypatch.setattr(drive, "count_branches", lambda pattern, **_: unproved)

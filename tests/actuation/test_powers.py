@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from exactfold import count_branches, find_branch, random_square
-from exactfold.actuation import Directions, actuate
-from exactfold.actuation.directions import BITS
-from exactfold.actuation.orthogonal import independent_rows
-from exactfold.actuation.powers import Powers, exact_weights, margin_bound, rivals
+from exactfold.design import Directions, actuate
+from exactfold.design.actuation.directions import BITS
+from exactfold.design.actuation.orthogonal import independent_rows
+from exactfold.design.actuation.powers import Powers, exact_weights, margin_bound, rivals
 from exactfold.pattern.families import flat_vertex_square, two_vertex
 
 few = settings(max_examples=25, deadline=None)

@@ -5,7 +5,7 @@ import pytest
 from springs import AMOUNT, Springs, asked, ends_on_the_branch, nearest_ray
 
 from exactfold import count_branches
-from exactfold.actuation import actuate
+from exactfold.design import actuate
 
 VERY_STIFF = 1e11
 """Sheets with thin triangles, which give way far more, are left out below."""

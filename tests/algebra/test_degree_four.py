@@ -8,14 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sheets import random_wheel, wheel
 
-from exactfold.algebra.degree_four import area_product, split_form
-from exactfold.algebra.groebner_bases import groebner
 from exactfold.errors import NotApplicableError
 from exactfold.exact.linalg import inertia, to_flint
 from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.branch_system import BranchSystem
 from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.solve.algebraic.degree_four import area_product, split_form
+from exactfold.solve.algebraic.groebner_bases import groebner
 
 
 def is_square(x):

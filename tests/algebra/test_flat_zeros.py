@@ -2,16 +2,16 @@
 
 import pytest
 
-from exactfold.algebra.flat_zeros import (
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.families import flat_vertex_square, hypar, two_vertex
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.flat_sheets import flat_sheets
+from exactfold.solve.algebraic.flat_zeros import (
     common_parameter,
     flat_equations,
     zeros_flat_at,
 )
-from exactfold.algebra.groebner_bases import classes_of_ideal, groebner
-from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.families import flat_vertex_square, hypar, two_vertex
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.flat_sheets import flat_sheets
+from exactfold.solve.algebraic.groebner_bases import classes_of_ideal, groebner
 from proofs.dual_space import dual_space
 
 

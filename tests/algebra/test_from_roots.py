@@ -9,21 +9,21 @@ import numpy as np
 import pytest
 from flint import fmpz
 
-from exactfold.algebra import from_roots
-from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.from_roots import parametrisation_from_roots
-from exactfold.algebra.lifting import lifted_classes
-from exactfold.certify.isolation import isolate
 from exactfold.errors import ParametrisationError
 from exactfold.exact.factors import factor_degrees, modular_degrees, symmetric_group_primes
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.random_squares import random_square
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.rigidity.curvature import curvature_form
-from exactfold.solve.candidates import Candidates
-from exactfold.solve.homotopy_ends import homotopy
-from exactfold.solve.popping_ends import popping
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic import from_roots
+from exactfold.solve.algebraic.exact_solution import RootClass
+from exactfold.solve.algebraic.from_roots import parametrisation_from_roots
+from exactfold.solve.algebraic.lifting import lifted_classes
+from exactfold.solve.certify.isolation import isolate
+from exactfold.solve.numeric.candidates import Candidates
+from exactfold.solve.numeric.homotopy import homotopy
+from exactfold.solve.numeric.popping import popping
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
 FLAT_STAR = CreasePattern(

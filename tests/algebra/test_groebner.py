@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.groebner_bases import groebner
-from exactfold.algebra.quotient import separating_forms
 from exactfold.errors import ParametrisationError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.exact_solution import RootClass
+from exactfold.solve.algebraic.groebner_bases import groebner
+from exactfold.solve.algebraic.quotient import separating_forms
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
 FLAT_STAR = CreasePattern(

@@ -10,23 +10,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sheets import with_point
 
-from exactfold.algebra.groebner_bases import groebner, quotient_algebra
-from exactfold.algebra.hermite import (
+from exactfold.errors import UsageError
+from exactfold.exact.linalg import from_fmpq, inertia, inertia_by_elimination
+from exactfold.pattern import families
+from exactfold.pattern.random_squares import random_square
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.rigidity.functionals import vertex_sign_functional
+from exactfold.solve.algebraic.groebner_bases import groebner, quotient_algebra
+from exactfold.solve.algebraic.hermite import (
     hermite_counts,
     hermite_form,
     hermite_signs,
     rank_and_signature,
 )
-from exactfold.algebra.quotient import from_groebner_basis
-from exactfold.errors import UsageError
-from exactfold.exact.linalg import from_fmpq, inertia, inertia_by_elimination
-from exactfold.pattern import families
-from exactfold.pattern.random_squares import random_square
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.rigidity.functionals import vertex_sign_functional
-from exactfold.solve.homotopy_ends import homotopy
-from exactfold.solve.popping_ends import popping
+from exactfold.solve.algebraic.quotient import from_groebner_basis
+from exactfold.solve.numeric.homotopy import homotopy
+from exactfold.solve.numeric.popping import popping
 
 PATTERNS = {
     "single vertex": families.single_vertex(4),

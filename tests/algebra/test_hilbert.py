@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.algebra.groebner_bases import groebner
-from exactfold.algebra.hilbert import dimension_and_degree
-from exactfold.algebra.quotient import divides
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.groebner_bases import groebner
+from exactfold.solve.algebraic.hilbert import dimension_and_degree
+from exactfold.solve.algebraic.quotient import divides
 
 monomials = st.lists(st.tuples(*[st.integers(0, 3)] * 3), max_size=5)
 

@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sheets import with_point
 
-from exactfold.algebra import lifting
-from exactfold.algebra.groebner_bases import groebner
 from exactfold.errors import NotApplicableError
 from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic import lifting
+from exactfold.solve.algebraic.groebner_bases import groebner
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
 TWO_VERTICES = CreasePattern(

@@ -5,14 +5,6 @@ import sysconfig
 import pytest
 from sheets import with_point
 
-from exactfold.algebra.groebner_bases import groebner
-from exactfold.algebra.msolve import (
-    find_msolve,
-    msolve_classes,
-    parse_output,
-    run_msolve,
-    to_root_class,
-)
 from exactfold.errors import (
     MsolveFailedError,
     MsolveMissingError,
@@ -20,8 +12,16 @@ from exactfold.errors import (
     ParametrisationError,
 )
 from exactfold.pattern import families
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.groebner_bases import groebner
+from exactfold.solve.algebraic.msolve import (
+    find_msolve,
+    msolve_classes,
+    parse_output,
+    run_msolve,
+    to_root_class,
+)
 
 # x0^2 = 2, x1^2 = 2: msolve 0.10.1 added the variable A with x0 + 2 x1 + A = 0.
 SQUARES = QuadraticSystem((((1, 0, 0), (0, 0, 0), (0, 0, -2)), ((0, 0, 0), (0, 1, 0), (0, 0, -2))))

@@ -2,7 +2,7 @@
 
 from flint import fmpq, fmpq_mat
 
-from exactfold.algebra.quotient import from_groebner_basis, grevlex_key, standard_monomials
+from exactfold.solve.algebraic.quotient import from_groebner_basis, grevlex_key, standard_monomials
 
 
 def test_grevlex_breaks_ties_by_the_last_variable():

@@ -9,14 +9,14 @@ import pytest
 import sympy
 from sheets import wheel, with_point
 
-from exactfold.algebra.groebner_bases import groebner, root_classes
-from exactfold.algebra.radicals import branch_tower, h1_moves
 from exactfold.errors import NotApplicableError, ParametrisationError, UsageError
 from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.random_squares import random_square
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.solve.popping_ends import popping
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.solve.algebraic.groebner_bases import groebner, root_classes
+from exactfold.solve.algebraic.radicals import branch_tower, h1_moves
+from exactfold.solve.numeric.popping import popping
 
 PATTERNS = {
     "one": families.h1_sequence(1),

@@ -10,13 +10,13 @@ import pytest
 from sheets import dart, relabelled, wheel
 
 from exactfold import PROVED, UNDECIDED, delaunay, families
-from exactfold.assignment import circles
-from exactfold.assignment import covering as coverings
-from exactfold.assignment.assignment_list import AllAssignments, Circle
-from exactfold.assignment.circles import all_assignments
-from exactfold.assignment.covering import NotCoveredError, covering
-from exactfold.assignment.list_certificate import assignments_certificate
-from exactfold.branches.letters import UPSIDE_DOWN
+from exactfold.branches.values.letters import UPSIDE_DOWN
+from exactfold.design.circles import circles
+from exactfold.design.circles import covering as coverings
+from exactfold.design.circles.assignment_list import AllAssignments, Circle
+from exactfold.design.circles.certificate import assignments_certificate
+from exactfold.design.circles.circles import all_assignments
+from exactfold.design.circles.covering import NotCoveredError, covering
 from exactfold.errors import NotApplicableError, NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form

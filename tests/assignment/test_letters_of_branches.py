@@ -8,10 +8,10 @@ from collections import Counter
 import pytest
 
 from exactfold import checker, find_branch, random_square
-from exactfold.assignment import match, match_certificate
-from exactfold.assignment.search import Match
+from exactfold._support.verdict import PROVED
+from exactfold.design import match, match_certificate
+from exactfold.design.assignments.search import Match
 from exactfold.errors import NotApplicableError
-from exactfold.verdict import PROVED
 
 TURNED = {"M": "V", "V": "M"}
 

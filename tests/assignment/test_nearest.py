@@ -7,11 +7,12 @@ import pytest
 from sheets import dart
 
 from exactfold import CreasePattern, count_branches, find_branch, load, random_square
-from exactfold.assignment import Matched, match, nearest, nearest_branches, vertex_conflicts
-from exactfold.assignment.conflicts import Clause, Stars, to_blame
-from exactfold.data import example_path
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.design import Matched, match, nearest_branches, vertex_conflicts
+from exactfold.design.assignments import nearest
+from exactfold.design.assignments.conflicts import Clause, Stars, to_blame
+from exactfold.pattern.data import example_path
 from exactfold.pattern.families import single_vertex
-from exactfold.verdict import PROVED, UNDECIDED
 
 TURNED = str.maketrans("MV", "VM")
 

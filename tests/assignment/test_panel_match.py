@@ -14,16 +14,16 @@ from scipy.optimize import linprog
 
 import exactfold
 from exactfold import checker
-from exactfold.assignment import PanelRefutation, match_certificate, match_panels
-from exactfold.assignment.first_order_program import FirstOrderProgram
-from exactfold.assignment.regular_motion import _System, regular_motion
-from exactfold.assignment.together import going_together
-from exactfold.assignment.vertex_reasons import vertex_reason
+from exactfold._support.verdict import PROVED, REFUTED
+from exactfold.design import PanelRefutation, match_certificate, match_panels
+from exactfold.design.panels.first_order_program import FirstOrderProgram
+from exactfold.design.panels.regular_motion import _System, regular_motion
+from exactfold.design.panels.together import going_together
+from exactfold.design.panels.vertex_reasons import vertex_reason
 from exactfold.errors import UsageError
-from exactfold.modes import decompose
-from exactfold.modes.stars import Star, stars
+from exactfold.panels import decompose
+from exactfold.panels.stars import Star, stars
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.verdict import PROVED, REFUTED
 
 TURNED = str.maketrans("MV", "VM")
 

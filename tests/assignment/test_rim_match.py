@@ -9,15 +9,15 @@ from running import run
 from sheets import wheel
 
 from exactfold import CreasePattern, checker, delaunay, find_branch, write_fold
-from exactfold.assignment import all_assignments, match_certificate, match_panels, match_rim
-from exactfold.assignment.bend_program import BendProgram
-from exactfold.assignment.cone_program import ConeProgram
-from exactfold.assignment.refutation import Refutation
+from exactfold._support.schemas import schema
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.design import all_assignments, match_certificate, match_panels, match_rim
+from exactfold.design.assignments.bend_program import BendProgram
+from exactfold.design.refutations.cone_program import ConeProgram
+from exactfold.design.refutations.refutation import Refutation
 from exactfold.errors import NotApplicableError, NotCountedError, UsageError
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.random_squares import random_square
-from exactfold.schemas import schema
-from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
 TURNED = {"M": "V", "V": "M"}
 CORNERS = [(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9)]

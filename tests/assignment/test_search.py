@@ -7,15 +7,15 @@ import pytest
 from sheets import dart
 
 from exactfold import CreasePattern, count_branches, find_branch, load, random_square
-from exactfold.assignment import Refutation, match
-from exactfold.assignment.cone_program import ConeProgram
-from exactfold.assignment.refutation import refuted_at
-from exactfold.data import example_path
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.design import Refutation, match
+from exactfold.design.refutations.cone_program import ConeProgram
+from exactfold.design.refutations.refutation import refuted_at
 from exactfold.errors import UsageError
+from exactfold.pattern.data import example_path
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
-from exactfold.verdict import PROVED, UNDECIDED
 
 TURNED = str.maketrans("+-MV", "-+VM")
 

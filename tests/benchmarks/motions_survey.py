@@ -19,8 +19,8 @@ from collections import Counter
 from pathlib import Path
 
 from exactfold import checker, random_square
+from exactfold._support.verdict import PROVED
 from exactfold.motion import find_loops
-from exactfold.verdict import PROVED
 
 COLUMNS = (
     "sheets", "proved", "graphs", "loops", "open", "through", "nodes", "arcs", "closed", "valid",

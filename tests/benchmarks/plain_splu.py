@@ -1,7 +1,7 @@
 """One branch by the obvious program: the popping path of its signs with SciPy's `splu`.
 
 Runge and Kutta's predictor, Newton's corrector, a general sparse factorisation for every Jacobian,
-floats throughout and no proof. It shares no code with `exactfold.count.find`.
+floats throughout and no proof. It shares no code with `exactfold.branches.counting.find`.
 """
 
 from __future__ import annotations

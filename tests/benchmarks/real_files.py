@@ -16,7 +16,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from exactfold.drawing.read import READERS
+from exactfold.pattern.drawing.formats.read import READERS
 
 LIMIT = 60
 KINDS = (

@@ -16,11 +16,11 @@ from collections import Counter
 from pathlib import Path
 
 from exactfold import checker
-from exactfold.assignment import PanelMatch, match_certificate, match_panels
-from exactfold.drawing.read import READERS
+from exactfold._support.verdict import PROVED, REFUTED
+from exactfold.design import PanelMatch, match_certificate, match_panels
 from exactfold.errors import ExactfoldError, NotApplicableError
+from exactfold.pattern.drawing.formats.read import READERS
 from exactfold.pattern.opening import open_pattern
-from exactfold.verdict import PROVED, REFUTED
 
 LIMIT = 60
 KINDS = (

@@ -25,7 +25,7 @@ from typing import Any
 COUNT = """
 import json, sys
 from exactfold.pattern.random_squares import random_square
-from exactfold.count.stream import stream_branches
+from exactfold.branches.counting.stream import stream_branches
 if __name__ == "__main__":
     n, seed, workers = map(int, sys.argv[2:])
     result = stream_branches(random_square(n, seed=seed), sys.argv[1], workers=workers)
@@ -36,7 +36,7 @@ if __name__ == "__main__":
 """
 CHECK = """
 import sys
-from exactfold.evidence.check import check_compact
+from exactfold.branches.certificates.check import check_compact
 if __name__ == "__main__":
     print(check_compact(sys.argv[1], workers=int(sys.argv[2]), fast=sys.argv[3] == "fast")["real"])
 """

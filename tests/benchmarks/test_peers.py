@@ -15,8 +15,8 @@ from peer_tasks import TASKS, backward_errors, judged
 from plain_splu import plain_branch
 
 from exactfold import find_branch, random_square
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.solve.popping_ends import popping
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.solve.numeric.popping import popping
 
 MSOLVE = "[0, [1,\n[[[-3 / 2, -1], [5 / 2^3, 7 / 2^3]], [[1, 1], [0, 0]]]\n]]:\n"
 PHCPACK = """THE SOLUTIONS : start

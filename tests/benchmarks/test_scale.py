@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 
 from exactfold import random_square
-from exactfold.certify.float_krawczyk import FloatKrawczyk
-from exactfold.count.stream import stream_branches
-from exactfold.evidence.check import check_compact
-from exactfold.problem.branch_system import chamber_chart
-from exactfold.solve.dense_newton import NappeSystem, sign_vectors
+from exactfold.branches.certificates.check import check_compact
+from exactfold.branches.counting.stream import stream_branches
+from exactfold.rigidity.equations.branch_system import chamber_chart
+from exactfold.solve.certify.float_krawczyk import FloatKrawczyk
+from exactfold.solve.numeric.dense_newton import NappeSystem, sign_vectors
 
 SIZES = [4, 8]
 

@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 
 from exactfold import certificate, checker, count_branches, random_square
-from exactfold.algebra.from_roots import parametrisation_from_roots
-from exactfold.certify import isolate
-from exactfold.problem import BranchSystem
-from exactfold.solve.homotopy_ends import homotopy
-from exactfold.solve.popping_ends import popping
+from exactfold.rigidity import BranchSystem
+from exactfold.solve import isolate
+from exactfold.solve.algebraic.from_roots import parametrisation_from_roots
+from exactfold.solve.numeric.homotopy import homotopy
+from exactfold.solve.numeric.popping import popping
 
 SIZES = [4, 6, 8]
 

@@ -8,7 +8,7 @@ from sheets import random_wheel
 
 from exactfold import count_branches, families, find_branch, random_square
 from exactfold.branches import fold_angles
-from exactfold.branches.second_order import second_order_sheet
+from exactfold.branches.values.second_order import second_order_sheet
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 

@@ -8,11 +8,9 @@ import pytest
 from sheets import dart, nested_triangles, reflex_corners, scrambled, wheel
 
 from exactfold import count_branches, random_square
-from exactfold.branches import classify as module
-from exactfold.branches.classify import classify
-from exactfold.branches.roots import AlgebraicRoot, BoxRoot
-from exactfold.certify.box import IsolatingBox
-from exactfold.certify.exact_krawczyk import krawczyk_at
+from exactfold.branches.values import classify as module
+from exactfold.branches.values.classify import classify
+from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot
 from exactfold.exact.numbers import integer_row
 from exactfold.pattern.families import (
     collinear_folds,
@@ -21,11 +19,13 @@ from exactfold.pattern.families import (
     hypar,
     two_vertex,
 )
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.problem import Problem, barycentric
-from exactfold.problem.sign_rows import Functionals
 from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.problem import Problem, barycentric
+from exactfold.rigidity.equations.sign_rows import Functionals
 from exactfold.rigidity.timelike import round_cone
+from exactfold.solve.certify.box import IsolatingBox
+from exactfold.solve.certify.exact_krawczyk import krawczyk_at
 
 PATTERNS = {
     "two vertices": two_vertex(),

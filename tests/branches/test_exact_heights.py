@@ -7,15 +7,15 @@ import sympy
 from sheets import random_wheel
 
 from exactfold import Branch, count_branches, find_branch, random_square
-from exactfold.branches.known_roots import FEW
-from exactfold.branches.roots import BoxRoot
-from exactfold.certify import krawczyk
+from exactfold.branches.values.known_roots import FEW
+from exactfold.branches.values.roots import BoxRoot
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.degenerate import chorded_square
 from exactfold.pattern.families import hypar, single_vertex, two_vertex
-from exactfold.problem.problem import Problem
-from exactfold.problem.quadratic import QuadraticSystem
 from exactfold.rigidity import curvature_form
+from exactfold.rigidity.equations.problem import Problem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve import krawczyk
 
 DART = CreasePattern(
     [(0, 0), (4, -4), (1, 0), (4, 4), ("1/2", 0)],

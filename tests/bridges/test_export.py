@@ -11,8 +11,8 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.algebra.msolve import find_msolve
-from exactfold.bridges.export import (
+from exactfold.errors import UsageError
+from exactfold.interop.export import (
     chart_names,
     to_homotopy_continuation,
     to_macaulay2,
@@ -20,10 +20,10 @@ from exactfold.bridges.export import (
     to_singular,
     to_sympy,
 )
-from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.msolve import find_msolve
 
 PATTERN = CreasePattern(
     [(0, 0), (1, 0), (1, 1), (0, 1), ("1/3", "1/4"), ("3/4", "1/3"), ("1/2", "3/4")],

@@ -19,8 +19,8 @@ from exactfold import (
     random_square,
     write_fold,
 )
-from exactfold.bridges.fold_frames import BRANCH_KEY, HEIGHTS_KEY, branch_document
 from exactfold.errors import UsageError
+from exactfold.interop.fold_frames import BRANCH_KEY, HEIGHTS_KEY, branch_document
 from exactfold.motion import write_motion
 from exactfold.pattern import load_fold
 

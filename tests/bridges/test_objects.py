@@ -13,13 +13,8 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from exactfold import bridges
-from exactfold.bridges import export, frameworks
-from exactfold.bridges.export import chart_names
-from exactfold.bridges.packages import is_available, optional
-from exactfold.count.collect import count_branches
-from exactfold.data import example_path
-from exactfold.drawing.drawing import Drawing, Line
+from exactfold import interop as bridges
+from exactfold.branches.counting.collect import count_branches
 from exactfold.errors import (
     CrossingEdgesError,
     DisconnectedError,
@@ -33,13 +28,18 @@ from exactfold.errors import (
     PackageMissingError,
     UsageError,
 )
+from exactfold.interop import export, frameworks
+from exactfold.interop.export import chart_names
+from exactfold.interop.packages import is_available, optional
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import example_path
+from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.families import single_vertex, two_vertex
 from exactfold.pattern.opening import from_drawing
 from exactfold.pattern.random_squares import random_square
-from exactfold.problem.branch_system import BranchSystem
 from exactfold.rigidity.all_real import decide_all_branches_real
 from exactfold.rigidity.curvature import curvature_form, wheel_stress
+from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.facts import pattern_facts
 from exactfold.rigidity.self_stress import self_stresses
 
@@ -112,7 +112,7 @@ def test_the_page_with_pyrigi():
 )
 def test_a_missing_package_is_named(monkeypatch, package, install, call):
     monkeypatch.setattr(
-        "exactfold.bridges.packages.find_spec",
+        "exactfold.interop.packages.find_spec",
         lambda name: None if name.partition(".")[0] == package else find_spec(name),
     )
     with pytest.raises(PackageMissingError, match=f"{package} is not .*pip install .*{install}"):

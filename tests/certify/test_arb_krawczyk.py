@@ -11,11 +11,11 @@ from flint import acb, acb_mat, arb, arb_mat, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.certify import ball_krawczyk as module
-from exactfold.certify.ball_krawczyk import arb_krawczyk, decide_contains_one_zero
-from exactfold.certify.box import IsolatingBox, Uncertified
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.verdict import PROVED
+from exactfold._support.verdict import PROVED
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.certify import ball_krawczyk as module
+from exactfold.solve.certify.ball_krawczyk import arb_krawczyk, decide_contains_one_zero
+from exactfold.solve.certify.box import IsolatingBox, Uncertified
 
 SQRT2 = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exactfold.certify.box import IsolatingBox, Uncertified
+from exactfold.solve.certify.box import IsolatingBox, Uncertified
 
 small = st.integers(-12, 12)
 

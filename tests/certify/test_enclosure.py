@@ -11,7 +11,13 @@ import pytest
 from independent import big_square, curvature, dirichlet, signs_of
 from sheets import SQUARE, dart, reflex_corners, scrambled
 
-from exactfold.certify.enclosure import (
+from exactfold.branches.counting.find import BranchFinder
+from exactfold.pattern.random_squares import random_square
+from exactfold.rigidity.equations.gauge import Gauge
+from exactfold.rigidity.equations.problem import Problem
+from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
+from exactfold.solve.certify.enclosure import (
     Enclosure,
     curvatures,
     enclose,
@@ -19,15 +25,9 @@ from exactfold.certify.enclosure import (
     root_above,
     round_up,
 )
-from exactfold.certify.refinement import Heights, exact, refine
-from exactfold.count.find import BranchFinder
-from exactfold.pattern.random_squares import random_square
-from exactfold.problem.gauge import Gauge
-from exactfold.problem.problem import Problem
-from exactfold.problem.sheet import Sheet
-from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
-from exactfold.solve.sparse_newton import solve
-from exactfold.solve.sparse_sheet import FloatSheet
+from exactfold.solve.certify.refinement import Heights, exact, refine
+from exactfold.solve.numeric.sparse_newton import solve
+from exactfold.solve.numeric.sparse_sheet import FloatSheet
 
 SHEETS = {
     "random": random_square(6, seed=3),

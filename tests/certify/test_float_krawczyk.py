@@ -9,8 +9,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from exactfold.certify import float_krawczyk
-from exactfold.certify.float_krawczyk import (
+from exactfold.checker import CertificateError
+from exactfold.checker.core.krawczyk import Krawczyk
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.certify import float_krawczyk
+from exactfold.solve.certify.float_krawczyk import (
     UNPROVED,
     FloatBoxes,
     FloatKrawczyk,
@@ -18,9 +21,6 @@ from exactfold.certify.float_krawczyk import (
     inverse_each,
     scaled_rows,
 )
-from exactfold.checker import CertificateError
-from exactfold.checker.krawczyk import Krawczyk
-from exactfold.problem.quadratic import QuadraticSystem
 
 
 def forms(system: QuadraticSystem) -> list[dict[tuple[int, int], int]]:

@@ -15,11 +15,11 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import exactfold
-from exactfold.certify import ball_newton as module
-from exactfold.certify.ball_newton import interval_newton
-from exactfold.certify.box import IsolatingBox, Uncertified
 from exactfold.errors import UsageError
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.certify import ball_newton as module
+from exactfold.solve.certify.ball_newton import interval_newton
+from exactfold.solve.certify.box import IsolatingBox, Uncertified
 
 SQRT2 = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
 OPERATIONS = [operator.add, operator.sub, operator.mul, operator.truediv]

@@ -2,15 +2,15 @@
 
 import pytest
 
-from exactfold.algebra.groebner_bases import groebner
-from exactfold.certify.exact_krawczyk import krawczyk
-from exactfold.certify.isolation import isolate
-from exactfold.certify.recognition import recognise
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.random_squares import random_square
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.popping_ends import popping
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.groebner_bases import groebner
+from exactfold.solve.certify.exact_krawczyk import krawczyk
+from exactfold.solve.certify.isolation import isolate
+from exactfold.solve.certify.recognition import recognise
+from exactfold.solve.numeric.popping import popping
 
 
 @pytest.mark.parametrize("pattern", [two_vertex(), random_square(3, 1)], ids=["two", "random"])

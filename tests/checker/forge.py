@@ -23,18 +23,18 @@ from typing import Any
 import pytest
 
 from exactfold import checker
-from exactfold.checker import compact, listing
-from exactfold.checker.boxes import Box
-from exactfold.checker.compact_lines import digest, lines
-from exactfold.checker.reading import CertificateError, FormatError, require
-from exactfold.checker.sheet import read_sheet
+from exactfold.checker.branches import compact, listing
+from exactfold.checker.core.lines import digest, lines
+from exactfold.checker.core.reading import CertificateError, FormatError, require
+from exactfold.checker.sheets.boxes import Box
+from exactfold.checker.sheets.sheet import read_sheet
 
 Document = dict[str, Any]
 Lines = list[Document]
 
 RULES = sorted(
-    path.stem
-    for path in Path(checker.__file__).parent.glob("*.py")
+    ".".join(path.relative_to(Path(checker.__file__).parent).with_suffix("").parts)
+    for path in Path(checker.__file__).parent.rglob("*.py")
     if "require(" in path.read_text(encoding="utf-8")
 )
 """The modules of the checker that refuse."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from forge import Lines, put, raw
 
-from exactfold.checker.compact_blocks import CompactSheet
+from exactfold.checker.branches.compact_blocks import CompactSheet
 
 FOUR, EXACT, SIZE = "compact-blocks-of-4", "compact-exact", 4  # n = 4 in 4 blocks; n = 1
 

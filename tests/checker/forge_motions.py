@@ -11,10 +11,11 @@ from typing import Any
 
 import pytest
 
-from exactfold.checker import motion, motion_contacts
-from exactfold.checker.motion_nodes import NodeTube
-from exactfold.checker.motion_stretches import stretches_of
-from exactfold.checker.motion_tubes import Piece
+from exactfold.checker.motion import certificate as motion
+from exactfold.checker.motion import contacts as motion_contacts
+from exactfold.checker.motion.branch_points import NodeTube
+from exactfold.checker.motion.stretches import stretches_of
+from exactfold.checker.motion.tubes import Piece
 
 
 @contextmanager

@@ -12,11 +12,11 @@ from forge import Document, refused, verified, without
 from forge_panels import SHEETS
 from panel_sheets import grid, mesh, miura, tiling
 
-from exactfold.checker.panel_lines import Line, lines_at
-from exactfold.checker.panel_sheet import read_panels
-from exactfold.checker.towers import Number
-from exactfold.evidence.panels import panels_document
+from exactfold.checker.core.towers import Number
+from exactfold.checker.panels.lines import Line, lines_at
+from exactfold.checker.sheets.panels import read_panels
 from exactfold.motion import follow_panels, prove_panels
+from exactfold.panels.certificate import panels_document
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import PanelPattern

@@ -13,14 +13,14 @@ from typing import Any
 from forge import refused, verified, without
 from panel_sheets import grid, mesh, miura, tiling
 
-from exactfold.checker.panel_loops import Loops
-from exactfold.checker.panel_modes import Modes
-from exactfold.checker.panel_sheet import read_panels
-from exactfold.checker.panels import kind_of
-from exactfold.checker.reading import CertificateError
-from exactfold.evidence.panels import certificate_of_panels
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.panels.certificate import kind_of
+from exactfold.checker.panels.loops import Loops
+from exactfold.checker.panels.modes import Modes
+from exactfold.checker.sheets.panels import read_panels
 from exactfold.exact.surds import RATIONALS
-from exactfold.modes.decomposition import decompose
+from exactfold.panels.certificate import certificate_of_panels
+from exactfold.panels.decomposition import decompose
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 Document = dict[str, Any]

@@ -19,7 +19,7 @@ from sheets import (
 )
 
 from exactfold import PROVED, certificate, count_branches, random_square
-from exactfold.checker.sheet import Sheet
+from exactfold.checker.sheets.sheet import Sheet
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES, hypar, two_vertex
 

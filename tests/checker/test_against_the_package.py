@@ -11,7 +11,8 @@ from sheets import (
 )
 
 from exactfold import certificate, checker, count_branches
-from exactfold.checker import linear, polynomials, reading, stress
+from exactfold.checker.core import linear, polynomials, reading
+from exactfold.checker.sheets import stress
 from exactfold.errors import NotApplicableError
 from exactfold.exact.linalg import inertia, nullspace
 from exactfold.rigidity.curvature import curvature_form

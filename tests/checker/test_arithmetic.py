@@ -13,11 +13,12 @@ import pytest
 from forge import given, refused, unreadable
 from forge import product as times
 
-from exactfold.checker import flat_folds, linear, polynomials, reading
-from exactfold.checker.classes import AlgebraicRoot
-from exactfold.checker.krawczyk import inverse
-from exactfold.checker.reading import CertificateError, FormatError
-from exactfold.checker.sheet import Sheet, read_sheet
+from exactfold.checker.branches.classes import AlgebraicRoot
+from exactfold.checker.core import linear, polynomials, reading
+from exactfold.checker.core.krawczyk import inverse
+from exactfold.checker.core.reading import CertificateError, FormatError
+from exactfold.checker.sheets import flat_folds
+from exactfold.checker.sheets.sheet import Sheet, read_sheet
 
 Matrix = list[list[Fraction]]
 

@@ -30,12 +30,12 @@ from sheets import (
 from typer.testing import CliRunner
 
 from exactfold import PROVED, checker, families, find_branch, random_square, read_fold
+from exactfold.app.cli.main import app
+from exactfold.branches.certificates.single import branch_certificate
 from exactfold.checker import CertificateError, FormatError
-from exactfold.cli import app
-from exactfold.data import example_path
 from exactfold.errors import UsageError
-from exactfold.evidence.single import branch_certificate
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import gridded_square, ringed_square
 from exactfold.pattern.fold_writing import fold_text
 
@@ -261,7 +261,9 @@ def test_folds_are_not_flat_by_what_is_around_the_reflex_corner(
     # K is 1 there. With K = 0 at a vertex of degree 3 all its folds would be flat.
     pattern = wheel([(4, -4), ("1/10", 0), (4, 4), (-4, 0)], (0, "1/1000"))
     assert find_branch(pattern, "-").assignment_text == "VMVV"
-    monkeypatch.setattr("exactfold.certify.enclosed._LEVELS", (6,))  # too rough for fold (1, 4)
+    monkeypatch.setattr(
+        "exactfold.solve.certify.enclosed._LEVELS", (6,)
+    )  # too rough for fold (1, 4)
     document = branch_certificate(find_branch(pattern, "-"))
     assert document["claims"]["assignment"] == "VUVV"
     checker.check(document)

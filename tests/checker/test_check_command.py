@@ -9,8 +9,8 @@ import pytest
 from typer.testing import CliRunner
 
 from exactfold import checker
-from exactfold.cli import app
-from exactfold.data import example_path
+from exactfold.app.cli.main import app
+from exactfold.pattern.data import example_path
 
 FIXTURES = Path(__file__).parent.parent / "fixtures" / "certificates"
 BRANCH = FIXTURES / "branch-dart.json"

@@ -9,12 +9,12 @@ from itertools import product
 import pytest
 from forge import given, refused, verified
 
-from exactfold.checker.boxes import Box
-from exactfold.checker.equations import BranchSystem
-from exactfold.checker.krawczyk import Krawczyk, inverse
-from exactfold.checker.listing import agrees, digit
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.sheet import read_sheet
+from exactfold.checker.branches.listing import agrees, digit
+from exactfold.checker.core.krawczyk import Krawczyk, inverse
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.sheets.boxes import Box
+from exactfold.checker.sheets.equations import BranchSystem
+from exactfold.checker.sheets.sheet import read_sheet
 
 Matrix = list[list[Fraction]]
 

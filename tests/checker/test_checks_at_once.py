@@ -22,13 +22,15 @@ from forge import FIXTURES, given_lines
 
 import exactfold
 from exactfold import checker, random_square
-from exactfold.checker import CertificateError, compact, motion_loops
-from exactfold.checker.compact import Engine
-from exactfold.checker.compact_lines import lines
-from exactfold.checker.sheet import read_sheet
-from exactfold.count import conveyor
-from exactfold.count.stream import stream_branches
-from exactfold.evidence.check import FLOATS
+from exactfold.branches.certificates.check import FLOATS
+from exactfold.branches.counting import conveyor
+from exactfold.branches.counting.stream import stream_branches
+from exactfold.checker import CertificateError
+from exactfold.checker.branches import compact
+from exactfold.checker.branches.compact import Engine
+from exactfold.checker.core.lines import lines
+from exactfold.checker.motion import loops as motion_loops
+from exactfold.checker.sheets.sheet import read_sheet
 
 Check = Callable[[Iterator[str]], Any]
 ENGINES = {"integers": compact.INTEGERS, "floats": FLOATS}
@@ -209,7 +211,7 @@ def test_two_checks_may_take_turns_in_one_thread(blocks: dict[str, bytes]) -> No
 def kept() -> dict[str, str]:
     """All values of the modules of the checker and of its classes, as text."""
     found = {}
-    for info in pkgutil.iter_modules(checker.__path__, "exactfold.checker."):
+    for info in pkgutil.walk_packages(checker.__path__, "exactfold.checker."):
         if info.name.endswith(("__main__", "exactfold_checker")):
             continue
         module = importlib.import_module(info.name)
@@ -239,4 +241,7 @@ def test_what_is_assigned_in_modules_at_run_time() -> None:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Global):
                 found |= {(path.relative_to(root).as_posix(), name) for name in node.names}
-    assert found == {("checker/compact.py", "_of_this_worker"), ("commands/guard.py", "_errors")}
+    assert found == {
+        ("checker/branches/compact.py", "_of_this_worker"),
+        ("app/shell/guard.py", "_errors"),
+    }

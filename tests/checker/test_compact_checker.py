@@ -10,14 +10,14 @@ from compact_files import Lines, bodies, chained, listed_exactly, put, raw, refu
 from sheets import nested_triangles, reflex_corners, scrambled
 
 from exactfold import random_square
+from exactfold.branches.certificates.check import check_compact
+from exactfold.branches.certificates.read import read_branches
+from exactfold.branches.counting import conveyor as conveyor_module
+from exactfold.branches.counting.stream import stream_branches
 from exactfold.checker import CertificateError, FormatError
-from exactfold.checker.compact_lines import read_object
-from exactfold.checker.formats import UNPROVED
-from exactfold.count import conveyor as conveyor_module
-from exactfold.count.stream import stream_branches
+from exactfold.checker.core.formats import UNPROVED
+from exactfold.checker.core.lines import read_object
 from exactfold.errors import CertificateFormatError, UnreadableFileError
-from exactfold.evidence.check import check_compact
-from exactfold.evidence.read import read_branches
 
 SIZE, BLOCK = 6, 16
 

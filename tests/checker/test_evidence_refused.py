@@ -10,16 +10,16 @@ from sheets import (
 )
 
 from exactfold import certificate, checker, count_branches
-from exactfold.algebra.groebner_bases import groebner
-from exactfold.branches.classify import classify
-from exactfold.branches.roots import AlgebraicRoot
-from exactfold.certify.algebraic import prove_algebraic
-from exactfold.checker import stress
-from exactfold.evidence.entries import algebraic_evidence, class_entry
-from exactfold.evidence.entries import document as assemble
+from exactfold.branches.values.classify import classify
+from exactfold.branches.values.roots import AlgebraicRoot
+from exactfold.certificates.entries import algebraic_evidence, class_entry
+from exactfold.certificates.entries import document as assemble
+from exactfold.checker.sheets import stress
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.problem import Problem
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.problem import Problem
+from exactfold.solve.algebraic.groebner_bases import groebner
+from exactfold.solve.certify.algebraic import prove_algebraic
 
 
 def test_box_that_holds_two_roots_is_refused():

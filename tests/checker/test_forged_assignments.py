@@ -9,10 +9,10 @@ from forge import Document, given, refused, verified, with_one_key_more, without
 from sheets import wheel
 
 from exactfold import CreasePattern, checker
-from exactfold.assignment.nappe_points import NappePoints
-from exactfold.checker import arcs, assignments
-from exactfold.checker.sheet import read_sheet
-from exactfold.evidence.entries import pattern_document
+from exactfold.certificates.entries import pattern_document
+from exactfold.checker.letters import arcs, assignments
+from exactfold.checker.sheets.sheet import read_sheet
+from exactfold.design.circles.nappe_points import NappePoints
 
 
 def listed(name: str = "pentagon") -> Document:

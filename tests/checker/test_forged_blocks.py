@@ -18,9 +18,9 @@ from forge import (
 )
 from forge_compact import EXACT, FOUR, SIZE, moved
 
-from exactfold.checker.boxes import Box
-from exactfold.checker.compact_blocks import CompactSheet
-from exactfold.checker.reading import CertificateError
+from exactfold.checker.branches.compact_blocks import CompactSheet
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.sheets.boxes import Box
 
 
 def changed_bytes(line: int, key: str, change: Callable[[bytearray], None]) -> Lines:

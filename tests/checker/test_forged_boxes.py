@@ -16,8 +16,8 @@ from forge import (
     verified,
 )
 
-from exactfold.checker.boxes import Box, check_disjoint, read_box
-from exactfold.checker.reading import CertificateError
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.sheets.boxes import Box, check_disjoint, read_box
 
 TWO, ONE, EITHER = "listing-two-vertices", "listing-one-vertex", "listing-reflex-either-side"
 

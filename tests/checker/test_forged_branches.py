@@ -10,10 +10,10 @@ import pytest
 from forge import FIXTURES, Document, given, refused, sealed, verified
 
 from exactfold import checker
-from exactfold.checker import branch
-from exactfold.checker.branch_proof import Proof
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.sheet import Sheet, read_sheet
+from exactfold.checker.branches import branch
+from exactfold.checker.branches.branch_proof import Proof
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.sheets.sheet import Sheet, read_sheet
 
 BRANCHES = sorted(path.stem for path in FIXTURES.glob("branch-*.json"))
 SMALL = [name for name in BRANCHES if name not in ("branch-random", "branch-thin-triangles")]

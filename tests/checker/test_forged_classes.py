@@ -24,11 +24,11 @@ from forge import (
 from sheets import relabelled
 
 from exactfold import certificate, count_branches
-from exactfold.checker.equations import BranchSystem
-from exactfold.checker.flat_sheets import FlatSheets
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.sheet import Sheet, read_sheet
-from exactfold.checker.stress import check_finite
+from exactfold.checker.branches.flat_sheets import FlatSheets
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.sheets.equations import BranchSystem
+from exactfold.checker.sheets.sheet import Sheet, read_sheet
+from exactfold.checker.sheets.stress import check_finite
 from exactfold.pattern.families import flat_vertex_square
 
 PATH, VERTEX = "algebraic-bent-off-path", "algebraic-flat-vertex-groebner"

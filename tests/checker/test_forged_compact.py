@@ -20,10 +20,11 @@ from forge import (
 from forge_compact import EXACT, FOUR, moved
 
 from exactfold import checker
-from exactfold.checker import command, compact
-from exactfold.checker.compact_blocks import CompactSheet
-from exactfold.checker.compact_lines import digest, lines, read_header, read_object
-from exactfold.checker.reading import CertificateError, FormatError
+from exactfold.checker import command
+from exactfold.checker.branches import compact
+from exactfold.checker.branches.compact_blocks import CompactSheet
+from exactfold.checker.core.lines import digest, lines, read_header, read_object
+from exactfold.checker.core.reading import CertificateError, FormatError
 
 
 def test_roots_may_be_given_exactly() -> None:
@@ -97,7 +98,7 @@ def test_a_file_is_compact_by_its_format_or_its_digest(tmp_path: Any) -> None:
 
 
 def test_lines_are_not_read_to_their_end(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
-    from exactfold.checker import compact_lines
+    from exactfold.checker.core import lines as compact_lines
 
     path = tmp_path / "c.txt"
     path.write_bytes((FIXTURES / f"{FOUR}.txt").read_bytes())

@@ -10,14 +10,14 @@ from forge_panels import Document, stopped
 from panel_sheets import crossed_stars, ring_of_fives, row_of_stars, two_stars
 from test_forged_spaces import certified, leaves_of, spaces_of
 
-from exactfold.checker import panel_cones
-from exactfold.checker.intervals import Interval
-from exactfold.checker.panel_cones import Place, cone_motion
-from exactfold.checker.panel_leaves import complete
-from exactfold.checker.panel_reduction import BITS, enclosed, reduced, rest_of
-from exactfold.checker.panel_spaces import Leaf, Spaces
-from exactfold.checker.reading import CertificateError
-from exactfold.evidence.panels import panels_document
+from exactfold.checker.core.intervals import Interval
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.panels import cones as panel_cones
+from exactfold.checker.panels.cones import Place, cone_motion
+from exactfold.checker.panels.leaves import complete
+from exactfold.checker.panels.reduction import BITS, enclosed, reduced, rest_of
+from exactfold.checker.panels.spaces import Leaf, Spaces
+from exactfold.panels.certificate import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 
@@ -106,6 +106,6 @@ def test_one_family_is_all_first_order_motions_with_all_forms() -> None:
 def test_too_much_work_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     found = spaces(crossed_stars())
     [first, _] = found.leaves()
-    monkeypatch.setattr("exactfold.checker.panel_spaces.MOST_STEPS", found.work.steps)
+    monkeypatch.setattr("exactfold.checker.panels.spaces.MOST_STEPS", found.work.steps)
     with pytest.raises(CertificateError, match="the spaces of motions take over"):
         cone_motion(found, first.basis, first.cones)

@@ -13,14 +13,17 @@ import pytest
 from forge import Document, refused, verified, without
 
 from exactfold import checker
-from exactfold.checker import motion, motion_boxes, motion_contacts, motion_lengths
-from exactfold.checker.motion_bounds import dot
-from exactfold.checker.motion_contacts import check_contacts
-from exactfold.checker.motion_lengths import GRID, ONE, Path
-from exactfold.checker.reading import CertificateError, shown
-from exactfold.count.find import find_branch
-from exactfold.motion.contact_claims import certificate_with_contact
-from exactfold.motion.contacts import first_contact
+from exactfold.branches.counting.find import find_branch
+from exactfold.checker.core.reading import CertificateError, shown
+from exactfold.checker.motion import boxes as motion_boxes
+from exactfold.checker.motion import certificate as motion
+from exactfold.checker.motion import contacts as motion_contacts
+from exactfold.checker.motion import lengths as motion_lengths
+from exactfold.checker.motion.bounds import dot
+from exactfold.checker.motion.contacts import check_contacts
+from exactfold.checker.motion.lengths import GRID, ONE, Path
+from exactfold.motion.contacts.claims import certificate_with_contact
+from exactfold.motion.contacts.contacts import first_contact
 from exactfold.pattern.random_squares import random_square
 
 BRANCHES = {

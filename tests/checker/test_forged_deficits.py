@@ -8,7 +8,7 @@ import pytest
 from forge import Document, given, refused, verified, without
 
 from exactfold import checker, find_branch, load
-from exactfold.evidence.single import branch_certificate
+from exactfold.branches.certificates.single import branch_certificate
 
 SHAPE, TRIANGLES, SQUARE = "branch-deficits", "branch-deficits-triangles", "two-vertex"
 

@@ -11,18 +11,18 @@ from functools import cache
 import pytest
 from forge import FIXTURES, Document, refused, verified, with_one_key_more, without
 
-from exactfold.checker import motion
-from exactfold.checker.formats import MOTION, MOTION_VERSION
-from exactfold.checker.motion_drive import Drive
-from exactfold.checker.motion_equations import LengthEquations
-from exactfold.checker.motion_pieces import arc_of
-from exactfold.checker.motion_reached import check_reached
-from exactfold.checker.motion_tubes import Ball
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.sheet import read_sheet
+from exactfold.checker.core.formats import MOTION, MOTION_VERSION
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.motion import certificate as motion
+from exactfold.checker.motion.drive import Drive
+from exactfold.checker.motion.equations import LengthEquations
+from exactfold.checker.motion.pieces import arc_of
+from exactfold.checker.motion.reached import check_reached
+from exactfold.checker.motion.tubes import Ball
+from exactfold.checker.sheets.sheet import read_sheet
 from exactfold.motion import find_driven, follow, follow_proved, prove
-from exactfold.motion.chain import Step
-from exactfold.motion.tracks import half_branch
+from exactfold.motion.tubes.chain import Step
+from exactfold.motion.tubes.tracks import half_branch
 from exactfold.pattern.crease_pattern import CreasePattern
 
 # A vertex with five folds.

@@ -9,8 +9,8 @@ import pytest
 from forge import Document, refused, stopped_by, verified
 
 from exactfold import checker
-from exactfold.checker.formats import BRANCH, BRANCH_VERSION
-from exactfold.checker.sheet import Sheet, read_sheet
+from exactfold.checker.core.formats import BRANCH, BRANCH_VERSION
+from exactfold.checker.sheets.sheet import Sheet, read_sheet
 
 Corner = tuple[int, int]
 

@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 
 from exactfold import certificate, checker, count_branches
-from exactfold.checker import listing
-from exactfold.checker.equations import BranchSystem
-from exactfold.checker.sheet import read_sheet
-from exactfold.count import multiple_roots
+from exactfold.branches.counting import multiple_roots
+from exactfold.checker.branches import listing
+from exactfold.checker.sheets.equations import BranchSystem
+from exactfold.checker.sheets.sheet import read_sheet
 from exactfold.pattern.degenerate import DEGENERATE
 
 

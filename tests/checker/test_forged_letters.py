@@ -9,14 +9,14 @@ import pytest
 from forge import Document, given, refused, verified, with_one_key_more, without
 
 from exactfold import CreasePattern, checker, find_branch
-from exactfold.assignment import match, match_certificate, match_rim
-from exactfold.certify import enclosed
-from exactfold.checker import letters
-from exactfold.checker.branch import Place
-from exactfold.checker.letters_refuted import Stars
-from exactfold.checker.sheet import read_sheet
-from exactfold.evidence.single import heights_evidence
+from exactfold.branches.certificates.single import heights_evidence
+from exactfold.checker.branches.branch import Place
+from exactfold.checker.letters import letters
+from exactfold.checker.letters.refuted import Stars
+from exactfold.checker.sheets.sheet import read_sheet
+from exactfold.design import match, match_certificate, match_rim
 from exactfold.pattern.families import single_vertex
+from exactfold.solve.certify import enclosed
 
 RANDOM, BOWL, REFLEX, RIGID = "letters-random", "letters-bowl", "letters-reflex", "letters-rigid"
 

@@ -14,8 +14,8 @@ from forge import (
     verified,
 )
 
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.sheet import Sheet
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.sheets.sheet import Sheet
 
 TWO, ONE, EITHER = "listing-two-vertices", "listing-one-vertex", "listing-reflex-either-side"
 FEW = ["rigid-nested", "single-vertex-waterbomb", "listing-triangles", "algebraic-flat-vertex"]

@@ -15,19 +15,21 @@ import pytest
 from forge import Document, Lines, chained, given_lines
 
 from exactfold import checker
-from exactfold.checker import motion_loops, motion_nodes, motion_patches
-from exactfold.checker.compact_lines import lines
-from exactfold.checker.motion import through_a_node
-from exactfold.checker.motion_bounds import value as polynomial
-from exactfold.checker.motion_equations import LengthEquations, at
-from exactfold.checker.motion_loops import LoopSheet, Matching
-from exactfold.checker.motion_nodes import NodeTube, Stresses, independent
-from exactfold.checker.motion_patches import Patch, wheel_stress
-from exactfold.checker.motion_paths import Path
-from exactfold.checker.motion_pieces import PARAMETER_BITS, tube_of, vector
-from exactfold.checker.motion_tubes import Ball
-from exactfold.checker.reading import CertificateError, FormatError, UnfinishedError
-from exactfold.checker.sheet import read_sheet
+from exactfold.checker.core.lines import lines
+from exactfold.checker.core.reading import CertificateError, FormatError, UnfinishedError
+from exactfold.checker.motion import branch_points as motion_nodes
+from exactfold.checker.motion import loops as motion_loops
+from exactfold.checker.motion import patches as motion_patches
+from exactfold.checker.motion.bounds import value as polynomial
+from exactfold.checker.motion.branch_points import NodeTube, Stresses, independent
+from exactfold.checker.motion.certificate import through_a_node
+from exactfold.checker.motion.equations import LengthEquations, at
+from exactfold.checker.motion.loops import LoopSheet, Matching
+from exactfold.checker.motion.patches import Patch, wheel_stress
+from exactfold.checker.motion.paths import Path
+from exactfold.checker.motion.pieces import PARAMETER_BITS, tube_of, vector
+from exactfold.checker.motion.tubes import Ball
+from exactfold.checker.sheets.sheet import read_sheet
 
 ONE, NODE = "loops-one-vertex", "loops-node"
 

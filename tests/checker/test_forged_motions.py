@@ -14,15 +14,16 @@ from forge import Document, refused, verified, with_one_key_more
 from sheets import nested_triangles, reflex_corners, star_in
 
 from exactfold import checker
-from exactfold.checker import motion, motion_bounds
-from exactfold.checker.motion_bounds import Bounds
-from exactfold.checker.motion_equations import LengthEquations
-from exactfold.checker.motion_paths import Path, chord
-from exactfold.checker.motion_tubes import Ball, Start, Tube
-from exactfold.checker.reading import CertificateError, FormatError, shown
-from exactfold.checker.sheet import read_sheet
-from exactfold.count.find import find_branch
-from exactfold.motion.tracks import follow_proved
+from exactfold.branches.counting.find import find_branch
+from exactfold.checker.core.reading import CertificateError, FormatError, shown
+from exactfold.checker.motion import bounds as motion_bounds
+from exactfold.checker.motion import certificate as motion
+from exactfold.checker.motion.bounds import Bounds
+from exactfold.checker.motion.equations import LengthEquations
+from exactfold.checker.motion.paths import Path, chord
+from exactfold.checker.motion.tubes import Ball, Start, Tube
+from exactfold.checker.sheets.sheet import read_sheet
+from exactfold.motion.tubes.tracks import follow_proved
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.random_squares import random_square
 

@@ -13,15 +13,16 @@ from forge import Document, refused, verified, with_one_key_more, without
 from forge_motions import pieces_once
 
 from exactfold import checker
-from exactfold.checker import motion, motion_contacts
-from exactfold.checker.motion_contacts import check_contacts
-from exactfold.checker.motion_stretches import Arc, stretches_of
-from exactfold.checker.motion_tubes import Ball
-from exactfold.checker.reading import CertificateError, shown
-from exactfold.count.find import find_branch
-from exactfold.motion.contact_claims import certificate_with_contact
-from exactfold.motion.contacts import first_contact
-from exactfold.motion.tracks import follow_proved
+from exactfold.branches.counting.find import find_branch
+from exactfold.checker.core.reading import CertificateError, shown
+from exactfold.checker.motion import certificate as motion
+from exactfold.checker.motion import contacts as motion_contacts
+from exactfold.checker.motion.contacts import check_contacts
+from exactfold.checker.motion.stretches import Arc, stretches_of
+from exactfold.checker.motion.tubes import Ball
+from exactfold.motion.contacts.claims import certificate_with_contact
+from exactfold.motion.contacts.contacts import first_contact
+from exactfold.motion.tubes.tracks import follow_proved
 from exactfold.pattern.random_squares import random_square
 
 SIGNS, FLAT = "-+--+", 6

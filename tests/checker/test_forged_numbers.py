@@ -12,10 +12,10 @@ from test_forged_loops import refused as refused_loops
 from test_forged_motions import given
 
 from exactfold import checker
-from exactfold.checker import motion_boxes
-from exactfold.checker.compact_lines import digest
-from exactfold.checker.motion_loops import check_lines
-from exactfold.checker.reading import CertificateError, FormatError, shown
+from exactfold.checker.core.lines import digest
+from exactfold.checker.core.reading import CertificateError, FormatError, shown
+from exactfold.checker.motion import boxes as motion_boxes
+from exactfold.checker.motion.loops import check_lines
 
 LONG = "9" * 4001
 

@@ -9,8 +9,8 @@ from forge import refused, verified
 from forge_panel_motions import at_rest, given, of_lines, stopped
 from forge_panels import bent
 
-from exactfold.checker.reading import CertificateError
-from exactfold.evidence.panels import panels_document
+from exactfold.checker.core.reading import CertificateError
+from exactfold.panels.certificate import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 

@@ -8,8 +8,8 @@ import pytest
 from forge import Document, given, refused, verified, with_one_key_more, without
 
 from exactfold import checker
-from exactfold.checker import panel_letters_motion
-from exactfold.checker.panel_sheet import read_panels
+from exactfold.checker.letters import panels_motion as panel_letters_motion
+from exactfold.checker.sheets.panels import read_panels
 
 NOTHING: dict[str, Any] = {"together": [], "never": []}
 LOOP = [["at", 5], ["at", 6], ["at", 9], ["at", 10], ["loop", [10, 9, 5, 6]]]

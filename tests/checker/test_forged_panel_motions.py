@@ -14,15 +14,17 @@ from forge import Document, refused, unreadable, verified
 from forge_panel_motions import MOTIONS, at_rest, forged, given, stopped, whole
 
 from exactfold import checker
-from exactfold.checker import panel_drive, panel_motion, panel_times
-from exactfold.checker.intervals import Interval
-from exactfold.checker.motion_lengths import GRID, ONE
-from exactfold.checker.panel_cut import cut
-from exactfold.checker.panel_drive import Drive
-from exactfold.checker.panel_places import Places, shrunk
-from exactfold.checker.panel_series import BITS
-from exactfold.checker.panel_sheet import read_panels
-from exactfold.checker.panel_times import OneRate, Rates
+from exactfold.checker.core.intervals import Interval
+from exactfold.checker.motion.lengths import GRID, ONE
+from exactfold.checker.motion.panels import certificate as panel_motion
+from exactfold.checker.motion.panels import drive as panel_drive
+from exactfold.checker.motion.panels import times as panel_times
+from exactfold.checker.motion.panels.cut import cut
+from exactfold.checker.motion.panels.drive import Drive
+from exactfold.checker.motion.panels.places import Places, shrunk
+from exactfold.checker.motion.panels.series import BITS
+from exactfold.checker.motion.panels.times import OneRate, Rates
+from exactfold.checker.sheets.panels import read_panels
 
 SLOW = "mixed", "closing", "tiling", "vertex", "miura", "bent"
 

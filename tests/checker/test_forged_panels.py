@@ -6,8 +6,8 @@ import pytest
 from forge import refused, verified
 from forge_panels import Document, certified, drawn, matched, stopped
 
-from exactfold.checker import panels
-from exactfold.checker.panel_sheet import PanelSheet
+from exactfold.checker.panels import certificate as panels
+from exactfold.checker.sheets.panels import PanelSheet
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
 

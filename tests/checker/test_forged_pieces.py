@@ -12,15 +12,15 @@ from forge import Document, given, refused, verified, with_one_key_more, without
 from sheets import HEXAGON, scrambled, wheel, with_point
 
 from exactfold import CreasePattern, checker, random_square
-from exactfold.checker import pieces, pieces_flat
-from exactfold.checker.pieces_rank import have_no_common_zero
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.sheet import read_sheet
+from exactfold.branches import find_pieces, pieces_certificate
+from exactfold.branches.connected_components.cubes import components
+from exactfold.certificates.entries import pattern_document
+from exactfold.checker.branches import connected_components as pieces
+from exactfold.checker.branches import flat_stars as pieces_flat
+from exactfold.checker.branches.ranks import have_no_common_zero
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.sheets.sheet import read_sheet
 from exactfold.errors import NotApplicableError
-from exactfold.evidence import pieces_certificate
-from exactfold.evidence.entries import pattern_document
-from exactfold.pieces import find_pieces
-from exactfold.pieces.cubes import components
 
 ANTIPRISM = CreasePattern(
     [

@@ -11,26 +11,26 @@ import numpy as np
 import pytest
 from forge import Document, refused, verified, without
 
-from exactfold.checker import motion
-from exactfold.checker.motion_equations import LengthEquations
-from exactfold.checker.motion_names import saddle_of
-from exactfold.checker.motion_rim import Rim
-from exactfold.checker.motion_tubes import Ball
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.sheet import read_sheet
-from exactfold.count.find import find_branch
-from exactfold.evidence.motion import motion_certificate
-from exactfold.motion.flat_patches import FlatPatch
-from exactfold.motion.framework import Framework
-from exactfold.motion.length_equations import LengthEquations as LengthEquationsOfProver
-from exactfold.motion.links import onwards
-from exactfold.motion.node_tube import prove_node_tube
-from exactfold.motion.rim_path import ties_of
-from exactfold.motion.tracks import Track, follow_proved
-from exactfold.motion.tube_start import prove_start
+from exactfold.branches.counting.find import find_branch
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.motion import certificate as motion
+from exactfold.checker.motion.boundary import Rim
+from exactfold.checker.motion.equations import LengthEquations
+from exactfold.checker.motion.names import saddle_of
+from exactfold.checker.motion.tubes import Ball
+from exactfold.checker.sheets.sheet import read_sheet
+from exactfold.motion.certificate import motion_certificate
+from exactfold.motion.curves.boundary_path import ties_of
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.tubes.branch_point_tube import prove_node_tube
+from exactfold.motion.tubes.flat_patches import FlatPatch
+from exactfold.motion.tubes.length_equations import LengthEquations as LengthEquationsOfProver
+from exactfold.motion.tubes.links import onwards
+from exactfold.motion.tubes.tracks import Track, follow_proved
+from exactfold.motion.tubes.tube_start import prove_start
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import two_vertex
-from exactfold.problem.gauge import RIM, Gauge
+from exactfold.rigidity.equations.gauge import RIM, Gauge
 
 # A star of degree four, and an ear on one of its sides.
 STAR = CreasePattern(

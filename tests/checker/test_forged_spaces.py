@@ -22,16 +22,17 @@ from panel_sheets import (
     tiling,
 )
 
-from exactfold.checker import panel_reduction, panel_spaces
-from exactfold.checker import panels as panels_of_checker
-from exactfold.checker.panel_leaves import complete, extends
-from exactfold.checker.panel_reduction import Joined, inside
-from exactfold.checker.panel_sheet import connected, read_panels
-from exactfold.checker.panel_spaces import Spaces
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.towers import Number, Tower
-from exactfold.evidence.panels import certificate_of_panels
-from exactfold.modes.decomposition import decompose
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.core.towers import Number, Tower
+from exactfold.checker.panels import certificate as panels_of_checker
+from exactfold.checker.panels import reduction as panel_reduction
+from exactfold.checker.panels import spaces as panel_spaces
+from exactfold.checker.panels.leaves import complete, extends
+from exactfold.checker.panels.reduction import Joined, inside
+from exactfold.checker.panels.spaces import Spaces
+from exactfold.checker.sheets.panels import connected, read_panels
+from exactfold.panels.certificate import certificate_of_panels
+from exactfold.panels.decomposition import decompose
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import PanelPattern

@@ -14,8 +14,8 @@ from forge import (
     without,
 )
 
-from exactfold.checker import stress
-from exactfold.checker.reading import CertificateError
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.sheets import stress
 
 TWO, ONE, EITHER = "listing-two-vertices", "listing-one-vertex", "listing-reflex-either-side"
 

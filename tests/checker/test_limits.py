@@ -12,13 +12,16 @@ import pytest
 from certificates import document, nodes, replaced
 
 from exactfold import checker
-from exactfold.checker import command, panel_sheet, reading, sheet
-from exactfold.checker.compact_lines import digest
-from exactfold.checker.limits import MOST_COORDINATE, MOST_NUMBER
-from exactfold.checker.panel_sheet import PanelSheet, read_panels
-from exactfold.checker.reading import Coordinates, LimitError, parse_integer
-from exactfold.checker.sheet import read_sheet
-from exactfold.checker.towers import Tower
+from exactfold.checker import command
+from exactfold.checker.core import reading
+from exactfold.checker.core.limits import MOST_COORDINATE, MOST_NUMBER
+from exactfold.checker.core.lines import digest
+from exactfold.checker.core.reading import Coordinates, LimitError, parse_integer
+from exactfold.checker.core.towers import Tower
+from exactfold.checker.sheets import panels as panel_sheet
+from exactfold.checker.sheets import sheet
+from exactfold.checker.sheets.panels import PanelSheet, read_panels
+from exactfold.checker.sheets.sheet import read_sheet
 
 FIXTURES = Path(__file__).parent.parent / "fixtures" / "certificates"
 FILES = sorted(path for path in FIXTURES.iterdir() if path.suffix in (".json", ".txt"))

@@ -9,10 +9,10 @@ from math import prod
 
 import pytest
 
-from exactfold.checker import panel_components
-from exactfold.checker.panel_components import components, times
-from exactfold.checker.panel_sheet import connected
-from exactfold.checker.reading import CertificateError
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.panels import components as panel_components
+from exactfold.checker.panels.components import components, times
+from exactfold.checker.sheets.panels import connected
 
 Weighted = list[tuple[tuple[int, ...], int]]
 

@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 from forge_panels import certified
 
-from exactfold.checker import panel_loops
-from exactfold.checker.panel_loops import Loops
-from exactfold.checker.panel_modes import Modes, Support
-from exactfold.checker.panel_sheet import read_panels
+from exactfold.checker.panels import loops as panel_loops
+from exactfold.checker.panels.loops import Loops
+from exactfold.checker.panels.modes import Modes, Support
+from exactfold.checker.sheets.panels import read_panels
 
 
 def loops_of(name: str) -> tuple[Loops, list[tuple[Support, dict[int, int]]]]:

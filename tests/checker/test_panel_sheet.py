@@ -6,9 +6,9 @@ from itertools import combinations
 
 import pytest
 
-from exactfold.checker.panel_sheet import PanelSheet, pair
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.towers import Tower
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.core.towers import Tower
+from exactfold.checker.sheets.panels import PanelSheet, pair
 
 RATIONAL = Tower()
 Point = tuple[int, int]

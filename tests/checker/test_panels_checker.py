@@ -12,11 +12,15 @@ from forge_panels import SHEETS, Document, certified, drawn, matched, stopped
 from panel_sheets import grid, joined_twists, ring_of_fives
 
 from exactfold import checker
-from exactfold.checker import panel_components, panel_loops, panel_modes, panel_sheet, panels
-from exactfold.checker.intervals import Interval
+from exactfold.checker.core.intervals import Interval
+from exactfold.checker.panels import certificate as panels
+from exactfold.checker.panels import components as panel_components
+from exactfold.checker.panels import loops as panel_loops
+from exactfold.checker.panels import modes as panel_modes
+from exactfold.checker.sheets import panels as panel_sheet
 from exactfold.errors import NotApplicableError
-from exactfold.evidence.panels import certificate_of_panels
-from exactfold.modes.decomposition import decompose
+from exactfold.panels.certificate import certificate_of_panels
+from exactfold.panels.decomposition import decompose
 
 BITS = 400
 KNOWN = {

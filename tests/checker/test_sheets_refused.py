@@ -9,7 +9,7 @@ from listed import checked_sheet, proof
 from sheets import SQUARE
 
 from exactfold import checker
-from exactfold.checker.sheet import Sheet
+from exactfold.checker.sheets.sheet import Sheet
 from exactfold.pattern.crease_pattern import CreasePattern
 
 BAD_SHEETS = {

@@ -10,16 +10,18 @@ import pytest
 from panel_sheets import shifted_columns, tiling
 from test_forged_spaces import certified, cone, leaves_of, sheet, spaces_of, triangle
 
-from exactfold.checker import check, load, panel_reduction, panel_spaces
-from exactfold.checker.intervals import Interval
-from exactfold.checker.panel_cones import cone_motion
-from exactfold.checker.panel_leaves import _folds, _independent, _rank, _sum, extends
-from exactfold.checker.panel_reduction import BITS, Joined, enclosed, inside, reduced, rest_of
-from exactfold.checker.panel_spaces import Motion, Spaces
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.towers import Number, Tower
-from exactfold.evidence.panels import certificate_of_panels, panels_document
-from exactfold.modes.decomposition import decompose
+from exactfold.checker import check, load
+from exactfold.checker.core.intervals import Interval
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.core.towers import Number, Tower
+from exactfold.checker.panels import reduction as panel_reduction
+from exactfold.checker.panels import spaces as panel_spaces
+from exactfold.checker.panels.cones import cone_motion
+from exactfold.checker.panels.leaves import _folds, _independent, _rank, _sum, extends
+from exactfold.checker.panels.reduction import BITS, Joined, enclosed, inside, reduced, rest_of
+from exactfold.checker.panels.spaces import Motion, Spaces
+from exactfold.panels.certificate import certificate_of_panels, panels_document
+from exactfold.panels.decomposition import decompose
 from exactfold.pattern.panel_pattern import PanelPattern
 
 RATIONAL = Tower()

@@ -181,16 +181,18 @@ def test_the_module_runs_as_documented(tmp_path: Path) -> None:
 
 
 def test_modules_import_the_standard_library_and_each_other_only() -> None:
-    modules = sorted(PACKAGE.glob("*.py"))
-    names = {path.stem for path in modules}
-    assert len(names) > 10
-    assert names & set(sys.stdlib_module_names) == set()  # the folder stands on the import path
+    modules = sorted(PACKAGE.rglob("*.py"))
+    assert len(modules) > 70
+    on_the_path = {path.stem for path in PACKAGE.iterdir()}  # the folder stands on the import path
+    assert on_the_path & set(sys.stdlib_module_names) == set()
     for path in modules:
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and node.level:
-                assert node.level == 1
-                inside = {node.module} if node.module else {alias.name for alias in node.names}
-                assert inside <= names
+                folder = path.parents[node.level - 1]
+                assert folder.is_relative_to(PACKAGE)
+                home = folder.joinpath(*(node.module or "").split("."))
+                inside = [home] if node.module else [home / alias.name for alias in node.names]
+                assert all(place.is_dir() or place.with_suffix(".py").exists() for place in inside)
             elif isinstance(node, ast.Import | ast.ImportFrom):
                 aliases = [alias.name for alias in node.names]
                 found = [node.module or ""] if isinstance(node, ast.ImportFrom) else aliases
@@ -201,18 +203,22 @@ def test_modules_import_the_standard_library_and_each_other_only() -> None:
 
 
 def test_modules_are_small() -> None:
-    for path in PACKAGE.glob("*.py"):
+    for path in PACKAGE.rglob("*.py"):
         assert len(path.read_text().splitlines()) <= 300
+
+
+_SINGLE = ("branches/branch", "branches/branch_proof", "sheets/reduced")
 
 
 def test_formulas_of_single_branches_are_their_own() -> None:
     """Of the geometry they share the verified sheet, reduced, and what K_v = 0 leaves to folds."""
     found = set()
-    for name in ("branch", "branch_proof", "reduced"):
+    for name in _SINGLE:
         for node in ast.walk(ast.parse((PACKAGE / f"{name}.py").read_text())):
             if isinstance(node, ast.ImportFrom) and node.level:
                 found |= {(node.module, alias.name) for alias in node.names}
-    shared = {pair for pair in found if pair[0] not in ("reading", "formats", "branch_proof")}
+    homes = {(str(module).rpartition(".")[2], name) for module, name in found}
+    shared = {pair for pair in homes if pair[0] not in ("reading", "formats", "branch_proof")}
     assert shared == {
         ("sheet", "Sheet"),
         ("sheet", "Edge"),
@@ -223,7 +229,7 @@ def test_formulas_of_single_branches_are_their_own() -> None:
         ("reduced", "closed"),
         ("reduced", "emptied_sheet"),
     }
-    for name in ("branch", "branch_proof", "reduced"):
+    for name in _SINGLE:
         text = (PACKAGE / f"{name}.py").read_text()
         assert ".curvature(" not in text
         assert ".sign_of_vertex(" not in text

@@ -9,9 +9,9 @@ from math import isqrt
 
 import pytest
 
-from exactfold.checker.intervals import Interval
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.towers import Number, Tower
+from exactfold.checker.core.intervals import Interval
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.core.towers import Number, Tower
 
 # --- intervals -----------------------------------------------------------------------------------
 

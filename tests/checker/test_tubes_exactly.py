@@ -12,15 +12,18 @@ from typing import Any, NamedTuple
 import pytest
 from forge import given_lines
 
-from exactfold.checker import motion_boxes, motion_contacts, motion_faces, motion_tubes
-from exactfold.checker.motion_bounds import Bounds
-from exactfold.checker.motion_contacts import Faces
-from exactfold.checker.motion_equations import LengthEquations, at
-from exactfold.checker.motion_lengths import GRID, ONE, Path, entry
-from exactfold.checker.motion_paths import Path as Passed
-from exactfold.checker.motion_tubes import Ball, Piece, Start, Tube
-from exactfold.checker.reading import CertificateError
-from exactfold.checker.sheet import read_sheet
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.motion import boxes as motion_boxes
+from exactfold.checker.motion import contacts as motion_contacts
+from exactfold.checker.motion import faces as motion_faces
+from exactfold.checker.motion import tubes as motion_tubes
+from exactfold.checker.motion.bounds import Bounds
+from exactfold.checker.motion.contacts import Faces
+from exactfold.checker.motion.equations import LengthEquations, at
+from exactfold.checker.motion.lengths import GRID, ONE, Path, entry
+from exactfold.checker.motion.paths import Path as Passed
+from exactfold.checker.motion.tubes import Ball, Piece, Start, Tube
+from exactfold.checker.sheets.sheet import read_sheet
 
 Row = list[Fraction]
 Matrix = list[Row]

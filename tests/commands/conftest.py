@@ -3,7 +3,7 @@
 import pytest
 from running import PROVED, run
 
-from exactfold.data import example_path
+from exactfold.pattern.data import example_path
 
 
 @pytest.fixture

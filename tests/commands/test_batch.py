@@ -25,12 +25,12 @@ from running import (
 from sheets import DENTED, scrambled
 
 from exactfold import count_branches, random_square, write_fold
-from exactfold.commands import batch
-from exactfold.commands.shell import Bar
-from exactfold.count.batch import count_many
-from exactfold.count.pools import dask_pool, process_pool
-from exactfold.data import example_path
+from exactfold.app.commands import batch
+from exactfold.app.shell.shell import Bar
+from exactfold.branches.counting.batch import count_many
+from exactfold.branches.counting.pools import dask_pool, process_pool
 from exactfold.errors import NotJSONError, UnreadableFileError, UsageError, WorkerDiedError
+from exactfold.pattern.data import example_path
 
 KEYS = {
     *("format", "version", "name", "sha256", "asked", "status", "exit_code", "error", "result"),

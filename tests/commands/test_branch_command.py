@@ -7,10 +7,10 @@ import json
 import pytest
 from typer.testing import CliRunner, Result
 
-from exactfold.cli import app
-from exactfold.commands import branch
-from exactfold.count.find import BranchFinder, find_branch
-from exactfold.data import example_path
+from exactfold.app.cli.main import app
+from exactfold.app.commands import branch
+from exactfold.branches.counting.find import BranchFinder, find_branch
+from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.fold import read_fold
 from exactfold.pattern.fold_writing import fold_text

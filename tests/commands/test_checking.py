@@ -5,7 +5,7 @@ import json
 import pytest
 from running import BAD_INPUT, INVALID, PROVED, error_class, run
 
-from exactfold.data import SHEETS, example_path
+from exactfold.pattern.data import SHEETS, example_path
 
 
 @pytest.mark.parametrize("name", SHEETS)

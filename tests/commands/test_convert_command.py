@@ -11,7 +11,7 @@ from files import written
 from running import BAD_INPUT, PROVED, UNDECIDED, USAGE, run
 
 from exactfold import CreasePattern, read_fold
-from exactfold.data import SHEETS, example_path
+from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.opening import open_pattern
 from exactfold.pattern.panel_pattern import PanelPattern
 

@@ -14,8 +14,8 @@ from running import (
 from sheets import DENTED, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
 
 from exactfold import count_branches, random_square, read_fold, write_fold
-from exactfold.data import SHEETS, example_path
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.families import FAMILIES
 
 PATTERN_KEYS = {
@@ -192,7 +192,9 @@ def test_undecided_exits_4(tmp_path):
 def test_undecided_table_lists_what_is_open(tmp_path, monkeypatch):
     path = tmp_path / "flat.fold"
     write_fold(FAMILIES["flat-vertex"](), path)
-    monkeypatch.setattr("exactfold.count.hand_over.flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr(
+        "exactfold.branches.counting.fallback.flat_vertices", lambda chart, points: iter(())
+    )
     result = run("count", path, "--method", "popping")
     assert result.exit_code == UNDECIDED
     assert "UNDECIDED" in result.stdout

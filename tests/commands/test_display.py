@@ -9,8 +9,8 @@ from running import (
     run,
 )
 
-from exactfold.commands.shell import Bar
-from exactfold.data import example_path
+from exactfold.app.shell.shell import Bar
+from exactfold.pattern.data import example_path
 
 
 @pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="signals of POSIX")

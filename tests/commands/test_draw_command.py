@@ -8,11 +8,11 @@ import pytest
 from running import BAD_INPUT, PROVED, UNDECIDED, USAGE, run
 
 from exactfold import count_ways, find_branch, follow, load, open_pattern
-from exactfold.commands import draw
-from exactfold.data import example_path
+from exactfold.app.commands import draw
+from exactfold.app.pictures.folded import Amount, folded
+from exactfold.app.report import branch_way, mode_way, pattern_picture, sheet_of_multiples, ways_of
 from exactfold.motion import panel_modes
-from exactfold.report import branch_way, mode_way, pattern_picture, sheet_of_multiples, ways_of
-from exactfold.report.folded import Amount, folded
+from exactfold.pattern.data import example_path
 
 NAME = "{http://www.w3.org/2000/svg}"
 HOLE = """<svg xmlns="http://www.w3.org/2000/svg" width="60" height="60">

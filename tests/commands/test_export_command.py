@@ -9,18 +9,18 @@ import pytest
 from typer.testing import CliRunner
 
 from exactfold import count_branches, export_branch, find_branch
-from exactfold.bridges import branch_to_coq, branches_to_coq, to_coq
-from exactfold.bridges.fold_frames import BRANCH_KEY
-from exactfold.cli import app
-from exactfold.data import example_path
+from exactfold._support.verdict import UNDECIDED as UNPROVED
+from exactfold.app.cli.main import app
+from exactfold.branches import branch_certificate
 from exactfold.errors import UndecidedBranchError
-from exactfold.evidence import branch_certificate
+from exactfold.interop import branch_to_coq, branches_to_coq, to_coq
+from exactfold.interop.fold_frames import BRANCH_KEY
 from exactfold.pattern import load_fold
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.fold_writing import fold_text
-from exactfold.verdict import UNDECIDED as UNPROVED
 
 OK, USAGE, BAD_INPUT, UNDECIDED = 0, 2, 3, 4
 TWO = example_path("two-vertex")
@@ -289,7 +289,7 @@ def test_what_coq_does_not_take_is_refused(arguments, code, said):
 
 
 def test_many_branches_are_written_for_coq_by_force(monkeypatch):
-    monkeypatch.setattr("exactfold.commands.export.FEW", 2)
+    monkeypatch.setattr("exactfold.app.commands.export.FEW", 2)
     result = run("two-vertex", "--coq", "--all")
     assert (result.exit_code, result.stdout) == (USAGE, "")
     assert "for more than 2 give --force" in result.stderr

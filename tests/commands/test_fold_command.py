@@ -14,7 +14,7 @@ from running import BAD_INPUT, UNDECIDED, USAGE, error_class, run
 from sheets import HEXAGON, TRIANGLE, scrambled
 
 from exactfold import count_ways, find_branch, follow, random_square, schema, write_fold
-from exactfold.bridges import meshes
+from exactfold.interop import meshes
 from exactfold.motion import follow_panels
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.opening import Opened
@@ -295,7 +295,7 @@ def test_folds_that_stay_flat_do_not_turn_back(tmp_path):
 
 @pytest.mark.parametrize("option", ["-o", "--plot", "--picture", "--certificate"])
 def test_a_folder_that_is_missing_is_said_before_the_work(option, tmp_path, monkeypatch):
-    monkeypatch.setattr("exactfold.commands.fold.chosen", None)
+    monkeypatch.setattr("exactfold.app.commands.fold.chosen", None)
     name = "m.fold" if option in ("-o", "--certificate") else "m.svg"
     result = run("fold", "two-vertex", "--up", "4", option, tmp_path / "none" / name)
     assert result.exit_code == BAD_INPUT

@@ -9,8 +9,8 @@ import pytest
 from rich.text import Text
 from running import BAD_INPUT, PROVED, error_class, process, run
 
-from exactfold.report.terminal import _Console
-from exactfold.wording import visible
+from exactfold._support.plurals import visible
+from exactfold.app.report.terminal import _Console
 
 LINE = '<line x2="1" y2="1" stroke="red"/>'
 SVG = '<svg xmlns="http://www.w3.org/2000/svg">{}</svg>'

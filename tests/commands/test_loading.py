@@ -7,7 +7,7 @@ import pytest
 from running import PROVED, run
 
 import exactfold
-from exactfold.count.registry import ALIASES
+from exactfold.branches.counting.registry import ALIASES
 
 HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
 
@@ -18,7 +18,10 @@ HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
         (["--help"], ("numpy", "flint", "multiprocessing", *HEAVY)),
         (["random", "--interior", "3", "--seed", "1"], ("numpy", "flint", "rich", *HEAVY)),
         (["info"], ("numpy", "multiprocessing", *HEAVY)),
-        (["branch", "--up", "4"], ("flint", "mpmath", "sympy", "networkx", "exactfold.algebra")),
+        (
+            ["branch", "--up", "4"],
+            ("flint", "mpmath", "sympy", "networkx", "exactfold.solve.algebraic"),
+        ),
         (["count"], HEAVY),
         (["motions"], ("scipy.optimize",)),
     ],
@@ -27,7 +30,7 @@ HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
 def test_commands_load_what_they_need(two_vertex, arguments, idle):
     script = (
         "import sys\n"
-        "from exactfold.cli import main\n"
+        "from exactfold.app.cli.main import main\n"
         "try: main()\n"
         "except SystemExit as end: code = end.code\n"
         f"print(code, *(m for m in {idle!r} if m in sys.modules), file=sys.stderr)"
@@ -39,6 +42,6 @@ def test_commands_load_what_they_need(two_vertex, arguments, idle):
     assert result.stdout != ""
 
 
-@pytest.mark.parametrize("name", [*exactfold.count.METHODS, *ALIASES])
+@pytest.mark.parametrize("name", [*exactfold.branches.METHODS, *ALIASES])
 def test_methods_of_the_command_line(two_vertex, name):
     assert run("count", two_vertex, "--method", name).exit_code == PROVED

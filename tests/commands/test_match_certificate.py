@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from running import run
 
-from exactfold.data import example_path
+from exactfold.pattern.data import example_path
 
 FILE = str(example_path("two-vertex"))
 

@@ -15,7 +15,7 @@ from exactfold import (
     schema,
     write_fold,
 )
-from exactfold.assignment import match, nearest_branches
+from exactfold.design import match, nearest_branches
 
 TURNED = str.maketrans("MV", "VM")
 CP = """1 0 0 4 0

@@ -11,8 +11,8 @@ from running import (
 from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled
 
 from exactfold import random_square, read_fold, write_fold
-from exactfold.data import SHEETS, example_path
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.families import FAMILIES
 
 

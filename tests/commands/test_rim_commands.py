@@ -12,9 +12,9 @@ import pytest
 from running import error_class, run
 
 from exactfold import checker, delaunay, families, write_fold
+from exactfold._support.schemas import schema
 from exactfold.branches import fold_angles
-from exactfold.problem.rims import default_rim
-from exactfold.schemas import schema
+from exactfold.rigidity.equations.boundary_heights import default_rim
 
 RIM = '{"0": 1, "1": "-1/2", "2": 0.25, "3": 0, "4": 1e-1}'
 

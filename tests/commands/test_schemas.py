@@ -15,11 +15,11 @@ from running import PROVED, UNDECIDED, run
 from sheets import DENTED, HEXAGON, TRIANGLE, nested_triangles, scrambled
 
 from exactfold import CreasePattern, read_fold, schema, write_fold
-from exactfold.count import METHODS
-from exactfold.data import SHEETS, example_path
+from exactfold._support.schemas import VERSIONS
+from exactfold.branches import METHODS
 from exactfold.errors import UsageError
+from exactfold.pattern.data import SHEETS, example_path
 from exactfold.rigidity import curvature_form
-from exactfold.schemas import VERSIONS
 
 LARGE = ("hypar-2", "random-8")
 """Too large for the exact engine within a test."""

@@ -16,7 +16,7 @@ from running import BAD_INPUT, INTERRUPTED, OUTPUT_FAILED, PROVED, UNDECIDED, ru
 from sheets import DENTED, scrambled
 
 from exactfold import random_square, write_fold
-from exactfold.data import example_path
+from exactfold.pattern.data import example_path
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="limits and signals of POSIX")
 

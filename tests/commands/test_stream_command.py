@@ -13,15 +13,15 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from exactfold import families, random_square, write_fold
-from exactfold.cli import app
-from exactfold.commands import stream as stream_command
-from exactfold.count import by_theorem
-from exactfold.count import conveyor as conveyor_module
-from exactfold.count.stream import stream_branches
-from exactfold.data import example_path
+from exactfold.app.cli.main import app
+from exactfold.app.commands import stream as stream_command
+from exactfold.branches.counting import by_theorem
+from exactfold.branches.counting import conveyor as conveyor_module
+from exactfold.branches.counting.stream import stream_branches
+from exactfold.certificates.journal import Journal
 from exactfold.errors import UnwritableFileError, WorkerDiedError
-from exactfold.evidence.journal import Journal
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import example_path
 
 PROVED, INVALID, USAGE, BAD_INPUT, UNDECIDED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 TWO, FLAT = example_path("two-vertex"), example_path("flat-vertex")
@@ -96,7 +96,7 @@ def test_multiple_roots_are_named_and_handed_over(tmp_path: Path) -> None:
 
 
 def test_what_stays_open_is_undecided(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("exactfold.count.stream.HANDED_OVER", 0)
+    monkeypatch.setattr("exactfold.branches.counting.stream.HANDED_OVER", 0)
     file, certificate = tmp_path / "c.txt", tmp_path / "c.json"
     given = ("count", FLAT, "--stream", file, "--certificate", certificate)
     result = run(*given)
@@ -119,8 +119,10 @@ def test_what_stays_open_is_undecided(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_both_methods_say_what_is_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("exactfold.count.hand_over.flat_vertices", lambda chart, points: iter(()))
-    monkeypatch.setattr("exactfold.count.collect.GROEBNER_LIMIT", 0)
+    monkeypatch.setattr(
+        "exactfold.branches.counting.fallback.flat_vertices", lambda chart, points: iter(())
+    )
+    monkeypatch.setattr("exactfold.branches.counting.collect.GROEBNER_LIMIT", 0)
     data = json.loads(run("count", FLAT, "--stream", tmp_path / "c.txt", "--json").stdout)
     assert data["status"] == "undecided"
     assert data["open_questions"][0].startswith("sign vectors ++, +- seem to meet at +0")
@@ -212,9 +214,9 @@ def test_a_dead_worker_is_no_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyP
 SIGNALLED = """
 import os, signal, sys
 from contextlib import suppress
-from exactfold.cli import main
-from exactfold.evidence import journal
-from exactfold.count import conveyor, engines, stream
+from exactfold.app.cli.main import main
+from exactfold.certificates import journal
+from exactfold.branches.counting import conveyor, engines, stream
 
 append = journal.Journal.append
 
@@ -288,7 +290,7 @@ def test_an_interrupted_hand_over_can_be_resumed(
 
     file = tmp_path / "c.txt"
     with monkeypatch.context() as patch:
-        patch.setattr("exactfold.count.stream.count_branches", stop)
+        patch.setattr("exactfold.branches.counting.stream.count_branches", stop)
         result = run("count", FLAT, "--stream", file)
     assert result.exit_code == INTERRUPTED
     again = shlex.split(result.stderr.splitlines()[-1])
@@ -299,7 +301,7 @@ def test_every_command_ends_with_130_on_ctrl_c(monkeypatch: pytest.MonkeyPatch) 
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("exactfold.commands.count.count_opened", stop)
+    monkeypatch.setattr("exactfold.app.commands.count.count_opened", stop)
     result = run("count", TWO)
     assert result.exit_code == INTERRUPTED
     assert result.stderr == "exactfold: interrupted\n"

@@ -15,10 +15,10 @@ import pytest
 from running import BAD_INPUT, INVALID, PROVED, USAGE, error_class, run
 from test_schemas import valid
 
-from exactfold.commands.parameters import sizes
-from exactfold.commands.row_numbers import read_numbers, written_numbers, written_sizes
+from exactfold.app.shell.parameters import sizes
+from exactfold.app.shell.row_numbers import read_numbers, written_numbers, written_sizes
 from exactfold.studies import StudyTable, all_studies, table1
-from exactfold.studies.registry import MODULES
+from exactfold.studies.running.registry import MODULES
 
 SMALL = ("study", "table1", "--sizes", "2,3", "--number", "3", "--workers", "1")
 

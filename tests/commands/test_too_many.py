@@ -12,13 +12,14 @@ from running import UNDECIDED, run
 from sheets import dart, nested_triangles, reflex_corners, scrambled
 
 from exactfold import count_branches, families, random_square, schema, write_fold
-from exactfold.commands.shell import Bar
-from exactfold.count import METHODS, by_theorem
-from exactfold.count.by_theorem import too_many
+from exactfold._support.verdict import PROVED
+from exactfold._support.verdict import UNDECIDED as OPEN
+from exactfold.app.shell.shell import Bar
+from exactfold.branches import METHODS
+from exactfold.branches.counting import by_theorem
+from exactfold.branches.counting.by_theorem import too_many
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.random_squares import sample_random_square
-from exactfold.verdict import PROVED
-from exactfold.verdict import UNDECIDED as OPEN
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +85,7 @@ def test_the_theorem_agrees_with_enumeration(
     listed = count_branches(pattern)
     assert listed.status is PROVED
     monkeypatch.setattr(by_theorem, "LIMIT", 0)
-    monkeypatch.setattr("exactfold.count.collect.IN_MEMORY", 0)
+    monkeypatch.setattr("exactfold.branches.counting.collect.IN_MEMORY", 0)
     said = count_branches(pattern)
     assert (said.status, said.by) == (OPEN, "theorem")
     assert said.reason == too_many(pattern).reason

@@ -9,9 +9,9 @@ import pytest
 from running import PROVED, run
 
 from exactfold import CreasePattern, count_branches, count_many, read_fold, write_fold
-from exactfold.data import SHEETS, example_path
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern import near_degenerate
+from exactfold.pattern.data import SHEETS, example_path
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from itertools import product
 
 from flint import fmpq_mat
 
-from exactfold.certify.box import IsolatingBox
 from exactfold.exact.linalg import from_fmpq, to_flint
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.certify.box import IsolatingBox
 
 Form = tuple[Fraction, ...]  # coefficients of x_1, ..., x_n, 1
 ComplexForm = tuple[Form, Form]  # a + i b

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from exactfold.problem import Chart
+from exactfold.rigidity import Chart
 from exactfold.solve import Candidates
 
 _AT_ONCE = 256

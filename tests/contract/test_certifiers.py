@@ -30,10 +30,10 @@ from known_systems import (
     system_of,
 )
 
-from exactfold.certify.box import IsolatingBox, Uncertified
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.errors import UsageError
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.certify.box import IsolatingBox, Uncertified
 
 NAMES = list(map(str, CERTIFIERS))
 every = pytest.mark.parametrize("certify", [c.certify for c in CERTIFIERS], ids=NAMES)

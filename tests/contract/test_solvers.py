@@ -25,10 +25,13 @@ from plain_solver import random_newton
 from sheets import dart
 
 from exactfold import certificate, checker, count_branches
-from exactfold.algebra.groebner_bases import groebner
-from exactfold.certify.box import IsolatingBox
-from exactfold.certify.exact_krawczyk import krawczyk
-from exactfold.count.registry import find_candidates, register_solver, solvers, unregister_solver
+from exactfold._support.verdict import PROVED
+from exactfold.branches.counting.registry import (
+    find_candidates,
+    register_solver,
+    solvers,
+    unregister_solver,
+)
 from exactfold.pattern.families import (
     flat_vertex_square,
     h1_sequence,
@@ -37,11 +40,13 @@ from exactfold.pattern.families import (
     two_vertex,
 )
 from exactfold.pattern.random_squares import random_square
-from exactfold.problem.branch_system import BranchSystem, Chart, chamber_chart
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.candidates import Candidates
-from exactfold.solve.homotopy_ends import homotopy
-from exactfold.verdict import PROVED
+from exactfold.rigidity.equations.branch_system import BranchSystem, Chart, chamber_chart
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.groebner_bases import groebner
+from exactfold.solve.certify.box import IsolatingBox
+from exactfold.solve.certify.exact_krawczyk import krawczyk
+from exactfold.solve.numeric.candidates import Candidates
+from exactfold.solve.numeric.homotopy import homotopy
 
 SystemSolver = Callable[[QuadraticSystem], Candidates]
 

@@ -15,38 +15,38 @@ from flint import fmpq, fmpq_mat
 
 import exactfold
 from exactfold import errors
-from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.quotient import QuotientAlgebra
-from exactfold.certify.box import Uncertified
-from exactfold.motion.loops import LoopFinder
+from exactfold.motion.loops.loops import LoopFinder
 from exactfold.pattern.families import H1Triangulation, sample_h1_sequence, single_vertex
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_writing import converted
 from exactfold.pattern.random_squares import sample_random_square
-from exactfold.problem.problem import Problem
-from exactfold.problem.sheet import Sheet
+from exactfold.rigidity.equations.problem import Problem
+from exactfold.rigidity.equations.sheet import Sheet
 from exactfold.rigidity.kapovich_millson import kapovich_millson
-from exactfold.solve.candidates import Candidates
+from exactfold.solve.algebraic.exact_solution import RootClass
+from exactfold.solve.algebraic.quotient import QuotientAlgebra
+from exactfold.solve.certify.box import Uncertified
+from exactfold.solve.numeric.candidates import Candidates
 
-PATTERN = exactfold.read_fold(exactfold.data.example_path("two-vertex"))
-FLAT = exactfold.read_fold(exactfold.data.example_path("flat-octahedron"))
-SYSTEM = exactfold.problem.BranchSystem(PATTERN)
+PATTERN = exactfold.read_fold(exactfold.pattern.data.example_path("two-vertex"))
+FLAT = exactfold.read_fold(exactfold.pattern.data.example_path("flat-octahedron"))
+SYSTEM = exactfold.rigidity.BranchSystem(PATTERN)
 ENDS = exactfold.solve.newton(SYSTEM.chart)
 COUNT = exactfold.count_branches(PATTERN)
 EXACT = exactfold.count_branches(
-    exactfold.read_fold(exactfold.data.example_path("flat-vertex")), method="groebner"
+    exactfold.read_fold(exactfold.pattern.data.example_path("flat-vertex")), method="groebner"
 )
-SOLUTION = exactfold.algebra.groebner(SYSTEM.chart.system)
+SOLUTION = exactfold.solve.groebner(SYSTEM.chart.system)
 
 
 def _streamed(folder):
     return exactfold.stream_branches(PATTERN, folder / "branches.txt")
 
 
-DRAWING = exactfold.read_drawing(exactfold.data.example_path("zigzags"))
-SHEETS = exactfold.drawing.exact_sheets(DRAWING)
-OPENED = exactfold.open_pattern(exactfold.data.example_path("zigzags"))
-PIECES = exactfold.pieces.find_pieces(
+DRAWING = exactfold.read_drawing(exactfold.pattern.data.example_path("zigzags"))
+SHEETS = exactfold.pattern.exact_sheets(DRAWING)
+OPENED = exactfold.open_pattern(exactfold.pattern.data.example_path("zigzags"))
+PIECES = exactfold.branches.find_pieces(
     exactfold.CreasePattern(
         [(0, 0), (4, 0), (5, 3), (2, 5), (-1, 3), (1, 2), (3, 2)],
         [(0, 1, 5), (1, 6, 5), (1, 2, 6), (2, 3, 6), (3, 5, 6), (3, 4, 5), (4, 0, 5)],
@@ -56,11 +56,11 @@ MOTIONS = exactfold.decompose(OPENED.sheet)
 SPACES = exactfold.decompose(panels(single_vertex(5)))
 MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
 BY_FOLDS = exactfold.motion.find_driven(single_vertex(5), {(0, 5): 9, (2, 5): 6})
-DRIVEN = exactfold.actuation.actuate(exactfold.data.example_path("single-vertex-4"), "+")
-ALL = exactfold.assignment.all_assignments(single_vertex(5))
-MATCH = exactfold.assignment.match(PATTERN, exactfold.find_branch(PATTERN, "+-").assignment)
-OVER_A_RIM = exactfold.assignment.match_rim(single_vertex(5), "MMVMV")
-TWIST = exactfold.assignment.match_panels("square-twist")
+DRIVEN = exactfold.design.actuate(exactfold.pattern.data.example_path("single-vertex-4"), "+")
+ALL = exactfold.design.all_assignments(single_vertex(5))
+MATCH = exactfold.design.match(PATTERN, exactfold.find_branch(PATTERN, "+-").assignment)
+OVER_A_RIM = exactfold.design.match_rim(single_vertex(5), "MMVMV")
+TWIST = exactfold.design.match_panels("square-twist")
 ONE = exactfold.random_square(1, seed=0)
 LEAVING = exactfold.find_branch(ONE, "+")
 TRACK = exactfold.motion.follow_proved(LEAVING, until=0.3)
@@ -111,8 +111,10 @@ VALUES = {
     "pattern with long coordinates": exactfold.CreasePattern(
         [(0, 0), (10**5000, 0), (0, "1/7"), (1, "1/50")], [(0, 1, 3), (1, 2, 3), (2, 0, 3)]
     ),
-    "file": exactfold.pattern.load_fold(exactfold.data.example_path("waterbomb")),
-    "snapped file": exactfold.pattern.load_fold(exactfold.data.example_path("random-8"), snap=1000),
+    "file": exactfold.pattern.load_fold(exactfold.pattern.data.example_path("waterbomb")),
+    "snapped file": exactfold.pattern.load_fold(
+        exactfold.pattern.data.example_path("random-8"), snap=1000
+    ),
     "family": sample_h1_sequence(40, seed=0),
     "sample": sample_random_square(4, seed=3),
     "form": exactfold.rigidity.curvature_form(PATTERN, 4),
@@ -133,20 +135,20 @@ VALUES = {
     "circle": ALL.circles[0],
     "arc of a circle": ALL.circles[0].arcs[0],
     "crossing": ALL.circles[0].crossings[0],
-    "number of shapes": exactfold.count.count_shapes(PATTERN, {4: 1}),
+    "number of shapes": exactfold.branches.count_shapes(PATTERN, {4: 1}),
     "gauge": Problem.of(PATTERN).gauge,
     "sheet": Sheet(Problem.of(PATTERN)),
     "candidates": ENDS,
-    "box": exactfold.certify.krawczyk(SYSTEM.chart.system, ENDS.points)[0],
-    "complex box": exactfold.certify.krawczyk(
-        exactfold.problem.QuadraticSystem.from_rational([[[1, 0], [0, 2]]]), [[1.41421356j]]
+    "box": exactfold.solve.krawczyk(SYSTEM.chart.system, ENDS.points)[0],
+    "complex box": exactfold.solve.krawczyk(
+        exactfold.rigidity.QuadraticSystem.from_rational([[[1, 0], [0, 2]]]), [[1.41421356j]]
     )[0],
-    "no box": exactfold.certify.krawczyk(SYSTEM.chart.system, [[1e9, 1e9]])[0],
-    "isolation": exactfold.certify.isolate(SYSTEM.chart.system, ENDS),
-    "splitting": exactfold.algebra.split_form(PATTERN, 4),
+    "no box": exactfold.solve.krawczyk(SYSTEM.chart.system, [[1e9, 1e9]])[0],
+    "isolation": exactfold.solve.isolate(SYSTEM.chart.system, ENDS),
+    "splitting": exactfold.solve.split_form(PATTERN, 4),
     "solution": SOLUTION,
     "class": SOLUTION.classes[0],
-    "algebra": exactfold.algebra.quotient_algebra(SYSTEM.chart.system),
+    "algebra": exactfold.solve.quotient_algebra(SYSTEM.chart.system),
     "drawing": DRAWING,
     "line": DRAWING.lines[0],
     "sheets": SHEETS,
@@ -155,7 +157,7 @@ VALUES = {
     "opened drawing": OPENED,
     "converted drawing": converted(OPENED),
     "panels": OPENED.sheet,
-    "facts of panels": exactfold.count.panel_facts(OPENED.sheet),
+    "facts of panels": exactfold.branches.panel_facts(OPENED.sheet),
     "pieces": PIECES,
     "joint": PIECES.joints[0],
     "decomposition": MOTIONS,
@@ -171,7 +173,7 @@ VALUES = {
     "angles": COUNT.branches[0].fold_angles,
     "export": exactfold.branches.exported(COUNT.branches[0]),
     "solver": exactfold.solvers()["newton"],
-    "finder": exactfold.count.BranchFinder(PATTERN),
+    "finder": exactfold.branches.BranchFinder(PATTERN),
     "signed branch": exactfold.find_branch(PATTERN, "+-"),
     "motion": MOTION,
     "event": MOTION.events[-1],
@@ -184,7 +186,7 @@ VALUES = {
     "actuation": DRIVEN,
     "match": MATCH,
     "half of a branch": MATCH.matches[0],
-    "nearest branches": exactfold.assignment.nearest_branches(MATCH),
+    "nearest branches": exactfold.design.nearest_branches(MATCH),
     "branches with letters": exactfold.branches.Lettered(exactfold.PROVED, ((1, -1),)),
     "refutation of letters": MATCH.refutations[0],
     "match of panels": TWIST,

@@ -17,10 +17,10 @@ from sheets import (
 )
 
 from exactfold import PROVED, UNDECIDED, CreasePattern, count_branches
-from exactfold.certify.isolation import isolate
-from exactfold.count.registry import find_candidates
-from exactfold.problem.branch_system import BranchSystem
+from exactfold.branches.counting.registry import find_candidates
 from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.solve.certify.isolation import isolate
 
 
 @pytest.mark.parametrize("method", ["newton", "popping", "homotopy", "groebner"])

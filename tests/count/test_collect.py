@@ -4,7 +4,7 @@ import numpy as np
 
 from exactfold import PROVED, count_branches, random_square
 from exactfold.pattern.families import two_vertex
-from exactfold.solve.dense_newton import Ends, NappeSystem
+from exactfold.solve.numeric.dense_newton import Ends, NappeSystem
 
 
 def test_progress_is_reported():

@@ -28,14 +28,7 @@ from exactfold import (
     count_branches,
     random_square,
 )
-from exactfold.algebra import groebner_bases as engine
-from exactfold.algebra.exact_solution import ExactSolution
-from exactfold.algebra.hermite import hermite_counts
-from exactfold.algebra.msolve import find_msolve, msolve_classes
-from exactfold.algebra.quotient import QuotientAlgebra, from_groebner_basis
-from exactfold.certify import isolate
-from exactfold.certify.box import IsolatingBox
-from exactfold.count import find_candidates
+from exactfold.branches import find_candidates
 from exactfold.exact.linalg import from_fmpq, inertia
 from exactfold.pattern.degenerate import (
     DEGENERATE,
@@ -53,10 +46,17 @@ from exactfold.pattern.families import (
     flat_octahedron_in_square,
     h1_sequence,
 )
-from exactfold.problem import Chart
-from exactfold.problem.branch_system import BranchSystem, notch_chart
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.candidates import Candidates
+from exactfold.rigidity import Chart
+from exactfold.rigidity.equations.branch_system import BranchSystem, notch_chart
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve import isolate
+from exactfold.solve.algebraic import groebner_bases as engine
+from exactfold.solve.algebraic.exact_solution import ExactSolution
+from exactfold.solve.algebraic.hermite import hermite_counts
+from exactfold.solve.algebraic.msolve import find_msolve, msolve_classes
+from exactfold.solve.algebraic.quotient import QuotientAlgebra, from_groebner_basis
+from exactfold.solve.certify.box import IsolatingBox
+from exactfold.solve.numeric.candidates import Candidates
 
 BITS = 160
 

@@ -13,15 +13,15 @@ import pytest
 from typer.testing import CliRunner
 
 from exactfold import random_square, write_fold
-from exactfold.cli import app
-from exactfold.count import on_dask as engine_module
-from exactfold.count import pools
-from exactfold.count.conveyor import Conveyor
-from exactfold.count.on_dask import dask_engine, prove_block
-from exactfold.count.stream import stream_branches
-from exactfold.data import example_path
+from exactfold.app.cli.main import app
+from exactfold.branches.certificates.streamed import block_line
+from exactfold.branches.counting import on_dask as engine_module
+from exactfold.branches.counting import pools
+from exactfold.branches.counting.conveyor import Conveyor
+from exactfold.branches.counting.on_dask import dask_engine, prove_block
+from exactfold.branches.counting.stream import stream_branches
 from exactfold.errors import ClusterError, DaskMissingError, WorkerDiedError
-from exactfold.evidence.streamed import block_line
+from exactfold.pattern.data import example_path
 
 TWO = example_path("two-vertex")
 
@@ -29,9 +29,9 @@ KILLED = """
 import logging, os, signal, sys
 from distributed import Client, LocalCluster
 from exactfold import random_square
-from exactfold.count import conveyor, engines, stream
-from exactfold.count.on_dask import dask_engine
-from exactfold.workers import worker_environment
+from exactfold.branches.counting import conveyor, engines, stream
+from exactfold.branches.counting.on_dask import dask_engine
+from exactfold._support.processes import worker_environment
 
 def kill(stage, done, total):
     dones.append(done)
@@ -60,8 +60,8 @@ import dask
 from distributed import Client, LocalCluster, WorkerPlugin
 from exactfold import random_square
 from exactfold.errors import WorkerDiedError
-from exactfold.count import conveyor, engines, stream
-from exactfold.count.on_dask import dask_engine
+from exactfold.branches.counting import conveyor, engines, stream
+from exactfold.branches.counting.on_dask import dask_engine
 
 class Deadly(WorkerPlugin):
     def setup(self, worker):
@@ -127,7 +127,13 @@ def test_a_local_cluster_by_command(tmp_path: Path) -> None:
     fold, file = tmp_path / "p.fold", tmp_path / "c.txt"
     pattern = random_square(11, seed=1)
     write_fold(pattern, fold)
-    command = [sys.executable, "-c", "from exactfold.cli import main; main()", "count", str(fold)]
+    command = [
+        sys.executable,
+        "-c",
+        "from exactfold.app.cli.main import main; main()",
+        "count",
+        str(fold),
+    ]
     options = ["--stream", str(file), "--dask", "local", "--workers", "1", "--json"]
     with socket.socket() as other:
         with suppress(OSError):  # the port of dask's dashboard is taken, by us or by others

@@ -5,7 +5,7 @@ from counting import check_generic
 from sheets import SQUARE, scrambled
 
 from exactfold import PROVED, count_branches, random_square, read_fold
-from exactfold.data import SHEETS, example_path
+from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.families import FAMILIES, h1_sequence
 
 # (distinct, with multiplicity); None where D > 1 or flat vertices make it other than a power of 2.

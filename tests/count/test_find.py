@@ -26,16 +26,16 @@ from sheets import (
 )
 
 from exactfold import PROVED, UNDECIDED, count_branches, families, random_square
-from exactfold.certify.box import IsolatingBox
-from exactfold.certify.exact_krawczyk import krawczyk
-from exactfold.count.find import BranchFinder, find_branch, find_branches, neighbours
+from exactfold.branches.counting.find import BranchFinder, find_branch, find_branches, neighbours
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern import degenerate
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.problem import Problem
-from exactfold.problem.sheet import Sheet
-from exactfold.solve.sparse_sheet import FloatSheet
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.problem import Problem
+from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.solve.certify.box import IsolatingBox
+from exactfold.solve.certify.exact_krawczyk import krawczyk
+from exactfold.solve.numeric.sparse_sheet import FloatSheet
 
 CONVEX = {
     "random": random_square(5, seed=2),

@@ -7,11 +7,11 @@ from counting import counts
 from sheets import DENTED, HEXAGON, SQUARE, random_wheel, scrambled, wheel
 
 from exactfold import PROVED, UNDECIDED, CreasePattern, count_branches
-from exactfold.algebra.groebner_bases import groebner
 from exactfold.errors import NoInteriorVertexError, UsageError
 from exactfold.pattern.families import two_vertex
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.groebner_bases import groebner
 
 
 @pytest.mark.parametrize("degree", range(5, 13))

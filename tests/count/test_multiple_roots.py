@@ -8,9 +8,10 @@ from counting import counts
 from sheets import wheel
 
 from exactfold import PROVED, UNDECIDED, CreasePattern, checker, count_branches
-from exactfold.count import collect as module
-from exactfold.count import hand_over, multiple_roots
-from exactfold.evidence.listing import certificate
+from exactfold.branches.certificates.listing import certificate
+from exactfold.branches.counting import collect as module
+from exactfold.branches.counting import fallback as hand_over
+from exactfold.branches.counting import multiple_roots
 from exactfold.pattern.families import FAMILIES, hypar
 
 

@@ -14,7 +14,8 @@ from scipy.optimize import root
 from sheets import HEXAGON, dart, nested_triangles, scrambled, wheel
 
 from exactfold import PROVED, checker, find_branch, follow, random_square
-from exactfold.branches.branch import Branch
+from exactfold.branches.certificates.single import branch_certificate
+from exactfold.branches.values.branch import Branch
 from exactfold.errors import (
     BadCurvatureError,
     FlatRimError,
@@ -24,9 +25,12 @@ from exactfold.errors import (
     RimHeightError,
     RimVertexError,
 )
-from exactfold.evidence.single import branch_certificate
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.rims import above_plane, default_rim, straight_vertices
+from exactfold.rigidity.equations.boundary_heights import (
+    above_plane,
+    default_rim,
+    straight_vertices,
+)
 
 PENTAGON = [(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9)]
 WHEEL = wheel(PENTAGON, (6, 4))

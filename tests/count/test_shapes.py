@@ -10,12 +10,12 @@ from sheets import HEXAGON, scrambled
 from test_rims import fan
 
 from exactfold import PROVED, UNDECIDED, random_square
-from exactfold.count import count_shapes
+from exactfold._support.schemas import schema
+from exactfold.app.report import shapes_report
+from exactfold.app.report.terminal import console
+from exactfold.branches import count_shapes
 from exactfold.errors import NegativeDeficitError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.report import shapes_report
-from exactfold.report.terminal import console
-from exactfold.schemas import schema
 
 SIX = scrambled(5, HEXAGON, 12)
 THREE = CreasePattern(

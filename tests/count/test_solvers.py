@@ -10,14 +10,14 @@ import pytest
 
 import exactfold
 from exactfold import count_branches, random_square
-from exactfold.count import METHODS, find_candidates
-from exactfold.count.registry import choose, register_solver, solvers, unregister_solver
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import METHODS, find_candidates
+from exactfold.branches.counting.registry import choose, register_solver, solvers, unregister_solver
 from exactfold.errors import BadCandidatesError, NotApplicableError, UsageError
 from exactfold.pattern.families import two_vertex
-from exactfold.problem.branch_system import BranchSystem, Chart
+from exactfold.rigidity.equations.branch_system import BranchSystem, Chart
 from exactfold.solve import Candidates
-from exactfold.solve.popping_ends import popping
-from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.solve.numeric.popping import popping
 
 CHART = BranchSystem(two_vertex()).chart
 BUILT_IN = ("newton", "popping", "homotopy", "groebner")
@@ -50,7 +50,7 @@ def test_methods_are_auto_and_the_registry(register: Registrar) -> None:
     assert tuple(METHODS) == ("auto", *BUILT_IN, "mine")
     assert (len(METHODS), METHODS[-1], METHODS[1:3]) == (6, "mine", ("newton", "popping"))
     assert "mine" in METHODS
-    assert exactfold.count.METHODS is METHODS
+    assert exactfold.branches.METHODS is METHODS
     assert repr(METHODS) == repr(("auto", *BUILT_IN, "mine"))
     assert solvers()["mine"].solver is path_ends
     assert solvers()["mine"].description == "of this test"

@@ -12,19 +12,19 @@ from compact_files import bodies, chained, refused
 from sheets import SQUARE, dart, nested_triangles, reflex_corners, scrambled
 
 from exactfold import Branch, count_branches, families, random_square, read_fold
-from exactfold.branches import classify
-from exactfold.checker import compact_blocks
-from exactfold.count import conveyor as conveyor_module
-from exactfold.count.conveyor import Conveyor
-from exactfold.count.stream import stream_branches
-from exactfold.data import example_path
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.certificates.check import CertificateError, check_compact
+from exactfold.branches.certificates.read import read_branches
+from exactfold.branches.counting import conveyor as conveyor_module
+from exactfold.branches.counting.conveyor import Conveyor
+from exactfold.branches.counting.stream import stream_branches
+from exactfold.branches.values import classify
+from exactfold.checker.branches import compact_blocks
 from exactfold.errors import ForeignJournalError, NotApplicableError, UnwritableFileError
-from exactfold.evidence.check import CertificateError, check_compact
-from exactfold.evidence.read import read_branches
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import straight_path
 from exactfold.pattern.random_squares import sample_random_square
-from exactfold.verdict import PROVED, UNDECIDED
 
 
 def gap(tiny: Fraction) -> CreasePattern:
@@ -202,8 +202,8 @@ WORKERS = """
 import multiprocessing, sys
 from exactfold import random_square
 from exactfold.errors import WorkerDiedError
-from exactfold.evidence import check
-from exactfold.count import conveyor, engines, stream
+from exactfold.branches.certificates import check
+from exactfold.branches.counting import conveyor, engines, stream
 
 def seen(stage, done, total):
     dones.append(done)

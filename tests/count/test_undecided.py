@@ -8,14 +8,15 @@ from counting import counts
 from sheets import TRIANGLE, scrambled, two_triangles
 
 from exactfold import PROVED, UNDECIDED, checker, count_branches
-from exactfold.branches import classify
-from exactfold.certify import algebraic
-from exactfold.checker import listing
-from exactfold.count import hand_over, multiple_roots
-from exactfold.evidence.listing import certificate
+from exactfold.branches.certificates.listing import certificate
+from exactfold.branches.counting import fallback as hand_over
+from exactfold.branches.counting import multiple_roots
+from exactfold.branches.values import classify
+from exactfold.checker.branches import listing
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import FAMILIES, hypar, two_vertex
 from exactfold.rigidity import rigid_triangles
+from exactfold.solve.certify import algebraic
 
 
 def test_undecided_without_a_stress_for_a_triangulated_triangle(monkeypatch):

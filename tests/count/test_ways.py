@@ -10,12 +10,12 @@ from drawings import SQUARE, as_cp, as_fold
 from sheets import DENTED, scrambled
 
 from exactfold import PROVED, count_branches, count_many, write_fold
-from exactfold.count.motion_facts import panel_facts
-from exactfold.count.ways import count_ways
-from exactfold.drawing.read import parse_drawing
+from exactfold.branches.counting.motion_facts import panel_facts
+from exactfold.branches.counting.ways import count_ways
 from exactfold.errors import SeveralSheetsError, UnknownPatternError, UsageError
-from exactfold.modes.decomposition import decompose
+from exactfold.panels.decomposition import decompose
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.formats.read import parse_drawing
 from exactfold.pattern.families import single_vertex, two_vertex
 from exactfold.pattern.opening import has_branches, open_pattern, panels
 from exactfold.pattern.panel_pattern import PanelPattern

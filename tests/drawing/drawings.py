@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from fractions import Fraction
 
-from exactfold.drawing.drawing import Drawing
+from exactfold.pattern.drawing.drawing import Drawing
 
 SQUARE = [
     (("0", "0"), ("1", "0"), "B"),

@@ -7,19 +7,20 @@ import numpy as np
 import pytest
 from drawings import as_cp, as_fold, as_opx, as_orh, as_ori, as_svg
 
-from exactfold.drawing import bounds, construction, fold_drawing, mending, splitting
-from exactfold.drawing.bounds import (
+from exactfold.errors import InputError, TooLargeError, UnreadableFileError
+from exactfold.pattern.drawing import bounds, construction, mending, splitting
+from exactfold.pattern.drawing.bounds import (
     check_common_denominator,
     check_compared,
     check_coordinates,
     read_bytes,
     read_text,
 )
-from exactfold.drawing.drawing import Drawing, Line
-from exactfold.drawing.inexactness import clear_distances
-from exactfold.drawing.read import parse_drawing
-from exactfold.drawing.repair import exact_sheets
-from exactfold.errors import InputError, TooLargeError, UnreadableFileError
+from exactfold.pattern.drawing.drawing import Drawing, Line
+from exactfold.pattern.drawing.formats import fold_drawing
+from exactfold.pattern.drawing.formats.read import parse_drawing
+from exactfold.pattern.drawing.inexactness import clear_distances
+from exactfold.pattern.drawing.repair import exact_sheets
 
 FORMATS = {
     "fold": as_fold,

@@ -7,12 +7,12 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from exactfold.drawing.candidates import candidates, field_of, matches, reduced_match
-from exactfold.drawing.construction import directions
-from exactfold.drawing.coordinates import exact_coordinates, resolution
-from exactfold.drawing.drawing import Drawing, Line
 from exactfold.errors import MalformedPatternError, UsageError
 from exactfold.exact.surds import RATIONALS, Surd
+from exactfold.pattern.drawing.candidates import candidates, field_of, matches, reduced_match
+from exactfold.pattern.drawing.construction import directions
+from exactfold.pattern.drawing.coordinates import exact_coordinates, resolution
+from exactfold.pattern.drawing.drawing import Drawing, Line
 
 SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))
 TWO, THREE, FIVE = (RATIONALS.adjoined(d).root for d in (2, 3, 5))

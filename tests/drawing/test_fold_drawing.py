@@ -6,9 +6,6 @@ from fractions import Fraction
 import pytest
 from drawings import SQUARE, as_fold, drawn, places
 
-from exactfold.data import SHEETS, example_path
-from exactfold.drawing.fold_drawing import read_fold_drawing
-from exactfold.drawing.read import read_drawing
 from exactfold.errors import (
     EmptyDrawingError,
     FoldedStateError,
@@ -17,6 +14,9 @@ from exactfold.errors import (
     NotFoldError,
     StaleExactCoordinatesError,
 )
+from exactfold.pattern.data import SHEETS, example_path
+from exactfold.pattern.drawing.formats.fold_drawing import read_fold_drawing
+from exactfold.pattern.drawing.formats.read import read_drawing
 from exactfold.pattern.fold import load_fold
 
 CORNERS = [[0, 0], [2, 0], [2, 1], [0, 1]]

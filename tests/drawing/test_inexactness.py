@@ -4,10 +4,10 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold.drawing.drawing import Drawing, Line
-from exactfold.drawing.inexactness import clear_distances
-from exactfold.drawing.repair import exact_sheets
 from exactfold.errors import CutEdgeError, DisconnectedError
+from exactfold.pattern.drawing.drawing import Drawing, Line
+from exactfold.pattern.drawing.inexactness import clear_distances
+from exactfold.pattern.drawing.repair import exact_sheets
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.pattern.triangulating import triangulating_edges
 

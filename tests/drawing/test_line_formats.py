@@ -5,10 +5,10 @@ import json
 import pytest
 from drawings import SQUARE, as_opx, as_orh, as_ori
 
-from exactfold.drawing.cp import read_cp
-from exactfold.drawing.opx import read_opx
-from exactfold.drawing.ori import read_orh, read_ori
 from exactfold.errors import EmptyDrawingError, MalformedDrawingError, NotJSONError
+from exactfold.pattern.drawing.formats.cp import read_cp
+from exactfold.pattern.drawing.formats.opx import read_opx
+from exactfold.pattern.drawing.formats.ori import read_orh, read_ori
 
 
 def test_auxiliary_lines_of_cp_are_left_out():

@@ -5,8 +5,6 @@ from drawings import SQUARE, as_cp, as_fold, as_opx, as_orh, as_ori, as_svg, dra
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.drawing.drawing import Drawing
-from exactfold.drawing.read import READERS, parse_drawing, read_drawing
 from exactfold.errors import (
     EmptyDrawingError,
     InputError,
@@ -16,6 +14,8 @@ from exactfold.errors import (
     UnknownFormatError,
     UnreadableFileError,
 )
+from exactfold.pattern.drawing.drawing import Drawing
+from exactfold.pattern.drawing.formats.read import READERS, parse_drawing, read_drawing
 
 WRITERS = {
     "fold": as_fold,

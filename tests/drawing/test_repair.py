@@ -6,9 +6,6 @@ from time import perf_counter
 
 import pytest
 
-from exactfold.drawing.drawing import Drawing, Line
-from exactfold.drawing.repair import STEPS, exact_sheets, repaired
-from exactfold.drawing.sheets import sheets
 from exactfold.errors import (
     CutEdgeError,
     DisconnectedError,
@@ -17,6 +14,9 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.exact.surds import RATIONALS, Surd
+from exactfold.pattern.drawing.drawing import Drawing, Line
+from exactfold.pattern.drawing.repair import STEPS, exact_sheets, repaired
+from exactfold.pattern.drawing.sheets import sheets
 from exactfold.pattern.panel_pattern import PanelPattern
 
 CORNERS = ((0, 0), (4, 0), (4, 4), (0, 4))

@@ -5,9 +5,9 @@ from fractions import Fraction
 import pytest
 from drawings import drawn, places, svg
 
-from exactfold.drawing.svg import read_svg
-from exactfold.drawing.svg_path import path_lines
 from exactfold.errors import CurvedCreaseError, EmptyDrawingError, MalformedDrawingError
+from exactfold.pattern.drawing.formats.svg import read_svg
+from exactfold.pattern.drawing.formats.svg_path import path_lines
 
 ONE = '<line x1="1" y1="2" x2="3.1" y2="4" {}/>'
 PLACED = (("1", "-2"), ("3.1", "-4"))

@@ -3,10 +3,10 @@
 import pytest
 from drawings import svg
 
-from exactfold.checker.limits import MOST_DEPTH, MOST_TEXT, MOST_USED
-from exactfold.drawing import svg_tree
-from exactfold.drawing.svg import read_svg
+from exactfold.checker.core.limits import MOST_DEPTH, MOST_TEXT, MOST_USED
 from exactfold.errors import MalformedDrawingError, TooLargeError
+from exactfold.pattern.drawing.formats import svg_tree
+from exactfold.pattern.drawing.formats.svg import read_svg
 
 LINE = '<line x2="1" y2="1" stroke="red"/>'
 XLINK = 'xmlns:xlink="http://www.w3.org/1999/xlink"'

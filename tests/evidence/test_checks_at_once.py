@@ -14,12 +14,13 @@ import pytest
 from compact_files import Lines, bodies, chained
 
 from exactfold import random_square
-from exactfold.checker import CertificateError, compact
-from exactfold.count import conveyor
-from exactfold.count.stream import stream_branches
-from exactfold.evidence import check
-from exactfold.evidence.check import check_compact
-from exactfold.workers import worker_environment
+from exactfold._support.processes import worker_environment
+from exactfold.branches.certificates import check
+from exactfold.branches.certificates.check import check_compact
+from exactfold.branches.counting import conveyor
+from exactfold.branches.counting.stream import stream_branches
+from exactfold.checker import CertificateError
+from exactfold.checker.branches import compact
 
 REFUSED = "Krawczyk's test fails for the box about "
 

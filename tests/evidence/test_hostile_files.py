@@ -13,14 +13,15 @@ from sheets import SQUARE, dart, reflex_corners, scrambled, with_point
 from typer.testing import CliRunner
 
 from exactfold import checker, random_square
-from exactfold.checker import CertificateError, command, compact_lines
-from exactfold.checker.reading import parse_rational
-from exactfold.checker.sheet import read_sheet
-from exactfold.cli import app
-from exactfold.count.stream import stream_branches
+from exactfold.app.cli.main import app
+from exactfold.branches.certificates.check import check_compact
+from exactfold.branches.certificates.read import read_branches
+from exactfold.branches.counting.stream import stream_branches
+from exactfold.checker import CertificateError, command
+from exactfold.checker.core import lines as compact_lines
+from exactfold.checker.core.reading import parse_rational
+from exactfold.checker.sheets.sheet import read_sheet
 from exactfold.errors import CertificateFormatError
-from exactfold.evidence.check import check_compact
-from exactfold.evidence.read import read_branches
 from exactfold.pattern.crease_pattern import CreasePattern
 
 

@@ -15,19 +15,19 @@ from compact_files import bodies, chained, chained_texts
 from typer.testing import CliRunner
 
 from exactfold import random_square
-from exactfold.cli import app
-from exactfold.count import conveyor as conveyor_module
-from exactfold.count.stream import stream_branches
-from exactfold.data import example_path
+from exactfold._support.verdict import PROVED
+from exactfold.app.cli.main import app
+from exactfold.branches.counting import conveyor as conveyor_module
+from exactfold.branches.counting.stream import stream_branches
+from exactfold.certificates import durable, journal
+from exactfold.certificates.journal import Journal
 from exactfold.errors import (
     ForeignJournalError,
     JournalInUseError,
     UnwritableFileError,
     UsageError,
 )
-from exactfold.evidence import durable, journal
-from exactfold.evidence.journal import Journal
-from exactfold.verdict import PROVED
+from exactfold.pattern.data import example_path
 
 TWO, SQUARE = example_path("two-vertex"), random_square(5, seed=1)
 posix = pytest.mark.skipif(os.name != "posix", reason="locks of POSIX")
@@ -93,8 +93,8 @@ def test_a_file_that_appears_in_the_last_moment_is_left_alone(tmp_path: Path, wh
 KILLED = """
 import os, signal, sys
 from exactfold import random_square
-from exactfold.evidence import journal
-from exactfold.count import conveyor, engines, stream
+from exactfold.certificates import journal
+from exactfold.branches.counting import conveyor, engines, stream
 
 append = journal.Journal.append
 

@@ -14,8 +14,8 @@ from exactfold import random_square
 from exactfold.errors import UsageError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.families import single_vertex, two_vertex
-from exactfold.problem.branch_system import BranchSystem
 from exactfold.rigidity.curvature import curvature_form, spokes, star_matrix, stress_form
+from exactfold.rigidity.equations.branch_system import BranchSystem
 
 quick = settings(max_examples=60, deadline=None)
 rationals = st.builds(Fraction, st.integers(-9, 9), st.integers(1, 5))
@@ -86,7 +86,7 @@ def test_forms_of_a_system_are_those_it_exports():
     import exactfold
 
     system = BranchSystem(two_vertex())
-    exported, symbols = exactfold.bridges.to_sympy(system)
+    exported, symbols = exactfold.interop.to_sympy(system)
     for expression, form in zip(exported, system.quadrics.values(), strict=True):
         mine = form.to_sympy()
         assert mine.free_symbols <= set(symbols)

@@ -10,15 +10,15 @@ from flint import arb, ctx
 from panel_sheets import crossed_stars, outlined, ring_of_fives, row_of_stars, two_stars
 from test_oracles import answers, by_singular, degrees
 
-from exactfold.modes import cones
-from exactfold.modes.cones import cone_motion, is_one_family
-from exactfold.modes.decomposition import decompose
-from exactfold.modes.kernel import first_order, imposed
-from exactfold.modes.regular import Balls, Forms, in_balls, rank_at_least, truly_folds
-from exactfold.modes.stars import bracket, stars
-from exactfold.modes.subspaces import squares_of
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.panels import cones
+from exactfold.panels.cones import cone_motion, is_one_family
+from exactfold.panels.decomposition import decompose
+from exactfold.panels.kernel import first_order, imposed
+from exactfold.panels.regular import Balls, Forms, in_balls, rank_at_least, truly_folds
+from exactfold.panels.stars import bracket, stars
+from exactfold.panels.subspaces import squares_of
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
 SINGULAR = shutil.which("Singular")
 

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from panel_sheets import grid, mesh, miura, outlined, tiling
 
-from exactfold.modes.decomposition import decompose
-from exactfold.modes.elementary import ModeSearch
-from exactfold.modes.extension import cycle_basis
-from exactfold.modes.kernel import first_order
-from exactfold.modes.stars import stars
-from exactfold.modes.subspaces import leaves
+from exactfold._support.verdict import PROVED, REFUTED
+from exactfold.panels.decomposition import decompose
+from exactfold.panels.elementary import ModeSearch
+from exactfold.panels.extension import cycle_basis
+from exactfold.panels.kernel import first_order
+from exactfold.panels.stars import stars
+from exactfold.panels.subspaces import leaves
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.verdict import PROVED, REFUTED
 
 
 def by_spaces(pattern: PanelPattern) -> dict[int | None, int]:

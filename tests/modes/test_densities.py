@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from exactfold.exact.surds import RATIONALS
-from exactfold.modes.densities import Density, Roots
+from exactfold.panels.densities import Density, Roots
 
 
 def test_sign_of_a_density_that_almost_cancels() -> None:

@@ -6,13 +6,13 @@ from itertools import pairwise
 import pytest
 from panel_sheets import grid
 
-from exactfold.modes.decomposition import decompose
-from exactfold.modes.elementary import ModeSearch
-from exactfold.modes.extension import Loops, extension
-from exactfold.modes.stars import stars
-from exactfold.modes.transmission import Transmission
+from exactfold._support.verdict import REFUTED
+from exactfold.panels.decomposition import decompose
+from exactfold.panels.elementary import ModeSearch
+from exactfold.panels.extension import Loops, extension
+from exactfold.panels.stars import stars
+from exactfold.panels.transmission import Transmission
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.verdict import REFUTED
 
 
 def bent() -> PanelPattern:

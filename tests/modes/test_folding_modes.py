@@ -6,17 +6,17 @@ from itertools import product
 import pytest
 from rich.console import Console
 
-from exactfold.modes import by_spaces
-from exactfold.modes.decomposition import decompose
-from exactfold.modes.folding_modes import MOST_MODES, folding_modes
-from exactfold.modes.kernel import first_order
-from exactfold.modes.result import Decomposition
-from exactfold.modes.stars import stars
-from exactfold.motion.followable import panel_components, panel_modes
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.app.pictures.way_sheets import sheet_of_ways
+from exactfold.app.report.panels import panels_report
+from exactfold.motion.panels.followable import panel_components, panel_modes
+from exactfold.panels import by_spaces
+from exactfold.panels.decomposition import decompose
+from exactfold.panels.folding_modes import MOST_MODES, folding_modes
+from exactfold.panels.kernel import first_order
+from exactfold.panels.result import Decomposition
+from exactfold.panels.stars import stars
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.report.panels import panels_report
-from exactfold.report.way_sheets import sheet_of_ways
-from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
 
 def boxes(size: int, slants: str) -> PanelPattern:

@@ -11,10 +11,12 @@ from flint import arb, fmpq
 from panel_sheets import mesh, miura, outlined, shifted_columns, tiling
 from rich.console import Console
 
-from exactfold.modes.decomposition import decompose
-from exactfold.modes.found import FoundComponent, found_components
-from exactfold.modes.kernel import Rows, first_order, imposed
-from exactfold.modes.regular import (
+from exactfold._support.verdict import REFUTED, UNDECIDED
+from exactfold.app.report.panels import panels_answer, panels_report
+from exactfold.panels.decomposition import decompose
+from exactfold.panels.found import FoundComponent, found_components
+from exactfold.panels.kernel import Rows, first_order, imposed
+from exactfold.panels.regular import (
     Forms,
     in_balls,
     is_component,
@@ -24,12 +26,10 @@ from exactfold.modes.regular import (
     regular_point,
     truly_folds,
 )
-from exactfold.modes.result import Decomposition
-from exactfold.modes.stars import Star, stars
-from exactfold.modes.subspaces import Leaf, factors, leaves, made_leaf, reduced, squares_of
+from exactfold.panels.result import Decomposition
+from exactfold.panels.stars import Star, stars
+from exactfold.panels.subspaces import Leaf, factors, leaves, made_leaf, reduced, squares_of
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
-from exactfold.report.panels import panels_answer, panels_report
-from exactfold.verdict import REFUTED, UNDECIDED
 
 
 def triangulated(columns: int, rows: int) -> PanelPattern:

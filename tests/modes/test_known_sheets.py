@@ -6,9 +6,9 @@ from itertools import pairwise
 import pytest
 from panel_sheets import chicken_wire, grid, outlined, regular_twist, shifted_columns, twist
 
-from exactfold.modes.decomposition import decompose
+from exactfold._support.verdict import PROVED, REFUTED
+from exactfold.panels.decomposition import decompose
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
-from exactfold.verdict import PROVED, REFUTED
 
 
 def turned(point: Point) -> Point:

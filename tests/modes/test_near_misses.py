@@ -10,14 +10,14 @@ import pytest
 from panel_sheets import regular_twist
 from typer.testing import CliRunner
 
-from exactfold.cli import app
-from exactfold.count.ways import count_ways
-from exactfold.drawing.drawing import Drawing, Line
-from exactfold.modes import near_misses
-from exactfold.modes.decomposition import decompose
-from exactfold.modes.near_misses import SNAPS, closes, snapped_misses
-from exactfold.modes.result import Decomposition
-from exactfold.modes.stars import edge_of
+from exactfold.app.cli.main import app
+from exactfold.branches.counting.ways import count_ways
+from exactfold.panels import near_misses
+from exactfold.panels.decomposition import decompose
+from exactfold.panels.near_misses import SNAPS, closes, snapped_misses
+from exactfold.panels.result import Decomposition
+from exactfold.panels.stars import edge_of
+from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.opening import from_drawing
 from exactfold.pattern.panel_pattern import PanelPattern
 

@@ -14,14 +14,14 @@ import numpy as np
 import pytest
 from panel_sheets import mesh, miura, outlined, shifted_columns, tiling
 
-from exactfold.modes.decomposition import decompose
-from exactfold.modes.kernel import first_order
-from exactfold.modes.stars import bracket, stars
-from exactfold.modes.subspaces import Leaf, leaves
+from exactfold._support.verdict import PROVED
+from exactfold.panels.decomposition import decompose
+from exactfold.panels.kernel import first_order
+from exactfold.panels.stars import bracket, stars
+from exactfold.panels.subspaces import Leaf, leaves
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
-from exactfold.verdict import PROVED
 
 SINGULAR = shutil.which("Singular")
 SHEETS = {

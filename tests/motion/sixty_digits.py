@@ -8,11 +8,11 @@ from fractions import Fraction
 import mpmath
 from flint import arb, arb_mat, fmpq
 
-from exactfold.motion.drive import Drive
-from exactfold.motion.flat_patches import FlatPatch
-from exactfold.motion.framework import Framework
-from exactfold.motion.piece import PARAMETER_BITS, Ball
-from exactfold.motion.tube import ROW_BITS, Tube
+from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.tubes.flat_patches import FlatPatch
+from exactfold.motion.tubes.piece import PARAMETER_BITS, Ball
+from exactfold.motion.tubes.tube import ROW_BITS, Tube
 
 
 def newton(

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import pytest
 
 from exactfold import find_branch, follow
-from exactfold.report import motion_animation, motion_stills
+from exactfold.app.report import motion_animation, motion_stills
 
 
 @pytest.fixture(scope="module")

@@ -13,15 +13,15 @@ import pytest
 from sheets import mapped, mirrored, nested_triangles, reflex_corners, star_in
 
 from exactfold import checker
-from exactfold.count.find import find_branch
-from exactfold.motion.contact_claims import certificate_with_contact
-from exactfold.motion.contacts import ContactWatch, first_contact
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.counting.find import find_branch
+from exactfold.motion.contacts.claims import certificate_with_contact
+from exactfold.motion.contacts.contacts import ContactWatch, first_contact
 from exactfold.motion.following import follow
-from exactfold.motion.piece import PARAMETER_BITS
-from exactfold.motion.tracks import follow_proved
-from exactfold.motion.tube import sharpened
+from exactfold.motion.tubes.piece import PARAMETER_BITS
+from exactfold.motion.tubes.tracks import follow_proved
+from exactfold.motion.tubes.tube import sharpened
 from exactfold.pattern.random_squares import random_square
-from exactfold.verdict import PROVED, UNDECIDED
 
 
 def signs(n, seed):

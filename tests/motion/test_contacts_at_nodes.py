@@ -7,10 +7,10 @@ from functools import cache
 import pytest
 
 from exactfold import CreasePattern, checker, find_branch
+from exactfold._support.verdict import PROVED
 from exactfold.motion import first_contact, follow_proved
-from exactfold.motion.contact_claims import certificate_with_contact
-from exactfold.motion.contacts import ContactWatch
-from exactfold.verdict import PROVED
+from exactfold.motion.contacts.claims import certificate_with_contact
+from exactfold.motion.contacts.contacts import ContactWatch
 
 SIGNS = "--+--"
 INNER = ["319/512 131/512", "95/128 23/64", "799/1024 861/1280", "483/512 431/512"]

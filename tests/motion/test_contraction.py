@@ -9,10 +9,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from exactfold.count.find import find_branch
-from exactfold.motion import contraction as module
-from exactfold.motion.arclength import length_between, shifted
-from exactfold.motion.contraction import (
+from exactfold.branches.counting.find import find_branch
+from exactfold.motion.tubes import contraction as module
+from exactfold.motion.tubes.arclength import length_between, shifted
+from exactfold.motion.tubes.contraction import (
     INVERSE_BITS,
     ONE,
     SCALE,
@@ -20,9 +20,9 @@ from exactfold.motion.contraction import (
     Contraction,
     polynomial,
 )
-from exactfold.motion.length_equations import LengthEquations, squared
-from exactfold.motion.tracks import follow_proved, half_branch
-from exactfold.motion.tube import _bounds, _residuals
+from exactfold.motion.tubes.length_equations import LengthEquations, squared
+from exactfold.motion.tubes.tracks import follow_proved, half_branch
+from exactfold.motion.tubes.tube import _bounds, _residuals
 from exactfold.pattern.random_squares import random_square
 
 

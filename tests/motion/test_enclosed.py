@@ -13,16 +13,16 @@ from sheets import nested_triangles
 from sixty_digits import newton
 
 from exactfold import checker, find_branch, follow, load, random_square
-from exactfold.data import example_path
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.errors import UsageError
 from exactfold.motion import prove, write_motion
-from exactfold.motion.loop_frames import frame_of
-from exactfold.motion.loops import Landing
-from exactfold.motion.passages import Passage
-from exactfold.motion.piece import PARAMETER_BITS
-from exactfold.motion.tube import ROW_BITS
-from exactfold.problem.problem import Problem
-from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.motion.loops.frames import frame_of
+from exactfold.motion.loops.loops import Landing
+from exactfold.motion.tubes.passages import Passage
+from exactfold.motion.tubes.piece import PARAMETER_BITS
+from exactfold.motion.tubes.tube import ROW_BITS
+from exactfold.pattern.data import example_path
+from exactfold.rigidity.equations.problem import Problem
 
 NODE_SHEET, NODE_SIGNS = random_square(8, seed=1), "------++"
 

@@ -7,8 +7,8 @@ from fractions import Fraction
 import pytest
 from sheets import nested_triangles, reflex_corners, star_in
 
-from exactfold.motion.face_pairs import FacePairs
-from exactfold.motion.framework import Framework
+from exactfold.motion.contacts.face_pairs import FacePairs
+from exactfold.motion.curves.framework import Framework
 from exactfold.pattern.random_squares import random_square
 
 SHEETS = pytest.mark.parametrize(

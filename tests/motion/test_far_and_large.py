@@ -9,10 +9,10 @@ from panel_sheets import regular_twist
 from sheets import mapped
 
 from exactfold import checker, decompose, find_branch, follow, load
+from exactfold._support.verdict import PROVED
 from exactfold.motion import certificate_with_contact, first_contact, follow_panels, prove_contacts
 from exactfold.motion.proving import prove
 from exactfold.pattern import PanelPattern
-from exactfold.verdict import PROVED
 
 PLAIN = load("two-vertex")
 MOVED = {

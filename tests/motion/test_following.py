@@ -10,12 +10,12 @@ import pytest
 from sheets import random_wheel, reflex_corners, scrambled
 
 from exactfold import CreasePattern, count_branches, find_branch, follow, random_square
-from exactfold.data import example_path
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
-from exactfold.motion.crossings import Crossings
-from exactfold.motion.framework import Framework
-from exactfold.motion.motion import Motion
+from exactfold.motion.curves.crossings import Crossings
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.curves.motion import Motion
 from exactfold.pattern import read_fold
+from exactfold.pattern.data import example_path
 
 
 def drawn_signs(n, seed):

@@ -13,20 +13,21 @@ import pytest
 from loops import Tracker
 
 from exactfold import find_branch, find_loops, random_square
-from exactfold.count.pools import process_pool
-from exactfold.motion import graph_building, visits
-from exactfold.motion.configuration_graph import ConfigurationGraph, GraphArc, NodeEnd
-from exactfold.motion.fold_ranges import SLACK, Stretch, angles_in, box_angles, fold_ranges
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.counting.pools import process_pool
+from exactfold.motion.contacts.fold_ranges import SLACK, Stretch, angles_in, box_angles, fold_ranges
+from exactfold.motion.curves.framework import Framework
 from exactfold.motion.following import follow
-from exactfold.motion.framework import Framework
-from exactfold.motion.graph_building import graph_of
-from exactfold.motion.half_branches import HalfBranch
-from exactfold.motion.loop_proofs import Loop
-from exactfold.motion.loops import LoopFinder
-from exactfold.motion.piece import Ball
-from exactfold.motion.visits import LocatedNode, crosses
-from exactfold.problem.problem import Problem
-from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.motion.loops import graph_building
+from exactfold.motion.loops.configuration_graph import ConfigurationGraph, GraphArc, NodeEnd
+from exactfold.motion.loops.graph_building import graph_of
+from exactfold.motion.loops.loops import LoopFinder
+from exactfold.motion.loops.proofs import Loop
+from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.tubes import visits
+from exactfold.motion.tubes.piece import Ball
+from exactfold.motion.tubes.visits import LocatedNode, crosses
+from exactfold.rigidity.equations.problem import Problem
 
 SHEET, SIGNS = random_square(4, seed=75), "++++"
 PROBLEM = Problem.of(SHEET)

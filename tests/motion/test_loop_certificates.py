@@ -12,16 +12,16 @@ from sheets import flipped, nested_triangles, reflex_corners, star_in, with_poin
 from typer.testing import CliRunner
 
 from exactfold import checker, find_branch, load, random_square, write_fold
-from exactfold.cli import app
-from exactfold.data import example_path
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.cli.main import app
+from exactfold.certificates.journal import Journal
 from exactfold.errors import ForeignJournalError, NotCountedError, UsageError
-from exactfold.evidence.journal import Journal
 from exactfold.motion import find_loops
-from exactfold.motion.half_branches import HalfBranch
-from exactfold.motion.loop_file import LoopFile
-from exactfold.motion.loops import LoopFinder
-from exactfold.problem.problem import Problem
-from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.motion.loops.file import LoopFile
+from exactfold.motion.loops.loops import LoopFinder
+from exactfold.motion.loops.rays import HalfBranch
+from exactfold.pattern.data import example_path
+from exactfold.rigidity.equations.problem import Problem
 
 INTERRUPTED = 130
 FOLDS_FLAT = load(example_path("single-vertex-4"))
@@ -289,8 +289,8 @@ def test_what_an_interrupted_run_leaves_is_unfinished(tmp_path, capsys):
 
 SIGNALLED = """
 import os, signal
-from exactfold.cli import main
-from exactfold.evidence import journal
+from exactfold.app.cli.main import main
+from exactfold.certificates import journal
 
 append = journal.Journal.append
 

@@ -9,20 +9,20 @@ from height_signs import HeightSigns
 from sixty_digits import assert_holds_the_node
 
 from exactfold import CreasePattern, find_branch, random_square
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.motion import find_loops
-from exactfold.motion.crossing_curves import crossing_ahead, flat_vertices
-from exactfold.motion.flat_patches import FlatPatch
+from exactfold.motion.curves.crossing_curves import crossing_ahead, flat_vertices
+from exactfold.motion.curves.framework import Framework
 from exactfold.motion.following import follow
-from exactfold.motion.framework import Framework
-from exactfold.motion.half_branches import HalfBranch
-from exactfold.motion.loops import LoopFinder
-from exactfold.motion.matching import _matching
-from exactfold.motion.node_tube import prove_node_tube
-from exactfold.motion.passages import Passage
-from exactfold.motion.piece import PARAMETER_BITS
-from exactfold.problem.problem import Problem
+from exactfold.motion.loops.loops import LoopFinder
+from exactfold.motion.loops.matching import _matching
+from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.tubes.branch_point_tube import prove_node_tube
+from exactfold.motion.tubes.flat_patches import FlatPatch
+from exactfold.motion.tubes.passages import Passage
+from exactfold.motion.tubes.piece import PARAMETER_BITS
 from exactfold.rigidity.curvature import wheel_stress
-from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.rigidity.equations.problem import Problem
 
 NODE_SHEET, NODE_SIGNS = random_square(8, seed=1), "------++"
 

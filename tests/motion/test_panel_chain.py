@@ -5,11 +5,11 @@ import pytest
 from flint import arb, arb_mat, ctx
 from panel_sheets import chicken_wire, mesh, miura
 
-from exactfold.checker.panel_places import _middle
-from exactfold.checker.panel_sheet import read_panels
-from exactfold.evidence.panels import panels_document
-from exactfold.motion.panel_chain import Turned, hinged, moved, product, size, spun, still
-from exactfold.motion.panel_places import Placing
+from exactfold.checker.motion.panels.places import _middle
+from exactfold.checker.sheets.panels import read_panels
+from exactfold.motion.panels.chain import Turned, hinged, moved, product, size, spun, still
+from exactfold.motion.panels.places import Placing
+from exactfold.panels.certificate import panels_document
 
 ORDER = 6
 

@@ -13,14 +13,14 @@ from flint import arb, ctx, fmpq
 from panel_sheets import grid, mesh, miura, tiling
 
 from exactfold import checker, count_ways
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import ball
 from exactfold.motion import follow_panels, prove_contacts, prove_panels
-from exactfold.motion.panel_clearance import PanelPairs, with_proved_contact
-from exactfold.motion.panel_contacts import PanelContacts
-from exactfold.motion.panel_curves import FollowedCurve
-from exactfold.motion.panel_pieces import PanelPieces
-from exactfold.verdict import PROVED, UNDECIDED
+from exactfold.motion.panels.clearance import PanelPairs, with_proved_contact
+from exactfold.motion.panels.contacts import PanelContacts
+from exactfold.motion.panels.curves import FollowedCurve
+from exactfold.motion.panels.pieces import PanelPieces
 
 
 def strip(widths):

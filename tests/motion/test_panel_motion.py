@@ -21,13 +21,13 @@ from panel_sheets import (
 )
 from scipy.optimize import linprog
 
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import RATIONALS
-from exactfold.modes.decomposition import decompose
-from exactfold.motion.followable import panel_components, panel_modes
-from exactfold.motion.panel_following import follow_panels
+from exactfold.motion.panels.followable import panel_components, panel_modes
+from exactfold.motion.panels.following import follow_panels
+from exactfold.panels.decomposition import decompose
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.verdict import PROVED, REFUTED, UNDECIDED
 
 ROOT3 = RATIONALS.adjoined(3).root
 

@@ -4,7 +4,7 @@ from threading import Event, Thread
 
 from flint import arb_series, ctx
 
-from exactfold.motion.panel_pieces import ORDER, _capped
+from exactfold.motion.panels.pieces import ORDER, _capped
 
 
 def test_series_have_all_their_terms_in_every_thread() -> None:

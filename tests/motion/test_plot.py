@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from exactfold import find_branch, follow, random_square
-from exactfold.report import angles_plot, svg
+from exactfold.app.pictures import svg
+from exactfold.app.report import angles_plot
 
 NAME = "{http://www.w3.org/2000/svg}"
 

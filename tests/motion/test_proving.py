@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from exactfold import checker, find_branch, follow, random_square
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.motion import persistence, prove
 from exactfold.motion.proving import MotionProof
-from exactfold.verdict import PROVED, UNDECIDED
 
 SHEET = random_square(3, seed=1)
 

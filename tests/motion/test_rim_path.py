@@ -12,19 +12,20 @@ import pytest
 from sixty_digits import assert_holds_the_node, holds, newton
 
 from exactfold import CreasePattern, delaunay, families
-from exactfold.branches.branch import Branch
+from exactfold._support.verdict import PROVED
+from exactfold.branches.counting.find import find_branch
+from exactfold.branches.values.branch import Branch
 from exactfold.checker import check, summary
-from exactfold.count.find import find_branch
 from exactfold.errors import NotFollowedError, UndecidedBranchError
 from exactfold.exact.linalg import rank
-from exactfold.motion import follow, prove, rim_path
+from exactfold.motion import follow, prove
+from exactfold.motion.curves import boundary_path as rim_path
+from exactfold.motion.curves.boundary_path import factor_functional, problem_of, ties_of
+from exactfold.motion.curves.framework import Framework
 from exactfold.motion.following import Motion
-from exactfold.motion.framework import Framework
 from exactfold.motion.persistence import _another
-from exactfold.motion.rim_path import factor_functional, problem_of, ties_of
-from exactfold.motion.tracks import follow_proved
+from exactfold.motion.tubes.tracks import follow_proved
 from exactfold.rigidity.functionals import vertex_sign_functional
-from exactfold.verdict import PROVED
 
 CORNERS = [(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9)]
 PENTAGON = delaunay([*CORNERS, (5, 4), (8, 7)])

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from sheets import nested_triangles, reflex_corners, star_in
 
-from exactfold.motion.face_pairs import FacePairs, Open
-from exactfold.motion.framework import Framework
-from exactfold.motion.separation import (
+from exactfold.motion.contacts.face_pairs import FacePairs, Open
+from exactfold.motion.contacts.separation import (
     Swept,
     bends,
     clear_until,
     not_separated,
     through,
 )
+from exactfold.motion.curves.framework import Framework
 from exactfold.pattern.random_squares import random_square
 
 NONE = np.zeros((0, 2), dtype=np.intp)

@@ -10,16 +10,16 @@ import pytest
 from sheets import reflex_corners, star_in, wheel
 
 from exactfold import count_branches, find_branch, load
+from exactfold._support.verdict import UNDECIDED
 from exactfold.errors import FlatVertexError
 from exactfold.exact.linalg import rank
 from exactfold.motion import find_loops, follow_proved
-from exactfold.motion.angles import fold_angles_of
-from exactfold.motion.framework import Framework
-from exactfold.motion.loops import LoopFinder
-from exactfold.motion.singular import folds_flat, half_turn
-from exactfold.motion.straight_folds import straight_fold
-from exactfold.problem import Problem
-from exactfold.verdict import UNDECIDED
+from exactfold.motion.curves.angles import fold_angles_of
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.curves.straight_folds import straight_fold
+from exactfold.motion.loops.loops import LoopFinder
+from exactfold.motion.tubes.singular import folds_flat, half_turn
+from exactfold.rigidity import Problem
 
 BRANCHING = "motions may branch there"
 

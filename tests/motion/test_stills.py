@@ -8,10 +8,10 @@ import pytest
 from panel_sheets import miura
 
 from exactfold import find_branch, follow, random_square
+from exactfold.app.pictures.painting import back_to_front
+from exactfold.app.pictures.stills import motion_stills, seen_from_above, stills
 from exactfold.motion import follow_panels
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.report.painting import back_to_front
-from exactfold.report.stills import motion_stills, seen_from_above, stills
 
 NAME = "{http://www.w3.org/2000/svg}"
 BLUE, YELLOW = (86, 180, 233), (240, 228, 66)

@@ -15,20 +15,15 @@ from rich.console import Console
 from sixty_digits import assert_holds_the_node
 
 from exactfold import checker, find_branch, follow, random_square, schema
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.report import motion_report
+from exactfold.app.viewer import ways
 from exactfold.exact.surds import float_bounds
-from exactfold.motion import (
-    certificate_with_contact,
-    chain,
-    contacts,
-    follow_proved,
-    prove,
-    proving,
-)
-from exactfold.motion.contacts import first_contact
-from exactfold.motion.separation import Open
-from exactfold.report import motion_report
-from exactfold.verdict import PROVED, UNDECIDED
-from exactfold.viewer import ways
+from exactfold.motion import certificate_with_contact, follow_proved, prove, proving
+from exactfold.motion.contacts import contacts
+from exactfold.motion.contacts.contacts import first_contact
+from exactfold.motion.contacts.separation import Open
+from exactfold.motion.tubes import chain
 
 SHEET = random_square(5, seed=4)
 SIGNS, FLAT = "-+--+", 6

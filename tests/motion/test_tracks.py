@@ -17,17 +17,17 @@ from sheets import mapped, mirrored, nested_triangles, reflex_corners, relabelle
 from sixty_digits import holds, newton
 
 from exactfold import checker
-from exactfold.count.find import find_branch
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.counting.find import find_branch
 from exactfold.errors import FlatVertexError, UsageError
-from exactfold.motion.angles import fold_angles_of
-from exactfold.motion.piece import PARAMETER_BITS, Ball
-from exactfold.motion.tracks import Track, follow_proved, half_branch
-from exactfold.motion.tube import prove_tube, sharpened
-from exactfold.motion.tube_start import ROOT_BITS
+from exactfold.motion.curves.angles import fold_angles_of
+from exactfold.motion.tubes.piece import PARAMETER_BITS, Ball
+from exactfold.motion.tubes.tracks import Track, follow_proved, half_branch
+from exactfold.motion.tubes.tube import prove_tube, sharpened
+from exactfold.motion.tubes.tube_start import ROOT_BITS
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, single_vertex
 from exactfold.pattern.random_squares import random_square
-from exactfold.verdict import PROVED, UNDECIDED
 
 
 def signs(n: int, seed: int) -> str:
@@ -187,7 +187,7 @@ def test_nothing_is_proved_beyond_the_reach(track: Track) -> None:
 
 def test_where_there_is_no_curve_there_is_no_tube(track: Track) -> None:
     """Far from all configurations, and where the Jacobian is singular: the flat state."""
-    from exactfold.motion.length_equations import LengthEquations
+    from exactfold.motion.tubes.length_equations import LengthEquations
 
     equations = LengthEquations.of(track.framework)
     size = track.framework.size

@@ -15,8 +15,8 @@ import trimesh
 from panel_sheets import regular_twist
 
 from exactfold import find_branch, follow, random_square
-from exactfold.bridges import meshes
 from exactfold.errors import GltfMissingError, UnwritableFileError, UsageError
+from exactfold.interop import meshes
 from exactfold.motion import follow_panels, write_motion
 from exactfold.pattern import PanelPattern, load_fold, open_pattern
 from exactfold.pattern.triangulating import triangles_by_face, triangles_of

@@ -2,9 +2,9 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold.data import SHEETS, example_path
 from exactfold.errors import NotApplicableError, PatternError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.families import (
     FAMILIES,
     collinear_folds,

@@ -9,7 +9,6 @@ from fold_files import SQUARE, parse
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.drawing.fold_json import EXACT_KEY
 from exactfold.errors import (
     CrossingEdgesError,
     CutEdgeError,
@@ -29,6 +28,7 @@ from exactfold.errors import (
     UnreadableFileError,
     UnwritableFileError,
 )
+from exactfold.pattern.drawing.formats.fold_json import EXACT_KEY
 from exactfold.pattern.fold import (
     load_fold,
     parse_fold,

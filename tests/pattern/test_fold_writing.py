@@ -9,8 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pattern_strategies import patterns, quick, similarities, transformed
 
-from exactfold.data import example_path
-from exactfold.drawing.fold_json import EXACT_KEY
 from exactfold.errors import (
     NotApplicableError,
     StaleExactCoordinatesError,
@@ -18,6 +16,8 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import example_path
+from exactfold.pattern.drawing.formats.fold_json import EXACT_KEY
 from exactfold.pattern.families import single_vertex, two_vertex
 from exactfold.pattern.fold import load_fold, parse_fold, read_fold
 from exactfold.pattern.fold_writing import fold_document, write_fold, write_text

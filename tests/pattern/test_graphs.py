@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from pattern_strategies import patterns, quick
 
-from exactfold.data import SHEETS
+from exactfold.pattern.data import SHEETS
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.graphs import embedding, face_graph, vertex_graph
 from exactfold.pattern.loading import load

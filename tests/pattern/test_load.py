@@ -10,9 +10,8 @@ import pytest
 import rooms
 
 import exactfold
-from exactfold.count.find import find_branch
-from exactfold.count.ways import count_ways
-from exactfold.data import BY_OTHERS, DRAWINGS, EXAMPLES, SHEETS, example_path, examples
+from exactfold.branches.counting.find import find_branch
+from exactfold.branches.counting.ways import count_ways
 from exactfold.errors import (
     NotJSONError,
     NotTriangulatedError,
@@ -20,6 +19,7 @@ from exactfold.errors import (
     UnreadableFileError,
     UsageError,
 )
+from exactfold.pattern.data import BY_OTHERS, DRAWINGS, EXAMPLES, SHEETS, example_path, examples
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.fold import load_fold, read_fold
 from exactfold.pattern.fold_writing import write_fold
@@ -135,35 +135,35 @@ TAKES_PATTERN = {
     "rigidity.pattern_facts": (),
     "rigidity.rigidity_matrix": (),
     "rigidity.self_stresses": (),
-    "algebra.split_form": (4,),
+    "solve.split_form": (4,),
     "motion.find_driven": ({(3, 5): 40},),
     "pattern.near_degenerate": (),
-    "problem.BranchSystem": (),
-    "count.count_branches": (),
-    "count.find_branch": ("+-",),
-    "count.count_shapes": ({4: 1},),
-    "actuation.actuate": ("+-",),
-    "actuation.actuate_all": (),
-    "assignment.match": ("MVVUUUU",),
+    "rigidity.BranchSystem": (),
+    "branches.count_branches": (),
+    "branches.find_branch": ("+-",),
+    "branches.count_shapes": ({4: 1},),
+    "design.actuate": ("+-",),
+    "design.actuate_all": (),
+    "design.match": ("MVVUUUU",),
 }
 
 TAKES_PATTERN_ELSEWHERE = {
-    "bridges.to_coq",
-    "bridges.to_networkx",
-    "bridges.to_pyrigi",
-    "bridges.to_trimesh",
-    "assignment.all_assignments",
-    "assignment.match_panels",
-    "assignment.match_rim",
-    "evidence.pieces_certificate",
-    "count.BranchFinder",
-    "count.find_branches",
+    "interop.to_coq",
+    "interop.to_networkx",
+    "interop.to_pyrigi",
+    "interop.to_trimesh",
+    "design.all_assignments",
+    "design.match_panels",
+    "design.match_rim",
+    "branches.pieces_certificate",
+    "branches.BranchFinder",
+    "branches.find_branches",
     "branches.fold_angles",
-    "count.neighbours",
-    "count.stream_branches",
+    "branches.neighbours",
+    "branches.stream_branches",
     "pattern.write_fold",
     "motion.find_loops",
-    "pieces.find_pieces",
+    "branches.find_pieces",
 }
 
 
@@ -182,28 +182,28 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
     made = {
         "branches.Branch",
         "branches.BranchCount",
-        "count.StreamedCount",
+        "branches.StreamedCount",
         "pattern.FoldFile",
         "pattern.RandomSquare",
-        "problem.Problem",
+        "rigidity.Problem",
         "rigidity.PatternFacts",
         "rigidity.ProjectiveImage",
-        "modes.Decomposition",
-        "count.PanelFacts",
+        "panels.Decomposition",
+        "branches.PanelFacts",
         "pattern.Converted",
-        "actuation.Actuation",
-        "assignment.AllAssignments",
-        "assignment.Match",
-        "assignment.PanelMatch",
-        "assignment.RimMatch",
-        "count.ShapeCount",
-        "evidence.motion_certificate",
+        "design.Actuation",
+        "design.AllAssignments",
+        "design.Match",
+        "design.PanelMatch",
+        "design.RimMatch",
+        "branches.ShapeCount",
+        "motion.motion_certificate",
         "motion.Loops",
         "motion.PanelMode",
         "motion.PanelMotion",
         "motion.Track",
     }
-    of_panels = {"modes.decompose", "count.panel_facts", "pattern.triangulating_edges"}
+    of_panels = {"panels.decompose", "branches.panel_facts", "pattern.triangulating_edges"}
     taking = {
         name
         for name, value in rooms.public().items()

@@ -6,8 +6,8 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold.data import SHEETS
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import SHEETS
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import collinear_folds
 from exactfold.pattern.loading import load

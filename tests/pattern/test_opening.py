@@ -10,8 +10,6 @@ import pytest
 from drawings import SQUARE, as_fold
 
 from exactfold import CreasePattern
-from exactfold.data import example_path
-from exactfold.drawing.read import parse_drawing
 from exactfold.errors import (
     CrossingEdgesError,
     DegenerateFaceError,
@@ -25,6 +23,8 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.exact.surds import RATIONALS
+from exactfold.pattern.data import example_path
+from exactfold.pattern.drawing.formats.read import parse_drawing
 from exactfold.pattern.fold import load_fold
 from exactfold.pattern.fold_writing import document_text
 from exactfold.pattern.opening import Opened, from_drawing, open_pattern, opened

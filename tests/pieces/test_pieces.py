@@ -14,18 +14,19 @@ from shapes import FOUR_CIRCLES, NEVER_FLAT, joined_by_shapes
 from sheets import DENTED, HEXAGON, scrambled, wheel, with_point
 
 from exactfold import PROVED, REFUTED, UNDECIDED, CreasePattern, checker, count_branches, write_fold
-from exactfold.count import hand_over
-from exactfold.count.true_bounds import with_true_bounds
+from exactfold.branches import Joint, Pieces, find_pieces
+from exactfold.branches.connected_components import flat_stars, joining
+from exactfold.branches.connected_components.cubes import components
+from exactfold.branches.connected_components.no_zero import have_no_common_zero
+from exactfold.branches.counting import fallback as hand_over
+from exactfold.branches.counting.true_bounds import with_true_bounds
 from exactfold.errors import NotApplicableError
-from exactfold.modes.stars import Star, edge_of, stars
 from exactfold.motion import follow_proved
+from exactfold.panels.stars import Star, edge_of, stars
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import flat_vertex_square, single_vertex, waterbomb
 from exactfold.pattern.opening import panels
 from exactfold.pattern.random_squares import sample_random_square
-from exactfold.pieces import Joint, Pieces, find_pieces, flat_stars, joining
-from exactfold.pieces.cubes import components
-from exactfold.pieces.no_zero import have_no_common_zero
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import saddle_functional
 

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.algebra.groebner_bases import groebner
 from exactfold.errors import CollinearPointsError, NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import single_vertex
-from exactfold.problem.branch_system import BranchSystem
 from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.functionals import saddle_functional
+from exactfold.solve.algebraic.groebner_bases import groebner
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
 TWO_VERTICES = CreasePattern(

@@ -7,8 +7,8 @@ import pytest
 
 from exactfold.errors import UsageError
 from exactfold.pattern.families import flat_vertex_square, hypar, two_vertex
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.flat_sheets import flat_sheets
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.flat_sheets import flat_sheets
 from exactfold.rigidity.functionals import fold_functional
 
 

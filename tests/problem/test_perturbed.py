@@ -8,15 +8,13 @@ import pytest
 from sheets import SQUARE, scrambled
 
 from exactfold import PROVED, CreasePattern, random_square
-from exactfold.algebra import groebner
-from exactfold.certify import isolate
-from exactfold.certify.ball_krawczyk import arb_krawczyk
-from exactfold.certify.box import IsolatingBox
 from exactfold.errors import FloatRefusedError, UsageError
-from exactfold.problem import BranchSystem
-from exactfold.problem.perturbation import perturbed
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve import homotopy
+from exactfold.rigidity import BranchSystem
+from exactfold.rigidity.equations.perturbation import perturbed
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve import groebner, homotopy, isolate
+from exactfold.solve.certify.ball_krawczyk import arb_krawczyk
+from exactfold.solve.certify.box import IsolatingBox
 
 
 def system_of(pattern: CreasePattern) -> QuadraticSystem:

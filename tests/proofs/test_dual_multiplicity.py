@@ -5,12 +5,12 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold.algebra.exact_solution import RootClass
-from exactfold.algebra.groebner_bases import groebner
 from exactfold.errors import DualSpaceError, ParametrisationError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.exact_solution import RootClass
+from exactfold.solve.algebraic.groebner_bases import groebner
 from proofs.dual_multiplicity import check_complete, check_dual_space
 from proofs.dual_space import DualSpace, dual_space
 

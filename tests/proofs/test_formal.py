@@ -13,11 +13,11 @@ from typing import Any
 import pytest
 
 from exactfold import find_branch, find_branches, load
-from exactfold.bridges import branch_to_coq, branches_to_coq, to_coq
-from exactfold.data import EXAMPLES, example_path
+from exactfold.branches import branch_certificate
 from exactfold.errors import NotApplicableError, NotTriangulatedError
-from exactfold.evidence import branch_certificate
+from exactfold.interop import branch_to_coq, branches_to_coq, to_coq
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.opening import open_pattern, triangles
 from exactfold.pattern.random_squares import random_square
 from exactfold.rigidity.curvature import curvature_form

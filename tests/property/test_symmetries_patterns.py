@@ -23,16 +23,16 @@ from sheets import (
 )
 
 from exactfold import BranchCount, count_branches, random_square
-from exactfold.branches.roots import BoxRoot
-from exactfold.certify.isolation import isolate
+from exactfold._support.verdict import PROVED
+from exactfold.branches.values.roots import BoxRoot
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square
-from exactfold.problem.branch_system import BranchSystem, Chart
-from exactfold.problem.sign_rows import Functionals
 from exactfold.rigidity import curvature_form, project
-from exactfold.solve.homotopy_ends import homotopy
-from exactfold.verdict import PROVED
+from exactfold.rigidity.equations.branch_system import BranchSystem, Chart
+from exactfold.rigidity.equations.sign_rows import Functionals
+from exactfold.solve.certify.isolation import isolate
+from exactfold.solve.numeric.homotopy import homotopy
 
 few = settings(max_examples=12, deadline=None)
 seeds = st.integers(0, 10**6)

@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold.certify.ball_newton import interval_newton
-from exactfold.certify.box import IsolatingBox
-from exactfold.certify.exact_krawczyk import krawczyk
 from exactfold.exact.linalg import rank
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve.homotopy_ends import homotopy
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.certify.ball_newton import interval_newton
+from exactfold.solve.certify.box import IsolatingBox
+from exactfold.solve.certify.exact_krawczyk import krawczyk
+from exactfold.solve.numeric.homotopy import homotopy
 
 Matrix = list[list[Fraction]]
 

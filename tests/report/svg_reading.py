@@ -7,7 +7,7 @@ from functools import cache
 from xml.etree import ElementTree
 
 from exactfold import open_pattern
-from exactfold.data import example_path
+from exactfold.pattern.data import example_path
 
 NAME = "{http://www.w3.org/2000/svg}"
 

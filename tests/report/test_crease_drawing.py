@@ -8,14 +8,14 @@ import pytest
 from svg_reading import NAME, ends, group_of, letters, numbered, of_class, shipped, tree, words
 
 from exactfold import CreasePattern, find_branch, load, open_pattern, random_square
-from exactfold.data import EXAMPLES, example_path
-from exactfold.drawing.drawing import Drawing, Line
+from exactfold.app.pictures.crease_drawing import pattern_picture
+from exactfold.app.pictures.crease_labels import labels
+from exactfold.app.pictures.drawn_ways import branch_way
 from exactfold.exact.surds import SurdField
+from exactfold.pattern.data import EXAMPLES, example_path
+from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.report.crease_drawing import pattern_picture
-from exactfold.report.crease_labels import labels
-from exactfold.report.drawn_ways import branch_way
 
 DART = CreasePattern([(0, 0), (4, -4), (1, 0), (4, 4)], [(0, 1, 2), (0, 2, 3)])
 

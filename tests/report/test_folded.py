@@ -5,8 +5,8 @@ import pytest
 from svg_reading import NAME, tree, words
 
 from exactfold import find_branch, follow
+from exactfold.app.pictures.folded import Amount, folded
 from exactfold.errors import UsageError
-from exactfold.report.folded import Amount, folded
 
 
 @pytest.fixture(scope="module")

@@ -6,13 +6,13 @@ import pytest
 from svg_reading import NAME, letters, of_class, tree, words
 
 from exactfold import count_ways
+from exactfold.app.pictures.drawn_ways import ways_of
+from exactfold.app.pictures.multiples import sheet_of_multiples
+from exactfold.app.pictures.way_sheets import number_listed, sheet_of_ways, why_no_way
 from exactfold.errors import UsageError
-from exactfold.modes.decomposition import decompose
+from exactfold.panels.decomposition import decompose
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
-from exactfold.report.drawn_ways import ways_of
-from exactfold.report.multiples import sheet_of_multiples
-from exactfold.report.way_sheets import number_listed, sheet_of_ways, why_no_way
 
 
 def numbers(text):

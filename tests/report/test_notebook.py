@@ -9,15 +9,15 @@ import pytest
 from svg_reading import NAME, letters, shipped, tree, words
 
 from exactfold import count_ways, find_branch, follow, random_square, read_fold
-from exactfold.assignment import match
-from exactfold.data import EXAMPLES, example_path
-from exactfold.drawing import read_drawing
+from exactfold._support.notebook import shown
+from exactfold.app.pictures.crease_drawing import pattern_picture
+from exactfold.app.pictures.stills import motion_stills
+from exactfold.app.report.notebook import ROWS
+from exactfold.design import match
 from exactfold.motion import follow_panels
+from exactfold.pattern import read_drawing
+from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.fold import load_fold
-from exactfold.report.crease_drawing import pattern_picture
-from exactfold.report.notebook import ROWS
-from exactfold.report.stills import motion_stills
-from exactfold.showing import shown
 
 
 @pytest.fixture(scope="module")
@@ -109,7 +109,7 @@ def test_values_are_shown_in_a_program_that_has_not_drawn_before():
     script = (
         "import exactfold, sys\n"
         "pattern = exactfold.load('single-vertex-4')\n"
-        "assert not [name for name in sys.modules if name.startswith('exactfold.report')]\n"
+        "assert not [name for name in sys.modules if name.startswith('exactfold.app.report')]\n"
         "print(pattern._repr_svg_()[:4])"
     )
     done = subprocess.run(

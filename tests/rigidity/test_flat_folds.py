@@ -7,8 +7,8 @@ import pytest
 from sheets import dart, random_wheel, wheel, with_point
 
 from exactfold import count_branches, random_square
-from exactfold.checker.flat_folds import close_flat
-from exactfold.checker.sheet import Sheet
+from exactfold.checker.sheets.flat_folds import close_flat
+from exactfold.checker.sheets.sheet import Sheet
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, hypar, single_vertex, two_vertex
 from exactfold.rigidity.curvature import curvature_form

@@ -7,20 +7,20 @@ import pytest
 from sheets import SQUARE, dart, mapped, mirrored, reflex_corners, rotated, scrambled
 
 from exactfold import families, random_square, read_fold
-from exactfold.data import example_path
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.problem.branch_system import chamber_chart
+from exactfold.pattern.data import example_path
 from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.equations.branch_system import chamber_chart
 from exactfold.rigidity.timelike import round_cone
-from exactfold.solve.dense_newton import (
+from exactfold.solve.numeric.dense_newton import (
     Ends,
     NappeSystem,
     sign_vectors,
     solve_each,
 )
-from exactfold.solve.popping_ends import popping
-from exactfold.solve.refined_newton import refined_end
+from exactfold.solve.numeric.popping import popping
+from exactfold.solve.numeric.refined_newton import refined_end
 
 PATTERNS = {
     "random square": random_square(6, seed=3),

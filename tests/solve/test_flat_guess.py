@@ -2,10 +2,10 @@
 
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import hypar, two_vertex
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.flat_sheets import flat_sheets
-from exactfold.solve.flat_guess import flat_vertices
-from exactfold.solve.popping_ends import popping
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.flat_sheets import flat_sheets
+from exactfold.solve.numeric.flat_guess import flat_vertices
+from exactfold.solve.numeric.popping import popping
 
 
 def test_the_guess_from_paths_is_right_for_a_large_pattern():

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from exactfold.certify.box import IsolatingBox
-from exactfold.certify.exact_krawczyk import krawczyk
 from exactfold.errors import UsageError
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.pattern.random_squares import random_square
-from exactfold.problem.branch_system import BranchSystem
-from exactfold.problem.quadratic import QuadraticSystem
-from exactfold.solve import homotopy_ends as module
-from exactfold.solve.homotopy_ends import homotopy
+from exactfold.rigidity.equations.branch_system import BranchSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.certify.box import IsolatingBox
+from exactfold.solve.certify.exact_krawczyk import krawczyk
+from exactfold.solve.numeric import homotopy as module
+from exactfold.solve.numeric.homotopy import homotopy
 
 
 def random_system(n: int, seed: int, size: int = 99) -> QuadraticSystem:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exactfold.solve.sparse_newton import Point, equations
+from exactfold.solve.numeric.sparse_newton import Point, equations
 
 
 def test_on_a_regular_cone_a_row_is_that_of_its_line() -> None:

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from exactfold import PROVED, count_branches, random_square
-from exactfold.studies import angle_statistics, angles
-from exactfold.studies import pair_angles as counting
-from exactfold.studies.angle_statistics import distance, uniform
-from exactfold.studies.lines import Lines
-from exactfold.studies.pair_angles import BINS, pair_angles
+from exactfold.studies.angles import pairs as counting
+from exactfold.studies.angles import statistics as angle_statistics
+from exactfold.studies.angles import study as angles
+from exactfold.studies.angles.pairs import BINS, pair_angles
+from exactfold.studies.angles.statistics import distance, uniform
+from exactfold.studies.running.lines import Lines
 
 
 @pytest.fixture(autouse=True)

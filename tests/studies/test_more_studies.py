@@ -10,16 +10,17 @@ import numpy as np
 import pytest
 
 from exactfold import count_branches, random_square
-from exactfold.actuation import actuate
-from exactfold.algebra.groebner_bases import quotient_algebra
-from exactfold.algebra.hermite import hermite_counts
-from exactfold.problem import BranchSystem, perturbed
+from exactfold.design import actuate
+from exactfold.rigidity import BranchSystem, perturbed
 from exactfold.rigidity.functionals import saddle_functional
-from exactfold.studies import motions, mv, run_study, selffold
+from exactfold.solve.algebraic.groebner_bases import quotient_algebra
+from exactfold.solve.algebraic.hermite import hermite_counts
+from exactfold.studies import loops as motions
+from exactfold.studies import mv, run_study, selffold
 from exactfold.studies import perturbed as perturbed_study
 from exactfold.studies.flat import has_straight_folds
-from exactfold.studies.lines import Lines
-from exactfold.studies.squares import square_of
+from exactfold.studies.running.lines import Lines
+from exactfold.studies.running.squares import square_of
 
 TURNED = str.maketrans("MV", "VM")
 

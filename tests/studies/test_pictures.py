@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 from toy import TOY
 
-from exactfold.report import drawn, study_page
+from exactfold.app.report import drawn, study_page
 from exactfold.studies import StudyTable, run_study, study_named
-from exactfold.studies.study import StudyFigure
+from exactfold.studies.running.study import StudyFigure
 
 UNDECIDED = {
     "table1": {"interior": 3, "rigid": 0},

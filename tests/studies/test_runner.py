@@ -13,7 +13,7 @@ import pytest
 import toy
 from toy import TOY
 
-from exactfold.count.pools import process_pool
+from exactfold.branches.counting.pools import process_pool
 from exactfold.errors import (
     BrokenRowsError,
     ForeignRowsError,
@@ -26,8 +26,8 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.studies import read_row, recompute_row, run_study, study_named
-from exactfold.studies.runner import normal
-from exactfold.studies.store import RowStore
+from exactfold.studies.running.runner import normal
+from exactfold.studies.running.store import RowStore
 
 
 def values(run):

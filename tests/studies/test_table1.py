@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from exactfold import PROVED, count_branches, random_square
-from exactfold.branches.letters import UPSIDE_DOWN
-from exactfold.data import example_path
+from exactfold.branches.values.letters import UPSIDE_DOWN
+from exactfold.pattern.data import example_path
 from exactfold.pattern.loading import as_pattern
 from exactfold.studies import run_study, table1
 from exactfold.studies.closest import closest_lines, closest_pair
-from exactfold.studies.lines import Lines
-from exactfold.studies.statistics import decay, interval, same_probability
+from exactfold.studies.running.lines import Lines
+from exactfold.studies.running.statistics import decay, interval, same_probability
 
 SQUARES = (
     (2, 0),
@@ -102,8 +102,8 @@ def test_directions_are_those_of_the_fold_angles(name):
 
 
 def test_errors_of_directions_grow_with_the_boxes():
-    from exactfold.count.conveyor import Conveyor
-    from exactfold.studies.lines import _directions
+    from exactfold.branches.counting.conveyor import Conveyor
+    from exactfold.studies.running.lines import _directions
 
     conveyor = Conveyor.of(random_square(4, 0))
     boxes = conveyor.prove(0).boxes
@@ -207,7 +207,7 @@ def test_an_undecided_count_makes_an_undecided_row(monkeypatch):
     from dataclasses import replace
 
     from exactfold import UNDECIDED
-    from exactfold.studies import lines
+    from exactfold.studies.running import lines
 
     count = replace(count_branches(random_square(3, 30000011)), status=UNDECIDED)
     monkeypatch.setattr(lines, "count_branches", lambda _: count)

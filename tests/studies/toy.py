@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from exactfold.studies.study import Recipe, Row, Study, StudyFigure, StudyTable
+from exactfold.studies.running.study import Recipe, Row, Study, StudyFigure, StudyTable
 
 
 def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:

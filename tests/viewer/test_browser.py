@@ -11,8 +11,8 @@ from browser import chromium
 from test_document import CORNER_AND_CENTRE
 
 from exactfold import count_branches, find_branch, follow, load, open_pattern
-from exactfold.report.crease_style import COLOUR
-from exactfold.viewer import view_server, write_view
+from exactfold.app.pictures.crease_style import COLOUR
+from exactfold.app.viewer import view_server, write_view
 
 pytestmark = pytest.mark.slow
 

@@ -20,15 +20,15 @@ from exactfold import (
     random_square,
     schema,
 )
-from exactfold.certify import algebraic
-from exactfold.count.ways import open_sheet
+from exactfold.app.pictures import crease_style
+from exactfold.app.viewer import page as page_module
+from exactfold.app.viewer import view_document, view_page
+from exactfold.app.viewer.coding import coded_frames, decoded_frames, levelled
+from exactfold.branches.counting.ways import open_sheet
 from exactfold.errors import UsageError
 from exactfold.motion import follow_panels, panel_components, prove, prove_contacts
 from exactfold.pattern.families import single_vertex
-from exactfold.report import crease_style
-from exactfold.viewer import page as page_module
-from exactfold.viewer import view_document, view_page
-from exactfold.viewer.coding import coded_frames, decoded_frames, levelled
+from exactfold.solve.certify import algebraic
 
 PAGE = Path(page_module.__file__).parent / "page"
 HEXAGON = [(4, 0), (2, 3), (-2, 3), (-4, 0), (-2, -3), (2, -3)]

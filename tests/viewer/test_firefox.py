@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from firefox import firefox
 
-from exactfold.viewer import write_view
+from exactfold.app.viewer import write_view
 
 pytestmark = pytest.mark.slow
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from exactfold import find_branch
-from exactfold.viewer import view_server
-from exactfold.viewer.coding import decoded_frames
-from exactfold.viewer.server import HEADER
+from exactfold.app.viewer import view_server
+from exactfold.app.viewer.coding import decoded_frames
+from exactfold.app.viewer.server import HEADER
 
 
 @pytest.fixture(scope="module")

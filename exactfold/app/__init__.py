@@ -1,0 +1,5 @@
+"""What people touch: the command line, answers in words, pictures, and the page in the browser."""
+
+from exactfold._support.lazy import attached as _attached
+
+__getattr__, __dir__ = _attached(__name__)

@@ -1,0 +1,78 @@
+"""`exactfold actuate`: torques for one branch, or what given torques do, with proof."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from exactfold.app.commands.branch import given_signs
+from exactfold.app.shell.json_numbers import numbers_by_name
+from exactfold.app.shell.patterns import read
+from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least
+from exactfold.branches.counting.find import BranchFinder
+from exactfold.design.actuation.actuate import actuate
+from exactfold.errors import BadTorquesError, NumberError
+from exactfold.exact.numbers import as_rational
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.drawing.drawing import Snap
+
+
+@dataclass(frozen=True)
+class Driven:
+    """What was asked for on the command line; at most one of `signs` and `up` is given."""
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    signs: str | None
+    up: str | None
+    creases: int | None
+    torques: Path | None
+    as_json: bool
+    everything: bool
+
+    def answer(self) -> int:
+        """Find or judge the torques and print; the exit code.
+
+        Raises the errors of `read`, `BranchFinder` and `actuate`, `BadTorquesError`, and
+        `UsageError` where neither `signs` nor `up` is given.
+        """
+        with Bar("reading") as bar:
+            pattern = read(self.file, self.snap, self.sheet, "actuate").pattern
+            one_at_least("either --signs or --up", self.signs, self.up)
+            torques = None if self.torques is None else torques_in(self.torques, pattern)
+            found = actuate(
+                pattern,
+                given_signs(BranchFinder(pattern), self.signs, self.up),
+                creases=self.creases,
+                torques=torques,
+                progress=bar,
+            )
+        if self.as_json:
+            print(json.dumps(found.to_dict(name_of(self.file))))
+        else:
+            from exactfold.app import report
+
+            report.show(report.actuation_report(found, everything=self.everything))
+        return EXIT[found.status]
+
+
+def torques_in(path: Path, pattern: CreasePattern) -> dict[Edge, Fraction]:
+    """The torques in a JSON file {"i-j": number}, exactly as they are written.
+
+    A number may be text such as "1/3". Raises `UnreadableFileError` and `BadTorquesError`.
+    """
+    shape = 'write {"0-4": 0.5, ...}, a torque for each crease'
+    data = numbers_by_name(path, BadTorquesError, "crease", shape)
+    names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
+    found: dict[Edge, Fraction] = {}
+    for name, value in data.items():
+        if name not in names:
+            raise BadTorquesError(f"{path}: {name} is not a fold i-j, i < j, of the pattern")
+        try:
+            found[names[name]] = as_rational(value)
+        except NumberError as error:
+            raise BadTorquesError(f"{path}: {name}: {error}") from None
+    return found

@@ -1,0 +1,56 @@
+"""`exactfold assignments`: every mountain-valley assignment of a sheet with five corners."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from exactfold.app.shell.patterns import read
+from exactfold.app.shell.shell import EXIT, Bar, name_of, say
+from exactfold.certificates.entries import write_certificate
+from exactfold.design.circles.assignment_list import AllAssignments
+from exactfold.design.circles.certificate import assignments_certificate
+from exactfold.design.circles.circles import all_assignments
+from exactfold.errors import NotApplicableError
+from exactfold.pattern.drawing.drawing import Snap
+
+
+@dataclass(frozen=True)
+class Listed:
+    """What was asked for on the command line."""
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    everything: bool
+    as_json: bool
+    certificate: Path | None
+
+    def answer(self) -> int:
+        """List the assignments and print; the exit code.
+
+        Raises the errors of `read` and `all_assignments`.
+        """
+        with Bar("reading") as bar:
+            pattern = read(self.file, self.snap, self.sheet, "assignments").pattern
+            found = all_assignments(pattern, progress=bar)
+            self._write(found, bar)
+        if self.as_json:
+            print(json.dumps(found.to_dict(name_of(self.file))))
+        else:
+            from exactfold.app import report
+
+            report.show(report.assignments_report(found, everything=self.everything))
+        return EXIT[found.status]
+
+    def _write(self, found: AllAssignments, bar: Bar) -> None:
+        if self.certificate is None:
+            return
+        bar("certificate")
+        try:
+            document = assignments_certificate(found, progress=bar)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
+        else:
+            write_certificate(document, self.certificate)

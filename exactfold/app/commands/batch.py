@@ -1,0 +1,281 @@
+"""`exactfold count` of several files: a line of JSON for each, written as it is ready."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Generator, Iterator
+from contextlib import ExitStack, closing, contextmanager, nullcontext
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from exactfold._support.memory import is_shortage, shortage
+from exactfold._support.processes import available_cores
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.commands.jsonl import Lines
+from exactfold.app.shell.guard import NO_MEMORY
+from exactfold.app.shell.patterns import located
+from exactfold.app.shell.shell import (
+    EXIT,
+    INTERNAL,
+    STDIN,
+    Bar,
+    apart,
+    error_document,
+    exit_code,
+    interruptible,
+    stopped,
+)
+from exactfold.branches.counting.batch import Job, Source, count_job, read_source
+from exactfold.branches.counting.on_dask import LOCAL
+from exactfold.branches.counting.pools import Pool, dask_pool, process_pool
+from exactfold.branches.values.result import BranchCount
+from exactfold.errors import (
+    NotEnoughMemoryError,
+    UnknownPatternError,
+    UnwritableFileError,
+    UsageError,
+    WorkerDiedError,
+)
+from exactfold.pattern.drawing.drawing import Snap
+
+if TYPE_CHECKING:
+    from exactfold.panels.result import Decomposition
+
+FAILED = "failed"
+"""In place of a status: there is an error."""
+
+STATUSES = (str(PROVED), str(UNDECIDED), FAILED)
+
+_WORST = (0, 4, 1, 2, 3, NO_MEMORY, INTERNAL)
+"""Exit codes from the best to the worst."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """What became of a file; `text` is its line of JSON."""
+
+    name: str
+    status: str
+    code: int
+    text: str = ""
+    distinct: int | None = None
+    message: str = ""
+    warned: bool = False
+
+
+@dataclass
+class Tally:
+    """How the files ended."""
+
+    statuses: Counter[str] = field(default_factory=Counter)
+    code: int = 0
+    skipped: int = 0
+    warned: int = 0
+
+    def add(self, line: Line) -> None:
+        """One more file."""
+        self.statuses[line.status] += 1
+        self.code = max(self.code, line.code, key=_WORST.index)
+        self.warned += line.warned
+
+    @property
+    def note(self) -> str:
+        """What is not proved, for the line of progress."""
+        return "".join(f", {n} {s}" for s in STATUSES[1:] if (n := self.statuses[s]))
+
+
+@dataclass(frozen=True)
+class Batch:
+    """What was asked for."""
+
+    patterns: list[Path]
+    out: Path | None
+    jobs: int | None
+    dask: str | None
+    method: str
+    seed: int
+    snap: Snap | None
+    sheet: int | None
+    as_json: bool
+    everything: bool
+
+    def run(self) -> int:
+        """Count all and print what became of them; the worst exit code.
+
+        Raises the errors of `Lines` and `dask_pool`, `UsageError`.
+        """
+        from exactfold.app import report
+
+        if STDIN in self.patterns:
+            raise UsageError("a pattern from standard input is counted by itself")
+        if self.jobs is not None and self.dask not in (None, LOCAL):
+            raise UsageError("the cluster has its workers: --jobs goes with --dask local")
+        apart(self.out, *self.patterns)
+        tally, shown = Tally(), []
+        with ExitStack() as stack:
+            lines = None
+            if self.out is not None:
+                lines = Lines(self.out, headed("batch-line")["format"])
+                stack.callback(lines.close)
+            stack.enter_context(self._resumable())
+            for line in stack.enter_context(closing(self._lines(lines, tally))):
+                if lines is not None:
+                    lines.append(line.text)
+                elif self.as_json:
+                    print(line.text, flush=True)
+                if lines is None or line.status != str(PROVED) or line.warned:
+                    shown.append((line.name, line.status, line.distinct, line.message))
+        place = {str(path): k for k, path in enumerate(self.patterns)}
+        shown.sort(key=lambda row: place[row[0]])
+        if not self.as_json:
+            report.show(report.batch_report(shown, self._summary(tally), self.everything))
+        elif self.out is not None:
+            print(json.dumps(self._summary(tally)))
+        return tally.code
+
+    def _lines(self, lines: Lines | None, tally: Tally) -> Generator[Line, None, None]:
+        """A line for each file that has none yet."""
+        known = Known([]) if lines is None else Known(lines.found())
+        names = {str(path) for path in self.patterns}
+        bar = Bar("reading")
+
+        def jobs() -> Iterator[Job]:
+            for path in self.patterns:
+                job = Job(str(path), _source(path), self.method, self.seed, self.snap, self.sheet)
+                found = known.take(job, names)
+                if found is None:
+                    yield job
+                else:
+                    tally.skipped += 1
+                    tally.add(found)
+                    progress()
+
+        def progress() -> None:
+            bar("counting", tally.statuses.total(), len(self.patterns), tally.note)
+
+        with bar, self._pool() as pool, closing(pool(line_of, jobs())) as results:
+            for job, result in results:
+                line = result if isinstance(result, Line) else line_for(job, result)
+                yield line
+                tally.add(line)
+                progress()
+
+    @contextmanager
+    def _pool(self) -> Iterator[Pool]:
+        jobs = self.jobs or available_cores()
+        ready = nullcontext(process_pool(min(jobs, len(self.patterns))))
+        with ready if self.dask is None else dask_pool(self.dask, self.jobs) as pool:
+            yield pool
+
+    @contextmanager
+    def _resumable(self) -> Iterator[None]:
+        """Say how to go on when the batch stops early."""
+        again = "the same command goes on" if self.out is not None else ""
+        try:
+            with interruptible():
+                yield
+        except KeyboardInterrupt:
+            stopped(again)
+        except (WorkerDiedError, UnwritableFileError) as error:
+            raise type(error)(f"{error}{'; ' if again else ''}{again}") from None
+        except Exception as error:
+            if not again or not is_shortage(error):
+                raise
+            raise NotEnoughMemoryError(f"{shortage(error)}; {again}") from None
+
+    def _summary(self, tally: Tally) -> dict[str, Any]:
+        return {
+            **headed("batch"),
+            "files": len(self.patterns),
+            **{status: tally.statuses[status] for status in STATUSES},
+            "skipped": tally.skipped,
+            "warned": tally.warned,
+            "exit_code": tally.code,
+            "jsonl": None if self.out is None else str(self.out),
+        }
+
+
+class Known:
+    """The lines of an earlier run, by the content of the file and what was asked.
+
+    A file that failed has none: it is tried again, and said to fail again with the reason.
+    """
+
+    def __init__(self, found: Iterator[dict[str, Any]] | list[dict[str, Any]]) -> None:
+        self._lines: dict[str, list[Line]] = {}
+        for data in found:
+            if data["sha256"] is not None and data["status"] != FAILED:
+                result = data["result"] or {}
+                warned = bool(result.get("warnings") or result.get("near_misses"))
+                line = Line(data["name"], data["status"], data["exit_code"], warned=warned)
+                asked = {"sheet": None, **data["asked"]}  # lines of earlier versions have none
+                self._lines.setdefault(_key(data["sha256"], asked), []).append(line)
+
+    def take(self, job: Job, names: set[str]) -> Line | None:
+        """The line of this file, or of one with its content that has another name now."""
+        lines = self._lines.get(_key(_digest(job), _asked(job)), [])
+        own = [line for line in lines if line.name == job.name]
+        fitting = own or [line for line in lines if line.name not in names]
+        if not fitting:
+            return None
+        lines.remove(fitting[0])
+        return fitting[0]
+
+
+def _source(path: Path) -> Source:
+    try:
+        return read_source(located(path))
+    except UnknownPatternError as error:
+        return error
+
+
+def line_of(job: Job) -> Line:
+    """Count a file and write its line, in a worker: the text is less work to send back."""
+    return line_for(job, count_job(job))
+
+
+def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
+    """The line of a result."""
+    data = {
+        **headed("batch-line"),
+        "name": job.name,
+        "sha256": _digest(job),
+        "asked": _asked(job),
+    }
+    if not isinstance(result, Exception):
+        status, code = str(result.status), EXIT[result.status]
+        data |= {"status": status, "exit_code": code, "error": None}
+        data["result"] = result.to_dict(name=job.name)
+        message = "" if result.status is PROVED else result.reason
+        if (warning := result.warning) is not None:
+            message = f"{message}{'; ' if message else ''}warning: {warning}"
+        warned = warning is not None
+        ways = _ways(result)
+        return Line(job.name, status, code, json.dumps(data), ways, message, warned)
+    code = exit_code(result)
+    error = error_document(result)["error"]
+    data |= {"status": FAILED, "exit_code": code, "error": error, "result": None}
+    return Line(job.name, FAILED, code, json.dumps(data), None, str(result))
+
+
+def _ways(result: BranchCount | Decomposition) -> int | None:
+    """The number of branches, or of families that truly fold; None if it is not known."""
+    if not isinstance(result, BranchCount):
+        return result.ways
+    return result.distinct if result.families is None else result.families.ways
+
+
+def _digest(job: Job) -> str | None:
+    return hashlib.sha256(job.source).hexdigest() if isinstance(job.source, bytes) else None
+
+
+def _asked(job: Job) -> dict[str, Any]:
+    return {"method": job.method, "seed": job.seed, "snap": job.snap, "sheet": job.number}
+
+
+def _key(digest: str | None, asked: dict[str, Any]) -> str:
+    return json.dumps([digest, asked], sort_keys=True)

@@ -1,0 +1,220 @@
+"""`exactfold branch`: branches by their signs, each shown or kept as briefly as it can be."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from exactfold._support.plurals import counted
+from exactfold._support.verdict import PROVED
+from exactfold.app.commands.driving import Angles, driven_angles
+from exactfold.app.shell.given import NOTHING, Given
+from exactfold.app.shell.patterns import read
+from exactfold.app.shell.shell import Bar, name_of, one_at_least, say
+from exactfold.branches.counting.find import BranchFinder
+from exactfold.branches.values.branch import Branch
+from exactfold.errors import NotANumberError, NotCountedError, UsageError
+from exactfold.exact.numbers import parse_whole
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.bounds import read_text
+from exactfold.pattern.drawing.drawing import Snap
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What was asked for, as text from the command line."""
+
+    pattern: Path
+    snap: Snap | None
+    sheet: int | None
+    signs: str | None
+    up: str | None
+    batch: Path | None
+    pops: str | None
+    certificate: Path | None
+    as_json: bool
+    given: Given = NOTHING
+    drive: str | None = None
+
+    @property
+    def name(self) -> str:
+        """The pattern as it was named."""
+        return name_of(self.pattern)
+
+    def answer(self) -> bool:
+        """Find, prove and print; whether all branches were proved.
+
+        Of many branches none is kept: with JSON each is printed when it is found, and of the others
+        the row of the table remains. Raises the errors of `read` and `BranchFinder`, and
+        `UsageError` where none of `signs`, `up` and `batch` is given.
+        """
+        from exactfold.app import report
+
+        if self.drive is not None:
+            return self._driven(driven_angles(self.drive))
+        proved, rows = True, []
+        with Bar("reading") as bar:
+            finder = self.given.finder(self._read(bar))
+            for name, result in self._found(finder, bar):
+                proved &= result.status is PROVED
+                if self.as_json:
+                    print(json.dumps(result.report(self.name)), flush=True)
+                elif name:
+                    rows.append(report.branch_row(name, result))
+        if not self._is_many:
+            self._certify(result)
+            if not self.as_json:
+                report.show(report.branch_report(result))
+        elif not self.as_json:
+            report.show(report.branches_report(rows))
+        return proved
+
+    def _driven(self, angles: Angles) -> bool:
+        """The branch on which folds start in the ratio of their angles, instead."""
+        from exactfold.app import report
+        from exactfold.motion.tubes.driven import find_driven
+
+        if self._is_many or self.given.curvature is not None:
+            raise UsageError("--drive goes with --signs or --up, and with --rim")
+        with Bar("reading") as bar:
+            pattern = self._read(bar)
+            finder = self.given.finder(pattern)
+            rim = None if self.given.rim is None else finder.rim
+            signs = given_signs(finder, self.signs, self.up)
+            found = find_driven(pattern, angles, signs, rim=rim, progress=bar)
+            status = found.status
+        if found.others:
+            say(also_found(found.others))
+        self._certify(found.branch)
+        if self.as_json:
+            more = {"folds": found.drive.to_dict(), "side": found.side, "status": str(status)}
+            print(json.dumps(found.branch.report(self.name) | {"drive": more}))
+        else:
+            report.show(report.branch_report(found.branch, found))
+        return found.branch.status is PROVED and status is PROVED
+
+    def _read(self, bar: Bar) -> CreasePattern:
+        pattern = read(self.pattern, self.snap, self.sheet, "branch").pattern
+        one_at_least("one of --signs, --up and --batch", self.signs, self.up, self.batch)
+        bar("setting up")
+        return pattern
+
+    @property
+    def _is_many(self) -> bool:
+        return self.batch is not None or self.pops is not None
+
+    def _found(self, finder: BranchFinder, bar: Bar) -> Iterator[tuple[str, Branch]]:
+        if self.batch is not None:
+            yield from _of_lines(finder, self.batch, bar)
+            return
+        given = given_signs(finder, self.signs, self.up)
+        if self.pops is None:
+            yield "", finder.find(given, progress=bar)
+            return
+        chosen = None if self.pops == "all" else _indices("--neighbours", self.pops)
+        if chosen == []:
+            raise UsageError("--neighbours names no vertex")
+        for v, result in finder.each_neighbour(given, chosen, progress=bar):
+            yield f"pop {v}", result
+
+    def _certify(self, result: Branch) -> None:
+        if self.certificate is None:
+            return
+        if result.status is PROVED:
+            from exactfold.branches.certificates.single import branch_certificate
+            from exactfold.certificates.entries import write_certificate
+
+            with Bar("writing"):
+                write_certificate(branch_certificate(result), self.certificate)
+        else:
+            say("no certificate was written: nothing is proved")
+
+
+def also_found(others: int) -> str:
+    """That folds start in a ratio on more branches."""
+    return (
+        f"{counted(others, 'more branch')} with these signs on which the folds start so: this is "
+        "the one that bends least; --rim FILE starts from other border heights"
+    )
+
+
+def chosen(
+    pattern: CreasePattern,
+    signs: str | None,
+    up: str | None,
+    place: int | None,
+    bar: Bar,
+    given: Given | None = None,
+) -> Branch:
+    """The branch that --signs or --up names, or the one at a place in the listing, from 1.
+
+    `given`, for commands that take a rim: what is given of it.
+
+    Raises the errors of `BranchFinder` and `count_branches`, and `UsageError` or `NotCountedError`
+    for a place that is not listed.
+    """
+    if place is None:
+        finder = BranchFinder(pattern) if given is None else given.finder(pattern)
+        bar("setting up")
+        return finder.find(given_signs(finder, signs, up), progress=bar)
+    from exactfold.branches.counting.collect import count_branches  # FLINT, for this alone
+
+    result = count_branches(pattern, progress=bar)
+    if not 1 <= place <= len(result.branches):
+        proved = "" if result.status is PROVED else f", undecided: {result.reason}"
+        listed = len(result.branches)
+        cause = UsageError if listed else NotCountedError
+        raise cause(
+            f"--branch {place}: `exactfold count` lists "
+            f"{counted(listed or 'no', 'branch')} of this pattern{proved}"
+        )
+    return result.branches[place - 1]
+
+
+def given_signs(finder: BranchFinder, signs: str | None, up: str | None) -> dict[int, int]:
+    """The sign vector that --signs (text, or @FILE with the text in a file) or --up gives.
+
+    Raises `UsageError` and `UnreadableFileError`.
+    """
+    if signs is None or not signs.startswith("@"):
+        return finder.signs(signs, None if up is None else _indices("--up", up))
+    path = Path(signs[1:])
+    try:
+        return finder.signs("".join(text for _, text in _lines(path)), None)
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
+
+
+def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str, Branch]]:
+    """The branches of a file of sign vectors, which is read to its end before any is found."""
+    lines = list(_lines(path))
+    if not lines:
+        raise UsageError(f"{path} holds no sign vector")
+    for line, text in lines:
+        try:
+            finder.signs(text, None)
+        except UsageError as error:
+            raise UsageError(f"{path}, line {line}: {error}") from None
+    for k, (line, text) in enumerate(lines):
+        bar("branches", k, len(lines))
+        try:
+            found = finder.find(finder.signs(text, None))
+        except UsageError as error:  # a 0 where no branch is flat
+            raise UsageError(f"{path}, line {line}: {error}") from None
+        yield f"line {line}", found
+
+
+def _indices(option: str, text: str) -> list[int]:
+    try:
+        return [parse_whole(part) for part in text.split(",") if part.strip()]
+    except NotANumberError:
+        raise UsageError(f"{option} takes vertex indices such as 5,7, not {text!r}") from None
+
+
+def _lines(path: Path) -> Iterator[tuple[int, str]]:
+    """The lines of a text file that are not blank, with their numbers from 1."""
+    for number, line in enumerate(read_text(path).split("\n"), 1):
+        if line.strip():
+            yield number, line.strip()

@@ -1,0 +1,67 @@
+"""`exactfold check`: what the checker says of a file, the quick way."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from exactfold import checker
+from exactfold._support.schemas import headed
+from exactfold.app.shell.shell import Bar, name_of, regular, said
+from exactfold.checker.command import refusal
+from exactfold.checker.core.reading import UnfinishedError, plain
+from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
+
+_LISTS = ("supports", "flat", "letters", "halves", "joints", "together", "never")
+LONG = ("branches", "vertex_signs", "assignment", *_LISTS)
+"""Claims that grow with the pattern, left out of `check --json`."""
+
+
+def valid(path: Path, workers: int | None, as_json: bool) -> bool:
+    """Whether every claim of a file holds, which is printed; raises the errors of `verified`."""
+    with Bar("checking"):
+        claims, text, reason = verified(path, workers)
+    if as_json:
+        short = {k: v for k, v in (claims or {}).items() if k not in LONG}
+        head = {**headed("check"), "name": name_of(path)}
+        print(json.dumps({**head, "valid": claims is not None, "reason": reason, "claims": short}))
+    else:
+        print(text)
+    return claims is not None
+
+
+def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, str, str]:
+    """The claims of a file, what to print, and the reason; None if one does not hold.
+
+    Raises `CertificateFormatError`, `UnreadableFileError`, `WorkerDiedError`.
+    """
+    with regular(path) as file:
+        try:
+            claims = _claims(file, workers, path)
+        except checker.CertificateError as error:
+            unfinished = "unfinished: " if isinstance(error, UnfinishedError) else ""
+            return None, refusal(error), unfinished + plain(error)
+        except checker.FormatError as error:
+            raise CertificateFormatError(f"{said(path)}: {plain(error)}") from None
+        except OSError as error:
+            raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
+    return claims, checker.summary(claims), "every claim holds"
+
+
+def _claims(file: Path, workers: int | None, name: Path) -> dict[str, Any]:
+    from exactfold._support.processes import available_cores
+    from exactfold.certificates.sharing import shared
+    from exactfold.checker.branches.compact import INTEGERS
+
+    workers = workers or available_cores()
+    if not checker.is_compact(file):
+        try:
+            return checker.verify(file, workers, INTEGERS._replace(share=shared))
+        except WorkerDiedError as error:
+            raise type(error)(f"{error}; nothing is known of the file") from None
+    from exactfold.branches.certificates.check import (
+        check_compact,  # needs NumPy, as no other kind does
+    )
+
+    return check_compact(file, workers=workers, name=name)

@@ -1,0 +1,126 @@
+"""`exactfold convert`: a drawing of any format as a FOLD file with exact coordinates."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from exactfold._support.plurals import agreeing, counted
+from exactfold._support.schemas import headed
+from exactfold.app.shell.patterns import located
+from exactfold.app.shell.shell import Bar, apart, name_of, said, say, tell
+from exactfold.errors import FoldError, PatternError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.described import described, described_panels
+from exactfold.pattern.drawing.drawing import Snap
+from exactfold.pattern.fold_writing import document_text, write_text
+from exactfold.pattern.opening import Opened, Steps, open_pattern
+from exactfold.pattern.panel_writing import Converted, converted
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """What was asked for on the command line."""
+
+    file: Path
+    output: Path
+    snap: Snap | None
+    merge: Fraction | None
+    repair: bool | None
+    steps: str | None
+    triangulate: bool
+    sheet: int | None
+    as_json: bool
+
+    def run(self) -> None:
+        """Read, write and say what was done; to standard output the FOLD file itself can go.
+
+        Raises the errors of `open_pattern` and `write_text`, and `UsageError`.
+        """
+        to_stdout = str(self.output) == "-"
+        if to_stdout and self.as_json:
+            raise UsageError("--json describes the file that is written: give it a name")
+        apart(None if to_stdout else self.output, self.file)
+        with Bar("reading"):
+            opened = self._opened()
+            made = converted(opened, triangulate=self.triangulate)
+            text = document_text(made.document())
+            if not to_stdout:
+                write_text(self.output, text)
+        lines = [*_lines(opened, said(self.file)), _written(made, name_of(self.output))]
+        if to_stdout:
+            for line in lines[:-1]:
+                say(line)
+            sys.stdout.write(text)
+        elif self.as_json:
+            print(json.dumps(_summary(opened, made, name_of(self.file), name_of(self.output))))
+        else:
+            tell("\n".join(lines))
+
+    def _opened(self) -> Opened:
+        try:
+            return open_pattern(
+                located(self.file),
+                self.snap,
+                name=said(self.file),
+                number=self.sheet,
+                steps=self._steps,
+                merge=self.merge,
+            )
+        except (FoldError, PatternError) as error:
+            if not self.repair:
+                error.args = (f"{error}; perhaps --repair mends it",)
+            raise
+
+    @property
+    def _steps(self) -> Steps:
+        if self.steps is not None:
+            if self.repair is not None:
+                raise UsageError("--steps names the steps: leave --repair and --no-repair away")
+            return tuple(name.strip() for name in self.steps.split(",") if name.strip())
+        if self.repair is None:
+            return "least"
+        from exactfold.pattern.drawing.repair import (
+            STEPS,  # here, as it loads what a usage error needs not
+        )
+
+        return STEPS if self.repair else ()
+
+
+def _lines(opened: Opened, name: str) -> list[str]:
+    if opened.lines:
+        return list(opened.lines)
+    moved = f"; largest move {float(opened.snapped):.1g}" if opened.snapped else ""
+    return [f"read {name}: FOLD, triangulated, as it stands{moved}"]
+
+
+def _written(made: Converted, output: str) -> str:
+    pattern = made.pattern
+    added = ""
+    if made.joins:
+        is_ = agreeing(len(made.joins), "is")
+        added = f"; {counted(len(made.joins), 'edge')} (J) {is_} added, which cut panels"
+    return (
+        f"wrote {output}: {counted(len(pattern.vertices), 'vertex')}, "
+        f"{counted(len(pattern.folds), 'fold')}, {counted(len(pattern.faces), 'panel')}, "
+        f"coordinates in {pattern.field_name}{added}"
+    )
+
+
+def _summary(opened: Opened, made: Converted, name: str, output: str) -> dict[str, Any]:
+    """The object that --json prints: `schema("convert")`."""
+    sheet = opened.sheet
+    return {
+        **headed("convert"),
+        "pattern": described(sheet, name, opened.snapped)
+        if isinstance(sheet, CreasePattern)
+        else described_panels(sheet, name),
+        "output": output,
+        "field": made.pattern.field_name,
+        "joins": [f"{i}-{j}" for i, j in made.joins],
+        "read": opened.read,
+    }

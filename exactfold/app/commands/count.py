@@ -1,0 +1,181 @@
+"""`exactfold count` of one pattern: in memory or streamed, with a certificate where it is asked."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from exactfold._support.verdict import PROVED
+from exactfold.app import report
+from exactfold.app.commands.stream import Streaming, advice
+from exactfold.app.shell.given import NOTHING, Given
+from exactfold.app.shell.patterns import read, read_any
+from exactfold.app.shell.shell import EXIT, Bar, apart, name_of, say
+from exactfold.branches.certificates.listing import certificate as certificate_of
+from exactfold.branches.counting.stream import StreamedCount
+from exactfold.branches.counting.ways import count_opened
+from exactfold.branches.values.result import BranchCount
+from exactfold.certificates.entries import write_certificate
+from exactfold.errors import NotApplicableError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.drawing import Snap
+
+if TYPE_CHECKING:  # branches are counted without what panels need
+    from exactfold.panels.result import Decomposition
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What was asked for."""
+
+    pattern: Path
+    method: str
+    certificate: Path | None
+    stream: Path | None
+    resume: bool
+    workers: int | None
+    dask: str | None
+    as_json: bool
+    snap: Snap | None
+    sheet: int | None
+    seed: int
+    everything: bool
+    verbose: bool
+    given: Given = NOTHING
+
+    def run(self) -> int:
+        """Count, write what was asked for and print the answer; the exit code.
+
+        Raises the errors of `read_any`, `count_branches` and `Streaming`, and `UsageError`.
+        """
+        apart(self.certificate, self.pattern, self.stream)
+        apart(self._components, self.pattern, self.stream)
+        if self.given:
+            return self._shapes()
+        streamed = None if self.stream is None else self._streamed(self.stream)
+        result = self._counted() if streamed is None else streamed
+        written = self._certified(result, streamed)
+        if self.as_json:
+            print(json.dumps(result.to_dict(written, name_of(self.pattern))))
+        elif not isinstance(result, BranchCount):
+            panels = report.panels_report(
+                result, written, everything=self.everything, verbose=self.verbose
+            )
+            report.show(panels)
+        else:
+            shown = report.count_report(
+                result,
+                written,
+                everything=self.everything,
+                streamed=streamed,
+                verbose=self.verbose,
+            )
+            report.show(shown)
+        return EXIT[result.status]
+
+    def _shapes(self) -> int:
+        """Count shapes with angle deficits."""
+        from exactfold.branches.counting.shapes import count_shapes
+
+        if self.given.curvature is None:
+            raise UsageError("--rim goes with --curvature: branches are counted for all rims")
+        for option, value in (
+            ("--certificate", self.certificate),
+            ("--stream", self.stream),
+            ("--method", None if self.method == "auto" else self.method),
+        ):
+            if value is not None:
+                raise UsageError(
+                    f"{option} does not go with --curvature; `exactfold branch --curvature` writes "
+                    "a certificate of one shape"
+                )
+        with Bar("reading") as bar:
+            pattern = read(self.pattern, self.snap, self.sheet, "count").pattern
+            finder = self.given.finder(pattern)
+            result = count_shapes(pattern, finder.curvature or {}, rim=finder.rim, progress=bar)
+        if self.as_json:
+            print(json.dumps(result.to_dict(name_of(self.pattern))))
+        else:
+            report.show(report.shapes_report(result, everything=self.everything))
+        return EXIT[result.status]
+
+    def _streamed(self, file: Path) -> StreamedCount:
+        if self.method != "auto":
+            raise UsageError("--stream has a method of its own: leave --method away")
+        return Streaming(
+            self.pattern,
+            file,
+            self.resume,
+            self.workers,
+            self.dask,
+            self.snap,
+            self.sheet,
+            self.seed,
+            self.certificate,
+        ).run()
+
+    def _counted(self) -> BranchCount | Decomposition:
+        if self.resume or self.workers is not None or self.dask is not None:
+            raise UsageError("--resume, --workers and --dask go with --stream")
+        with Bar("reading") as bar:
+            opened = read_any(self.pattern, self.snap, self.sheet)
+            sheet = opened.sheet
+            if isinstance(sheet, CreasePattern) and (better := advice(sheet)) is not None:
+                say(better)
+            bar("solving")
+            return count_opened(opened, method=self.method, seed=self.seed, progress=bar)
+
+    def _certified(
+        self, result: BranchCount | Decomposition, streamed: StreamedCount | None
+    ) -> str | None:
+        """Where the certificate was written; where it was not, say why."""
+        if self.certificate is None:
+            return None
+        if not isinstance(result, BranchCount):
+            return self._certified_panels(result, self.certificate)
+        if result.pieces is not None and result.proof is None:
+            return self._certified_pieces(result, self.certificate)
+        if result.families is not None:
+            return self._certified_panels(result.families, self.certificate)
+        if result.status is not PROVED:
+            say("no certificate was written: nothing is proved")
+        elif streamed is not None and result.proof is None:
+            say(f"the proof is in {self.stream}; no other was written")
+        else:
+            write_certificate(certificate_of(result), self.certificate)
+            return str(self.certificate)
+        return None
+
+    @property
+    def _components(self) -> Path | None:
+        """Where the certificate of irreducible components goes beside that of pieces."""
+        file = self.certificate
+        return None if file is None else file.with_suffix(f".components{file.suffix}")
+
+    def _certified_pieces(self, result: BranchCount, file: Path) -> str | None:
+        """The certificate of pieces, and beside it that of the irreducible components."""
+        written = None
+        try:
+            write_certificate(certificate_of(result), file)
+            written = str(file)
+        except NotApplicableError as error:
+            say(f"no certificate of the pieces was written: {error}")
+        if result.families is not None and result.families.status is PROVED:
+            more = file if written is None else self._components or file
+            found = self._certified_panels(result.families, more)
+            if found is not None:
+                say(f"the list of irreducible components has a certificate of its own: {more}")
+            written = written or found
+        return written
+
+    def _certified_panels(self, ways: Decomposition, file: Path) -> str | None:
+        from exactfold.panels.certificate import certificate_of_panels
+
+        try:
+            write_certificate(certificate_of_panels(ways), file)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
+            return None
+        return str(file)

@@ -1,0 +1,227 @@
+"""`exactfold draw`: pictures of a crease pattern, of a way to fold it, or of all ways."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from exactfold._support.plurals import counted
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.app.commands.branch import chosen
+from exactfold.app.pictures.crease_drawing import pattern_picture
+from exactfold.app.pictures.drawn_ways import branch_way, mode_way
+from exactfold.app.pictures.folded import Amount, Folded, folded
+from exactfold.app.pictures.picture_files import checked_picture, write_picture
+from exactfold.app.pictures.way_sheets import number_listed, sheet_of_ways, why_no_way
+from exactfold.app.shell.given import NOTHING, Given
+from exactfold.app.shell.patterns import located, read_any
+from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, name_of, say, tell
+from exactfold.branches.counting.ways import count_opened, decompose_opened
+from exactfold.branches.values.result import BranchCount
+from exactfold.errors import (
+    FoldError,
+    NotCountedError,
+    PatternError,
+    SeveralSheetsError,
+    UndecidedBranchError,
+    UsageError,
+)
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.opening import Opened, has_branches
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.branch import Branch
+    from exactfold.motion.panels.followable import PanelMode
+    from exactfold.panels.result import Decomposition
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What was asked for on the command line; at most one of `way`, `up` and `everything`.
+
+    `way` is a number as `exactfold count` lists it, or vertex signs. `side` is None where none was
+    given.
+    """
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    way: str | None
+    up: str | None
+    everything: bool
+    most: int
+    amount: Amount | None
+    side: int | None
+    output: Path | None
+    given: Given = NOTHING
+
+    def answer(self) -> int:
+        """Draw, write and say where; the exit code: 4 where a way that is drawn is not proved.
+
+        Without an output the picture goes to standard output, on a terminal to a file of its own.
+        Raises the errors of `read_any`, `chosen`, `count_opened`, `follow`, `follow_panels` and
+        `write_picture`.
+        """
+        target = self._target()
+        if target is not None:
+            checked_picture(target)  # before the work
+            apart(target, self.file)
+        with Bar("reading") as bar:
+            try:
+                text, status = self._drawn(bar)
+            except UndecidedBranchError as error:
+                say(f"not drawn: {error}")
+                return EXIT[UNDECIDED]
+            bar("writing")
+            if target is not None:
+                write_picture(text, target)
+        if target is None:
+            sys.stdout.write(text)
+        else:
+            tell(f"written: {name_of(target)}")
+        return EXIT[status]
+
+    def _target(self) -> Path | None:
+        """The file to write; None for standard output."""
+        if self.output is not None:
+            return None if str(self.output) == "-" else self.output
+        if not on_a_terminal():
+            return None
+        kind = "ways" if self.everything else "drawn" if self._is_plain else "way"
+        return Path(f"{self._title or 'pattern'}-{kind}.svg")
+
+    @property
+    def _title(self) -> str:
+        return "" if self.file == STDIN else self.file.stem
+
+    @property
+    def _is_plain(self) -> bool:
+        return self.way is None and self.up is None and not self.everything
+
+    @property
+    def _place(self) -> int | None:
+        """The number of a way, None for signs."""
+        if self.way is None or not self.way.isdecimal() or not int(self.way):
+            return None
+        return int(self.way)
+
+    def _drawn(self, bar: Bar) -> tuple[str, Verdict]:
+        """The picture, and whether what it shows is proved."""
+        try:
+            opened = read_any(self.file, self.snap, self.sheet)
+        except (FoldError, PatternError, SeveralSheetsError) as error:
+            if not self._is_plain or self.sheet is not None:
+                raise
+            drawing = self._raw()
+            if drawing is None:
+                raise
+            say(f"drawn as it is, no sheet that can be counted: {error}")
+            return pattern_picture(drawing, title=self._title), PROVED
+        if self._is_plain:
+            return pattern_picture(opened.sheet, opened.assignment, title=self._title), PROVED
+        sheet = opened.sheet
+        branches = isinstance(sheet, CreasePattern) and has_branches(sheet)
+        if self.everything:
+            return self._all(opened, bar)
+        named = self._place is None or self.given
+        families = isinstance(sheet, CreasePattern) and sheet.Ve > 4 and sheet.interior and named
+        if (branches or families) and isinstance(sheet, CreasePattern):
+            signs = None if self._place is not None else self.way
+            given = self.given if families or self.given else None
+            return self._branch(chosen(sheet, signs, self.up, self._place, bar, given), bar)
+        return self._mode(opened, bar)
+
+    def _raw(self) -> Drawing | None:
+        """The drawing in a file that is no sheet; None where there is none, or no second look."""
+        from exactfold.pattern.drawing.formats.read import read_drawing
+
+        if self.file == STDIN:
+            return None
+        try:
+            return read_drawing(located(self.file))
+        except (FoldError, PatternError):
+            return None
+
+    # --- ways ------------------------------------------------------------------------------------
+
+    def _branch(self, branch: Branch, bar: Bar) -> tuple[str, Verdict]:
+        if branch.status is not PROVED:
+            say(f"the branch is not proved: {branch.reason}")
+        if self.amount is None:
+            return branch_way(branch, self._place).picture(self._title), branch.status
+        from exactfold.motion.following import follow
+
+        bar("following")
+        motion = follow(branch, side=self.side or 1, progress=bar)
+        return self._folded(folded(motion, self.amount, self._title)), branch.status
+
+    def _mode(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
+        """A mode of panels, by its number, and whether it truly folds."""
+        if self.side is not None:
+            raise UsageError("--side is of a branch, and this sheet folds along modes")
+        if self._place is None:
+            raise UsageError(
+                "vertex signs are for triangulated sheets with four corners, and this sheet folds "
+                "along modes of rigid panels: give the number of one, as `exactfold count` lists it"
+            )
+        from exactfold.motion.panels.followable import open_reason, panel_modes
+
+        ways = self._counted(opened, bar)
+        if isinstance(ways, BranchCount):
+            raise NotCountedError("this sheet has no single ways to draw: draw it without --branch")
+        mode = self._chosen(ways, panel_modes(ways))
+        verdict = mode.extends.verdict
+        if self.amount is None:
+            if verdict is not PROVED:
+                say(open_reason(mode))
+            return mode_way(mode).picture(self._title), verdict
+        from exactfold.motion.panels.following import follow_panels
+
+        bar("following")
+        motion = follow_panels(ways, modes=(mode.number,))
+        return self._folded(folded(motion, self.amount, self._title)), verdict
+
+    def _chosen(self, ways: Decomposition, modes: Sequence[PanelMode]) -> PanelMode:
+        place = self._place or 0
+        if not modes:
+            raise UsageError(f"{why_no_way(ways)}: draw the pattern without --branch")
+        if place > len(modes):
+            raise UsageError(f"--branch {place}: this sheet has {counted(len(modes), 'mode')}")
+        return modes[place - 1]
+
+    def _folded(self, still: Folded) -> str:
+        if not still.reached:
+            say(
+                f"the sheet folds to {still.degrees:.1f} degrees only, where the motion ends "
+                f"({still.end}): drawn there"
+            )
+        return still.text
+
+    def _counted(self, opened: Opened, bar: Bar) -> BranchCount | Decomposition:
+        bar("solving")
+        if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
+            return count_opened(opened, progress=bar)
+        ways = decompose_opened(opened, progress=bar)  # single modes can be drawn
+        if ways.warning is not None:
+            say(f"warning: {ways.warning}")
+        return ways
+
+    def _all(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
+        """All ways that are listed, as small multiples."""
+        result = self._counted(opened, bar)
+        bar("drawing")
+        number = number_listed(result)
+        if not number:
+            raise NotCountedError(f"{why_no_way(result)}: draw the pattern without --all")
+        if number > self.most:
+            say(f"the first {self.most} of {number} are drawn: --most N draws more")
+        return sheet_of_ways(result, self._title, self.most), result.status
+
+
+def on_a_terminal() -> bool:
+    """Whether a picture on standard output would be shown as text."""
+    return sys.stdout.isatty()

@@ -1,0 +1,58 @@
+"""Folds to drive and their angles, as --drive takes them: on the command line, or in a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import typer
+
+from exactfold.app.shell.json_numbers import numbers_by_name
+from exactfold.app.shell.parameters import fold_name
+from exactfold.errors import BadDriveError, NotANumberError, UsageError
+from exactfold.exact.numbers import approx_number
+from exactfold.pattern.crease_pattern import Edge
+
+Angles = dict[Edge, float | None]
+"""By fold the angle in degrees to which it is driven; None: that of the branch."""
+
+_SHAPE = 'write {"3-7": 90, "4-9": -45, "2-8": null}, degrees for each fold'
+
+
+def driven_angles(text: str) -> Angles:
+    """Folds and angles such as 3-7=90deg,4-9=-45deg,2-8, or those in a file FILE.json.
+
+    Raises `UsageError`; `UnreadableFileError`, and `BadDriveError` for a file of another shape.
+    """
+    if text.endswith(".json"):
+        return _of_file(Path(text))
+    found: Angles = {}
+    for part in text.split(","):
+        name, equals, value = part.strip().partition("=")
+        _add(found, name, value if equals else None, UsageError)
+    return found
+
+
+def _of_file(path: Path) -> Angles:
+    def error(message: str) -> BadDriveError:
+        return BadDriveError(f"{path}: {message}")
+
+    found: Angles = {}
+    for name, value in numbers_by_name(path, BadDriveError, "fold", _SHAPE).items():
+        if not (value is None or isinstance(value, int | str)) or isinstance(value, bool):
+            raise error(f"the angle of fold {name} is no number: {_SHAPE}")
+        _add(found, name, None if value is None else str(value), error)
+    return found
+
+
+def _add(found: Angles, name: str, value: str | None, error: Callable[[str], Exception]) -> None:
+    try:
+        fold = fold_name(name)
+    except typer.BadParameter as failure:
+        raise error(str(failure)) from None
+    if fold in found:
+        raise error(f"fold {name} is there twice")
+    try:
+        found[fold] = None if value is None else approx_number(value.removesuffix("deg"))
+    except NotANumberError:
+        raise error(f"fold {name}: {value!r} is no angle such as 90deg") from None

@@ -1,0 +1,201 @@
+"""`exactfold export`: a branch, found by its signs or its place in the listing, as FOLD.
+
+With `--coq` it is the sheet, as a file on which the formal proof is used.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import sys
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.commands.branch import chosen
+from exactfold.app.shell.given import NOTHING, Given
+from exactfold.app.shell.patterns import read
+from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say, tell
+from exactfold.branches.counting.find import find_branches
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.export import AMOUNT, BranchExport, exported
+from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.described import described
+from exactfold.pattern.drawing.drawing import Snap
+from exactfold.pattern.fold_writing import write_text
+from exactfold.pattern.near_degeneracy import warnings
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What was asked for on the command line."""
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    signs: str | None
+    up: str | None
+    place: int | None
+    output: Path | None
+    amount: float | None
+    force: bool
+    as_json: bool
+    given: Given = NOTHING
+
+    def answer(self) -> int:
+        """Find the branch, write it and say so; the exit code.
+
+        Raises the errors of `read`, `chosen` and `exported`, but for
+        `UndecidedBranchError`, which is said on stderr with what `BranchFinder` gave as a reason;
+        `UsageError` unless exactly one of `signs`, `up` and `place` is given.
+        """
+        options = "one of --signs, --up and --branch", self.signs, self.up, self.place
+        one_at_most(*options)
+        if self.given.rim is not None and self.place is not None:
+            raise UsageError("--rim goes with --signs or --up")
+        output = self.written
+        if output is None and self.as_json:
+            raise UsageError("--json describes the file that is written: name it with -o")
+        with Bar("reading") as bar:
+            pattern = read(self.file, self.snap, self.sheet, "export").pattern
+            one_at_least(*options)
+            branch = chosen(pattern, self.signs, self.up, self.place, bar, self.given)
+            bar("writing")
+            try:
+                export = exported(
+                    branch,
+                    amount=AMOUNT if self.amount is None else self.amount,
+                    title=self._title,
+                    force=self.force,
+                )
+            except UndecidedBranchError as error:
+                say(f"not written: {error}; {branch.reason}".rstrip("; "))
+                return EXIT[UNDECIDED]
+            if output is not None:
+                export.write(output)
+        if output is None:
+            sys.stdout.write(export.text)
+        elif self.as_json:
+            print(json.dumps(_summary(branch, export, output, name_of(self.file))))
+        else:
+            from exactfold.app import report
+
+            report.show(report.export_report(str(output), branch, export))
+        return EXIT[export.status]
+
+    @property
+    def written(self) -> Path | None:
+        """The file to write, None for standard output."""
+        return None if self.output is None or str(self.output) == "-" else self.output
+
+    @property
+    def _title(self) -> str | None:
+        return None if str(self.file) == "/dev/stdin" else self.file.stem
+
+
+def write_coq(asked: Wanted, everything: bool) -> int:
+    """Write the sheet as a file for the formal proof, with the branches asked for; the exit code.
+
+    They are the one that is named, if any, or with `everything` all: more than `FEW` are written
+    with `asked.force` alone. Raises the errors of `read`, `chosen`, `find_branches`, `to_coq`,
+    `branch_to_coq` and `branches_to_coq`, and `UsageError` for too many branches, a file that Coq
+    could not compile by its name, and options that do not go with this.
+    """
+    from exactfold.branches import branch_certificate
+    from exactfold.interop import branch_to_coq, branches_to_coq, to_coq
+
+    for name, given in (
+        ("--branch", asked.place is not None),
+        ("--amount", asked.amount is not None),
+        ("--force", asked.force and not everything),
+        ("--json", asked.as_json),
+    ):
+        if given:
+            raise UsageError(f"{name} does not go with --coq")
+    one_at_most("one of --signs and --up", asked.signs, asked.up)
+    named = asked.signs is not None or asked.up is not None
+    if named and everything:
+        raise UsageError("--all names all branches: leave --signs and --up away")
+    if asked.given.rim is not None and not named:
+        raise UsageError("--rim goes with --signs or --up")
+    output = asked.written
+    if output is not None and not _MODULE.match(output.name):
+        raise UsageError(
+            f"Coq takes the name of a file for that of a module, which {output.name} cannot be: "
+            "a letter, then letters, digits and _, then .v"
+        )
+    with Bar("reading") as bar:
+        pattern = read(asked.file, asked.snap, asked.sheet, "export").pattern
+        text = to_coq(pattern)
+        branches = []
+        if named:
+            branches = [chosen(pattern, asked.signs, asked.up, None, bar, asked.given)]
+        elif everything:
+            _refuse_uncounted(pattern, asked.force)
+            every = map("".join, product("+-", repeat=pattern.Vi))
+            branches = list(find_branches(pattern, every, progress=bar))
+        for branch in branches:
+            if branch.status is not PROVED:
+                say(f"not written: the branch is not proved; {branch.reason}".rstrip("; "))
+                return EXIT[UNDECIDED]
+        certificates = [branch_certificate(branch) for branch in branches]
+        if everything:
+            text = branches_to_coq(certificates)
+        elif named:
+            text = branch_to_coq(certificates[0])
+    if output is None:
+        sys.stdout.write(text)
+    else:
+        write_text(output, text)
+        tell(f"wrote {output}; after `make -C proofs/formal`, verify it with")
+        tell(f"coqc -Q proofs/formal Exactfold {shlex.quote(str(output))}")
+    return EXIT[PROVED]
+
+
+FEW = 64
+"""So many branches are counted without `force`; with five vertices Coq takes 1.4 s for each."""
+
+
+def _refuse_uncounted(pattern: CreasePattern, force: bool) -> None:
+    """Raise before any branch is looked for if Coq cannot count them, or not soon.
+
+    `NotApplicableError` if a vertex lies in a triangulated triangle, else `UsageError`.
+    """
+    if pattern.Ve != 4:
+        raise UsageError(f"--all is for sheets with four corners, not {pattern.Ve}")
+    if flat := sorted(pattern.interior_set - set(pattern.foldable_vertices)):
+        raise NotApplicableError(
+            f"vertex {flat[0]} lies in a triangulated triangle and is flat on every branch: the "
+            "formal proof counts branches of sheets on which no vertex can stay flat"
+        )
+    if 2**pattern.Vi > FEW and not force:
+        raise UsageError(
+            f"{pattern.Vi} interior vertices have {2**pattern.Vi} sign vectors, and Coq takes a "
+            f"second or more for the branch of each: for more than {FEW} give --force, too"
+        )
+
+
+_MODULE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\.v\Z", re.ASCII)
+
+
+def _summary(
+    branch: Branch, export: BranchExport, output: Path, name: str | None
+) -> dict[str, Any]:
+    """The object that --json prints: `schema("export")`."""
+    return {
+        **headed("export"),
+        "pattern": described(branch.pattern, name),
+        "output": str(output),
+        "status": str(export.status),
+        "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
+        "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
+        "gauge": branch.gauge,
+        "angles": {f"{i}-{j}": angle for (i, j), angle in sorted(export.angles.items())},
+        "length_error": export.length_error,
+        "warnings": warnings(branch.pattern),
+    }

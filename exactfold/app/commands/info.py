@@ -1,0 +1,61 @@
+"""`exactfold info`: what is known of a sheet before anything is solved."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from exactfold.app import report
+from exactfold.app.shell.patterns import read_any, warn
+from exactfold.app.shell.shell import Bar, name_of
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.drawing import Snap
+from exactfold.pattern.opening import has_branches, panels
+from exactfold.rigidity.facts import pattern_facts
+
+if TYPE_CHECKING:
+    from exactfold.branches.counting.motion_facts import PanelFacts
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+
+def show_info(
+    path: Path, snap: Snap | None, number: int | None, exact: bool, as_json: bool
+) -> None:
+    """Print the facts of a sheet; raises the errors of `read_any`.
+
+    A triangulated sheet whose motions `count` decomposes has the facts of both kinds.
+    """
+    name = name_of(path)
+    with Bar("reading") as bar:
+        sheet = read_any(path, snap, number).sheet
+        data: dict[str, Any] = dict.fromkeys(_PANELS)
+        if not isinstance(sheet, CreasePattern):
+            motions = _motions(sheet)
+            data |= motions.to_dict(name)
+            table = report.panels_info(motions, exact=exact)
+        else:
+            facts = pattern_facts(sheet, bar)
+            both = None
+            data |= {**facts.to_dict(name), "expected": report.expectation(facts)}
+            if not has_branches(sheet):
+                warn(sheet)
+                both = _motions(panels(sheet))
+                data |= {**both.keys(), "expected": report.expectation(facts, both)}
+            table = report.info_report(facts, both, exact=exact)
+    if as_json:
+        print(json.dumps(data))
+    else:
+        report.show(table)
+
+
+def _motions(pattern: PanelPattern) -> PanelFacts:
+    from exactfold.branches.counting.motion_facts import (
+        panel_facts,  # sheets with branches need none of it
+    )
+
+    return panel_facts(pattern)
+
+
+_PANELS = ("panels", "field", "flat_folds", "free_folds", "parts")
+"""What is null of a sheet that has branches."""

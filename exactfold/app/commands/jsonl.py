@@ -1,0 +1,91 @@
+"""A file of results, one JSON object a line, that an interrupted batch goes on with."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import time
+from collections.abc import Iterator
+from typing import Any
+
+from exactfold.certificates.durable import locked, synced, synced_entry, unwritable
+from exactfold.errors import ForeignJournalError
+
+SYNC = 5.0
+"""Seconds after which what was written is brought to the disk, past a crash of the machine."""
+
+
+class Lines:
+    """A file of objects with one "format", opened for more; one process at a time writes it.
+
+    A line is written whole: after an interruption at most the last one is torn, and is dropped
+    here. Raises `JournalInUseError`, `UnwritableFileError`, and `ForeignJournalError` for a file
+    that holds anything else, which is then left as it is.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], format_: str) -> None:
+        self.path, self._format = os.fspath(path), format_
+        self._file: io.FileIO = locked(self.path)
+        self._synced = time.monotonic()
+
+    def found(self) -> Iterator[dict[str, Any]]:
+        """The objects in the file; at the end it is ready for more."""
+        length = 0
+        self._file.seek(0)
+        stream = io.BufferedReader(self._file)
+        try:
+            for number, line in enumerate(stream, 1):
+                if not line.endswith(b"\n"):
+                    if number == 1 and not self._may_begin(line):
+                        raise self._foreign(number)
+                    break
+                yield self._read(line, number)
+                length += len(line)
+        finally:
+            stream.detach()
+        try:
+            if os.fstat(self._file.fileno()).st_size > length:
+                self._file.truncate(length)
+        except OSError as error:
+            raise unwritable(self.path, error) from None
+        if not length:
+            synced_entry(self.path)
+
+    def append(self, text: str) -> None:
+        """Write one object, given as its text; raises `UnwritableFileError`."""
+        left = memoryview(f"{text}\n".encode())
+        try:
+            while left:
+                left = left[self._file.write(left) or 0 :]
+            if time.monotonic() - self._synced > SYNC:
+                synced(self._file)
+                self._synced = time.monotonic()
+        except OSError as error:
+            raise unwritable(self.path, error) from None
+
+    def close(self) -> None:
+        """Bring what was written to the disk and let others have the file."""
+        try:
+            synced(self._file)
+        except OSError as error:
+            raise unwritable(self.path, error) from None
+        finally:
+            self._file.close()
+
+    def _read(self, line: bytes, number: int) -> dict[str, Any]:
+        try:
+            data = json.loads(line)
+        except ValueError:
+            raise self._foreign(number) from None
+        if not isinstance(data, dict) or data.get("format") != self._format:
+            raise self._foreign(number)
+        return data
+
+    def _may_begin(self, line: bytes) -> bool:
+        """Whether a torn first line may be one of this file, and not a file of another kind."""
+        begin = f'{{"format": "{self._format}"'.encode()
+        return begin.startswith(line[: len(begin)])
+
+    def _foreign(self, number: int) -> ForeignJournalError:
+        return ForeignJournalError(f"{self.path}, line {number}: this is not a line of results")

@@ -1,0 +1,84 @@
+"""`exactfold motions`: how the half-branches are joined by true motions, with proof."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+from exactfold.app.shell.patterns import read
+from exactfold.app.shell.resuming import require_file, resumable
+from exactfold.app.shell.shell import EXIT, Bar, apart, interruptible, name_of
+from exactfold.branches.counting.on_dask import LOCAL
+from exactfold.branches.counting.pools import dask_pool
+from exactfold.errors import UsageError
+from exactfold.motion.loops.matching import find_loops
+from exactfold.pattern.drawing.drawing import Snap
+
+_FEW = 4
+"""With at most so many foldable vertices the loops are followed before other processes start."""
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What was asked for on the command line."""
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    workers: int | None
+    dask: str | None
+    certificate: Path | None
+    resume: bool
+    as_json: bool
+
+    @property
+    def again(self) -> str:
+        """The command that continues the certificate."""
+        words = ["exactfold", "motions", str(self.file), "--certificate", str(self.certificate)]
+        words.append("--resume")
+        for name in ("workers", "dask", "snap", "sheet"):
+            if value := getattr(self, name):
+                words += [f"--{name}", str(value)]
+        return shlex.join(words)
+
+    def answer(self) -> int:
+        """Follow all half-branches and print; the exit code.
+
+        Raises the errors of `read`, `find_loops` and `dask_pool`, and `UsageError`.
+        """
+        from exactfold.app import report
+
+        if self.workers is not None and self.dask not in (None, LOCAL):
+            raise UsageError("the cluster has its workers: --workers goes with --dask local")
+        if self.resume and self.certificate is None:
+            raise UsageError("--resume continues a file: it goes with --certificate")
+        apart(self.certificate, self.file)
+        with Bar("reading") as bar:
+            pattern = read(self.file, self.snap, self.sheet, "motions").pattern
+            with ExitStack() as stack:
+                if self.certificate is not None:
+                    require_file(self.certificate, self.resume)
+                    stack.enter_context(resumable(self.certificate, self.again))
+                stack.enter_context(interruptible())
+                pool = None
+                if self.dask is not None:
+                    pool = stack.enter_context(dask_pool(self.dask, self.workers))
+                few = len(pattern.foldable_vertices) <= _FEW
+                found = find_loops(
+                    pattern,
+                    processes=self.workers or (1 if few else os.cpu_count() or 1),
+                    pool=pool,
+                    progress=bar,
+                    certificate=self.certificate,
+                    resume=self.resume,
+                    replace=False,
+                )
+        if self.as_json:
+            print(json.dumps(found.report(name_of(self.file))))
+        else:
+            report.show(report.motions_report(found))
+        return EXIT[found.status]

@@ -1,0 +1,198 @@
+"""`exactfold match`: which branches have the mountains and valleys of a designer."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from exactfold._support.plurals import counted
+from exactfold._support.verdict import PROVED, REFUTED
+from exactfold.app.shell.patterns import read_any, warn
+from exactfold.app.shell.shell import EXIT, Bar, name_of, say
+from exactfold.certificates.entries import write_certificate
+from exactfold.design.assignments.boundary_document import rim_match_document
+from exactfold.design.assignments.boundary_match import RimMatch, can_pop, match_rim
+from exactfold.design.assignments.certificate import match_certificate
+from exactfold.design.assignments.document import match_document
+from exactfold.design.assignments.nearest import nearest_branches
+from exactfold.design.assignments.search import Match, match
+from exactfold.design.panels.match import PanelMatch, match_panels
+from exactfold.errors import (
+    LettersError,
+    NoLettersError,
+    NotApplicableError,
+    NotCountedError,
+)
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.drawing.bounds import read_text
+from exactfold.pattern.drawing.drawing import Snap
+from exactfold.pattern.opening import Opened, has_branches, triangles
+from exactfold.pattern.panel_pattern import PanelPattern
+
+_HALVES = 256
+_RIMS = 16
+"""How many sign vectors are compared, and for how many a rim is looked for, unless it is said."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What was asked for on the command line."""
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    letters: str | None
+    most: int | None
+    tries: int | None
+    as_json: bool
+    everything: bool
+    certificate: Path | None
+
+    def answer(self) -> int:
+        """Find the branches, or why there are none and the nearest, and print; the exit code.
+
+        Sheets of panels, and triangles with more than four corners, are asked whether they start
+        to fold. 1 where it is proved that no branch has the letters, or that they do not. Raises
+        the errors of `read_any`, `triangles` and `match`, `LettersError` and `NoLettersError`.
+        """
+        begin = time.perf_counter()
+        nearest = None
+        with Bar("reading") as bar:
+            opened = read_any(self.file, self.snap, self.sheet)
+            letters = self._letters(opened.sheet, opened)
+            if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
+                if isinstance(opened.sheet, CreasePattern) and can_pop(opened.sheet):
+                    over = match_rim(opened.sheet, letters, most=self.most or _RIMS, progress=bar)
+                    if over.status is PROVED:
+                        self._write(over, bar)
+                        bar.close()
+                        return self._over_a_rim(over)
+                started = match_panels(opened, letters, progress=bar)
+                self._write(started, bar)
+                bar.close()
+                return self._started(started)
+            pattern = triangles(opened, "match")
+            _in_reach(pattern)
+            if not has_branches(pattern):
+                warn(pattern)
+            bar("signs")
+            found = match(pattern, letters, most=self.most or _HALVES, progress=bar)
+            if not found.matches:
+                bar("nearest branches")
+                nearest = nearest_branches(found, tries=self.tries, progress=bar)
+            self._write(found, bar)
+        seconds = time.perf_counter() - begin
+        if self.as_json:
+            print(json.dumps(match_document(found, nearest, name_of(self.file), seconds)))
+        else:
+            from exactfold.app import report
+
+            report.show(report.match_report(found, nearest, seconds, everything=self.everything))
+        refuted = found.status is PROVED and not found.matches
+        return EXIT[REFUTED if refuted else found.status]
+
+    def _write(self, found: Match | RimMatch | PanelMatch, bar: Bar) -> None:
+        if self.certificate is None:
+            return
+        if found.status is not PROVED:
+            say("no certificate was written: not all is proved")
+            return
+        bar("certificate")
+        try:
+            certificate = match_certificate(found)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
+        else:
+            write_certificate(certificate, self.certificate)
+
+    def _over_a_rim(self, found: RimMatch) -> int:
+        """Print whether a sheet with more than four corners starts to fold; the exit code."""
+        if self.as_json:
+            print(json.dumps(rim_match_document(found, name_of(self.file))))
+        else:
+            from exactfold.app import report
+
+            report.show(report.rim_match_report(found, everything=self.everything))
+        return EXIT[found.starts]
+
+    def _started(self, found: PanelMatch) -> int:
+        """Print whether panels start to fold; the exit code."""
+        if self.as_json:
+            print(json.dumps(found.to_dict(name_of(self.file))))
+        else:
+            from exactfold.app import report
+
+            report.show(report.panel_match_report(found, everything=self.everything))
+        return EXIT[found.starts]
+
+    def _letters(self, pattern: CreasePattern | PanelPattern, opened: Opened) -> Mapping[Edge, str]:
+        if self.letters is None:
+            if opened.letters:
+                return opened.letters
+            raise NoLettersError(
+                f"{name_of(self.file)}: no fold is a mountain or a valley in the file: give "
+                "letters with --letters"
+            )
+        return given_letters(pattern, self.letters)
+
+
+def _in_reach(pattern: CreasePattern) -> None:
+    if pattern.interior and pattern.Ve == 3:
+        raise NotCountedError(
+            "match takes sheets that can fold, and this one, with three vertices on its border, "
+            "is rigid"
+        )
+
+
+def given_letters(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str]:
+    """The letters of --letters: in the order of the folds, or by fold as in "0-4=M,1-5=V".
+
+    @FILE reads them from a file; folds that are not named are free. Raises `LettersError` and
+    `UnreadableFileError`.
+    """
+    where = ""
+    if text.startswith("@"):
+        where, text = f"{text[1:]}: ", read_text(text[1:])
+    letters = "".join(text.split())
+    try:
+        return _by_name(pattern, letters) if "=" in letters else _in_order(pattern, letters)
+    except LettersError as error:
+        raise LettersError(f"{where}{error}") from None
+
+
+def _in_order(pattern: CreasePattern | PanelPattern, letters: str) -> dict[Edge, str]:
+    folds = pattern.folds
+    for fold, letter in zip(folds, letters, strict=False):
+        _check(fold, letter)
+    if len(letters) != len(folds):
+        raise LettersError(
+            f"{counted(len(letters), 'letter')} for {counted(len(folds), 'fold')}: one of M, V, F, "
+            "U for each, in the order of `exactfold count`, or by fold as in 0-4=M,1-5=V"
+        )
+    return dict(zip(folds, letters, strict=True))
+
+
+def _by_name(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str]:
+    names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
+    names |= {f"{j}-{i}": (i, j) for i, j in pattern.folds}
+    found: dict[Edge, str] = {}
+    for part in filter(None, text.split(",")):
+        name, _, letter = part.partition("=")
+        if name not in names:
+            raise LettersError(f"{part!r} names no fold of the sheet: write 0-4=M for fold 0-4")
+        fold = names[name]
+        _check(fold, letter)
+        if found.setdefault(fold, letter) != letter:
+            raise LettersError(f"fold {fold[0]}-{fold[1]} has two letters")
+    return found
+
+
+def _check(fold: Edge, letter: str) -> None:
+    if letter not in tuple("MVFU"):
+        raise LettersError(
+            f"fold {fold[0]}-{fold[1]} has the letter {letter!r}: M mountain, V valley, F flat and "
+            "U free are known"
+        )

@@ -1,0 +1,102 @@
+"""`exactfold count --stream`: all branches to a file, interruptible, handed over where open."""
+
+from __future__ import annotations
+
+import shlex
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from exactfold._support.processes import available_cores
+from exactfold.app.shell.patterns import read
+from exactfold.app.shell.resuming import require_file, resumable
+from exactfold.app.shell.shell import Bar, apart, interruptible
+from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many, too_many
+from exactfold.branches.counting.collect import check_countable
+from exactfold.branches.counting.on_dask import LOCAL, dask_engine
+from exactfold.branches.counting.stream import StreamedCount, stream_branches
+from exactfold.errors import (
+    NotApplicableError,
+    NotCountedError,
+    UsageError,
+)
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.drawing import Snap
+
+ADVISED = 16
+"""Foldable vertices from which plain `count` takes ten times as long, and doubles with each."""
+
+
+@dataclass(frozen=True)
+class Streaming:
+    """What was asked for."""
+
+    pattern: Path
+    file: Path
+    resume: bool
+    workers: int | None
+    dask: str | None
+    snap: Snap | None
+    sheet: int | None
+    seed: int
+    certificate: Path | None
+
+    @property
+    def again(self) -> str:
+        """The command that continues."""
+        words = ["exactfold", "count", str(self.pattern), "--stream", str(self.file), "--resume"]
+        for name in ("workers", "dask", "snap", "sheet", "seed", "certificate"):
+            if value := getattr(self, name):  # the seed is 0 by default, the others None
+                words += [f"--{name}", str(value)]
+        return shlex.join(words)
+
+    def run(self) -> StreamedCount:
+        """The count, by another method where that proves what the run left open.
+
+        Raises the errors of `stream_branches` and `dask_engine`, and `UsageError` for a file that
+        is there already.
+        """
+        if self.workers is not None and self.dask not in (None, LOCAL):
+            raise UsageError("the cluster has its workers: --workers goes with --dask local")
+        apart(self.file, self.pattern)
+        require_file(self.file, resume=True)
+        with Bar("reading") as bar:
+            file = read(self.pattern, self.snap, self.sheet, "--stream")
+            _require_streamable(file.pattern)
+            require_file(self.file, self.resume)
+            with resumable(self.file, self.again), interruptible():
+                result = self._streamed(file.pattern, bar)
+                return replace(result, snapped=file.opened.snapped, read=file.opened.read)
+
+    def _streamed(self, pattern: CreasePattern, bar: Bar) -> StreamedCount:
+        cluster = nullcontext() if self.dask is None else dask_engine(self.dask, self.workers)
+        with cluster as engine:
+            return stream_branches(
+                pattern,
+                self.file,
+                workers=self.workers or available_cores(),
+                resume=self.resume,
+                replace=False,
+                seed=self.seed,
+                progress=bar,
+                engine=engine,
+            )
+
+
+def advice(pattern: CreasePattern) -> str | None:
+    """Where plain `count` takes much memory: what to do instead."""
+    foldable = pattern.Vi - pattern.Vt
+    if pattern.Ve != 4 or foldable < ADVISED or is_too_many(pattern, IN_MEMORY):
+        return None
+    return f"2^{foldable} branches take less memory with --stream FILE"
+
+
+def _require_streamable(pattern: CreasePattern) -> None:
+    check_countable(pattern)
+    if pattern.Ve != 4 or pattern.Vi == pattern.Vt:
+        raise NotApplicableError(
+            "--stream takes sheets with four boundary vertices and a foldable vertex; "
+            "count this one without it"
+        )
+    if is_too_many(pattern):
+        raise NotCountedError(too_many(pattern).reason)

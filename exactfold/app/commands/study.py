@@ -1,0 +1,258 @@
+"""`exactfold study`: run a study, or compute one of its rows again."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from exactfold._support.memory import is_shortage, shortage
+from exactfold._support.processes import available_cores
+from exactfold._support.progress import Progress
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.app import report
+from exactfold.app.shell.row_numbers import read_numbers, written_numbers, written_sizes
+from exactfold.app.shell.shell import EXIT, Bar, apart, interruptible, stopped
+from exactfold.branches.counting.on_dask import LOCAL
+from exactfold.branches.counting.pools import Pool, dask_pool, process_pool
+from exactfold.errors import (
+    NotEnoughMemoryError,
+    RowFailedError,
+    UnwritableFileError,
+    UsageError,
+    WorkerDiedError,
+)
+from exactfold.pattern.fold_writing import checked_target, write_bytes, write_text
+from exactfold.studies import all_studies, recompute_row, run_study, study_named
+from exactfold.studies.running.runner import StudyRun
+from exactfold.studies.running.study import Study
+from exactfold.studies.running.writing import check_parquet, write_csv, write_parquet
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What was asked for on the command line."""
+
+    name: str | None
+    seed: int
+    sizes: tuple[int, ...] | None
+    number: str | None
+    extend: bool
+    workers: int | None
+    dask: str | None
+    journal: Path | None
+    csv: Path | None
+    parquet: Path | None
+    html: Path | None
+    figures: Path | None
+    row: str | None
+    as_json: bool
+
+    def answer(self) -> int:
+        """Run what was asked for and print; the exit code.
+
+        Raises the errors of `run_study`, `recompute_row` and `dask_pool`, and `UsageError`.
+        """
+        if self.name is None:
+            return self._list()
+        study = study_named(self.name)
+        return self._again(study) if self.row is not None else self._run(study)
+
+    @property
+    def _journal(self) -> Path:
+        return self.journal or Path(f"{self.name}.sqlite")
+
+    @property
+    def _files(self) -> tuple[Path | None, ...]:
+        return self.csv, self.parquet, self.html
+
+    @property
+    def _asks_for_rows(self) -> bool:
+        given = (self.sizes, self.number, self.workers, self.dask, self.figures, *self._files)
+        return self.extend or self.seed != 0 or any(value is not None for value in given)
+
+    @property
+    def again(self) -> str:
+        """The command that makes the same tables and files."""
+        words = ["exactfold", "study", str(self.name)]
+        if self.seed:
+            words += ["--seed", str(self.seed)]
+        if self.sizes is not None:
+            words += ["--sizes", written_sizes(self.sizes)]
+        if self.number is not None:
+            words += ["--number", written_numbers(read_numbers(self.number))]
+        words += ["--extend"] if self.extend else []
+        for key in ("journal", "csv", "parquet", "html", "figures"):
+            if (value := getattr(self, key)) is not None:
+                words += [f"--{key}", str(value)]
+        return shlex.join(words)
+
+    def _list(self) -> int:
+        if self._asks_for_rows or self.row is not None or self.journal is not None:
+            raise UsageError(f"name a study; there are: {', '.join(all_studies())}")
+        if self.as_json:
+            print(
+                json.dumps(
+                    {**headed("studies"), "studies": [*map(_described, all_studies().values())]}
+                )
+            )
+        else:
+            report.show(report.studies_report(all_studies()))
+        return EXIT[PROVED]
+
+    def _again(self, study: Study) -> int:
+        if self._asks_for_rows:
+            raise UsageError("--row goes with --journal and --json only")
+        found = recompute_row(study, self._journal, str(self.row))
+        if self.as_json:
+            print(
+                json.dumps(
+                    {
+                        **headed("study-row"),
+                        "study": study.name,
+                        "journal": str(self._journal),
+                        "row": found.stored.id,
+                        "sha256": found.stored.sha256,
+                        "recipe": dict(found.stored.recipe),
+                        "stored": dict(found.stored.row),
+                        "recomputed": dict(found.row),
+                        "agrees": found.agrees,
+                        "differing": list(found.differing),
+                    }
+                )
+            )
+        else:
+            report.show(report.row_report(found))
+        return EXIT[PROVED if found.agrees else REFUTED]
+
+    def _run(self, study: Study) -> int:
+        if self.workers is not None and self.dask not in (None, LOCAL):
+            raise UsageError("the cluster has its workers: --workers goes with --dask local")
+        self._check_files()
+        given = None if self.number is None else read_numbers(self.number)
+        numbers = study.chosen(self.sizes, given, extend=self.extend)
+        if not study.number(self.seed, numbers):
+            raise UsageError("a study without rows says nothing")
+        with Bar("starting") as bar, self._resumable(), self._pool() as pool:
+            run = run_study(
+                study,
+                self._journal,
+                seed=self.seed,
+                numbers=numbers,
+                engine=pool,
+                progress=_with_rate(bar),
+            )
+            bar("reading the rows")
+            undecided = run.undecided
+            document = self._document(run, undecided)
+            bar("writing")
+            written = self._write(run)
+        if self.as_json:
+            print(json.dumps({**document, "files": written}))
+        else:
+            report.show(report.study_report(run, written))
+        return EXIT[UNDECIDED if undecided else PROVED]
+
+    def _check_files(self) -> None:
+        """Raise before anything is computed for what could not be written."""
+        for path, ending in zip(self._files, (".csv", ".parquet", ".html"), strict=True):
+            if path is not None:
+                checked_target(path, (ending,), "this output")
+                apart(path, self._journal, *(other for other in self._files if other is not path))
+        if self.figures is not None and self.figures.exists() and not self.figures.is_dir():
+            raise UsageError(f"{self.figures} is not a folder")
+        if self.parquet is not None:
+            check_parquet()
+        if self.html is not None or self.figures is not None:
+            report.check_figures()
+
+    def _document(self, run: StudyRun, undecided: int) -> dict[str, Any]:
+        if not self.as_json:
+            return {}
+        return {
+            **headed("study"),
+            "study": run.study.name,
+            "study_version": run.study.version,
+            "about": run.study.about,
+            "seed": run.seed,
+            "numbers": {str(size): number for size, number in run.numbers.items()},
+            "rows": run.total,
+            "computed": run.computed,
+            "undecided": undecided,
+            "journal": run.journal,
+            "tables": [table.to_dict() for table in run.tables],
+        }
+
+    def _write(self, run: StudyRun) -> list[str]:
+        """Write all files that were asked for; their names."""
+        written = [str(path) for path in self._files if path is not None]
+        if self.csv is not None:
+            write_csv(run.rows, self.csv)
+        if self.parquet is not None:
+            write_parquet(run.rows, self.parquet)
+        if self.html is not None:
+            write_text(self.html, report.study_page(run, self.again))
+        if self.figures is not None:
+            try:
+                self.figures.mkdir(exist_ok=True)
+            except OSError as error:
+                raise UnwritableFileError(
+                    f"cannot write {self.figures}: {error.strerror}"
+                ) from None
+            for figure in run.figures:
+                for kind in ("svg", "pdf"):
+                    path = self.figures / f"{run.study.name}-{figure.name}.{kind}"
+                    write_bytes(path, report.drawn(figure, kind))
+                    written.append(str(path))
+        return written
+
+    @contextmanager
+    def _pool(self) -> Iterator[Pool]:
+        ready = nullcontext(process_pool(self.workers or available_cores()))
+        with ready if self.dask is None else dask_pool(self.dask, self.workers) as pool:
+            yield pool
+
+    @contextmanager
+    def _resumable(self) -> Iterator[None]:
+        """Say how to go on when the study stops early."""
+        again = "the same command goes on"
+        try:
+            with interruptible():
+                yield
+        except KeyboardInterrupt:
+            stopped(again)
+        except RowFailedError as error:
+            raise RowFailedError(f"{error}; the same command tries them again") from None
+        except (WorkerDiedError, UnwritableFileError) as error:
+            raise type(error)(f"{error}; {again}") from None
+        except Exception as error:
+            if not is_shortage(error):
+                raise
+            raise NotEnoughMemoryError(f"{shortage(error)}; {again}") from None
+
+
+def _described(study: Study) -> dict[str, Any]:
+    return {
+        "study": study.name,
+        "study_version": study.version,
+        "about": study.about,
+        "numbers": {str(size): number for size, number in study.numbers.items()},
+        "extended": {str(size): number for size, number in study.extended.items()},
+    }
+
+
+def _with_rate(bar: Bar, clock: Callable[[], float] = time.monotonic) -> Progress:
+    """Progress that also says how many rows a second are ready."""
+    start = clock()
+
+    def progress(stage: str, done: int, total: int) -> None:
+        passed = clock() - start
+        bar(stage, done, total, f", {done / passed:.3g} a second" if passed > 1 else "")
+
+    return progress

@@ -1,0 +1,109 @@
+"""`exactfold view`: the page that shows a sheet and its ways to fold, in a file or served."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.text import Text
+
+from exactfold._support.plurals import counted, visible
+from exactfold._support.processes import available_cores
+from exactfold._support.verdict import PROVED
+from exactfold.app.report.terminal import show
+from exactfold.app.shell.patterns import read_any
+from exactfold.app.shell.shell import Bar, apart, interruptible, name_of, say, tell
+from exactfold.app.viewer.page import checked_page, write_view
+from exactfold.app.viewer.server import view_server
+from exactfold.errors import UsageError
+from exactfold.pattern.drawing.drawing import Snap
+from exactfold.pattern.opening import Opened
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What was asked for on the command line."""
+
+    file: Path
+    snap: Snap | None
+    sheet: int | None
+    output: Path | None
+    branches: Sequence[str] | None
+    frames: int
+    proving: bool
+    workers: int | None
+    serve: bool
+    port: int | None
+
+    def run(self) -> None:
+        """Write the page and say where, or serve it until Ctrl-C.
+
+        Raises the errors of `read_any`, `write_view` and `view_server`.
+        """
+        if self.serve:
+            if self.output is not None or self.workers is not None:
+                raise UsageError("--serve writes no file and follows one branch at a time")
+        elif self.port is not None:
+            raise UsageError("--port goes with --serve")
+        name = "sheet" if str(self.file) == "/dev/stdin" else self.file.stem
+        output = self.output or Path(f"{name}.view.html")
+        if not self.serve:
+            apart(output, self.file)
+            checked_page(output)  # before the work
+        with Bar("reading") as bar, interruptible():
+            opened = read_any(self.file, self.snap, self.sheet)
+            if not self.serve:
+                document = write_view(
+                    opened,
+                    output,
+                    name=visible(name),
+                    branches=self.branches,
+                    frames=self.frames,
+                    proving=self.proving,
+                    workers=self.workers or available_cores(),
+                    progress=bar,
+                )
+        if self.serve:
+            self._serve(opened, name)
+            return
+        show(Text(document["answer"]))
+        tell(f"written: {name_of(output)}, with {_contents(document)}")
+
+    def _serve(self, opened: Opened, name: str) -> None:
+        with Bar("counting") as bar:
+            try:
+                server = view_server(
+                    opened,
+                    name=visible(name),
+                    branches=self.branches,
+                    frames=self.frames,
+                    proving=self.proving,
+                    port=self.port or 0,
+                    progress=bar,
+                )
+            except OSError as error:
+                raise UsageError(f"port {self.port or 0}: {error.strerror}") from None
+        with server:
+            tell(f"{name} is at {server.address} (Ctrl-C ends it)")
+            try:
+                with interruptible():
+                    server.serve_forever(poll_interval=0.2)
+            except KeyboardInterrupt:
+                say("the server has ended")
+
+
+def _contents(document: Mapping[str, Any]) -> str:
+    """What a page shows beside the pattern, in words."""
+    ways = document["ways"]
+    if not ways:
+        return "the pattern only: no single way to fold is known"
+    if document["kind"] == "branches":
+        return counted(len(ways), "branch")
+    folding = sum(way["motion"] is not None for way in ways)
+    left = len(ways) - folding
+    text = counted(folding, "way") + " to fold"
+    if not left and document["status"] == str(PROVED) and not document["complete"]:
+        return f"{text}, those of which a motion is known"
+    return f"{text}, and {counted(left, 'mode')} not followed" if left else text

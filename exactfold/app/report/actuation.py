@@ -1,0 +1,105 @@
+"""What `exactfold actuate` prints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from exactfold._support.plurals import counted
+from exactfold.app.report.terminal import facts_table, letters_text, more_text, status_text
+from exactfold.exact.numbers import decimal_above, decimal_below, decimal_near
+
+if TYPE_CHECKING:
+    from exactfold.design.actuation.result import Actuation, Bounds
+
+_FIRST = 8
+"""Branches of the ranking that are shown unless all are asked for."""
+
+
+def actuation_report(found: Actuation, *, everything: bool = False) -> Group:
+    """The torques, what is proved of them, and the branches in the order of their power."""
+    branch = found.branch
+    rows: list[tuple[str, str | Text]] = [
+        ("status", Text.assemble(status_text(found.status), f" ({found.reason})")),
+        ("vertex signs", branch.sign_text),
+        ("mountain-valley", letters_text(branch.assignment_text)),
+        ("margin", f"{_between(found.margin)}; {_best(found)}"),
+        ("power", f"{_between(found.power)}; on any other ray {_between(found.largest_rival)}"),
+        ("alone", _alone(found)),
+    ]
+    if not found.driven:
+        return Group(facts_table(list(rows)))
+    return Group(
+        facts_table(list(rows)), Text(""), _torques(found), Text(""), *_ranking(found, everything)
+    )
+
+
+def _between(bounds: Bounds) -> str:
+    low, high = (decimal_below(bounds[0], 6), decimal_above(bounds[1], 6))
+    return low if low == high else f"from {low} to {high}"
+
+
+def _best(found: Actuation) -> str:
+    bound = f"{decimal_above(found.best, 6)} is the most that is possible"
+    if found.given:
+        return f"with torques of this size at most {decimal_above(found.best, 6)} is possible"
+    if found.creases is not None:
+        return f"on {counted(found.creases, 'crease')} at most {bound.split()[0]} is possible"
+    return f"at most {bound.split()[0]} is possible"
+
+
+def _alone(found: Actuation) -> str:
+    """What is known of torques that do no work on any other branch."""
+    low, high = found.orthogonal_dimension
+    names = found.independent
+    if high == 0:
+        listed = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+        return (
+            "no torques do work on this branch only: of the others "
+            f"{listed} are linearly independent and span all first-order motions"
+        )
+    if low == 0:
+        return f"torques that do work on this branch only: undecided, dimension 0 to {high}"
+    size = str(low) if low == high else f"{low} to {high}"
+    share = ""
+    if found.orthogonal is not None:
+        share = f"; such torques to within {decimal_above(found.orthogonal.share, 1)} are listed"
+    return f"torques that do work on this branch only: dimension {size}{share}"
+
+
+def _torques(found: Actuation) -> Table:
+    table = Table(box=None, pad_edge=False)
+    table.add_column("crease")
+    table.add_column("letter")
+    table.add_column("torque", justify="right")
+    alone = found.orthogonal.torques if found.orthogonal is not None else {}
+    if alone:
+        table.add_column("on this branch only", justify="right")
+    for fold in sorted({*found.driven, *(fold for fold, torque in alone.items() if torque)}):
+        letter = found.branch.assignment[fold]
+        row: list[str | Text] = [f"{fold[0]}-{fold[1]}", letters_text(letter)]
+        row.append(decimal_near(found.torques[fold], 12))
+        if alone:
+            row.append(decimal_near(alone[fold], 12))
+        table.add_row(*row)
+    return table
+
+
+def _ranking(found: Actuation, everything: bool) -> list[Text | Table]:
+    table = Table(box=None, pad_edge=False)
+    table.add_column("place", justify="right")
+    table.add_column("branch", overflow="fold")
+    table.add_column("power", justify="right")
+    table.add_column("")
+    ranking = found.ranking()
+    shown = ranking if everything else ranking[:_FIRST]
+    for place, row in enumerate(shown, 1):
+        last = place == len(ranking)
+        note = "" if row.above_next or last else "not proved to exceed those below"
+        note += ("; " if note and row.ray < 0 else "") + ("turned over" if row.ray < 0 else "")
+        middle = (row.power[0] + row.power[1]) / 2
+        table.add_row(str(place), row.signs, decimal_near(middle, 6), note)
+    return [table, *more_text(len(ranking) - len(shown))]

@@ -1,0 +1,88 @@
+"""What `exactfold count` says of a sheet with a convex border and more than four corners."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from exactfold._support.plurals import agreeing, counted
+from exactfold._support.verdict import PROVED
+
+if TYPE_CHECKING:
+    from exactfold.branches.connected_components.result import Pieces
+    from exactfold.branches.values.result import BranchCount
+
+_SHOWN: Final = 8
+
+
+def graphs(pieces: Pieces) -> str:
+    """The graphs and their pieces, in one sentence.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.branches import find_pieces
+    >>> graphs(find_pieces(single_vertex(6)))
+    'for every rim exactly one shape for each of 2 choices of vertices that pop up or down; these
+    2 graphs of dimension 3 fall into 2 pieces'
+    """
+    number = _power(len(pieces.vertices))
+    one = len(pieces.vertices) == 0
+    choices = "1 choice" if one else f"{number} choices"
+    kinds = "this graph" if one else f"these {number} graphs"
+    return (
+        f"for every rim exactly one shape for each of {choices} of vertices that pop up or down; "
+        f"{kinds} of dimension {pieces.dimension} {'falls' if one else 'fall'} into "
+        f"{_range(pieces.low, pieces.high)}"
+    )
+
+
+def piece_notes(result: BranchCount) -> list[str]:
+    """What is known of the joints, of true motions and of irreducible families."""
+    pieces = result.pieces
+    if pieces is None:
+        return []
+    notes = []
+    if pieces.chord is not None:
+        i, j = pieces.chord
+        notes.append(f"the fold {i}-{j} from border to border joins all graphs")
+    if pieces.joints:
+        shown = ", ".join(joint.sign_text for joint in pieces.joints[:_SHOWN])
+        more = len(pieces.joints) - _SHOWN
+        order = ", ".join(map(str, pieces.vertices[:_SHOWN]))
+        rest = f" and {more} more (--json)" if more > 0 else ""
+        dots = ", ..." if len(pieces.vertices) > _SHOWN else ""
+        notes.append(
+            "graphs meet where stars are flat, 0 in these signs of the vertices "
+            f"{order}{dots}, and in their reflections: {shown}{rest}"
+        )
+    if pieces.never_flat:
+        names = ", ".join(map(str, list(pieces.never_flat)[:_SHOWN]))
+        names += ", ..." if len(pieces.never_flat) > _SHOWN else ""
+        which = counted(len(pieces.never_flat), "vertex")
+        are = agreeing(len(pieces.never_flat), "is")
+        notes.append(f"{which} {are} flat in no way to start folding: {names}")
+    true = _range(pieces.low, pieces.true_high)
+    notes.append(f"the true motions near the flat state form as many graphs, in {true}")
+    families = result.families
+    if families is not None and families.status is PROVED and families.second_order is not None:
+        kinds = ", ".join(f"{n} of dimension {d}" for d, n in families.second_order.items())
+        notes.append(f"irreducible components: {kinds}")
+    if result.warning is not None:
+        notes.append(f"warning: {result.warning}")
+    return notes
+
+
+def _range(low: int, high: int) -> str:
+    if low == high:
+        return "1 piece" if low == 1 else f"{_long(low)} pieces"
+    return f"{_long(low)} to {_long(high)} pieces"
+
+
+def _power(exponent: int) -> str:
+    return str(1 << exponent) if exponent < 20 else f"2^{exponent}"
+
+
+def _long(value: int) -> str:
+    if value < 1 << 20:
+        return str(value)
+    if not value & (value - 1):
+        return f"2^{value.bit_length() - 1}"
+    return f"about 10^{len(str(value)) - 1}"

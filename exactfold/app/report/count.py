@@ -1,0 +1,330 @@
+"""What `exactfold count` prints: the answer in plain words, then a line for each way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from exactfold._support.plurals import agreeing, counted
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.report.connected_components import graphs, piece_notes
+from exactfold.app.report.terminal import (
+    BY_SIGN,
+    SHOWN,
+    facts_table,
+    letters_text,
+    more_text,
+    status_text,
+)
+from exactfold.exact.numbers import decimal_above
+
+if TYPE_CHECKING:
+    from exactfold.branches.counting.stream import StreamedCount
+    from exactfold.branches.values.result import BranchCount, Lettered
+
+METHODS = {
+    "nappes": "Newton, one start per sign vector",
+    "newton": "Newton, one start per sign vector",
+    "popping": "popping, a path of real solutions per sign vector",
+    "homotopy": "complex homotopy",
+    "groebner": "Groebner basis",
+    "streaming": "Newton, one start per sign vector, block by block",
+    "theorem": "no enumeration",
+}
+"""Methods in words."""
+
+COLUMNS = 8
+"""Most interior vertices that have a column each; of more, those that pop up are listed."""
+
+NAMED = 12
+"""Most folds that are named below the table."""
+
+
+def count_report(
+    result: BranchCount,
+    certificate: str | None,
+    *,
+    everything: bool,
+    streamed: StreamedCount | None = None,
+    verbose: bool = False,
+) -> Group:
+    """The answer, the branches, and what is open; with `verbose` also how it was found."""
+    parts: list[Any] = [answer(result)]
+    notes = _notes(result, certificate, streamed)
+    if notes:
+        parts += ["", *(Text(note) for note in notes)]
+    if verbose:
+        parts += ["", facts_table(_details(result, streamed))]
+    if result.branches:
+        parts += ["", *_branch_table(result, everything)]
+    if result.open_questions:
+        limit = len(result.open_questions) if everything else SHOWN
+        parts += ["", Text("Open", style="bold")]
+        parts += [Text(f"- {question}") for question in result.open_questions[:limit]]
+        parts += more_text(len(result.open_questions) - limit)
+    return Group(*parts)
+
+
+def answer(result: BranchCount) -> Text:
+    """In how many ways the sheet starts to fold, in one sentence.
+
+    >>> from exactfold.branches.counting.collect import count_branches
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from dataclasses import replace
+    >>> print(answer(replace(count_branches(single_vertex(4)), seconds=0.01)))
+    2 ways to start folding - PROVED (0.01 s); all real, each counted once, every one continues to a
+    true motion
+    """
+    took = f" ({result.seconds:.2f} s)"
+    if result.status is not PROVED:
+        return _undecided(result, took)
+    if result.distinct == 0:
+        return Text.assemble(
+            "0 ways to start folding - ", status_text(PROVED), took, "; the sheet is rigid"
+        )
+    if result.pieces is not None and result.distinct is None:
+        return Text.assemble(
+            "infinitely many ways to start folding - ",
+            status_text(PROVED),
+            took,
+            f"; {graphs(result.pieces)}",
+        )
+    if result.pattern.degrees_of_freedom > 1:
+        return Text.assemble(
+            "infinitely many ways to start folding - ",
+            status_text(PROVED),
+            took,
+            f"; they form one family of dimension {result.pattern.degrees_of_freedom}",
+        )
+    ways = result.real or 0
+    return Text.assemble(
+        f"{counted(ways, 'way')} to start folding - ",
+        status_text(PROVED),
+        took,
+        f"; {_reality(result)}, {_multiplicity(result)}, {_motion(result)}",
+    )
+
+
+def _reality(result: BranchCount) -> str:
+    if result.nonreal:
+        others = counted(result.nonreal, "solution")
+        return f"beside {others} that {agreeing(result.nonreal, 'is')} not real"
+    return "it is real" if result.real == 1 else "all real"
+
+
+def _multiplicity(result: BranchCount) -> str:
+    if result.with_multiplicity == result.distinct:
+        return "counted once" if result.distinct == 1 else "each counted once"
+    return f"{result.with_multiplicity} with multiplicity, as flat vertices count double"
+
+
+def _motion(result: BranchCount) -> str:
+    if result.true_branches is PROVED:
+        return ("it" if result.real == 1 else "every one") + " continues to a true motion"
+    if result.true_bounds is not None:
+        low, high = result.true_bounds
+        return f"every one continues to a true motion, of which there are {low} to {high}"
+    return "not decided whether each continues to a true motion"
+
+
+def _undecided(result: BranchCount, took: str) -> Text:
+    if result.by == "theorem":
+        return Text.assemble(
+            f"2^{result.pattern.Vi} ways to start folding with multiplicity, all real, by Theorem "
+            "2; how many differ is ",
+            status_text(UNDECIDED),
+            f"{took}: {result.reason}",
+        )
+    known = ""
+    if result.branches:
+        known = f"; {counted(len(result.branches), 'way')} proved to exist"
+    return Text.assemble(
+        "the number of ways to start folding is ",
+        status_text(UNDECIDED),
+        f"{took}: {result.reason}{known}",
+    )
+
+
+def _notes(
+    result: BranchCount, certificate: str | None, streamed: StreamedCount | None
+) -> list[str]:
+    notes, rigid = [], result.pattern.Vt
+    if rigid:
+        notes.append(
+            f"{counted(rigid, 'vertex')} in triangulated triangles {agreeing(rigid, 'stays')} flat"
+        )
+    if result.exceptional_vertices:
+        notes.append(_exception(result))
+    if result.pieces is not None:
+        notes += piece_notes(result)
+    if result.snapped:
+        notes.append(f"coordinates were moved by up to {decimal_above(result.snapped, 3)} (--snap)")
+    if result.lettered is not None:
+        notes.append(_lettered(result.lettered))
+    if streamed is not None:
+        notes += [f"{name}: {value}" for name, value in _stream_rows(streamed)]
+    if certificate:
+        notes.append(f"certificate: {certificate}")
+    return notes
+
+
+def _exception(result: BranchCount) -> str:
+    """That the vertices have an exceptional position, and what is usual."""
+    vertices, pattern = result.exceptional_vertices, result.pattern
+    named = ", ".join(str(v) for v in vertices[:NAMED]) + (", ..." if len(vertices) > NAMED else "")
+    word = "vertex" if len(vertices) == 1 else "vertices"
+    return (
+        f"exceptional: {word} {named} can stay flat; almost all positions of the interior vertices "
+        f"give {1 << (pattern.Vi - pattern.Vt)} different ways"
+    )
+
+
+def _lettered(found: Lettered) -> str:
+    """Which ways have the letters of the file, in a sentence."""
+    sure = found.status is PROVED
+    if not found.ways:
+        if not sure:
+            return "no way is proved to have the mountains and valleys of the file"
+        return (
+            "no way has the mountains and valleys of the file: `exactfold match` says why, and "
+            "which are nearest"
+        )
+    ways = [f"{way}{' (other side)' if side < 0 else ''}" for way, side in found.ways[:NAMED]]
+    more = f" and {len(found.ways) - NAMED} more" if len(found.ways) > NAMED else ""
+    has = "has" if len(found.ways) == 1 else "have"
+    word = "way" if len(found.ways) == 1 else "ways"
+    rest = "" if sure else "; perhaps others have them, too"
+    return f"{word} {', '.join(ways)}{more} {has} the mountains and valleys of the file{rest}"
+
+
+def _details(result: BranchCount, streamed: StreamedCount | None) -> list[tuple[str, Any]]:
+    pattern = result.pattern
+    rows: list[tuple[str, Any]] = [
+        (
+            "pattern",
+            f"{pattern.Vi} interior and {pattern.Ve} boundary vertices, "
+            f"{counted(len(pattern.folds), 'fold')}, D = {pattern.degrees_of_freedom}",
+        ),
+        ("sha256", pattern.sha256),
+        ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
+    ]
+    if result.status is PROVED and result.distinct is not None:
+        rows.append(
+            (
+                "branches",
+                f"{result.distinct} distinct, {result.with_multiplicity} with "
+                f"multiplicity; {result.real} real, {result.nonreal} not real",
+            )
+        )
+        rows.append(("true branches", _true_text(result)))
+    elif result.degree is not None:
+        rows.append(
+            (
+                "solutions",
+                f"a cone of dimension {result.dimension} and degree {_power(result.degree)} "
+                "(complex, modulo planes, with multiplicity)",
+            )
+        )
+    if result.branches:
+        rows.append(("sign vectors", _sign_vectors(result)))
+        rows.append(("shared folds", _shared(result)))
+    degrees = str(result.settings.get("factor_degrees", ""))
+    if degrees:
+        several = " " in degrees
+        form = "factors of degrees" if several else "irreducible over Q of degree"
+        rows.append(("polynomial", f"{form} {degrees}"))
+    why = f" ({result.why})" if result.why else ""
+    rows.append(("method", f"{METHODS.get(result.method, result.method)}{why}"))
+    return rows
+
+
+def _true_text(result: BranchCount) -> Text:
+    if result.true_bounds is None or result.true_branches is PROVED:
+        return status_text(result.true_branches)
+    low, high = result.true_bounds
+    return Text.assemble(status_text(UNDECIDED), f" ({low} to {high})")
+
+
+def _power(value: int) -> str:
+    return str(value) if value < 1 << 53 else f"2^{value.bit_length() - 1}"
+
+
+def _sign_vectors(result: BranchCount) -> str:
+    each = sorted(set(result.sign_vectors.values()))
+    pairs = len(result.sign_vectors)
+    per = counted(each[0], "branch") if len(each) == 1 else f"{each[0]} to {each[-1]} branches"
+    if pairs == 1:
+        return f"1 pair of opposite ones, with {per}"
+    return f"{counted(pairs, 'pair')} of opposite ones, {per} each"
+
+
+def _shared(result: BranchCount) -> str:
+    shared = result.repeated_assignments
+    if shared is None:
+        return "undecided"
+    if not shared:
+        return "no two branches have the same mountain-valley assignment"
+    return f"{counted(shared, 'branch')} share their mountain-valley assignment with another"
+
+
+def _stream_rows(streamed: StreamedCount) -> list[tuple[str, str]]:
+    rows = [("streamed to", streamed.path)]
+    if streamed.resumed:
+        there = agreeing(streamed.resumed, "is")
+        total = counted(streamed.blocks, "block")
+        rows.append(("resumed", f"{streamed.resumed} of {total} {there} taken over"))
+    if streamed.unproved:
+        rows.append(("open there", f"{streamed.unproved} of {1 << streamed.foldable} sign vectors"))
+    for limit, group in list(streamed.groups.items())[:SHOWN]:
+        signs = ", ".join(root.signs for root in group[:8]) + (", ..." if len(group) > 8 else "")
+        rows.append(("seem to meet", f"{signs} at {limit}"))
+    return rows
+
+
+def _branch_table(result: BranchCount, everything: bool) -> list[Any]:
+    limit = len(result.branches) if everything else SHOWN
+    vertices, wide = result.pattern.interior, result.pattern.Vi <= COLUMNS
+    counts = any(branch.multiplicity != 1 for branch in result.branches)
+    table = Table(box=None, pad_edge=False)
+    table.add_column("way", justify="right")
+    for v in vertices if wide else ():
+        table.add_column(f"vertex {v}" if len(vertices) == 1 else str(v))
+    if not wide:
+        table.add_column("vertices up", overflow="fold")
+    table.add_column("folds", overflow="fold")
+    if counts:
+        table.add_column("counts", justify="right")
+    for k, branch in enumerate(result.branches[:limit], 1):
+        signs = branch.vertex_signs
+        cells: list[Any] = [str(k)]
+        if wide:
+            cells += [BY_SIGN[signs[v]] for v in vertices]
+        else:
+            cells.append(_up_list(signs))
+        cells.append(letters_text(branch.assignment_text))
+        table.add_row(*cells, *([str(branch.multiplicity)] if counts else []))
+    return [table, *more_text(len(result.branches) - limit), "", *_legend(result)]
+
+
+def _up_list(signs: Mapping[int, int]) -> str:
+    up = ", ".join(str(v) for v, s in sorted(signs.items()) if s > 0) or "none"
+    flat = ", ".join(str(v) for v, s in sorted(signs.items()) if s == 0)
+    return up + (f" (flat: {flat})" if flat else "")
+
+
+def _legend(result: BranchCount) -> list[Text]:
+    folds = result.pattern.folds
+    order = "of --json"
+    if len(folds) <= NAMED:
+        order = ", ".join(f"{i}-{j}" for i, j in folds)
+    letters = {letter for branch in result.branches for letter in branch.assignment.values()}
+    names = {"M": "M mountain", "V": "V valley", "F": "F flat", "U": "U undecided"}
+    said = ", ".join(text for letter, text in names.items() if letter in letters)
+    return [
+        Text(f"Folds in the order {order}; {said}, seen from above."),
+        Text("Each way is shown on one side; on the other all is reversed."),
+    ]

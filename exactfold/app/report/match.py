@@ -1,0 +1,213 @@
+"""What `exactfold match` prints: which branches have the letters, or why none has, and the next."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from exactfold._support.plurals import agreeing, counted
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.app.report.terminal import SHOWN, more_text, status_text
+from exactfold.design.assignments.boundary_document import reasons
+from exactfold.design.assignments.document import fold_text
+from exactfold.design.assignments.why import vertex_conflicts
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from exactfold.design.assignments.boundary_match import RimMatch
+    from exactfold.design.assignments.nearest import Nearest
+    from exactfold.design.assignments.search import Match, Matched
+    from exactfold.design.panels.match import PanelMatch
+
+_NEAR = 8
+"""Of the nearest branches so many are shown unless all are asked for."""
+_LETTERS = {"M": "mountain", "V": "valley", "F": "flat fold", "U": "free fold"}
+
+
+def match_report(
+    found: Match, nearest: Nearest | None, seconds: float, *, everything: bool = False
+) -> Group:
+    """The answer, the letters, the branches that have them; or the reasons and the nearest."""
+    parts: list[Any] = [_answer(found, seconds), "", Text(_asked(found))]
+    if found.matches:
+        shown = found.matches if everything else found.matches[:SHOWN]
+        parts += ["", _table(shown, "vertices up", _up), *more_text(len(found.matches) - SHOWN)]
+    else:
+        parts += ["", Text("Why" if found.status is PROVED else "What is known", style="bold")]
+        lines = _why(found)
+        limit = len(lines) if everything else SHOWN
+        parts += [Text(f"- {line}") for line in lines[:limit]]
+        parts += more_text(len(lines) - limit)
+    if nearest is not None:
+        parts += ["", *_nearest(nearest, everything)]
+    if found.matches or (nearest is not None and nearest.halves):
+        parts += [
+            "",
+            Text(
+                "Signs and side are those of `exactfold fold PATTERN --signs SIGNS --side SIDE`; "
+                "letters and vertices are seen from above."
+            ),
+        ]
+    return Group(*parts)
+
+
+NAMED = 12
+"""Creases that are named unless all are asked for."""
+
+
+def panel_match_report(found: PanelMatch, *, everything: bool = False) -> Group:
+    """Whether rigid panels start to fold with the letters, and why, in lines of words."""
+    answer, *reasons = found.lines
+    limit = len(reasons) if everything else SHOWN
+    head = Text.assemble(f"{answer} - ", status_text(found.status), f" ({found.seconds:.2f} s)")
+    rest = [Text(f"- {reason}") for reason in reasons[:limit]]
+    more = more_text(len(reasons) - limit)
+    return Group(head, "", Text(_asked(found)), *rest, *more, *_first_order(found, everything))
+
+
+def _first_order(found: PanelMatch, everything: bool) -> list[str | Text]:
+    """Which creases can fold their way together at the first instant, and which never."""
+    if found.first_order is None:
+        return []
+    first, asked = found.first_order, sum(x in "MV" for x in found.letters.values())
+    lines = [f"{len(first.together)} of {counted(asked, 'crease')} can fold together"]
+    for folds, said in ((first.never, "never fold"), (first.undecided, "are undecided")):
+        if folds:
+            limit = len(folds) if everything else NAMED
+            named = ", ".join(fold_text(fold) for fold in folds[:limit])
+            more = f" and {len(folds) - limit} more" if len(folds) > limit else ""
+            lines.append(f"{len(folds)} {said}: {named}{more}")
+    head = "To first order, where no crease goes against its letter"
+    return ["", Text(head, style="bold"), *(Text(f"- {line}") for line in lines)]
+
+
+def rim_match_report(found: RimMatch, *, everything: bool = False) -> Group:
+    """Whether a sheet with more than four corners starts to fold with the letters, and how."""
+    answer = {
+        PROVED: "the sheet starts to fold with these mountains and valleys",
+        REFUTED: "the sheet does not start to fold with these mountains and valleys",
+    }.get(found.starts, "whether the sheet starts to fold with these mountains and valleys is open")
+    lines = reasons(found)
+    limit = len(lines) if everything else SHOWN
+    head = Text.assemble(f"{answer} - ", status_text(found.status), f" ({found.seconds:.2f} s)")
+    rest = [Text(f"- {line}") for line in lines[:limit]]
+    return Group(head, "", Text(_asked(found)), *rest, *more_text(len(lines) - limit))
+
+
+def _answer(found: Match, seconds: float) -> Text:
+    took = f" ({seconds:.2f} s)"
+    ways = len({half.branch.sign_text for half in found.matches})
+    proved = status_text(found.status)
+    if not ways:
+        if found.status is PROVED:
+            text = "no way to start folding has these mountains and valleys - "
+            return Text.assemble(text, proved, took)
+        return Text.assemble(
+            "whether a way to start folding has these mountains and valleys is ", proved, took
+        )
+    has = agreeing(ways, "has")
+    text = f"{counted(ways, 'way')} to start folding {has} these mountains and valleys"
+    both = f", {len(found.matches)} with both sides" if ways < len(found.matches) else ""
+    if found.status is PROVED:
+        return Text.assemble(f"{text}{both} - ", proved, took, "; there is no other")
+    return Text.assemble(f"at least {text}{both}; whether others have is ", proved, took)
+
+
+def _asked(found: Match | PanelMatch | RimMatch) -> str:
+    counts = Counter(found.letters.values())
+    kinds = [counted(counts[x], name) for x, name in _LETTERS.items() if counts[x]]
+    return f"asked for: {', '.join(kinds)}"
+
+
+def _why(found: Match) -> list[str]:
+    """Reasons in plain words: single vertices where they are enough, else what was refuted."""
+    alone = vertex_conflicts(found)
+    lines = [f"vertex {v} can pop {text}" for v, text in sorted(alone.items())]
+    pairs = ((found.labels[i], found.labels[j]) for i, j in found.sheet.folds)
+    moving = {fold_text((min(pair), max(pair))) for pair in pairs}
+    stuck = [fold_text(f) for f, x in sorted(found.letters.items()) if x in "MV"]
+    stuck = [name for name in stuck if name not in moving]
+    if stuck:
+        lie, stay = ("lies", "stays") if len(stuck) == 1 else ("lie", "stay")
+        name = "crease" if len(stuck) == 1 else "creases"
+        lines.insert(
+            0, f"{name} {', '.join(stuck)} {lie} in triangulated triangles and {stay} flat"
+        )
+    if lines:
+        return lines
+    single = sum(len(refutation.signs) == 1 for refutation in found.refutations)
+    single += len(found.reasons)
+    several = len(found.refutations) + len(found.reasons) - single
+    if single:
+        lines.append(
+            f"{counted(single, 'sign')} of single vertices {agreeing(single, 'is')} impossible "
+            "with the letters around them"
+        )
+    if several:
+        lines.append(
+            f"{counted(several, 'choice')} of signs of several vertices "
+            f"{agreeing(several, 'is')} refuted, each by an exact sum over the creases"
+        )
+    if found.leaves:
+        lines.append(
+            f"{counted(found.leaves, 'choice')} of the signs of all vertices "
+            f"{agreeing(found.leaves, 'is')} left: the branches were found, and their letters "
+            "are others"
+        )
+    if found.open_signs:
+        lines.append(
+            f"{counted(len(found.open_signs), 'choice')} of signs {agreeing(1, 'is')} open: "
+            "--most N compares more"
+        )
+    return lines
+
+
+def _nearest(nearest: Nearest, everything: bool) -> list[Any]:
+    least = counted(nearest.at_least, "crease")
+    if nearest.distance is None:
+        return [Text(f"No branch was found near; all differ at {least} or more: proved.")]
+    far = counted(nearest.distance, "crease")
+    if nearest.status is PROVED:
+        text = f"Nearest: {far} to change - "
+        rest = ", and no other is as near" if nearest.complete else ", others may be as near"
+        if nearest.complete and len(nearest.halves) > 1:
+            rest = f", and only these {len(nearest.halves)} are as near"
+        head = Text.assemble(text, status_text(PROVED), f"; none is nearer{rest}")
+    else:
+        head = Text.assemble(
+            f"Nearest found: {far} to change; ",
+            f"every way needs {least} or more, and whether some way needs so few is ",
+            status_text(UNDECIDED),
+        )
+    limit = len(nearest.halves) if everything else _NEAR
+    table = _table(nearest.halves[:limit], "creases to change", lambda h: _changes(nearest, h))
+    return [head, "", table, *more_text(len(nearest.halves) - limit)]
+
+
+def _changes(nearest: Nearest, half: Matched) -> str:
+    found = nearest.differences(half)
+    return ", ".join(
+        f"{fold_text(fold)} {wanted}->{actual}" for fold, (wanted, actual) in sorted(found.items())
+    )
+
+
+def _table(halves: Sequence[Matched], title: str, told: Callable[[Matched], str]) -> Table:
+    table = Table(box=None, pad_edge=False)
+    table.add_column("signs", overflow="fold")
+    table.add_column("side")
+    table.add_column(title, overflow="fold")
+    for half in halves:
+        table.add_row(half.branch.sign_text, "+" if half.side > 0 else "-", told(half))
+    return table
+
+
+def _up(half: Matched) -> str:
+    signs = half.vertex_signs
+    up = ", ".join(str(v) for v, s in sorted(signs.items()) if s > 0) or "none"
+    flat = ", ".join(str(v) for v, s in sorted(signs.items()) if s == 0)
+    return up + (f" (flat: {flat})" if flat else "")

@@ -1,0 +1,188 @@
+"""What `exactfold count` prints of a sheet of rigid panels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from exactfold._support.plurals import agreeing, counted
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.report.terminal import SHOWN, letters_text, more_text, status_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from exactfold.panels.result import Decomposition
+    from exactfold.pattern.panel_pattern import Edge
+
+NAMED = 12
+"""Most folds that are named in a line."""
+
+
+def panels_report(
+    result: Decomposition, certificate: str | None, *, everything: bool, verbose: bool = False
+) -> Group:
+    """The answer, the modes, what stays flat, and what is open."""
+    parts: list[Any] = [panels_answer(result)]
+    notes = _notes(result, everything)
+    if notes:
+        parts += ["", *(Text(note) for note in notes)]
+    if certificate is not None:
+        parts += ["", Text(f"certificate: {certificate}")]
+    if result.modes:
+        parts += ["", _table(result, everything)]
+        parts += more_text(len(result.modes) - (len(result.modes) if everything else SHOWN))
+        parts += ["", Text(_legend(result))]
+    if verbose:
+        parts += ["", *(Text(line) for line in _details(result))]
+    return Group(*parts)
+
+
+def panels_answer(result: Decomposition) -> Text:
+    """How the sheet folds while its panels stay rigid, in one sentence.
+
+    >>> from dataclasses import replace
+    >>> from exactfold.panels.decomposition import decompose
+    >>> from exactfold.pattern.panel_pattern import PanelPattern
+    >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)],
+    ...     [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)])
+    >>> print(panels_answer(replace(decompose(square), seconds=0.01)))
+    2 ways to fold - PROVED (0.01 s); each a one-parameter folding of rigid panels
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> print(panels_answer(replace(decompose(panels(single_vertex(5))), seconds=0.01)))
+    1 family of ways to fold, of dimension 2 - PROVED (0.01 s); the dimension is the number of folds
+    that can be folded independently
+    """
+    took = f" ({result.seconds:.2f} s)"
+    if result.rigid is PROVED:
+        return Text.assemble(
+            "rigid - ", status_text(PROVED), took, "; no fold can fold while the panels stay rigid"
+        )
+    if result.true is not None:
+        return Text.assemble(_ways(result.true), " - ", status_text(PROVED), took, _each(result))
+    if result.second_order is not None and result.second_order == result.found_true:
+        one = sum(result.second_order.values()) == 1
+        return Text.assemble(
+            f"{_ways(result.second_order)} - ",
+            status_text(PROVED),
+            f"{took}; {'it' if one else 'each'} truly folds, and that there are no others is "
+            "proved to second order only",
+        )
+    if result.second_order is not None:
+        ways = _ways(result.second_order).replace(" to fold", " to start to fold")
+        return Text.assemble(
+            f"{ways}, to second order - ",
+            status_text(PROVED),
+            f"{took}; whether each truly folds is ",
+            status_text(UNDECIDED),
+        )
+    return Text.assemble(
+        "the number of ways to fold is ", status_text(UNDECIDED), f"{took}: {result.reason}"
+    )
+
+
+def _ways(counts: Mapping[int, int]) -> str:
+    if set(counts) <= {1}:
+        return f"{counted(counts.get(1, 0), 'way')} to fold"
+    total = sum(counts.values())
+    if len(counts) == 1:
+        each = "" if total == 1 else "each "
+        return (
+            f"{counted(total, 'family')} of ways to fold, {each}of dimension {next(iter(counts))}"
+        )
+    kinds = " and ".join(f"{n} of dimension {d}" for d, n in counts.items())
+    return f"{counted(total, 'family')} of ways to fold, {kinds}"
+
+
+def _each(result: Decomposition) -> str:
+    counts = result.true or {}
+    if set(counts) == {1}:
+        each = "it is" if counts[1] == 1 else "each"
+        return f"; {each} a one-parameter folding of rigid panels"
+    return "; the dimension is the number of folds that can be folded independently"
+
+
+def _notes(result: Decomposition, everything: bool) -> list[str]:
+    notes = []
+    if result.true is not None and result.second_order != result.true:
+        notes.append(
+            f"to second order there are more, which do not all truly fold: "
+            f"{_ways(result.second_order or {})}"
+        )
+    if result.found is not None:
+        ways = _ways(result.found).replace(" to fold", " to start to fold")
+        notes.append(
+            f"found to second order: at least {ways}; each is proved to be a component, and there "
+            "may be more"
+        )
+    if result.found_true not in (None, result.second_order):
+        notes.append(f"known to fold truly: at least {_ways(result.found_true or {})}")
+    if result.flat and result.rigid is not PROVED:
+        notes.append(_flat(result.flat, "whatever the sheet does", everything))
+    if result.still and result.rigid is not PROVED:
+        notes.append(_flat(result.still, "in every motion to second order", everything))
+    if result.free:
+        notes.append(f"{counted(len(result.free), 'fold')} from border to border, each free")
+    if result.second_order is None and result.modes:
+        notes.append("each mode listed below truly folds, and there may be others")
+    if result.second_order is None and result.rigid is not PROVED:
+        notes.append(
+            "whether it starts to fold with given mountains and valleys is often known even so: "
+            "see `exactfold match`"
+        )
+    if result.warning is not None:
+        notes.append(f"warning: {result.warning}")
+    return notes
+
+
+def _flat(folds: Sequence[Edge], when: str, everything: bool) -> str:
+    limit = len(folds) if everything else NAMED
+    named = ", ".join(f"{i}-{j}" for i, j in folds[:limit])
+    more = f" and {len(folds) - limit} more" if len(folds) > limit else ""
+    stay = agreeing(len(folds), "stays")
+    return f"{counted(len(folds), 'crease')} {stay} flat {when}: {named}{more}"
+
+
+def _table(result: Decomposition, everything: bool) -> Table:
+    modes = result.modes if everything else result.modes[:SHOWN]
+    table = Table(box=None, pad_edge=False)
+    table.add_column("mode", justify="right")
+    table.add_column("vertices", justify="right")
+    table.add_column("folds", overflow="fold")
+    table.add_column("truly folds")
+    for number, mode in enumerate(modes, 1):
+        letters = "".join(mode.assignment.get(fold, ".") for fold in result.pattern.folds)
+        verdict = mode.extends.verdict
+        said = {str(PROVED): "yes", str(UNDECIDED): "undecided"}.get(str(verdict), "no")
+        table.add_row(
+            str(number),
+            str(len(mode.active)),
+            letters_text(letters),
+            f"{said}: {mode.extends.by}",
+        )
+    return table
+
+
+def _legend(result: Decomposition) -> str:
+    folds = result.pattern.folds
+    order = ", ".join(f"{i}-{j}" for i, j in folds) if len(folds) <= NAMED else "of --json"
+    return (
+        f"Folds in the order {order}; M mountain, V valley, . flat, seen from above. Each mode is "
+        "shown on one side; on the other all is reversed. Modes that share no vertex fold "
+        "independently."
+    )
+
+
+def _details(result: Decomposition) -> list[str]:
+    lines = []
+    for part in result.parts:
+        counts = "unknown" if part.second_order is None else dict(part.second_order)
+        lines.append(
+            f"part with vertex {part.vertices[0]}: {counted(len(part.vertices), 'vertex')} that "
+            f"can fold, by {part.theory}, to second order {counts}"
+        )
+    return lines

@@ -1,0 +1,1 @@
+"""What all commands share: parameters, files of numbers, errors, progress and interruptions."""

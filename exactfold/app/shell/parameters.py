@@ -1,0 +1,225 @@
+"""Parameters that several commands take, and how the shell completes and shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from exactfold.app.shell.row_numbers import read_sizes
+from exactfold.app.shell.shell import not_a_dash, standard_input
+from exactfold.branches.counting.registry import ALIASES, METHODS
+from exactfold.errors import NotANumberError, RowNumbersError
+from exactfold.exact.numbers import approx_number, parse_rational, parse_whole
+from exactfold.pattern.drawing.drawing import Snap as Snapping
+
+
+def complete_pattern(incomplete: str) -> list[str]:
+    """Shipped patterns, FOLD files and folders that begin with what is typed."""
+    from exactfold.pattern.data import EXAMPLES
+
+    folder, _, _ = incomplete.rpartition("/")
+    base = Path(folder or ("/" if incomplete.startswith("/") else "."))
+    found = [name for name in EXAMPLES if name.startswith(incomplete)]
+    try:
+        entries = sorted(base.iterdir())
+    except OSError:
+        entries = []
+    prefix = incomplete[: len(incomplete) - len(incomplete.rpartition("/")[2])]
+    for entry in entries:
+        text = prefix + entry.name
+        if text.startswith(incomplete) and not entry.name.startswith("."):
+            if entry.is_dir():
+                found.append(f"{text}/")
+            elif entry.suffix in (".fold", ".svg", ".cp", ".opx", ".ori", ".orh"):
+                found.append(text)
+    return found
+
+
+def flag(*names: str, text: str, **more: Any) -> Any:
+    """An option without a value, shown without one."""
+    return typer.Option(*names, metavar="", help=text, **more)
+
+
+def whole(least: int | None = None) -> Callable[[object], int]:
+    """A reader of whole numbers, from `least` on; its messages name the text that is none."""
+
+    def read(text: object) -> int:
+        try:
+            number = parse_whole(str(text))
+        except NotANumberError:
+            raise typer.BadParameter(f"{str(text)!r} is not a whole number") from None
+        if least is not None and number < least:
+            raise typer.BadParameter(f"{number} is less than {least}")
+        return number
+
+    return read
+
+
+def number(text: str, metavar: str = "N", *names: str, least: int | None = 1) -> Any:
+    """An option that takes a whole number, from `least` on."""
+    return typer.Option(*names, parser=whole(least), metavar=metavar, help=text)
+
+
+def written(text: str, metavar: str = "FILE", *names: str) -> Any:
+    """An option that names a file to write, which is not `-`."""
+    return typer.Option(*names, callback=not_a_dash, metavar=metavar, help=text)
+
+
+def degrees(text: object) -> float:
+    """A number with a decimal point."""
+    try:
+        return approx_number(str(text))
+    except NotANumberError:
+        raise typer.BadParameter(f"{str(text)!r} is not a number") from None
+
+
+def one_side(text: object) -> int:
+    """1 or -1, from "+" or "-"."""
+    if text not in ("+", "-", "+1", "-1", "1"):
+        raise typer.BadParameter(f"{text!r} is neither + nor -")
+    return -1 if str(text).startswith("-") else 1
+
+
+def fold_name(text: object) -> tuple[int, int]:
+    """A fold as it is printed, such as 4-7."""
+    try:
+        i, j = (parse_whole(part) for part in str(text).split("-"))
+    except ValueError:  # also NotANumberError, which is one
+        raise typer.BadParameter(f"{str(text)!r} is not a fold such as 4-7") from None
+    return min(i, j), max(i, j)
+
+
+def numbers(text: object) -> tuple[int, ...]:
+    """Numbers from 1 on, such as 1,3."""
+    return tuple(whole(1)(part.strip()) for part in str(text).split(","))
+
+
+def sizes(text: object) -> tuple[int, ...]:
+    """Numbers from 1 on and ranges of them, such as 2-5,8."""
+    try:
+        return tuple(sorted({size for part in str(text).split(",") for size in read_sizes(part)}))
+    except RowNumbersError as error:
+        raise typer.BadParameter(str(error)) from None
+
+
+def sign_vectors(text: object) -> tuple[str, ...]:
+    """Vertex signs of several branches, such as +-+,++-."""
+    found = tuple(part.strip() for part in str(text).split(",") if part.strip())
+    if not found or any(set(part) - set("+-0") for part in found):
+        raise typer.BadParameter(f"{text!r} is not a list of vertex signs such as +-+,++-")
+    return found
+
+
+def distance(text: object) -> Fraction:
+    """A positive number, such as 1e-6, exactly as it is written."""
+    try:
+        value = parse_rational(str(text))
+    except NotANumberError:
+        raise typer.BadParameter(f"{str(text)!r} is not a number") from None
+    if value <= 0:
+        raise typer.BadParameter(f"{text} is not positive")
+    return value
+
+
+def method_name(text: object) -> str:
+    """The name of a method; names of earlier versions are taken, too."""
+    name = str(text)
+    if name not in METHODS and name not in ALIASES:
+        raise typer.BadParameter(f"{name!r} is not one of {', '.join(METHODS)}")
+    return name
+
+
+def complete_method(incomplete: str) -> list[str]:
+    """The methods that begin with what is typed, without names of earlier versions."""
+    return [name for name in METHODS if name.startswith(incomplete)]
+
+
+def snapping(text: object) -> Snapping:
+    """A denominator, or "auto" or "exact"."""
+    if text == "auto":
+        return "auto"
+    return "exact" if text == "exact" else whole(1)(text)
+
+
+_ONE = "A FOLD, SVG, CP, OPX or ORI file, - for standard input, or a name: see `examples`."
+
+Pattern = Annotated[
+    Path,
+    typer.Argument(
+        metavar="PATTERN",
+        callback=standard_input,
+        autocompletion=complete_pattern,
+        help=_ONE,
+    ),
+]
+Patterns = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="PATTERN",
+        callback=lambda paths: [standard_input(path) for path in paths],
+        autocompletion=complete_pattern,
+        help="FOLD, SVG, CP, OPX or ORI files, - for standard input, or names: see `examples`.",
+    ),
+]
+Snap = Annotated[
+    Any,
+    typer.Option(
+        parser=snapping,
+        metavar="DEN|auto|exact",
+        help="Round coordinates to multiples of 1/DEN; or find the exact numbers that were meant "
+        "(auto: the rule for drawings); or take them as written (exact).",
+    ),
+]
+Sheet = Annotated[int | None, number("Of a drawing with several sheets: the N-th.", "N", "--sheet")]
+Json = Annotated[bool, flag("--json", text="Print one JSON object.")]
+Signs = Annotated[
+    str | None,
+    typer.Option(
+        metavar="+-...", help="Vertex signs in the order of the interior vertices; @FILE reads."
+    ),
+]
+Up = Annotated[
+    str | None,
+    typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
+]
+Drive = Annotated[
+    str | None,
+    typer.Option(
+        metavar="I-J=DEG,...",
+        help="Drive folds: their angles grow together to these, 90deg a valley, -90deg a "
+        "mountain; a fold without one goes along as on the branch. FILE.json reads them. As "
+        "many as the sheet has degrees of freedom.",
+    ),
+]
+
+Rim = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="RIM.json",
+        help='Heights of all border vertices, {"0": 1, "1": "-1/2", ...}, of a convex border. '
+        "Default, with more than four: those of a saddle, which are shown.",
+    ),
+]
+Curvature = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE.json",
+        help='Angle deficits of interior vertices, {"5": "1/10", ...}, 0 for the others: the '
+        "shapes of a sheet that is not flat by itself. Without --rim its border stays in a plane.",
+    ),
+]
+
+Place = Annotated[int | None, number("Instead: the N-th that `count` lists.", "N", "--branch")]
+Resume = Annotated[bool, flag("--resume", text="Continue the FILE that an interrupted run left.")]
+Side = Annotated[
+    Any,
+    typer.Option(
+        parser=one_side,
+        metavar="+|-",
+        help="Of a branch. -: the mirror image, with all signs reversed.",
+    ),
+]

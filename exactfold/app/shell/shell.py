@@ -1,0 +1,335 @@
+"""What all commands share: exit codes, errors as one line, progress, common options."""
+
+from __future__ import annotations
+
+import errno
+import io
+import json
+import os
+import shutil
+import signal
+import sys
+import tempfile
+import threading
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
+
+import typer
+
+from exactfold._support.memory import is_shortage, memory_is_limited, shortage
+from exactfold._support.plurals import visible
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.app.shell.guard import INTERRUPTED, NO_MEMORY
+from exactfold.errors import (
+    ExactfoldError,
+    InputError,
+    NotCountedError,
+    NotEnoughMemoryError,
+    NotFollowedError,
+    RowFailedError,
+    UnreadableFileError,
+    UsageError,
+    WorkerDiedError,
+)
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+    from exactfold.app.shell.display import Display
+
+EXIT = {PROVED: 0, REFUTED: 1, UNDECIDED: 4}
+USAGE, BAD_INPUT = 2, 3
+INTERNAL, OUTPUT_FAILED = 70, 74
+
+STDIN = Path("/dev/stdin")
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def reported(command: Callable[P, R]) -> Callable[P, R]:
+    """Turn the package's errors into one line on stderr and an exit code.
+
+    Output is flushed here, so that a closed pipe or a full disk has an exit code of its own.
+    """
+
+    @wraps(command)
+    def wrapped(*args: P.args, **kwargs: P.kwargs) -> R:
+        try:
+            try:
+                return command(*args, **kwargs)
+            finally:
+                sys.stdout.flush()
+        except OSError as error:
+            if is_shortage(error):
+                raise _short(error) from None
+            output_failed(error)
+            raise typer.Exit(OUTPUT_FAILED) from None
+        except ExactfoldError as error:
+            say(str(error))
+            if kwargs.get("as_json"):
+                print(json.dumps(error_document(error)), flush=True)
+            raise typer.Exit(exit_code(error)) from None
+        except KeyboardInterrupt:
+            stopped()
+        except (typer.Exit, typer.Abort):
+            raise
+        except Exception as error:
+            if is_shortage(error):
+                raise _short(error) from None
+            # A defect: never to be read as one of the documented codes.
+            with suppress(OSError):
+                traceback.print_exc()
+            raise typer.Exit(INTERNAL) from None
+
+    return wrapped
+
+
+def _short(error: Exception) -> typer.Exit:
+    say(shortage(error))
+    return typer.Exit(NO_MEMORY)
+
+
+def say(text: str) -> None:
+    """A line on stderr; where that cannot be written nothing is said, and no exit code changes."""
+    with suppress(OSError):
+        print(f"exactfold: {visible(text)}", file=sys.stderr, flush=True)
+
+
+def tell(text: str) -> None:
+    """Lines on stdout; escape sequences in names of files do not reach the terminal."""
+    print(visible(text), flush=True)
+
+
+def exit_code(error: Exception) -> int:
+    """The exit code of a command that ended with an error."""
+    if isinstance(error, NotEnoughMemoryError):
+        return NO_MEMORY
+    if isinstance(error, WorkerDiedError | RowFailedError) or not isinstance(error, ExactfoldError):
+        return INTERNAL
+    if isinstance(error, NotCountedError | NotFollowedError):
+        return EXIT[UNDECIDED]
+    return BAD_INPUT if isinstance(error, InputError) else USAGE
+
+
+def error_document(error: Exception) -> dict[str, Any]:
+    """An error as a JSON object: its class, for programs, and what it says."""
+    return {
+        **headed("error"),
+        "error": {"class": type(error).__name__, "message": str(error)},
+    }
+
+
+def output_failed(error: OSError) -> None:
+    """Say that standard output cannot be written, unless its reader has left, and drop the rest."""
+    if not isinstance(error, BrokenPipeError):
+        say(f"cannot write the output: {error.strerror}")
+    sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
+
+
+class _Closed(io.TextIOBase):
+    """Standard output that was closed before the start: it cannot be written."""
+
+    def write(self, text: str, /) -> int:
+        raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+
+
+def standard_streams() -> None:
+    """Make output that was closed before the start fail when it is written, and not sooner.
+
+    No file that is opened later takes its number.
+    """
+    while (number := os.open(os.devnull, os.O_RDWR)) < 3:
+        pass
+    os.close(number)
+    if sys.stdout is None:
+        sys.stdout = _Closed()
+    if sys.stderr is None:  # what would be said there must not go to standard output
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
+
+
+def stopped(advice: str = "") -> NoReturn:
+    """End after Ctrl-C or SIGTERM with an exit code of its own."""
+    say(f"interrupted{'; ' if advice else ''}{advice}")
+    raise typer.Exit(INTERRUPTED) from None
+
+
+_asked: list[int] = []
+"""Signals of this `interruptible` block; a library in which the exception was lost forgets one."""
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Within this block SIGTERM is a `KeyboardInterrupt`, as Ctrl-C is (main thread only).
+
+    Python drops an exception that is raised while it collects garbage or calls back from C. So the
+    interruption is raised again at the next line of progress, and at the end of the block.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    numbers = {signal.SIGTERM}
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is to be ignored
+        numbers.add(signal.SIGINT)
+    before = {number: signal.signal(number, _interrupt) for number in numbers}
+    try:
+        yield
+        _insist()
+    finally:
+        _asked.clear()
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _interrupt(number: int, _: FrameType | None) -> NoReturn:
+    _asked.append(number)
+    raise KeyboardInterrupt
+
+
+def _insist() -> None:
+    if _asked and threading.current_thread() is threading.main_thread():
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def _masked() -> Iterator[None]:
+    """Threads started in this block, and those they start, leave signals to the main thread."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    held = {signal.SIGINT, signal.SIGTERM}
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, held)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+class Bar:
+    """Progress on stderr, shown once the work has taken a second; silent off a terminal.
+
+    A timer shows it, so that stages which report nothing are seen too. Closed at the end of a
+    `with` block.
+    """
+
+    def __init__(self, stage: str, delay: float = 1.0) -> None:
+        self.lock = threading.RLock()
+        self.state = (stage, 0, 0, "")
+        self.display: Display | None = None
+        self.timer = threading.Timer(delay, self.show)
+        self.timer.daemon = True
+        if memory_is_limited() and not sys.stderr.isatty():
+            return  # a thread takes much memory, and there is nothing to show
+        # A thread that takes Ctrl-C would undo `held_interrupts` in the main one. Without a thread
+        # there is no line of progress, and all else goes on.
+        with suppress(RuntimeError), _masked():
+            self.timer.start()
+
+    def __enter__(self) -> Bar:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __call__(self, stage: str, done: int = 0, total: int = 0, note: str = "") -> None:
+        """Say how far a stage has come; a total of 0 means that it is not known."""
+        _insist()
+        with self.lock:
+            self.state = (stage, done, total, note)
+            if self.display is not None:
+                self.display.show(*self.state)
+
+    def show(self) -> None:
+        """Show the stage under way, from now on."""
+        from exactfold.app.report import console
+        from exactfold.app.shell.display import Display
+
+        out = console(stderr=True)
+        with self.lock:
+            if out.is_terminal and not self.timer.finished.is_set():
+                self.display = Display(out)
+                self.display.show(*self.state)
+
+    def close(self) -> None:
+        """Take the line away."""
+        with self.lock:
+            self.timer.cancel()
+            if self.display is not None:
+                self.display.close()
+                self.display = None
+
+
+def apart(output: Path | None, *others: Path | None) -> None:
+    """Raise `UsageError` if an output would replace one of the other files of the command."""
+    for other in others:
+        if output is None or other is None:
+            continue
+        if os.path.realpath(output) == os.path.realpath(other) and not _is_special(output):
+            raise UsageError(f"{output} is also read or written otherwise: name another file")
+
+
+def one_at_most(options: str, *given: object) -> None:
+    """Raise `UsageError` if two of the options are given."""
+    if sum(value is not None for value in given) > 1:
+        raise UsageError(f"give {options}")
+
+
+def one_at_least(options: str, *given: object) -> None:
+    """Raise `UsageError` if none of the options is given.
+
+    To be asked when the sheet is read: for the wrong kind of sheet no option helps.
+    """
+    if all(value is None for value in given):
+        raise UsageError(f"give {options}")
+
+
+def name_of(path: Path) -> str:
+    """A file as it was named on the command line."""
+    return "-" if path == STDIN else str(path)
+
+
+def said(path: Path) -> str:
+    """A file as messages call it."""
+    return "standard input" if path == STDIN else str(path)
+
+
+def standard_input(path: Path) -> Path:
+    """`-` means standard input."""
+    return STDIN if str(path) == "-" else path
+
+
+def not_a_dash(path: Path | None) -> Path | None:
+    """`-` does not name an output: the table or the JSON object goes to standard output."""
+    if path is not None and str(path) == "-":
+        raise typer.BadParameter("an output has a name of its own; write ./- if that is -")
+    return path
+
+
+@contextmanager
+def regular(path: Path) -> Iterator[Path]:
+    """The path, or for a pipe that of a copy: what reads it may read it more than once.
+
+    Raises `UnreadableFileError` for what cannot be opened, such as a socket.
+    """
+    if not _is_special(path):
+        yield path
+        return
+    with tempfile.TemporaryDirectory(prefix="exactfold-") as folder:
+        copy = Path(folder, "stdin" if path == STDIN else path.name)
+        try:
+            source = open(path, "rb")  # noqa: SIM115 - closed below
+        except OSError as error:
+            raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
+        with source, open(copy, "wb") as target:
+            shutil.copyfileobj(source, target)
+        yield copy
+
+
+def _is_special(path: Path) -> bool:
+    """Whether a path is there and neither a file nor a folder."""
+    return path.exists() and not path.is_file() and not path.is_dir()

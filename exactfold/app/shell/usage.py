@@ -1,0 +1,84 @@
+"""Commands whose help shows names and no Python types, and whose usage errors are one line."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+from exactfold.app.shell.shell import say
+
+_WRONG_USAGE: type[Exception] = typer.BadParameter.__bases__[0]  # typer does not export it
+
+
+class Command(TyperCommand):
+    """A command whose arguments and flags are shown by their names alone."""
+
+    def get_help_option(self, ctx: Any) -> Any:
+        """The option, or None where there is none."""
+        return _bare(super().get_help_option(ctx))
+
+    def get_params(self, ctx: Any) -> Any:
+        """All parameters; arguments without a type."""
+        found = super().get_params(ctx)
+        for parameter in found:
+            if parameter.param_type_name == "argument":
+                setattr(parameter, "display_type_rich", _no_type)  # noqa: B010 - typer's own name
+        return found
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """The words of the usage line: PATTERN..., not {PATTERN}..."""
+        return [re.sub("[{}]", "", piece) for piece in super().collect_usage_pieces(ctx)]
+
+
+class Group(TyperGroup):
+    """The program itself."""
+
+    def get_help_option(self, ctx: Any) -> Any:
+        """The option, or None where there is none."""
+        return _bare(super().get_help_option(ctx))
+
+    def get_params(self, ctx: Any) -> Any:
+        """All options; those of completion are flags too."""
+        found = super().get_params(ctx)
+        for parameter in found:
+            if parameter.name in ("install_completion", "show_completion"):
+                _bare(parameter)
+        return found
+
+    def main(self, *args: Any, **more: Any) -> Any:
+        """Run a command line; wrong usage is one line on stderr, as every other error is."""
+        alone = more.pop("standalone_mode", True)
+        more["standalone_mode"] = False
+        if not alone:
+            return super().main(*args, **more)
+        try:
+            code = super().main(*args, **more)
+        except _WRONG_USAGE as error:
+            if type(error).__name__ != "NoArgsIsHelpError":  # the help has been printed
+                say(plain_usage(error))
+            raise SystemExit(getattr(error, "exit_code", 2)) from None
+        raise SystemExit(code if isinstance(code, int) else 0)
+
+
+def plain_usage(error: Any) -> str:
+    """What is wrong with a command line, in a line that names the help of the command."""
+    text = " ".join(error.format_message().split()).rstrip(".")
+    text = re.sub(
+        r"^Invalid value for (.+?): ", lambda found: found[1].replace("'", "") + ": ", text
+    )
+    text = re.sub(r"^(Missing|No such|Got unexpected)", lambda found: found[0].lower(), text)
+    where = f"; see {error.ctx.command_path} --help" if getattr(error, "ctx", None) else ""
+    return f"{text}{where}"
+
+
+def _no_type(ctx: Any) -> None:
+    return None
+
+
+def _bare(option: Any) -> Any:
+    if option is not None:
+        option.metavar = ""
+    return option

@@ -1,0 +1,315 @@
+"""What the page shows, as one JSON document: the sheet, its ways to fold, what is proved."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+from exactfold._support.plurals import counted
+from exactfold._support.progress import Progress
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.viewer.ways import (
+    Following,
+    FollowingPanels,
+    branch_way,
+    component_way,
+    mode_way,
+)
+from exactfold.branches.counting.find import BranchFinder
+from exactfold.branches.counting.pools import Pool, process_pool
+from exactfold.branches.counting.ways import Sheet, count_opened, decompose_opened, open_sheet
+from exactfold.errors import ExactfoldError, InputError, UsageError, WorkerDiedError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.fold_writing import fold_document
+from exactfold.pattern.opening import Opened, has_branches
+from exactfold.pattern.triangulating import triangles_of
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.branch import Branch
+    from exactfold.branches.values.result import BranchCount
+
+MOST_LISTED: Final = 10
+"""Foldable vertices up to which all branches are listed."""
+MOST_NEIGHBOURS: Final = 24
+MOST_COMPONENTS: Final = 200
+FRAMES: Final = 32
+MOST_FRAMES: Final = 1000
+
+_WORTH_A_PROCESS: Final = 6
+"""Motions that take about as long as to start a process."""
+_LETTER: Final = {"M": "M", "V": "V", "F": "F", "J": "F"}
+"""Letters of a file as the page draws them; all others are not assigned."""
+_SECONDS: Final = re.compile(r" \(\d+\.\d+ s\)")
+
+J = TypeVar("J")
+
+
+def view_document(
+    sheet: Sheet,
+    *,
+    name: str | None = None,
+    branches: Sequence[str] | None = None,
+    frames: int = FRAMES,
+    proving: bool = False,
+    workers: int = 1,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """All that the page shows of a sheet, as JSON: `view_page` puts it into one HTML file.
+
+    Of a triangulated sheet with four corners: its branches, each of which is one of two mirror
+    images. Up to ten foldable vertices all of them; of larger sheets the one on which all vertices
+    pop up and its neighbours; or those with the vertex signs `branches`. Of any other sheet the
+    components of the motions of its rigid panels, up to 200, and the modes that are not followed.
+    Each is followed in `frames` frames to the first contact; one that cannot be has the reason.
+    With `proving`, motions along branches are proved, too (`prove`), and the first contacts of
+    motions of panels that are proved to exist (`prove_contacts`). `workers`: processes that
+    share the work. `name` names the sheet.
+
+    Raises the errors of `open_sheet`, `UsageError` for signs that do not fit, and
+    `WorkerDiedError`. A sheet of which nothing can be counted has a document all the same, with the
+    reason.
+
+    >>> document = view_document("two-vertex", branches=["+-"], frames=5)
+    >>> [(way["signs"], way["letters"], way["motion"]["end"]) for way in document["ways"]]
+    [('+-', 'MVVVMVM', 'flat-fold')]
+    """
+    known = Known.of(
+        sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
+    )
+    useful = max(1, len(known.listed) // _WORTH_A_PROCESS)
+    return known.document(known.followed(process_pool(min(workers, useful)), progress))
+
+
+@dataclass(frozen=True)
+class Known:
+    """A sheet and the ways in which it folds, not yet followed.
+
+    `listed` holds a way as JSON and the job that follows it, None where it is not followed.
+    `follower` does such a job. `facts` are keys of the document.
+    """
+
+    opened: Opened
+    name: str
+    follower: Callable[[Any], dict[str, Any]]
+    listed: tuple[tuple[dict[str, Any], Any], ...]
+    facts: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls,
+        sheet: Sheet,
+        *,
+        name: str | None = None,
+        branches: Sequence[str] | None = None,
+        frames: int = FRAMES,
+        proving: bool = False,
+        progress: Progress | None = None,
+    ) -> Known:
+        """What is known of a sheet; see `view_document`."""
+        if not 2 <= frames <= MOST_FRAMES:
+            raise UsageError(f"{frames} frames: a motion in a page has 2 to {MOST_FRAMES}")
+        opened = open_sheet(sheet)
+        title = name or (
+            Path(sheet).stem if isinstance(sheet, str | PathLike) else "crease pattern"
+        )
+        pattern = opened.sheet
+        folds_along_branches = isinstance(pattern, CreasePattern) and has_branches(pattern)
+        if branches is not None and not folds_along_branches:
+            raise UsageError(
+                "branches are named by vertex signs, and this sheet folds along modes of rigid "
+                "panels: all of these are shown"
+            )
+        try:
+            if isinstance(pattern, CreasePattern) and folds_along_branches:
+                found = _branches(opened, pattern, branches, progress)
+                facts, follower = _branch_facts(found), Following(frames, proving)
+                listed = tuple((branch_way(branch), branch) for branch in found.branches)
+                return cls(opened, title, follower, listed, facts)
+            return _panels(opened, title, frames, proving, progress)
+        except (InputError, UsageError, WorkerDiedError):
+            raise
+        except ExactfoldError as error:
+            facts = {
+                "kind": "branches" if folds_along_branches else "panels",
+                "answer": "nothing is known of how this sheet folds",
+                "status": "undecided",
+                "complete": False,
+                "reason": str(error),
+                "notes": [],
+            }
+            return cls(opened, title, Following(frames), (), facts)
+
+    def followed(self, pool: Pool, progress: Progress | None) -> list[dict[str, Any]]:
+        """All ways with their motions."""
+        ways = [dict(way) for way, _ in self.listed]
+        jobs = [k for k, (_, job) in enumerate(self.listed) if job is not None]
+        for done, (k, found) in enumerate(_numbered(pool, self.follower, self.listed, jobs), 1):
+            ways[k].update(found)
+            if progress is not None:
+                progress("following", done, len(jobs))
+        return ways
+
+    def document(self, ways: Sequence[Mapping[str, Any]], served: bool = False) -> dict[str, Any]:
+        """The whole document; `served`: motions that are missing can be asked for."""
+        return {
+            **headed("view"),
+            "name": self.name,
+            "sheet": _sheet_json(self.opened),
+            "read": list(self.opened.lines),
+            **self.facts,
+            "ways": [dict(way) for way in ways],
+            "served": served,
+        }
+
+
+@dataclass(frozen=True)
+class _Branches:
+    """Branches of a triangulated sheet, and the count that they come from, if all were counted."""
+
+    pattern: CreasePattern
+    branches: tuple[Branch, ...]
+    count: BranchCount | None
+
+
+class _Numbered:
+    """The work on a job that has a number."""
+
+    def __init__(self, work: Callable[[Any], dict[str, Any]]) -> None:
+        self.work = work
+
+    def __call__(self, numbered: tuple[int, Any]) -> dict[str, Any]:
+        return self.work(numbered[1])
+
+
+def _numbered(
+    pool: Pool,
+    work: Callable[[Any], dict[str, Any]],
+    listed: Sequence[tuple[Any, Any]],
+    jobs: Iterable[int],
+) -> Iterable[tuple[int, dict[str, Any]]]:
+    """The number of each job with its result, in the order in which they end."""
+    results = pool(_Numbered(work), ((k, listed[k][1]) for k in jobs))
+    with closing(results):
+        for (k, _), found in results:
+            if isinstance(found, WorkerDiedError):
+                raise found
+            yield k, found
+
+
+def _branches(
+    opened: Opened,
+    pattern: CreasePattern,
+    chosen: Sequence[str] | None,
+    progress: Progress | None,
+) -> _Branches:
+    foldable = pattern.foldable_vertices
+    if chosen is None and len(foldable) <= MOST_LISTED:
+        count = count_opened(opened, progress=progress)
+        return _Branches(pattern, tuple(count), count)  # type: ignore[arg-type]
+    finder = BranchFinder(pattern)
+    if chosen is not None:
+        vectors = [finder.signs(signs, None) for signs in dict.fromkeys(chosen)]
+        found = [finder.find(signs, progress=progress) for signs in vectors]
+        return _Branches(pattern, tuple(found), None)
+    up = finder.signs(None, foldable)
+    near = finder.neighbours(up, foldable[:MOST_NEIGHBOURS], progress=progress)
+    return _Branches(pattern, (finder.find(up), *near.values()), None)
+
+
+def _branch_facts(found: _Branches) -> dict[str, Any]:
+    facts: dict[str, Any] = {"kind": "branches"}
+    if found.count is not None:
+        from exactfold.app.report.count import answer
+
+        count = found.count
+        whole = count.status is PROVED and len(count) == (count.real or 0)
+        return facts | {
+            "answer": _SECONDS.sub("", answer(count).plain),
+            "status": str(count.status),
+            "complete": whole,
+            "reason": count.reason,
+            "notes": [] if count.warning is None else [f"warning: {count.warning}"],
+        }
+    vertices = counted(len(found.pattern.foldable_vertices), "foldable vertex")
+    proved = all(branch.status is PROVED for branch in found.branches)
+    return facts | {
+        "answer": f"{counted(len(found.branches), 'branch')} of a sheet with {vertices}",
+        "status": str(PROVED if proved else UNDECIDED),
+        "complete": False,
+        "reason": "each branch was asked for by its vertex signs "
+        f"{'and proved alone' if proved else 'alone, and some are not proved'}; how many there are "
+        "was not asked",
+        "notes": [],
+    }
+
+
+def _panels(
+    opened: Opened, name: str, frames: int, proving: bool, progress: Progress | None
+) -> Known:
+    from exactfold.app.report.panels import panels_answer
+    from exactfold.motion.panels.followable import (
+        open_reason,
+        panel_components,
+        panel_modes,
+        why_nothing_follows,
+    )
+
+    ways = decompose_opened(opened, progress=progress)
+    modes = panel_modes(ways)
+    by_number = {mode.number: mode for mode in modes}
+    components = panel_components(ways, modes)
+    shown = components[:MOST_COMPONENTS]
+    listed: list[tuple[dict[str, Any], Any]] = [
+        (component_way(ways, component, by_number), k) for k, component in enumerate(shown, 1)
+    ]
+    open_modes = [mode for mode in modes if mode.extends.verdict is not PROVED]
+    listed += [(mode_way(mode, open_reason(mode)), None) for mode in open_modes[:MOST_COMPONENTS]]
+    notes = [] if ways.warning is None else [f"warning: {ways.warning}"]
+    left = len(components) - len(shown)
+    if left:
+        notes.append(f"{counted(left, 'more component')} left out")
+    if not components and ways.rigid is not PROVED:
+        notes.append(f"no motion can be followed: {why_nothing_follows(ways, modes)}")
+    facts = {
+        "kind": "panels",
+        "answer": _SECONDS.sub("", panels_answer(ways).plain),
+        "status": str(ways.status),
+        "complete": ways.true is not None
+        and Counter(component.dimension for component in shown)
+        == {dimension: number for dimension, number in ways.true.items() if dimension},
+        "reason": ways.reason,
+        "notes": notes,
+    }
+    return Known(opened, name, FollowingPanels(ways, frames, proving), tuple(listed), facts)
+
+
+def _sheet_json(opened: Opened) -> dict[str, Any]:
+    """The flat sheet: a FOLD object without letters, and what the page needs beside it.
+
+    `letters`: of the file, by fold, shown where there is no way to fold.
+    """
+    pattern = opened.sheet
+    if isinstance(pattern, CreasePattern):
+        fold = fold_document(pattern)
+        foldable = pattern.foldable_vertices if has_branches(pattern) else ()
+    else:
+        from exactfold.pattern.panel_writing import converted
+
+        fold, foldable = converted(Opened(pattern)).document(None), ()
+    return {
+        "fold": fold,
+        "folds": [list(edge) for edge in pattern.folds],
+        "triangles": [list(triangle) for triangle in triangles_of(pattern)],
+        "interior": list(pattern.interior),
+        "foldable": list(foldable),
+        "letters": "".join(
+            _LETTER.get(opened.assignment.get(edge, "U"), "U") for edge in pattern.folds
+        ),
+    }

@@ -1,0 +1,135 @@
+"""The page: one HTML file with everything in it, which opens without a network or a server."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+import re
+from collections.abc import Mapping, Sequence
+from functools import cache
+from os import PathLike
+from pathlib import Path
+from typing import Any, Final
+
+from exactfold._support.progress import Progress
+from exactfold.app.viewer.document import FRAMES, view_document
+from exactfold.app.viewer.look import look_css, look_script
+from exactfold.branches.counting.ways import Sheet
+from exactfold.pattern.fold_writing import checked_target, write_text
+
+_ENDINGS: Final = (".html", ".htm")
+_ROOM: Final = Path(__file__).parent
+_PAGE: Final = _ROOM / "page"
+_LIBRARY: Final = _ROOM / "vendor" / "three.bundle.min.js"
+_IMPORT: Final = re.compile(r'^import \{[^}]*\} from "\./(\w+\.js)";\n', re.MULTILINE)
+_EXPORT: Final = re.compile(r"^export (?=async function|function|class|const|let)", re.MULTILINE)
+_SELF, _NOBODY = "'self'", "'none'"
+_PLACE: Final = re.compile(r"\{\{(\w+)\}\}")
+
+
+def view_page(document: Mapping[str, Any]) -> str:
+    """The HTML text of the page that shows a `view_document`.
+
+    Its scripts and styles are allowed by their digests and nothing else is, so that no text of a
+    pattern can run as code, and the page asks nothing of any network.
+
+    >>> page = view_page(view_document("single-vertex-4", name="</script>", frames=3))
+    >>> page.count("</script>")
+    3
+    """
+    library, script = _LIBRARY.read_text(encoding="utf-8"), _script()
+    style = look_css() + (_PAGE / "style.css").read_text(encoding="utf-8")
+    parts = {
+        "title": html.escape(f"{document['name']} - exactfold"),
+        "policy": _policy([library, script], style, bool(document["served"])),
+        "style": style,
+        "data": script_json(document),
+        "library": library,
+        "script": script,
+    }
+    page = (_PAGE / "index.html").read_text(encoding="utf-8")
+    return _PLACE.sub(lambda found: parts[found[1]], page)
+
+
+def write_view(
+    sheet: Sheet,
+    path: str | PathLike[str],
+    *,
+    name: str | None = None,
+    branches: Sequence[str] | None = None,
+    frames: int = FRAMES,
+    proving: bool = False,
+    workers: int = 1,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """Write the page of a sheet to a file; the document that it shows (see `view_document`).
+
+    Raises the errors of `view_document`, and `UnwritableFileError`.
+
+    >>> import os, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     document = write_view("single-vertex-4", os.path.join(folder, "cross.html"), frames=3)
+    ...     os.listdir(folder), document["answer"][:29]
+    (['cross.html'], '2 ways to start folding - PRO')
+    """
+    document = view_document(
+        sheet,
+        name=name,
+        branches=branches,
+        frames=frames,
+        proving=proving,
+        workers=workers,
+        progress=progress,
+    )
+    write_text(Path(path), view_page(document))
+    return document
+
+
+def checked_page(path: Path) -> str:
+    """The ending of the path of a page; raises as `checked_target`."""
+    return checked_target(path, _ENDINGS, "a page")
+
+
+def script_json(value: object) -> str:
+    r"""JSON that can stand in a script element: no `<` in it ends the element or opens a comment.
+
+    >>> script_json({"name": "</script><!--"})
+    '{"name":"\\u003c/script>\\u003c!--"}'
+    """
+    return json.dumps(value, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+
+
+@cache
+def _script() -> str:
+    """The modules of the page joined into one, each after those that it imports."""
+    done: list[str] = []
+    parts: list[str] = []
+
+    def add(name: str) -> None:
+        if name in done:
+            return
+        done.append(name)
+        text = (_PAGE / name).read_text(encoding="utf-8")
+        for other in _IMPORT.findall(text):
+            add(other)
+        parts.append(f"// --- {name} ---\n\n" + _EXPORT.sub("", _IMPORT.sub("", text)).strip())
+
+    add("main.js")
+    return '"use strict";\n\n' + look_script() + "\n" + "\n\n".join(parts) + "\n"
+
+
+def _policy(scripts: Sequence[str], style: str, served: bool) -> str:
+    """A content security policy that allows these texts only."""
+    allowed = " ".join(_digest(text) for text in scripts)
+    return (
+        f"default-src 'none'; script-src {allowed}; style-src {_digest(style)}; "
+        f"img-src data:; connect-src {_SELF if served else _NOBODY}; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+def _digest(text: str) -> str:
+    digest = base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
+    return f"'sha256-{digest}'"

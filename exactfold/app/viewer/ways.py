@@ -1,0 +1,256 @@
+"""The ways in which a sheet folds, as the page shows them: letters, what is proved, the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from exactfold._support.plurals import counted
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.report.motion import ending_text, event_text
+from exactfold.app.viewer.coding import coded_frames, levelled
+from exactfold.branches.values.export import AMOUNT
+from exactfold.errors import ExactfoldError, WorkerDiedError
+from exactfold.motion.following import follow
+from exactfold.motion.panels.followable import LINEAR
+from exactfold.motion.proving import prove
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.branch import Branch
+    from exactfold.motion.curves.in_motion import SheetInMotion
+    from exactfold.motion.curves.motion import Motion
+    from exactfold.motion.panels.followable import PanelComponent, PanelMode
+    from exactfold.motion.panels.motion import PanelMotion
+    from exactfold.panels.result import Decomposition
+    from exactfold.pattern.crease_pattern import CreasePattern, Edge
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+
+@dataclass(frozen=True)
+class Following:
+    """Follows branches; it pickles, so that several processes can share the work.
+
+    `proving`: each motion and its first contact are proved, too, where that is possible.
+    """
+
+    frames: int
+    proving: bool = False
+
+    def __call__(self, branch: Branch) -> dict[str, Any]:
+        """The motion along a branch to the first contact, or why there is none."""
+        try:
+            motion = follow(branch, frames=self.frames)
+            way = motion_way(motion)
+            if self.proving:
+                way["motion"].update(_proof(motion))
+            return way
+        except WorkerDiedError:
+            raise
+        except ExactfoldError as error:
+            return not_followed(str(error))
+
+
+@dataclass(frozen=True)
+class FollowingPanels:
+    """The same for the components of the motions of rigid panels, by their numbers from 1.
+
+    `proving`: the first contact of a motion that is proved to exist is proved, too.
+    """
+
+    ways: Decomposition
+    frames: int
+    proving: bool = False
+
+    def __call__(self, component: int) -> dict[str, Any]:
+        """The motion along a component to the first contact, or why there is none."""
+        from exactfold.motion.panels.following import follow_panels
+
+        try:
+            found = follow_panels(self.ways, component=component, frames=self.frames)
+            way = motion_way(found)
+            way["motion"].update(_proof_of_panels(found, self.proving))
+        except WorkerDiedError:
+            raise
+        except ExactfoldError as error:
+            return not_followed(str(error))
+        return {
+            **way,
+            "letters": letters_of(found.pattern, found.assignment),
+            "angles": _angles(found.pattern, found.leading_angles),
+        }
+
+
+def motion_way(motion: SheetInMotion) -> dict[str, Any]:
+    """The keys of a way that belong to its motion, as it is known before any proof."""
+    return {
+        "motion": {
+            **coded_frames(levelled(motion.coords)),
+            "duration": motion.duration,
+            "end": motion.end,
+            "ending": ending_text(motion),
+            "events": [
+                {"time": event.time[1], "kind": event.kind, "text": event_text(event)}
+                for event in motion.events
+            ],
+            "proved": False,
+            "exists": False,
+            "said": f"followed in floats; {_kept(motion)}",
+        },
+        "why": "",
+    }
+
+
+def _kept(motion: SheetInMotion) -> str:
+    return f"faces stay rigid, to {max(motion.length_error, 1e-16):.0e} of each length"
+
+
+def _proof(motion: Motion) -> dict[str, Any]:
+    """What is proved of a motion along a branch, in place of what is said of floats."""
+    proof = prove(motion)
+    if proof.status is not PROVED:
+        return {"said": f"followed in floats; its proof is undecided: {proof.reason}"}
+    event = None if proof.contact is None else proof.contact.event
+    parts = [f"it exists, without a gap, in {counted(proof.tubes, 'tube')}"]
+    for text in filter(None, (proof.through_text, proof.end_text)):
+        parts[0] += f", {text}"
+    if proof.end_text and proof.clear_to_the_end:
+        parts.append("no two faces touch before it, nor at it")
+    if event is not None:
+        low, high = event.time
+        parts.append(f"its first contact is between the times {low:.8g} and {high:.8g}")
+    said = f"{'; '.join(parts)}; the frames are floats close to it"
+    return {"proved": True, "exists": True, "said": said}
+
+
+def _proof_of_panels(motion: PanelMotion, contacts: bool) -> dict[str, Any]:
+    """What docs/panel_motion.md proves of a motion of panels, and of its first contact if asked."""
+    if motion.closes is PROVED:
+        said = (
+            "every vertex closes exactly at all fold angles"
+            if motion.curves
+            else "only folds from border to border turn, and they may turn by any angles"
+        )
+        touching = _proved_contact(motion) if contacts else "contacts were found in floats"
+        return {"proved": True, "exists": True, "said": f"{said}; {touching}"}
+    if motion.exists is PROVED:
+        said = "until a fold is at 180 degrees, all angles growing"
+        if contacts:
+            said = f"{said}; {_proved_contact(motion)}; what is drawn is"
+        else:
+            said = f"{said}; what is drawn, and contacts, are"
+        return {"exists": True, "said": f"{said} floats; {_kept(motion)}"}
+    return {}
+
+
+def _proved_contact(motion: PanelMotion) -> str:
+    from exactfold.motion.panels.clearance import prove_contacts
+
+    found = prove_contacts(motion)
+    if found.status is not PROVED:
+        return f"its contacts are undecided: {found.reason}"
+    if found.event is None:
+        return "no panels touch on the way: proved"
+    low, high = found.event.time
+    return f"its first contact is between the times {low:.12g} and {high:.12g}: proved"
+
+
+def not_followed(why: str) -> dict[str, Any]:
+    """The keys of a way that has no motion."""
+    return {"motion": None, "why": why}
+
+
+def branch_way(branch: Branch) -> dict[str, Any]:
+    """A branch without its motion."""
+    try:
+        leading = branch.fold_angles.degrees(AMOUNT)
+    except ExactfoldError:
+        leading = {}
+    return {
+        "name": f"branch {branch.sign_text}",
+        "signs": branch.sign_text,
+        "letters": letters_of(branch.pattern, branch.assignment),
+        "saddle": branch.saddle,
+        "multiplicity": branch.multiplicity,
+        "status": str(branch.status),
+        "reason": branch.reason or "it exists, with these vertex signs and letters",
+        "angles": _angles(branch.pattern, leading),
+        "motion": None,
+        "why": "",
+    }
+
+
+def component_way(
+    ways: Decomposition, component: PanelComponent, modes: Mapping[int, PanelMode]
+) -> dict[str, Any]:
+    """A component of the true motions of rigid panels, without its motion."""
+    folding = [modes[number] for number in component.modes]
+    letters: dict[Edge, str] = {}
+    for mode in folding:
+        letters.update(mode.letters)
+    if not folding:
+        letters.update(dict.fromkeys(component.free, "V"))
+    numbers = ", ".join(map(str, component.modes))
+    name = f"mode{'s' if len(folding) > 1 else ''} {numbers}" if folding else "free folds"
+    shown = sorted({_shown_by(mode.extends.by) for mode in folding})
+    why = " and ".join(shown) or "folds from border to border are free"
+    if component.dimension > 1:
+        what = "modes" if folding else "folds"
+        still = ", free folds flat" if folding and component.free else ""
+        why += (
+            f"; one motion of a family of dimension {component.dimension}: all {what} at the same "
+            f"rate{still}"
+        )
+    return _panel_way(ways.pattern, name, letters, str(PROVED), f"it truly folds, as {why}")
+
+
+def _shown_by(by: str) -> str:
+    """Why a mode truly folds, in a sentence (docs/panels.md, 4)."""
+    if by == "forest":
+        return "its vertices form no loop"
+    if by == LINEAR:
+        return "all its fold angles stay in proportion, as half-angle tangents"
+    return f"its loops of vertices close ({by})"
+
+
+def mode_way(mode: PanelMode, why: str) -> dict[str, Any]:
+    """A mode that is in no component that can be followed, with the reason."""
+    verdict = mode.extends.verdict
+    said = "whether it truly folds is undecided" if verdict is UNDECIDED else "it does not fold"
+    way = _panel_way(
+        mode.pattern,
+        f"mode {mode.number}",
+        mode.letters,
+        str(verdict),
+        f"{said}: {mode.extends.by}",
+    )
+    return way | not_followed(why)
+
+
+def letters_of(pattern: CreasePattern | PanelPattern, assignment: Mapping[Edge, str]) -> str:
+    """A letter for each fold in the order of `pattern.folds`, F where none is given."""
+    return "".join(assignment.get(fold, "F") for fold in pattern.folds)
+
+
+def _panel_way(
+    pattern: PanelPattern, name: str, letters: Mapping[Edge, str], status: str, reason: str
+) -> dict[str, Any]:
+    return {
+        "name": name,
+        "signs": "",
+        "letters": letters_of(pattern, letters),
+        "saddle": 0,
+        "multiplicity": None,
+        "status": status,
+        "reason": reason,
+        "angles": [],
+        "motion": None,
+        "why": "",
+    }
+
+
+def _angles(pattern: CreasePattern | PanelPattern, leading: Mapping[Edge, float]) -> list[float]:
+    """Angles in degrees by fold to three digits; none at all where they are not known."""
+    if not leading:
+        return []
+    return [float(f"{leading.get(fold, 0.0):.3g}") for fold in pattern.folds]

@@ -1,0 +1,1 @@
+"""Certificates of all branches and of single ones: written, read, and checked at scale."""

@@ -1,0 +1,115 @@
+"""Compact certificates checked at scale: floats with proved bounds first, integers for the rest."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+import numpy as np
+
+from exactfold._support.arrays import BoolArray
+from exactfold.certificates.sharing import shared
+from exactfold.checker.branches import compact
+from exactfold.checker.branches.compact_blocks import Block, CompactSheet
+from exactfold.checker.core.limits import MOST_UNITS
+from exactfold.checker.core.lines import read_header
+from exactfold.checker.core.reading import CertificateError, FormatError, plain, refusing
+from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
+from exactfold.solve.numeric.dense_newton import sign_vectors
+
+LEAST = 32
+"""Blocks for each worker that make starting processes worth while."""
+
+
+def check_compact(
+    path: str | os.PathLike[str],
+    *,
+    workers: int = 1,
+    fast: bool = True,
+    name: str | os.PathLike[str] | None = None,
+) -> dict[str, object]:
+    """Verify every claim of a compact certificate; returns the claims.
+
+    The sheet and its system are rebuilt by the code of `exactfold.checker`. With `fast`, most roots
+    are verified by `FloatKrawczyk` and `FloatSigns`, whose rounding errors are bounded, and only
+    those that they leave open in integers; without it, all in integers and by the standard library
+    alone, as `python exactfold/checker` does. Several `workers` are processes; a script that asks
+    for them needs the usual `if __name__ == "__main__"`. Messages call the file `name`, by default
+    `path`.
+
+    Raises `checker.CertificateError` if a claim is not supported, `CertificateFormatError` if the
+    file is not a compact certificate or was altered, `UnreadableFileError`, `WorkerDiedError`.
+    """
+    engine = FLOATS if fast else compact.INTEGERS._replace(share=shared)
+    name = path if name is None else name
+    try:
+        return compact.check(os.fspath(path), workers, engine)
+    except FormatError as error:
+        raise CertificateFormatError(f"{name}: {plain(error)}") from None
+    except WorkerDiedError as error:
+        raise type(error)(f"{error}; nothing is known of the file") from None
+    except OSError as error:
+        raise UnreadableFileError(f"cannot read {name}: {error.strerror}") from None
+
+
+class FastChecker:
+    """The tests of one file in floats, on the system that `CompactSheet` rebuilt."""
+
+    def __init__(self, sheet: CompactSheet) -> None:
+        self.sheet = sheet
+        n = sheet.size
+        matrices = []
+        for quadric in sheet.system.quadrics:
+            matrix = [[0] * (n + 1) for _ in range(n + 1)]
+            for (i, j), weight in quadric.items():
+                matrix[i][j] = weight
+            matrices.append(matrix)
+        self.test = FloatKrawczyk(QuadraticSystem.from_rational(matrices))
+        self.vertices = FloatSigns(tuple(map(tuple, sheet.vertex_rows)))
+        self.folds = FloatSigns(tuple(map(tuple, sheet.fold_rows)))
+
+    def verified(self, block: Block) -> BoolArray:
+        """Which roots of the block have one regular zero in their box, and the signs given."""
+        count, n = self.sheet.block, self.sheet.size
+        raw = np.zeros((count, n, 8), dtype=np.uint8)
+        raw[:, :, : block.width] = np.frombuffer(block.centers, dtype=np.uint8).reshape(
+            count, n, block.width
+        )
+        # Moved to the top and back, so that the sign fills the missing bytes.
+        missing = 8 * (8 - block.width)
+        centers = (raw.view("<i8")[:, :, 0] << missing) >> missing
+        exponents = np.frombuffer(block.radii, dtype=np.uint8).astype(np.int64)
+        proved = exponents <= MOST_UNITS
+        boxes = FloatBoxes(block.bits, centers, np.where(proved, exponents, UNPROVED))
+        letters = np.frombuffer(block.folds, dtype=np.uint8).reshape(count, -1)
+        valleys = np.unpackbits(letters, axis=1, bitorder="little")
+        folds = np.where(valleys == 1, 1, -1)
+        given, spare = np.split(folds, [len(self.sheet.fold_rows)], axis=1)
+        signs = sign_vectors(block.first, count, n)
+        return np.asarray(
+            self.test.verify(boxes)
+            & (self.vertices.on(boxes) == signs).all(axis=1)
+            & (self.folds.on(boxes) == given).all(axis=1)
+            & (spare == -1).all(axis=1)
+        )
+
+    def refusal(self, text: str, number: int) -> str | None:
+        """Verify one block: None, or why it does not hold."""
+        try:
+            with refusing(f"in block {number}"):
+                block = self.sheet.decode(text, number)
+                done: Sequence[bool] = self.verified(block).tolist()
+                self.sheet.check_block(block, done)
+        except CertificateError as error:
+            return str(error)
+        return None
+
+
+def _fast(header: str) -> FastChecker:
+    return FastChecker(CompactSheet(read_header(header)))
+
+
+FLOATS = compact.Engine(_fast, LEAST, shared)
+"""In floats first, by `FastChecker`."""

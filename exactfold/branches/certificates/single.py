@@ -1,0 +1,75 @@
+"""Certificates of single branches, for `exactfold.checker`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import lcm
+from typing import Any
+
+from exactfold._support.verdict import PROVED
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.roots import EnclosedRoot
+from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
+from exactfold.checker.core.formats import BRANCH, BRANCH_VERSION, CURVED_VERSION
+from exactfold.errors import UsageError
+from exactfold.exact.numbers import format_integer, format_rational
+from exactfold.rigidity.equations.gauge import RIM, SADDLE
+
+
+def branch_certificate(branch: Branch) -> dict[str, Any]:
+    """The proof of a branch as a JSON object (docs/branch.md, Certificates).
+
+    Raises `UsageError` unless the branch is proved.
+
+    >>> from exactfold import checker
+    >>> from exactfold.branches.counting.find import find_branch
+    >>> from exactfold.pattern.random_squares import random_square
+    >>> certificate = branch_certificate(find_branch(random_square(3, seed=0), "+-+"))
+    >>> checker.check(certificate)["vertex_signs"]
+    [1, -1, 1]
+    """
+    pattern, root, curvature = branch.pattern, _enclosed(branch), branch.curvature
+    emptied = emptied_evidence(pattern, curvature)
+    heights, denominator = heights_evidence(branch, emptied)
+    deficits = [format_rational(curvature.get(v, Fraction(0))) for v in pattern.interior]
+    return {
+        "format": BRANCH,
+        "version": CURVED_VERSION if curvature else BRANCH_VERSION,
+        "pattern": pattern_document(pattern),
+        "claims": {
+            "gauge": RIM if branch.gauge == RIM else SADDLE,
+            "vertex_signs": [branch.vertex_signs[v] for v in pattern.interior],
+            "assignment": branch.assignment_text,
+            "squared_distance": format_rational(root.squared_distance),
+            **({"curvature": deficits} if curvature else {}),
+        },
+        "evidence": {
+            "emptied": emptied,
+            "heights": heights,
+            "denominator": denominator,
+        },
+    }
+
+
+def heights_evidence(branch: Branch, emptied: Sequence[Document]) -> tuple[list[str | None], str]:
+    """The numerators by vertex, None inside the triangulated triangles `emptied`; the denominator.
+
+    Raises `UsageError` unless the branch was proved by `find_branch`.
+    """
+    root = _enclosed(branch)
+    rigid = {v for entry in emptied for v in entry["inside"]}
+    heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
+    denominator = lcm(*(h.denominator for h in heights if h is not None))
+    numerators = [
+        None if h is None else format_integer(h.numerator * (denominator // h.denominator))
+        for h in heights
+    ]
+    return numerators, format_integer(denominator)
+
+
+def _enclosed(branch: Branch) -> EnclosedRoot:
+    root = branch.root
+    if branch.status is not PROVED or not isinstance(root, EnclosedRoot):
+        raise UsageError("there is no certificate of a branch that `find_branch` has not proved")
+    return root

@@ -1,0 +1,95 @@
+"""Compact certificates: proved blocks as lines of text (docs/compact-certificate.md)."""
+
+from __future__ import annotations
+
+import base64
+import json
+import platform
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from exactfold.branches.values.blocks import ProvedBlock
+from exactfold.certificates.entries import chart_evidence, pattern_document, triangle_evidence
+from exactfold.checker.core.formats import COMPACT, COMPACT_VERSION, UNPROVED
+from exactfold.exact.numbers import format_integer
+from exactfold.rigidity.equations.problem import Problem
+
+
+def header_line(problem: Problem, block_size: int) -> str:
+    """The first line: the pattern and what its roots are proved with."""
+    return _text(
+        {
+            "format": COMPACT,
+            "version": COMPACT_VERSION,
+            "pattern": pattern_document(problem.pattern),
+            "evidence": {
+                "kind": "chambers",
+                "triangles": triangle_evidence(problem.triangles or ()),
+                "chart": chart_evidence(problem.chart, problem.labels),
+                "block": block_size,
+            },
+            "provenance": {"method": "newton", "python": platform.python_version()},
+        }
+    )
+
+
+def block_line(block: ProvedBlock) -> str:
+    """One block; centres take as many bytes as the largest needs."""
+    boxes = block.boxes
+    largest = int(np.abs(boxes.centers).max(initial=0))
+    width = largest.bit_length() // 8 + 1
+    raw = np.ascontiguousarray(boxes.centers.astype("<i8")).view(np.uint8)
+    centers = raw.reshape(*boxes.centers.shape, 8)[:, :, :width]
+    radii = np.where(boxes.proved, boxes.exponents, UNPROVED).astype(np.uint8)
+    return _text(
+        {
+            "block": block.index,
+            "bits": boxes.bits,
+            "width": width,
+            "centers": _base64(centers),
+            "radii": _base64(radii),
+            "folds": _base64(np.packbits(block.valleys, axis=1, bitorder="little")),
+            "exact": [
+                {
+                    "root": j,
+                    "bits": root.box.bits,
+                    "radius": format_integer(root.box.radius),
+                    "center": [format_integer(m) for m in root.box.real],
+                    "assignment": root.assignment,
+                }
+                for j, root in sorted(block.exact.items())
+            ],
+            "open": [[j, end.reason] for j, end in sorted(block.open.items())],
+        }
+    )
+
+
+def claims_line(problem: Problem) -> str:
+    """The last line of a file without open roots."""
+    pattern = problem.pattern
+    return _text(
+        {
+            "claims": {
+                "interior": pattern.Vi,
+                "boundary": pattern.Ve,
+                "folds": len(pattern.folds),
+                "degrees_of_freedom": pattern.degrees_of_freedom,
+                "sha256": pattern.sha256,
+                "distinct": 1 << problem.size,
+                "with_multiplicity": 1 << pattern.Vi,
+                "real": 1 << problem.size,
+                "nonreal": 0,
+                "true_branches": "proved",
+            }
+        }
+    )
+
+
+def _text(data: dict[str, Any]) -> str:
+    return json.dumps(data, separators=(",", ":"))
+
+
+def _base64(array: npt.NDArray[np.uint8]) -> str:
+    return base64.b64encode(array.tobytes()).decode("ascii")

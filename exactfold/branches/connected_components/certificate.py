@@ -1,0 +1,106 @@
+"""Certificates of the pieces of a sheet with more than four corners, for `exactfold.checker`."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Final
+
+from exactfold import checker
+from exactfold.branches.connected_components.result import PartProof, Pieces, RegularPoint
+from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
+from exactfold.checker.branches.connected_components import MOST_VERTICES
+from exactfold.checker.core.formats import PIECES, PIECES_VERSION
+from exactfold.checker.core.reading import CertificateError
+from exactfold.errors import NotApplicableError
+from exactfold.exact.numbers import format_integer, format_rational
+from exactfold.pattern.loading import PatternLike, as_pattern
+from exactfold.solve.certify.box import IsolatingBox
+
+_BITS: Final = 60
+_RADIUS: Final = 1 << 28
+
+
+def pieces_certificate(pattern: PatternLike, pieces: Pieces) -> Document:
+    """The proof of pieces that `find_pieces` found, as a JSON object (docs/any_border.md).
+
+    Of each joint it has a box with one solution, and of each vertex all of whose joints are known
+    what shows that there are no others. Raises `NotApplicableError` where there are no vertices
+    that can pop, or too many, or where the checker does not follow the proof.
+
+    >>> from exactfold.branches.connected_components.joining import find_pieces
+    >>> from exactfold.pattern.families import single_vertex
+    >>> pattern = single_vertex(6)
+    >>> checker.check(pieces_certificate(pattern, find_pieces(pattern)))["at_least"]
+    2
+    """
+    sheet = as_pattern(pattern)
+    if not 0 < len(pieces.vertices) <= MOST_VERTICES:
+        number = len(pieces.vertices)
+        raise NotApplicableError(
+            f"a certificate of pieces is written for one to {MOST_VERTICES} vertices that can pop; "
+            f"here are {number}"
+        )
+    complete = {v for proof in pieces.proofs for v in proof.complete}
+    document: Document = {
+        "format": PIECES,
+        "version": PIECES_VERSION,
+        "pattern": pattern_document(sheet),
+        "claims": {
+            "vertices": list(pieces.vertices),
+            "at_least": pieces.low,
+            "at_most": pieces.high,
+            "joints": sorted({joint.sign_text for joint in pieces.joints}),
+            "complete": sorted(complete),
+        },
+        "evidence": {
+            "emptied": emptied_evidence(sheet),
+            "chord": None if pieces.chord is None else sorted(pieces.chord),
+            "flat": [
+                {
+                    "held": list(proof.held),
+                    "complete": list(proof.complete),
+                    "parts": [_part(part) for part in proof.parts],
+                }
+                for proof in pieces.proofs
+            ],
+        },
+    }
+    try:
+        checker.check(document)
+    except CertificateError as error:
+        raise NotApplicableError(f"the checker does not follow the proof: {error}") from None
+    return document
+
+
+def _part(part: PartProof) -> Document:
+    folds = [list(fold) for fold in part.folds]
+    if part.points:
+        return {"folds": folds, "points": [_point(point) for point in part.points]}
+    return {
+        "folds": folds,
+        "chart": [format_rational(c) for c in part.chart],
+        "roots": [_box(box) for box in part.boxes],
+    }
+
+
+def _box(box: IsolatingBox) -> Document:
+    """A box of the real parts, and of the imaginary ones if the zero is not real."""
+    return {
+        "bits": box.bits,
+        "radius": format_integer(box.radius),
+        "center": [format_integer(m) for m in (*box.real, *box.imag)],
+    }
+
+
+def _point(point: RegularPoint) -> Document:
+    near = [round(Fraction(x) * (1 << _BITS)) for x in point.coordinates]
+    rest = [k for k in range(len(near)) if k not in point.free]
+    return {
+        "free": list(point.free),
+        "fixed": [format_rational(Fraction(near[k], 1 << _BITS)) for k in rest],
+        "root": {
+            "bits": _BITS,
+            "radius": format_integer(_RADIUS),
+            "center": [format_integer(near[k]) for k in point.free],
+        },
+    }

@@ -1,0 +1,1 @@
+"""The conveyor: from a problem by ends and roots to branches, block by block."""

@@ -1,0 +1,123 @@
+"""Many patterns, counted independently of each other on all cores or on a cluster."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Generator, Iterable, Sized
+from contextlib import closing
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from exactfold._support.memory import is_shortage, shortage
+from exactfold._support.progress import Progress
+from exactfold.branches.counting.pools import Pool, process_pool
+from exactfold.branches.counting.registry import choose
+from exactfold.branches.counting.ways import Sheet, count_opened, open_sheet
+from exactfold.branches.values.result import BranchCount
+from exactfold.errors import InputError, NotEnoughMemoryError, UnreadableFileError, UsageError
+from exactfold.pattern.data import EXAMPLES, example_path
+from exactfold.pattern.drawing.bounds import read_bytes
+from exactfold.pattern.drawing.drawing import Snap
+from exactfold.pattern.opening import Opened, opened
+
+if TYPE_CHECKING:
+    from exactfold.panels.result import Decomposition
+
+Source: TypeAlias = "bytes | Sheet | InputError"
+"""What is sent to a worker: the bytes of a file, a sheet, or why there is neither."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A pattern to count, and how: as for `count_ways`."""
+
+    name: str
+    source: Source
+    method: str = "auto"
+    seed: int = 0
+    snap: Snap | None = None
+    number: int | None = None
+
+    @property
+    def opened(self) -> Opened:
+        """The sheet, read; raises the errors of `open_pattern`."""
+        if isinstance(self.source, InputError):
+            raise self.source
+        if isinstance(self.source, bytes):
+            return opened(self.source, self.name, self.snap, number=self.number)
+        return open_sheet(self.source, self.snap, self.number)
+
+
+def read_source(path: str | os.PathLike[str]) -> bytes | UnreadableFileError:
+    """The bytes of a file, or why they cannot be read."""
+    try:
+        return read_bytes(path)
+    except UnreadableFileError as error:
+        return error
+
+
+def count_job(job: Job) -> BranchCount | Decomposition | Exception:
+    """The count of one pattern, or the error that it ended with, which stops no other."""
+    try:
+        return count_opened(job.opened, method=job.method, seed=job.seed)
+    except Exception as error:  # also a defect: the other patterns are counted all the same
+        return NotEnoughMemoryError(shortage(error)) if is_shortage(error) else error
+
+
+def count_many(
+    patterns: Iterable[Sheet],
+    *,
+    jobs: int = 1,
+    engine: Pool | None = None,
+    method: str = "auto",
+    seed: int = 0,
+    snap: Snap | None = None,
+    number: int | None = None,
+    progress: Progress | None = None,
+) -> Generator[tuple[str, BranchCount | Decomposition | Exception], None, None]:
+    """The counts of many sheets, each with its name, as they are ready.
+
+    A sheet is anything that `count_ways` takes. The name of a file or an example is its text, that
+    of a pattern its place ("0", "1", ...). Of drawings with several sheets the one with this
+    `number`, from 1, is counted. What `count_ways` raises for one pattern is its result, and the
+    others go on; a pattern whose process died has a `WorkerDiedError`. With `jobs` > 1 that many
+    processes share the work, and a script needs the usual `if __name__ == "__main__"`; an `engine`,
+    such as `dask_pool`, takes their place. Files are read here, a few at a time, and sent to the
+    workers. What to know of a pattern before its count is read is the `warning` of its count.
+    `progress("counting", done, total)` has a total of 0 where `patterns` has no length.
+
+    Raises `UsageError` for an unknown method, a negative seed or fewer jobs than 1, before
+    anything is counted.
+
+    >>> from exactfold.pattern.families import two_vertex
+    >>> for name, result in count_many([two_vertex(), "none.fold"]):
+    ...     print(name, repr(result))
+    0 <BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary
+    vertices>>
+    none.fold UnreadableFileError('cannot read none.fold: No such file or directory')
+    """
+    choose(method)
+    if isinstance(patterns, str | os.PathLike):
+        raise UsageError(f"{patterns} is one pattern: give a list of them, or use count_branches")
+    if seed < 0:
+        raise UsageError(f"the seed must not be negative: {seed}")
+    if jobs < 1:
+        raise UsageError(f"at least one job is needed, not {jobs}")
+
+    def job(place: int, given: Sheet) -> Job:
+        if not isinstance(given, str | os.PathLike):
+            return Job(str(place), given, method, seed, snap, number)
+        path = example_path(given) if isinstance(given, str) and given in EXAMPLES else given
+        return Job(os.fspath(given), read_source(path), method, seed, snap, number)
+
+    total = len(patterns) if isinstance(patterns, Sized) else 0
+    given = (job(place, pattern) for place, pattern in enumerate(patterns))
+
+    def counted() -> Generator[tuple[str, BranchCount | Decomposition | Exception], None, None]:
+        with closing((engine or process_pool(jobs))(count_job, given)) as results:
+            for done, (finished, result) in enumerate(results, 1):
+                if progress is not None:
+                    progress("counting", done, total)
+                yield finished.name, result
+
+    return counted()

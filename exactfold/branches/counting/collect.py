@@ -1,0 +1,262 @@
+"""All branches of a pattern in memory: from a problem to a proven count."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+from exactfold._support.plurals import counted
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.counting.attempt import Attempt
+from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many, too_many
+from exactfold.branches.counting.conveyor import LISTED_BITS, Conveyor
+from exactfold.branches.counting.fallback import isolated, solved_exactly, with_flat_vertices
+from exactfold.branches.counting.registry import METHODS, NEWTON, Choice, choose, find_candidates
+from exactfold.branches.counting.true_bounds import with_true_bounds
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.result import BranchCount, Proof
+from exactfold.checker.core.limits import MOST_UNKNOWNS
+from exactfold.errors import NoInteriorVertexError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.loading import PatternLike, as_pattern
+from exactfold.rigidity.definite_stresses import definite_stress
+from exactfold.rigidity.equations.branch_system import BranchSystem, notch_chart
+from exactfold.rigidity.equations.problem import Problem
+from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
+from exactfold.solve.numeric.candidates import Candidates
+from exactfold.solve.numeric.newton import candidates_of
+
+__all__ = ["METHODS", "count_branches"]
+
+_MEET = 9
+"""Digits to which ends agree where a root is multiple: they are as good there as elsewhere."""
+
+GROEBNER_LIMIT = 6
+"""Largest number of unknowns for which "auto" turns to the exact engine."""
+
+
+def count_branches(
+    pattern: PatternLike,
+    *,
+    method: str = "auto",
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> BranchCount:
+    """The number of branches at the unfolded state, proved, and what distinguishes them.
+
+    For D = 1: solve the branch system of the sheet without rigid parts, isolate every solution by
+    an exact test, prove by refined Bezout that there are no others (docs/mathematics.md, Krawczyk's
+    test to True branches), and decide all vertex signs and folds exactly. For Ve = 3 the sheet is
+    rigid: 0 branches. For D >= 2 and a convex border the solutions are 2^n graphs over the rim
+    heights, and `pieces` says how they are joined (`find_pieces`). `method` is one of `METHODS`;
+    "auto" takes Newton's method, one start for each sign vector, and turns to the exact engine
+    where that does not settle a small pattern. With more than 20 foldable vertices nothing is kept
+    in memory: `too_many` says what is known, at once; `stream_branches` goes on to 40.
+
+    UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
+    `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> result = count_branches(single_vertex(4))
+    >>> result.status, result.distinct, result.real
+    (<Verdict.PROVED: 'proved'>, 2, 2)
+    """
+    choice, pattern = choose(method), as_pattern(pattern)
+    check_countable(pattern)
+    if is_too_many(pattern, IN_MEMORY):
+        return too_many(pattern)
+    start = time.perf_counter()
+    triangles = certify_rigid_triangles(pattern)
+    if triangles is None:
+        result = BranchCount(
+            pattern,
+            UNDECIDED,
+            "none",
+            "no definite stress was found for a triangulated triangle",
+        )
+    elif pattern.Ve == 3:
+        result = _rigid(pattern, triangles)
+    elif pattern.degrees_of_freedom == 1:
+        result = with_true_bounds(_lines(Problem.of(pattern), choice, method, seed, progress))
+    else:
+        result = _higher(pattern, triangles, progress)
+    seconds = time.perf_counter() - start
+    if result.status is not PROVED and definite_stress(pattern) is None:
+        return replace(result, seconds=seconds)
+    dimension = pattern.degrees_of_freedom
+    return replace(result, dimension=dimension, degree=1 << pattern.Vi, seconds=seconds)
+
+
+def check_countable(pattern: CreasePattern) -> None:
+    """Raise `NoInteriorVertexError` if there is nothing to count."""
+    if not pattern.interior:
+        raise NoInteriorVertexError(
+            "the pattern has no interior vertex, so there is nothing to count: every fold bends by "
+            "itself"
+        )
+
+
+def _rigid(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> BranchCount:
+    return BranchCount(
+        pattern,
+        PROVED,
+        "definite stress",
+        "the sheet is a triangulated triangle, hence rigid",
+        distinct=0,
+        with_multiplicity=0,
+        real=0,
+        nonreal=0,
+        true_branches=PROVED,
+        true_bounds=(0, 0),
+        proof=Proof("rigid", triangles),
+    )
+
+
+def _higher(
+    pattern: CreasePattern, triangles: tuple[RigidTriangle, ...], progress: Progress | None
+) -> BranchCount:
+    """D >= 2: one double cone for a single vertex, 2^n graphs over the rim for a convex border."""
+    from exactfold.branches.connected_components.joining import (
+        find_pieces,  # here, as most counts do without
+    )
+
+    sheet, _ = pattern.without_rigid_parts()
+    if sheet.Vi == 1 and not sheet.chords:
+        weight = 1 << pattern.Vt
+        result = BranchCount(
+            pattern,
+            PROVED,
+            "single vertex",
+            f"one double cone of dimension {pattern.degrees_of_freedom}, the null cone of the "
+            "curvature form",
+            distinct=1,
+            with_multiplicity=weight,
+            real=1,
+            nonreal=0,
+            true_branches=PROVED,
+            proof=Proof("single vertex", triangles),
+        )
+        return result if not pattern.is_convex else replace(result, pieces=find_pieces(pattern))
+    if not pattern.is_convex:
+        return _not_convex(pattern)
+    pieces = find_pieces(pattern, progress=progress)
+    return BranchCount(
+        pattern,
+        PROVED,
+        "theorem",
+        "for all rim heights there is exactly one solution with each sign vector: "
+        f"2^{len(pieces.vertices)} graphs over the rim heights, of dimension {pattern.D} modulo "
+        "planes",
+        why="the border is convex, with more than four vertices",
+        true_branches=PROVED,
+        open_questions=tuple(
+            f"whether the star of vertex {v} is flat in other solutions: {reason}"
+            for v, reason in (pieces.open or {}).items()
+        ),
+        pieces=pieces,
+    )
+
+
+def _not_convex(pattern: CreasePattern) -> BranchCount:
+    """D >= 2 and a reflex corner: solutions over a rim need not be real."""
+    return BranchCount(pattern, UNDECIDED, "none", not_convex(pattern))
+
+
+def not_convex(pattern: CreasePattern) -> str:
+    """Why a sheet with more than four corners, one of them reflex, stays undecided."""
+    chords = "".join(f", and the fold {i}-{j} splits it" for i, j in pattern.chords[:1])
+    return (
+        f"the sheet has {pattern.Ve} boundary vertices, so it has {pattern.degrees_of_freedom} "
+        f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: with "
+        "more than four corners the shapes over a rim need not be real then, so that nothing "
+        "general is known of their number (docs/any_border.md, A border that is not convex)"
+    )
+
+
+def _lines(
+    problem: Problem, choice: Choice, method: str, seed: int, progress: Progress | None
+) -> BranchCount:
+    """D = 1: branches are isolated lines.
+
+    Where the conveyor leaves something open, and for other methods, zeros are proved in the chart
+    `saddle = 1`; as with a reflex corner some may lie at infinity there, then also in the chart of
+    the closed notch, which misses none.
+    """
+    ends: Candidates | None = None
+    if choice.method == NEWTON and 0 < problem.size <= MOST_UNKNOWNS:
+        conveyor = Conveyor.of(problem, bits=LISTED_BITS)
+        attempt = Attempt(problem, problem.chart, choice, progress)
+        ends = _ends(conveyor, attempt)
+        if not (ends.lost or ends.agree_to(_MEET)):
+            result = _collected(conveyor, attempt, ends)
+            if result is not None:
+                return result
+    attempt = Attempt(problem, BranchSystem(problem.sheet).chart, choice, progress)
+    result = _in_chart(attempt, ends, method, seed)
+    if result.status is PROVED or problem.sheet.is_convex:
+        return result
+    again = _in_chart(replace(attempt, chart=notch_chart(problem.sheet)), ends, method, seed)
+    return again if again.status is PROVED else result
+
+
+def _ends(conveyor: Conveyor, attempt: Attempt) -> Candidates:
+    """The ends of all blocks, in the chart of the problem."""
+    stage, count = attempt.stage("solving"), conveyor.block_size
+    found = []
+    for index in range(conveyor.blocks):
+        found.append(conveyor.ends(index))
+        stage((index + 1) * count, attempt.total)
+    return candidates_of(found, conveyor.size).finite()
+
+
+def _collected(conveyor: Conveyor, attempt: Attempt, ends: Candidates) -> BranchCount | None:
+    """The branches of all blocks, None if a root or a letter stays open."""
+    stage, count = attempt.stage("certifying"), conveyor.block_size
+    branches: list[Branch] = []
+    for index in range(conveyor.blocks):
+        block = conveyor.prove(index)
+        if block.open or any("U" in root.assignment for root in block.exact.values()):
+            return None
+        branches += conveyor.branches(block)
+        stage((index + 1) * count, attempt.total)
+    branches.sort(key=Branch.sort_key)
+    return attempt.isolated(
+        attempt.undecided("", branches=tuple(branches), settings={**ends.settings, "lost": 0}),
+        real=attempt.total,
+        nonreal=0,
+    )
+
+
+def _in_chart(attempt: Attempt, ends: Candidates | None, method: str, seed: int) -> BranchCount:
+    """Prove zeros in one chart; those with flat vertices are solved for apart from the others.
+
+    Where that fails too, "auto" turns to the exact engine for small systems.
+    """
+    size = attempt.chart.system.size
+    if attempt.choice.method == "groebner" and size:
+        return solved_exactly(attempt)
+    if ends is not None:
+        candidates = attempt.in_chart(ends)
+    else:
+        stage = attempt.stage("solving")
+        candidates = find_candidates(attempt.chart, method, seed=seed, progress=stage)
+    multiple = bool(candidates.lost) or candidates.some_meet
+    result = with_flat_vertices(attempt, candidates) if multiple else None
+    if result is None:
+        result = isolated(attempt, candidates)
+        if result.status is not PROVED and not multiple:
+            result = with_flat_vertices(attempt, candidates) or result
+    proved = result.status is PROVED
+    if method != "auto" or (proved and not (result.undecided_folds and size <= GROEBNER_LIMIT)):
+        return result
+    if size > GROEBNER_LIMIT:
+        advice = (
+            f"the exact engine is tried up to {counted(GROEBNER_LIMIT, 'unknown')}, not with "
+            f"{size} (--method groebner insists)"
+        )
+        return replace(result, reason=f"{result.reason}; {advice}")
+    exactly = solved_exactly(
+        replace(attempt, choice=Choice("groebner", "floating point did not prove it"))
+    )
+    return result if proved and exactly.status is not PROVED else exactly

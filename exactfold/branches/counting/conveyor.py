@@ -1,0 +1,195 @@
+"""The conveyor of all branches: ends, roots and letters, one block of sign vectors at a time.
+
+    problem = Problem.of(pattern)        # reduced sheet, labels, gauge, chart
+    ends    = conveyor.ends(block)       # proposals, in floats
+    roots   = conveyor.prove(block)      # proved roots with their letters, or what is open and why
+
+In the chart of `Problem` zeros with different vertex signs are different, so a proved zero with the
+signs asked for in each of the 2^n chambers is the proof that these are all (docs/mathematics.md,
+Completeness and Nappes).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from exactfold._support.arrays import BoolArray
+from exactfold.branches.counting.exact_roots import ExactProver
+from exactfold.branches.values.blocks import ExactRoot, OpenEnd, ProvedBlock
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.classify import BranchMaker
+from exactfold.branches.values.roots import BoxRoot
+from exactfold.checker.core.limits import MOST_UNKNOWNS
+from exactfold.errors import NotApplicableError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.equations.problem import Problem
+from exactfold.solve.certify.box import IsolatingBox
+from exactfold.solve.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
+from exactfold.solve.numeric.dense_newton import Ends, NappeSystem, sign_vectors
+
+BLOCK = 1024
+"""Sign vectors in a block, and the most that an interruption loses."""
+
+STREAMED_BITS = 40
+"""Bits of the centres in a streamed file: enough for every test, and few bytes."""
+
+LISTED_BITS = 44
+"""Bits of the centres of branches in memory, whose heights are read more often."""
+
+_WIDEST = 52
+
+
+@dataclass(frozen=True)
+class Conveyor:
+    """All 2^n branches of a problem with four boundary vertices, in blocks of `block_size`.
+
+    Centres of boxes have `bits` bits after the point.
+    """
+
+    problem: Problem
+    block_size: int
+    bits: int = STREAMED_BITS
+    _solved: dict[int, tuple[Ends, float]] = field(default_factory=dict, repr=False, compare=False)
+
+    @classmethod
+    def of(
+        cls,
+        pattern: CreasePattern | Problem,
+        block_size: int | None = None,
+        *,
+        bits: int = STREAMED_BITS,
+    ) -> Conveyor:
+        """Blocks of `block_size` sign vectors, a power of two, 1024 by default.
+
+        Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most.
+
+        >>> from exactfold.pattern.random_squares import random_square
+        >>> conveyor = Conveyor.of(random_square(3, seed=0))
+        >>> block = conveyor.prove(0)
+        >>> bool(block.boxes.proved.all()), len(block.open)
+        (True, 0)
+        >>> [branch.sign_text for branch in conveyor.branches(block)][:3]
+        ['+++', '-++', '+-+']
+        """
+        problem = pattern if isinstance(pattern, Problem) else Problem.of(pattern)
+        problem.require_foldable()
+        if problem.triangles is None:
+            raise NotApplicableError("no definite stress was found for a triangulated triangle")
+        if problem.size > MOST_UNKNOWNS:
+            raise NotApplicableError(f"2^{problem.size} branches are too many to list")
+        return cls(problem, min(block_size or BLOCK, 1 << problem.size), bits)
+
+    @property
+    def size(self) -> int:
+        """n, the number of foldable vertices."""
+        return self.problem.size
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks."""
+        return (1 << self.size) // self.block_size
+
+    @cached_property
+    def _nappes(self) -> NappeSystem:
+        return NappeSystem(self.problem.chart)
+
+    @cached_property
+    def _prover(self) -> ExactProver:
+        return ExactProver(self._nappes, self.problem)
+
+    @cached_property
+    def _test(self) -> FloatKrawczyk:
+        return FloatKrawczyk(self.problem.chart.system)
+
+    @cached_property
+    def _vertices(self) -> FloatSigns:
+        return FloatSigns(tuple(self.problem.functionals.vertices.values()))
+
+    @cached_property
+    def _folds(self) -> FloatSigns:
+        return FloatSigns(tuple(self.problem.functionals.folds.values()))
+
+    @cached_property
+    def _maker(self) -> BranchMaker:
+        return BranchMaker(self.problem, self.problem.chart)
+
+    def ends(self, index: int) -> Ends:
+        """Proposals for the sign vectors of block `index`; kept until the block is proved."""
+        if index not in self._solved:
+            start = time.process_time()
+            found = self._nappes.ends_of_block(index * self.block_size, self.block_size)
+            self._solved[index] = found, time.process_time() - start
+        return self._solved[index][0]
+
+    def prove(self, index: int) -> ProvedBlock:
+        """Solve, prove and classify the sign vectors of block `index`.
+
+        In floats whose rounding errors are bounded; what these leave open, in integers.
+        """
+        count = self.block_size
+        self.ends(index)
+        ends, solving = self._solved.pop(index)
+        start = time.process_time()
+        boxes = self._test.isolate(ends.points, self.bits)
+        signs = sign_vectors(index * count, count, self.size)
+        vertices, folds = self._vertices.on(boxes), self._folds.on(boxes)
+        good = boxes.proved & (vertices == signs).all(axis=1) & (folds != 0).all(axis=1)
+        good &= boxes.exponents <= _WIDEST
+        certified = time.process_time()
+        exact: dict[int, ExactRoot] = {}
+        unproved: dict[int, OpenEnd] = {}
+        for j in np.flatnonzero(~good).tolist():
+            found = self._prover.prove([int(sign) for sign in signs[j]], ends.points[j])
+            if isinstance(found, ExactRoot):
+                exact[j] = found
+            else:
+                unproved[j] = found
+        return ProvedBlock(
+            index,
+            FloatBoxes(
+                boxes.bits,
+                np.where(good[:, None], boxes.centers, 0),
+                np.where(good, boxes.exponents, UNPROVED),
+            ),
+            (folds > 0) & good[:, None],
+            exact,
+            unproved,
+            ends.steps,
+            {
+                "solve": solving,
+                "certify": certified - start,
+                "exactly": time.process_time() - certified,
+            },
+        )
+
+    def _root(self, box: IsolatingBox) -> BoxRoot:
+        return BoxRoot(box, system=self.problem.chart.system)
+
+    def branches(self, block: ProvedBlock) -> Iterator[Branch]:
+        """The branches of a block, in the order of the sign vectors; open ones are left out."""
+        count, boxes = self.block_size, block.boxes
+        signs = sign_vectors(block.index * count, count, self.size).astype(int).tolist()
+        centers, exponents = boxes.centers.tolist(), boxes.exponents.tolist()
+        letters = letter_rows(block.valleys)
+        for j in range(count):
+            if j in block.exact:
+                root = block.exact[j]
+                yield self._maker.branch(self._root(root.box), signs[j], root.assignment)
+            elif exponents[j] != UNPROVED:
+                box = IsolatingBox(tuple(centers[j]), (), 1 << exponents[j], boxes.bits)
+                yield self._maker.branch(self._root(box), signs[j], letters[j])
+
+
+def letter_rows(valleys: BoolArray) -> list[str]:
+    """Rows of letters "V" and "M" as texts.
+
+    >>> letter_rows(np.array([[True, False]]))
+    ['VM']
+    """
+    letters = np.where(valleys, ord("V"), ord("M")).astype(np.uint8)
+    return [bytes(row).decode("ascii") for row in letters]

@@ -1,0 +1,69 @@
+"""Engines that carry blocks: this process, or worker processes of this machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+from functools import cached_property
+
+from exactfold._support.shared_work import in_order
+from exactfold.branches.certificates.streamed import block_line
+from exactfold.branches.counting.conveyor import Conveyor
+from exactfold.branches.values.blocks import ProvedBlock
+from exactfold.errors import WorkerDiedError
+from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
+
+Engine = Callable[[Conveyor, range], Generator[tuple[ProvedBlock, str], None, None]]
+"""Yields the blocks with the numbers given and their lines, in order; closed at an interruption."""
+
+LEAST = 8
+"""Blocks for each worker that make starting processes worth while."""
+
+_AHEAD = 2
+"""Blocks under way or waiting for each worker: this bounds memory."""
+
+
+def processes(workers: int) -> Engine:
+    """The engine of up to `workers` processes of this machine, fewer if there is little to do."""
+
+    def engine(conveyor: Conveyor, left: range) -> Generator[tuple[ProvedBlock, str], None, None]:
+        most = min(workers, len(left) // LEAST)
+        return _here(conveyor, left) if most < 2 else _pool(conveyor, left, most)
+
+    return engine
+
+
+def _here(conveyor: Conveyor, left: range) -> Generator[tuple[ProvedBlock, str], None, None]:
+    for index in left:
+        block = conveyor.prove(index)
+        yield block, block_line(block)
+
+
+def _pool(
+    conveyor: Conveyor, left: range, workers: int
+) -> Generator[tuple[ProvedBlock, str], None, None]:
+    """The blocks with the numbers given and their lines, in order."""
+    pattern = conveyor.problem.pattern
+    prover = _Prover(pattern.vertices, pattern.triangles, conveyor.block_size)
+    try:
+        yield from in_order(workers, prover, left, _AHEAD)
+    except WorkerDiedError as error:
+        raise type(error)(f"{error}; the blocks written so far can be resumed") from None
+
+
+@dataclass(frozen=True)
+class _Prover:
+    """What a worker process needs to prove blocks by their numbers."""
+
+    vertices: tuple[Point, ...]
+    triangles: tuple[Triangle, ...]
+    block_size: int
+
+    @cached_property
+    def conveyor(self) -> Conveyor:
+        """Set up anew in each process."""
+        return Conveyor.of(CreasePattern(self.vertices, self.triangles), self.block_size)
+
+    def __call__(self, index: int) -> tuple[ProvedBlock, str]:
+        block = self.conveyor.prove(index)
+        return block, block_line(block)

@@ -1,0 +1,91 @@
+"""Roots that the float test leaves open, one by one, in exact arithmetic."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold.branches.values.blocks import ExactRoot, OpenEnd
+from exactfold.branches.values.classify import decide_signs
+from exactfold.branches.values.letters import LETTERS
+from exactfold.branches.values.roots import BoxRoot
+from exactfold.rigidity.equations.problem import Problem
+from exactfold.solve.certify.box import IsolatingBox
+from exactfold.solve.certify.exact_krawczyk import krawczyk, krawczyk_at
+from exactfold.solve.numeric.dense_newton import NappeSystem
+from exactfold.solve.numeric.refined_newton import refined_end
+
+_FIRST = (64, 128)
+_RISING = (128, 256, 512, 1024)
+_FAR = 1e100
+
+
+@dataclass(frozen=True)
+class ExactProver:
+    """Proves zeros with given vertex signs in integers, where floats leave them open.
+
+    Sets of vertices that look flat even in the highest precision are remembered: where the same
+    ones look flat in doubles, nothing more is tried, as the zeros cannot all be simple any more.
+    """
+
+    system: NappeSystem
+    problem: Problem
+    _flat_before: set[tuple[int, ...]] = field(default_factory=set)
+
+    def prove(self, signs: Sequence[int], point: FloatArray) -> ExactRoot | OpenEnd:
+        """The zero with these vertex signs, proved, or why it was not.
+
+        The exact test of `krawczyk` at `point`; if it fails, or finds a zero with other signs, at
+        the end of the nappe equations in rising precision, which is the one with these signs.
+        """
+        if self._flat_before:
+            flat = self.system.flat_at_end(signs)
+            if flat in self._flat_before:
+                return self._multiple(flat, "in double precision")
+        system = self.problem.chart.system
+        if np.isfinite(point).all() and np.abs(point).max(initial=0.0) < _FAR:
+            (found,) = krawczyk(system, point[None], precisions=_FIRST)
+            if isinstance(found, IsolatingBox):
+                root = self._classified(signs, found)
+                if isinstance(root, ExactRoot):
+                    return root
+        reason = OpenEnd("no end was reached in higher precision")
+        for bits in _RISING:
+            end = refined_end(self.system, signs, bits)
+            if end is None:
+                continue
+            wide = IsolatingBox(end.point, (), 1 << (bits // 2), bits)
+            box = krawczyk_at(system, wide, bits)
+            if isinstance(box, IsolatingBox):
+                root = self._classified(signs, box)
+                if isinstance(root, ExactRoot):
+                    return root
+                reason = OpenEnd(root)
+            elif end.flat:
+                reason = self._multiple(end.flat, f"to {bits // 2} bits")
+            else:
+                reason = OpenEnd(box)
+        if reason.flat:
+            self._flat_before.add(reason.flat)
+        return reason
+
+    def _multiple(self, flat: tuple[int, ...], precision: str) -> OpenEnd:
+        names = ", ".join(str(self.problem.foldable[k]) for k in flat)
+        which = f"{'vertex' if len(flat) == 1 else 'vertices'} {names} flat {precision}"
+        return OpenEnd(f"{which}: {1 << len(flat)} paths seem to meet in a multiple root", flat)
+
+    def _classified(self, signs: Sequence[int], box: IsolatingBox) -> ExactRoot | str:
+        """The box, perhaps sharper, and its folds if its vertex signs are those asked for."""
+        labels = self.problem.labels
+        chart = self.problem.chart
+        root, found, folds = decide_signs(
+            chart, self.problem.functionals, BoxRoot(box, system=chart.system)
+        )
+        for wanted, (vertex, sign) in zip(signs, found.items(), strict=True):
+            if sign != wanted:
+                state = "undecided" if sign is None else "another"
+                return f"the sign of vertex {labels[vertex]} is {state}"
+        return ExactRoot(root.box, "".join(LETTERS[sign] for _, sign in sorted(folds.items())))

@@ -1,0 +1,119 @@
+"""What is known of a sheet of rigid panels before its motions are decomposed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import Any
+
+from exactfold._support.plurals import agreeing, counted
+from exactfold._support.schemas import headed
+from exactfold.panels.decomposition import groups_of as groups
+from exactfold.panels.stars import stars
+from exactfold.pattern.described import described_panels
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+
+@dataclass(frozen=True)
+class PanelFacts:
+    """Facts of a sheet of rigid panels: nothing is solved.
+
+    `degrees` are the folds at each interior vertex. `flat` are the folds that stay flat in every
+    real motion, `free` those with both ends on the border; each of `parts` has the vertices that
+    are joined by other folds, and `moving` the number of folds at each of these that may fold.
+    """
+
+    pattern: PanelPattern
+    degrees: dict[int, int]
+    flat: tuple[Edge, ...]
+    free: tuple[Edge, ...]
+    parts: tuple[tuple[int, ...], ...]
+    moving: dict[int, int]
+
+    @property
+    def degree_counts(self) -> dict[int, int]:
+        """How many interior vertices have each degree."""
+        return dict(sorted(Counter(self.degrees.values()).items()))
+
+    @property
+    def expected(self) -> str:
+        """What `count` will do, in words."""
+        if not self.parts:
+            if not self.free:
+                return "rigid: no fold can fold while the panels stay rigid"
+            each = "folds" if len(self.free) == 1 else "each folds"
+            return f"{counted(len(self.free), 'fold')} from border to border, {each} freely"
+        large = sum(any(self.moving[v] > 4 for v in part) for part in self.parts)
+        whole = f"{counted(len(self.parts), 'part')} with vertices that may fold"
+        if not large:
+            return (
+                f"{whole}, at most four folds at each: all ways to fold, by the structure theorem"
+            )
+        return (
+            f"{whole}, {large} of them with vertices of more than four folds: all ways to fold by "
+            "splitting linear spaces, where few enough motions are possible to first order"
+        )
+
+    def keys(self) -> dict[str, Any]:
+        """The keys of JSON that belong to sheets of panels."""
+        return {
+            "panels": len(self.pattern.faces),
+            "field": self.pattern.field_name,
+            "flat_folds": [f"{i}-{j}" for i, j in self.flat],
+            "free_folds": [f"{i}-{j}" for i, j in self.free],
+            "parts": [list(part) for part in self.parts],
+        }
+
+    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold info --json`: `schema("info")`.
+
+        What belongs to triangulated sheets is null.
+        """
+        return {
+            **headed("info"),
+            "pattern": described_panels(self.pattern, name),
+            "edges": len(self.pattern.edges),
+            "degrees": {str(v): n for v, n in self.degrees.items()},
+            **dict.fromkeys(_TRIANGULATED),
+            "warnings": [],
+            **self.keys(),
+            "expected": self.expected,
+        }
+
+    def __repr__(self) -> str:
+        stay = agreeing(len(self.flat), "stays")
+        return (
+            f"<PanelFacts: {counted(len(self.parts), 'part')}, {counted(len(self.flat), 'fold')} "
+            f"{stay} flat, {self.pattern!r}>"
+        )
+
+
+_TRIANGULATED = (
+    *("triangles", "area", "convex", "straight_boundary_vertices", "chords", "foldable_vertices"),
+    *("triangulated_triangles", "rigidity_rank", "rigidity_rank_by", "self_stresses", "inertia"),
+)
+
+
+def panel_facts(pattern: PanelPattern) -> PanelFacts:
+    """The facts of a sheet of panels that `exactfold info` reports.
+
+    >>> cross = PanelPattern([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0)],
+    ...     [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)])
+    >>> panel_facts(cross)
+    <PanelFacts: 1 part, 0 folds stay flat, <PanelPattern: 1 interior vertex, 4 folds, 4 panels>>
+    >>> panel_facts(cross).expected
+    '1 part with vertices that may fold, at most four folds at each: all ways to fold, by the
+    structure theorem'
+    """
+    moving = stars(pattern)
+    interior = set(pattern.interior)
+    free = tuple(edge for edge in pattern.folds if not interior.intersection(edge))
+    active = {edge for star in moving.values() for edge in star.folds}
+    return PanelFacts(
+        pattern,
+        {v: len(near) for v, near in pattern.stars.items()},
+        tuple(edge for edge in pattern.folds if edge not in active and edge not in free),
+        free,
+        tuple(groups(moving)),
+        {v: len(star.folds) for v, star in moving.items()},
+    )

@@ -1,0 +1,114 @@
+"""How many shapes a sheet has whose vertices have angle deficits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+from exactfold._support.plurals import counted
+from exactfold._support.progress import Progress
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.branches.counting.find import BranchFinder, Deficits, Rim
+from exactfold.exact.numbers import format_rational
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.described import described
+from exactfold.pattern.loading import PatternLike, as_pattern
+
+MOST_LISTED = 10
+"""Vertices up to which the shapes are found one by one where some may coincide."""
+
+
+@dataclass(frozen=True, repr=False)
+class ShapeCount:
+    """The number of shapes with given angle deficits and a given border, PROVED or UNDECIDED.
+
+    `distinct` lies between the two `bounds`, which agree if it is PROVED; `with_multiplicity` is
+    2^n, n the number of vertices that can pop. `signs` are those of the different shapes where they
+    were found one by one (0 where the star is flat), else empty.
+    """
+
+    pattern: CreasePattern
+    curvature: Mapping[int, Fraction]
+    rim: Mapping[int, Fraction]
+    status: Verdict
+    reason: str
+    bounds: tuple[int, int]
+    with_multiplicity: int
+    signs: tuple[str, ...] = ()
+
+    @property
+    def distinct(self) -> int | None:
+        """The number of different shapes, None where it is not known."""
+        return self.bounds[0] if self.status is PROVED else None
+
+    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold count --curvature --json`: `schema("shapes")`."""
+        return {
+            **headed("shapes"),
+            "pattern": described(self.pattern, name),
+            "status": str(self.status),
+            "reason": self.reason,
+            "distinct": self.distinct,
+            "bounds": list(self.bounds),
+            "with_multiplicity": self.with_multiplicity,
+            "curvature": {str(v): format_rational(k) for v, k in sorted(self.curvature.items())},
+            "rim": {str(v): format_rational(h) for v, h in sorted(self.rim.items())},
+            "signs": list(self.signs),
+        }
+
+    def __repr__(self) -> str:
+        low, high = self.bounds
+        number = counted(low, "shape") if low == high else f"{low} to {high} shapes"
+        return f"<ShapeCount: {self.status}, {number} of {self.pattern!r}>"
+
+
+def count_shapes(
+    pattern: PatternLike,
+    curvature: Deficits,
+    *,
+    rim: Rim | None = None,
+    progress: Progress | None = None,
+) -> ShapeCount:
+    """The shapes of a convex sheet with given angle deficits and a given border.
+
+    With a positive deficit at each of n vertices there are exactly 2^n, one for each sign vector
+    (docs/branch.md, Angle deficits). With deficits 0 at some there are 2^n with multiplicity, and
+    they differ unless stars are flat: up to ten vertices all are found and proved; beyond that the
+    number lies between 2^p, for p positive deficits, and 2^n. `rim`: heights of the border, 0 if
+    none are given. Raises as `find_branch`.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> count_shapes(single_vertex(5), {5: "1/10"})
+    <ShapeCount: proved, 2 shapes of <CreasePattern: 1 interior and 5 boundary vertices>>
+    """
+    finder = BranchFinder(as_pattern(pattern), rim, curvature)
+    problem = finder.problem
+    gauge, size = problem.gauge, problem.size
+    curved = {problem.labels[v]: k for v, k in gauge.curvature.items()}
+    heights = {problem.labels[v]: h for v, h in gauge.rim.items()}
+
+    def made(
+        status: Verdict, reason: str, bounds: tuple[int, int], signs: tuple[str, ...] = ()
+    ) -> ShapeCount:
+        return ShapeCount(finder.pattern, curved, heights, status, reason, bounds, 1 << size, signs)
+
+    least, most = 1 << len(curved), 1 << size
+    if least == most:
+        return made(PROVED, "every deficit is positive: one for each sign vector", (most, most))
+    if size > MOST_LISTED:
+        reason = f"stars may be flat at the {size - len(curved)} vertices without a deficit"
+        return made(UNDECIDED, reason, (least, most))
+    texts = set()
+    for k, signs in enumerate(product((-1, 1), repeat=size)):
+        if progress is not None:
+            progress("shapes", k, most)
+        found = finder.find(dict(zip(finder.poppable, signs, strict=True)))
+        if found.status is not PROVED:
+            return made(UNDECIDED, found.reason, (least, most))
+        texts.add("".join("0+-"[found.vertex_signs[v]] for v in finder.poppable))
+    ordered = tuple(sorted(texts))
+    return made(PROVED, "found one by one", (len(texts), len(texts)), ordered)

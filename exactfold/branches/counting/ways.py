@@ -1,0 +1,155 @@
+"""In how many ways any sheet folds: branches of triangulated sheets, motions of rigid panels."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import replace
+from functools import partial
+from os import PathLike
+from typing import TYPE_CHECKING, TypeAlias, TypeGuard
+
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED
+from exactfold.branches.counting.collect import count_branches, not_convex
+from exactfold.branches.counting.registry import METHODS, choose
+from exactfold.errors import SeveralSheetsError, UnknownPatternError, UsageError
+from exactfold.exact.numbers import shown
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import EXAMPLES, example_path
+from exactfold.pattern.drawing.drawing import Drawing
+from exactfold.pattern.fold import FoldFile
+from exactfold.pattern.opening import Opened, from_drawing, has_branches, open_pattern, panels
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from exactfold.branches.values.result import BranchCount
+    from exactfold.panels.result import Decomposition
+    from exactfold.pattern.drawing.drawing import Snap
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+Sheet: TypeAlias = (
+    "CreasePattern | PanelPattern | FoldFile | Opened | Drawing | str | PathLike[str]"
+)
+"""What `count_ways` takes: sheets of both kinds, drawings, and files of any format."""
+
+__all__ = ["METHODS", "count_opened", "count_ways", "decompose_opened", "open_sheet"]
+
+
+def count_ways(
+    sheet: Sheet,
+    *,
+    method: str = "auto",
+    seed: int = 0,
+    snap: Snap | None = None,
+    number: int | None = None,
+    progress: Progress | None = None,
+) -> BranchCount | Decomposition:
+    """In how many ways a sheet folds, whatever its faces; the result says which theory applied.
+
+    A triangulated sheet with four boundary vertices (D = 1), with three, or with one interior
+    vertex has branches: `count_branches`. So has one with a convex border of more vertices, whose
+    `families` are its irreducible components besides. Every other sheet has motions of rigid
+    panels: `decompose`. Files of all formats are read (`open_pattern`), drawings repaired and made
+    exact; `number`, from 1, chooses among the sheets of a drawing with several. Where loops nearly
+    close, the sheet is read again with other values of `snap`, and the first that closes each is
+    named.
+
+    Raises the errors of `open_pattern` and `count_branches`.
+
+    >>> count_ways("two-vertex")
+    <BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary vertices>>
+    >>> from exactfold.pattern.panel_pattern import PanelPattern
+    >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)])
+    >>> count_ways(square)
+    <Decomposition: proved, {0: 1}, <PanelPattern: 0 interior vertices, 0 folds, 1 panel>>
+    """
+    choose(method)
+    opened = open_sheet(sheet, snap, number)
+    return count_opened(opened, method=method, seed=seed, progress=progress)
+
+
+def count_opened(
+    opened: Opened, *, method: str = "auto", seed: int = 0, progress: Progress | None = None
+) -> BranchCount | Decomposition:
+    """As `count_ways`, of a sheet that has been opened."""
+    sheet = opened.sheet
+    if isinstance(sheet, CreasePattern) and sheet.interior:
+        known = has_branches(sheet)
+        if known or sheet.is_convex:
+            result = count_branches(sheet, method=method, seed=seed, progress=progress)
+            families = None if known else decompose_opened(opened, progress=progress)
+            result = replace(result, snapped=opened.snapped, read=opened.read)
+            return replace(result, letters=opened.letters, families=families)
+        ways = decompose_opened(opened, progress=progress)
+        if ways.status is PROVED:
+            return ways
+        return replace(ways, reason=f"{ways.reason}; {not_convex(sheet)}")
+    return decompose_opened(opened, progress=progress)
+
+
+def decompose_opened(opened: Opened, *, progress: Progress | None = None) -> Decomposition:
+    """The motions of a sheet that has been opened, as of rigid panels; see `decompose`."""
+    from exactfold.panels.decomposition import decompose  # here, as branches do without
+
+    sheet = opened.sheet
+    pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
+    ways = replace(decompose(pattern, progress=progress), read=opened.read)
+    if not ways.near_misses or opened.again is None:
+        return ways
+    from exactfold.panels.near_misses import snapped_misses
+
+    misses = snapped_misses(ways.near_misses, pattern, partial(_reopened, opened.again))
+    return replace(ways, near_misses=misses)
+
+
+def _reopened(again: Callable[[Snap], Opened], snap: Snap) -> tuple[PanelPattern, float]:
+    """A sheet as it is read with another snap, and the largest move by the size."""
+    found = again(snap)
+    sheet = panels(found.sheet) if isinstance(found.sheet, CreasePattern) else found.sheet
+    if not found.snapped:
+        return sheet, found.largest_move
+    size = max(float(max(c) - min(c)) for c in zip(*sheet.vertices, strict=True))
+    return sheet, float(found.snapped) / size
+
+
+def open_sheet(sheet: Sheet, snap: Snap | None = None, number: int | None = None) -> Opened:
+    """The sheet that is meant: any pattern, what was read, a drawing, a file, or an example."""
+    if not isinstance(sheet, str | PathLike | Drawing) and number not in (None, 1):
+        raise SeveralSheetsError(f"there is no sheet {number}: a pattern is one sheet")
+    if isinstance(sheet, Opened):
+        return sheet
+    if isinstance(sheet, Drawing):
+        return from_drawing(sheet, snap, number=number)
+    if isinstance(sheet, FoldFile):
+        return Opened(sheet.pattern, sheet.assignment, snapped=sheet.snapped)
+    if isinstance(sheet, CreasePattern):
+        if snap is None or snap == "exact":
+            return Opened(sheet)
+        if isinstance(snap, int):
+            moved, largest = sheet.snapped(snap)
+            return Opened(moved, snapped=largest)
+        raise UsageError("--snap auto is for drawings: give a denominator")
+    if _is_panels(sheet):
+        return Opened(sheet)
+    if not isinstance(sheet, str | PathLike):
+        raise UsageError(
+            f"{shown(sheet)} is not a pattern: give a sheet, a drawing, the path of a file, or the "
+            "name of an example"
+        )
+    name = os.fspath(sheet)
+    if isinstance(sheet, str) and sheet in EXAMPLES:
+        return open_pattern(example_path(sheet), snap, name=sheet, number=number)
+    if isinstance(sheet, str) and not os.path.exists(sheet):
+        raise UnknownPatternError(
+            f"{shown(sheet)} is neither a file nor an example; the examples are: "
+            f"{', '.join(EXAMPLES)}"
+        )
+    return open_pattern(sheet, snap, name=name, number=number)
+
+
+def _is_panels(sheet: object) -> TypeGuard[PanelPattern]:
+    """Asked of the module, as a pattern that is there has loaded it."""
+    module = sys.modules.get("exactfold.pattern.panel_pattern")
+    return module is not None and isinstance(sheet, module.PanelPattern)

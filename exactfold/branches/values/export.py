@@ -1,0 +1,156 @@
+"""`export_branch`: a branch as a FOLD file whose fold angles keep simulators on it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from os import PathLike
+from typing import Any
+
+from exactfold._support.verdict import PROVED, Verdict
+from exactfold.branches.values.angles import Bounds, FoldAngles
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.second_order import second_order_sheet
+from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.exact.numbers import format_rational, shown
+from exactfold.interop.fold_frames import branch_document
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.fold_writing import document_text, write_text
+
+AMOUNT = 30.0
+"""Degrees of the largest fold angle: visible, and still close to the unfolded state."""
+
+
+@dataclass(frozen=True, repr=False)
+class BranchExport:
+    """A branch as `export_branch` writes it.
+
+    `document` is the FOLD object, `text` its JSON. `angles`: degrees by fold, as written.
+    `length_error`: the largest relative change of the length of an edge in the frame in space.
+    """
+
+    document: Mapping[str, Any]
+    angles: Mapping[Edge, float]
+    length_error: float
+    status: Verdict
+
+    @property
+    def text(self) -> str:
+        """The file."""
+        return document_text(self.document)
+
+    def __repr__(self) -> str:
+        name = self.document.get("file_title", "branch")
+        return f"<BranchExport: {self.status}, {name}, {len(self.angles)} folds>"
+
+    def write(self, path: str | PathLike[str]) -> None:
+        """Write the file whole or not at all; raises `UnwritableFileError`."""
+        write_text(path, self.text)
+
+
+def export_branch(
+    branch: Branch,
+    path: str | PathLike[str],
+    *,
+    amount: float = AMOUNT,
+    title: str | None = None,
+    force: bool = False,
+) -> BranchExport:
+    """Write a branch as a FOLD 1.2 file that Origami Simulator and Rabbit Ear open.
+
+    `edges_foldAngle` is proportional to the first-order fold angles f_e(h) L_e / (c c') of the
+    branch (`fold_angles`), the largest of size `amount` degrees; a second frame is the sheet in
+    space at that amplitude, to second order (docs/export.md). `title` names the pattern in the
+    file. Returns what was written.
+
+    Raises `UndecidedBranchError` for a branch that is not proved, which `force` allows if its
+    heights are known; `UsageError` for an amount that is not more than 0 and at most 180;
+    `NotApplicableError` for lengths that floats cannot hold;
+    `UnwritableFileError`.
+
+    >>> import os, tempfile, exactfold
+    >>> pattern = exactfold.families.two_vertex()
+    >>> branch = exactfold.find_branch(pattern, "-+")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     written = export_branch(branch, os.path.join(folder, "branch.fold"))
+    ...     exactfold.read_fold(os.path.join(folder, "branch.fold")) == pattern
+    True
+    >>> round(written.angles[1, 4], 1), round(written.angles[1, 5], 1), branch.assignment_text
+    (30.0, -1.2, 'VVMMVVM')
+    """
+    export = exported(branch, amount=amount, title=title, force=force)
+    export.write(path)
+    return export
+
+
+def exported(
+    branch: Branch,
+    *,
+    amount: float = AMOUNT,
+    title: str | None = None,
+    force: bool = False,
+) -> BranchExport:
+    """What `export_branch` writes, not yet written; raises the same errors but the last.
+
+    >>> import exactfold
+    >>> export = exported(exactfold.find_branch("two-vertex", "++"), amount=10)
+    >>> export.document["file_title"], export.document["frame_exactfold:branch"]["status"]
+    ('branch ++', 'proved')
+    """
+    if not isinstance(branch, Branch):
+        raise UsageError(
+            f"{shown(branch)} is not a branch: give what `find_branch` or a count returns, then "
+            "the path"
+        )
+    _require_writable(branch, force)
+    pattern, heights, bends = branch.pattern, branch.heights, branch.fold_angles
+    angles = {
+        fold: angle if branch.assignment[fold] in "MV" else 0.0
+        for fold, angle in bends.degrees(amount).items()
+    }
+    folded = second_order_sheet(pattern, _raised(pattern, heights, bends, amount))
+    document = branch_document(
+        pattern,
+        branch.assignment,
+        angles,
+        folded.coords,
+        name=f"branch {_brief(branch.sign_text)}",
+        title=title,
+        facts={
+            "vertex_signs": branch.sign_text,
+            "vertices": list(pattern.interior),
+            "assignment": branch.assignment_text,
+            "status": str(branch.status),
+            "gauge": branch.gauge,
+            "largest_angle": amount,
+            "length_error": folded.length_error,
+            "pattern": pattern.sha256,
+        },
+        heights=[
+            [format_rational(bound) for bound in heights[v]] for v in range(len(pattern.vertices))
+        ],
+    )
+    return BranchExport(document, angles, folded.length_error, branch.status)
+
+
+def _require_writable(branch: Branch, force: bool) -> None:
+    if not branch.heights:
+        raise UndecidedBranchError("nothing is proved of the branch: no heights to write")
+    if branch.status is not PROVED and not force:
+        raise UndecidedBranchError(
+            "the branch is not proved, only its heights are enclosed; force the export to write it "
+            "all the same, marked as undecided"
+        )
+
+
+def _raised(
+    pattern: CreasePattern, heights: Mapping[int, Bounds], bends: FoldAngles, amount: float
+) -> list[Fraction]:
+    """The heights at the amplitude of the angles."""
+    amplitude = bends.amplitude(amount)
+    return [amplitude * sum(heights[v]) / 2 for v in range(len(pattern.vertices))]
+
+
+def _brief(signs: str, most: int = 60) -> str:
+    return signs if len(signs) <= most else f"{signs[:most]}... ({len(signs)} signs)"

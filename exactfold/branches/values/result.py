@@ -1,0 +1,290 @@
+"""The answer to "in how many ways does this sheet start to fold?", with its proof."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final, overload
+
+from exactfold._support.notebook import Page
+from exactfold._support.plurals import counted
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.letters import UPSIDE_DOWN, differing
+from exactfold.errors import UsageError
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.described import described
+from exactfold.pattern.near_degeneracy import near_degenerate, warnings
+from exactfold.rigidity.equations.branch_system import Chart
+from exactfold.rigidity.rigid_triangles import RigidTriangle
+from exactfold.solve.certify.algebraic import AlgebraicProof
+
+if TYPE_CHECKING:  # branches are counted without what panels need
+    from exactfold.branches.connected_components.result import Pieces
+    from exactfold.panels.result import Decomposition
+
+
+_LISTS: Final = ("modes", "flat_folds", "still_folds", "free_folds", "near_misses")
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What proves a count; `exactfold.certificates` writes it down (docs/certificate.md).
+
+    `kind` is "isolated" (the roots of the branches, each in a box, are all there are), "algebraic"
+    (by multiplicities, see `AlgebraicProof`), "rigid" or "single vertex". The first two hold in
+    `chart`, whose vertex k is `labels[k]` of the pattern.
+    """
+
+    kind: str
+    triangles: tuple[RigidTriangle, ...]
+    labels: tuple[int, ...] = ()
+    chart: Chart | None = None
+    algebraic: AlgebraicProof | None = None
+
+
+@dataclass(frozen=True)
+class Lettered:
+    """Which of the branches listed have the letters of a file.
+
+    `ways`: the place in the list, from 1, and the side: 1 with the letters of the branch, -1 with
+    all of them reversed. `status` is PROVED if these are all; `unclear` are those of which a letter
+    is not known, and the others agree.
+    """
+
+    status: Verdict
+    ways: tuple[tuple[int, int], ...]
+    unclear: tuple[tuple[int, int], ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The key `letters` of `exactfold count --json`."""
+        ways = [{"way": way, "side": side} for way, side in self.ways]
+        return {"status": str(self.status), "ways": ways}
+
+
+@dataclass(frozen=True, repr=False)
+class BranchCount(Page):
+    """What is known of the branches of a pattern at the unfolded state.
+
+    `status` is PROVED when the counts are; they are None otherwise, and `reason` says what is
+    missing; `why` says why the method was chosen. `distinct` counts branches as lines (for D = 1),
+    `with_multiplicity` the solutions of the branch system with multiplicity, `real` and `nonreal`
+    its distinct solutions by reality. `true_branches` is PROVED when the count is also that of the
+    true configuration space (docs/mathematics.md, True branches), and `true_bounds` are bounds of
+    the number of true branches for D = 1 (docs/any_border.md, Theorem 9). `dimension` and `degree`
+    are those of the cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi
+    where that is proved (docs/mathematics.md, Single vertex), else None. `branches` holds every
+    branch decided, all of them if PROVED and D = 1; for D > 1 a branch is not a line, and none is
+    listed. There, for a convex border, the solutions are 2^n graphs over the rim heights, and
+    `pieces` says into how many pieces they fall; `families` are their irreducible components, where
+    `count_ways` looked for them. The counts are None, except for a single vertex.
+    `proof` is what a certificate is written from. `open_questions` is what is missing; if PROVED,
+    folds with the letter "U". `letters` are those of the file, by fold; empty if it has none.
+
+    `len(result)`, iteration and `result["+-"]` or `result[3]` are about `branches`.
+    """
+
+    pattern: CreasePattern
+    status: Verdict
+    method: str
+    reason: str
+    why: str = ""
+    distinct: int | None = None
+    with_multiplicity: int | None = None
+    real: int | None = None
+    nonreal: int | None = None
+    true_branches: Verdict = UNDECIDED
+    true_bounds: tuple[int, int] | None = None
+    dimension: int | None = None
+    degree: int | None = None
+    branches: tuple[Branch, ...] = ()
+    open_questions: tuple[str, ...] = ()
+    proof: Proof | None = None
+    settings: Mapping[str, int | str] = field(default_factory=dict)
+    snapped: Fraction = Fraction(0)
+    read: Mapping[str, Any] | None = None
+    letters: Mapping[Edge, str] = field(default_factory=dict)
+    pieces: Pieces | None = None
+    families: Decomposition | None = None
+    seconds: float = field(default=0.0, compare=False)
+
+    def __len__(self) -> int:
+        return len(self.branches)
+
+    def __iter__(self) -> Iterator[Branch]:
+        return iter(self.branches)
+
+    def __bool__(self) -> bool:
+        return True  # a result, also where no branch is listed
+
+    def __contains__(self, which: object) -> bool:
+        return which in self._by_signs if isinstance(which, str) else which in self.branches
+
+    @overload
+    def __getitem__(self, which: int | str) -> Branch: ...
+    @overload
+    def __getitem__(self, which: slice) -> tuple[Branch, ...]: ...
+    def __getitem__(self, which: int | str | slice) -> Branch | tuple[Branch, ...]:
+        """A branch by its place in the list or by its vertex signs, as in "+-0"; or a slice.
+
+        Raises `KeyError` for signs that no listed branch has, `UsageError` for signs that several
+        have, which can be only where the boundary has a reflex corner.
+        """
+        if isinstance(which, int | slice):
+            return self.branches[which]
+        found = self._by_signs.get(which, [])
+        if not found:
+            raise KeyError(
+                f"no branch listed has the vertex signs {which!r}; give one of +, - and 0 for each "
+                f"of {counted(self.pattern.Vi, 'interior vertex')}"
+            )
+        if len(found) > 1:
+            raise UsageError(f"{len(found)} branches have the vertex signs {which!r}")
+        return found[0]
+
+    @cached_property
+    def _by_signs(self) -> dict[str, list[Branch]]:
+        groups: dict[str, list[Branch]] = {}
+        for branch in self.branches:
+            groups.setdefault(branch.sign_text, []).append(branch)
+        return groups
+
+    @property
+    def warning(self) -> str | None:
+        """What to know of the pattern before the count is read: see `near_degenerate`."""
+        found = near_degenerate(self.pattern)
+        if found is None and self.families is not None:
+            return self.families.warning
+        return None if found is None else found.text
+
+    @property
+    def by(self) -> str | None:
+        """How what is stated was proved: by "enumeration", by the "theorem" alone, or None."""
+        if self.method == "theorem":
+            return "theorem"
+        return "enumeration" if self.status is PROVED else None
+
+    @cached_property
+    def lettered(self) -> Lettered | None:
+        """Which branches have `letters`; None without letters, or if no branch is listed."""
+        if not self.letters or not self.branches:
+            return None
+        turned = {fold: x.translate(UPSIDE_DOWN) for fold, x in self.letters.items()}
+        found: list[tuple[int, int]] = []
+        unclear: list[tuple[int, int]] = []
+        for k, branch in enumerate(self.branches, 1):
+            for side, wanted in ((1, self.letters), (-1, turned)):
+                other, unknown = differing(wanted, branch.assignment)
+                if not other:
+                    (unclear if unknown else found).append((k, side))
+        proved = self.status is PROVED and not unclear
+        return Lettered(PROVED if proved else UNDECIDED, tuple(found), tuple(unclear))
+
+    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold count --json`: `schema("count")`."""
+        return {
+            **headed("count"),
+            "pattern": described(self.pattern, name, self.snapped),
+            "status": str(self.status),
+            "reason": self.reason,
+            "by": self.by,
+            "method": self.method,
+            "why": self.why,
+            "distinct": self.distinct,
+            "with_multiplicity": _number(self.with_multiplicity),
+            "real": self.real,
+            "nonreal": self.nonreal,
+            "true_branches": str(self.true_branches),
+            "true_bounds": self._true_bounds(),
+            "dimension": self.dimension,
+            "degree": _number(self.degree),
+            "certificate": certificate,
+            "warnings": warnings(self.pattern),
+            "seconds": round(self.seconds, 3),
+            "open_questions": list(self.open_questions),
+            "settings": dict(self.settings),
+            "branches": [branch.to_dict() for branch in self.branches],
+            "theory": "branches",
+            "letters": None if self.lettered is None else self.lettered.to_dict(),
+            "rigid": self.distinct == 0 if self.status is PROVED else None,
+            "exceptional_vertices": list(self.exceptional_vertices),
+            **self._families(),
+            "pieces": None if self.pieces is None else self.pieces.to_dict(),
+            "read": None if self.read is None else dict(self.read),
+        }
+
+    def _true_bounds(self) -> list[int | str | None] | None:
+        return None if self.true_bounds is None else [_number(x) for x in self.true_bounds]
+
+    def _families(self) -> dict[str, Any]:
+        """The keys of JSON that belong to irreducible components."""
+        if self.families is not None:
+            found = self.families.to_dict()
+            return {key: found[key] for key in ("components", "modes_count", *_LISTS)}
+        return {**dict.fromkeys(("components", "modes_count")), **{key: [] for key in _LISTS}}
+
+    @property
+    def exceptional_vertices(self) -> tuple[int, ...]:
+        """Vertices with a flat star on some branch that are in no triangulated triangle, for D = 1.
+
+        If there are any, some branch is multiple although for almost all positions of the interior
+        vertices there are 2^(Vi - Vt) different ones, none with such a vertex (docs/generic.md,
+        Theorem 11). Empty also where branches are not listed.
+        """
+        if self.pattern.Ve != 4:
+            return ()
+        flat = {v for b in self.branches for v, sign in b.vertex_signs.items() if sign == 0}
+        return tuple(sorted(flat - self.pattern.rigid_vertices))
+
+    @property
+    def sign_vectors(self) -> Counter[str]:
+        """How many branches have each vertex-sign vector, opposite vectors taken together."""
+        return Counter(branch.names[0] for branch in self.branches)
+
+    @property
+    def undecided_folds(self) -> Counter[Edge]:
+        """On how many branches each fold has the letter "U"; it may be flat or nearly so there."""
+        return Counter(
+            fold
+            for branch in self.branches
+            if "U" in branch.assignment_text
+            for fold in branch.undecided_folds
+        )
+
+    @property
+    def repeated_assignments(self) -> int | None:
+        """Number of branches that share their mountain-valley assignment (up to reflection).
+
+        None if the letter of some fold is undecided.
+        """
+        if self.undecided_folds:
+            return None
+        counts = Counter(branch.names[1] for branch in self.branches)
+        return sum(count for count in counts.values() if count > 1)
+
+    def __repr__(self) -> str:
+        if self.pieces is not None and self.distinct is None:
+            return f"<BranchCount: {self.status}, {self.pieces!r}, {self.pattern!r}>"
+        found = counted("?" if self.distinct is None else self.distinct, "branch")
+        return f"<BranchCount: {self.status}, {found}, {self.pattern!r}>"
+
+    def _repr_latex_(self) -> str | None:
+        if self.pieces is not None and self.distinct is None:
+            return None
+        if self.distinct is None:
+            return r"$B = {?}\quad \text{(undecided)}$"
+        return (
+            rf"$B = {self.distinct}\ \text{{({self.status})}},\quad "
+            rf"V_i = {self.pattern.Vi},\ V_e = {self.pattern.Ve},\ V_t = {self.pattern.Vt}$"
+        )
+
+
+def _number(value: int | None) -> int | str | None:
+    """A number of solutions as JSON: beyond what all programs read exactly, as a power of two."""
+    if value is None or value < 1 << 53:
+        return value
+    return f"2^{value.bit_length() - 1}"

@@ -1,0 +1,1 @@
+from exactfold.certificates.entries import write_certificate as write_certificate

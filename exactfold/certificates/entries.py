@@ -1,0 +1,139 @@
+"""Certificate files: the exact pattern, the claims, and the evidence for them, without floats."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any
+
+from exactfold.checker.core.formats import LISTING, LISTING_VERSION
+from exactfold.exact.numbers import format_integer, format_rational
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.fold_writing import write_text
+from exactfold.rigidity.equations.branch_system import Chart
+from exactfold.rigidity.equations.flat_sheets import FlatSheets
+from exactfold.rigidity.rigid_triangles import RigidTriangle
+from exactfold.solve.algebraic.exact_solution import RootClass
+from exactfold.solve.certify.algebraic import AlgebraicProof
+from exactfold.solve.certify.box import IsolatingBox
+
+Document = dict[str, Any]
+
+
+def document(
+    pattern: CreasePattern,
+    claims: Mapping[str, Any],
+    evidence: Mapping[str, Any],
+    provenance: Mapping[str, Any],
+) -> Document:
+    """The certificate as a JSON object; `docs/certificate.md` describes every key."""
+    return {
+        "format": LISTING,
+        "version": LISTING_VERSION,
+        "pattern": pattern_document(pattern),
+        "claims": {
+            "interior": pattern.Vi,
+            "boundary": pattern.Ve,
+            "folds": len(pattern.folds),
+            "degrees_of_freedom": pattern.degrees_of_freedom,
+            "sha256": pattern.sha256,
+            **claims,
+        },
+        "evidence": dict(evidence),
+        "provenance": dict(provenance),
+    }
+
+
+def pattern_document(pattern: CreasePattern) -> Document:
+    """Vertices and triangles, exactly."""
+    return {
+        "vertices": [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
+        "triangles": [list(t) for t in pattern.triangles],
+    }
+
+
+def emptied_evidence(pattern: CreasePattern, curved: Collection[int] = ()) -> list[Document]:
+    """The 3-cycles with vertices inside, and these vertices, without further evidence.
+
+    Those that hold one of the vertices `curved` are left away: they are not flat.
+    """
+    return [
+        {"corners": list(corners), "inside": list(inside)}
+        for corners, inside in pattern.triangulated_triangles
+        if not set(curved) & set(inside)
+    ]
+
+
+def triangle_evidence(triangles: Iterable[RigidTriangle]) -> list[Document]:
+    """The triangulated triangles with their definite stresses."""
+    return [
+        {
+            "corners": list(t.corners),
+            "inside": list(t.inside),
+            "multipliers": [format_rational(m) for m in t.multipliers],
+        }
+        for t in triangles
+    ]
+
+
+def chart_evidence(chart: Chart, labels: Sequence[int]) -> Document | None:
+    """None for the chart `saddle = 1`, else the functional that is 1, by vertex.
+
+    Pinned vertices have height 0 and are left out; `labels` names the vertices in the certificate.
+    """
+    system = chart.branch_system
+    if chart.is_saddle:
+        return None
+    free = {labels[v]: c for v, c in chart.functional.items() if v not in system.pinned}
+    return {str(v): format_rational(c) for v, c in sorted(free.items())}
+
+
+def box_entry(box: IsolatingBox) -> Document:
+    """A real isolating box."""
+    return {
+        "bits": box.bits,
+        "radius": format_integer(box.radius),
+        "center": [format_integer(m) for m in box.real],
+    }
+
+
+def algebraic_evidence(
+    proof: AlgebraicProof, roots: Sequence[dict[str, Any]], labels: Sequence[int]
+) -> dict[str, Any]:
+    """The proof as certificate evidence; `roots` holds an entry for each branch, in their order.
+
+    `labels` names the vertices in the certificate.
+    """
+    return {
+        "multipliers": [format_rational(m) for m in proof.multipliers],
+        "separating": list(proof.classes[0][0].separating) if proof.classes else [],
+        "classes": [
+            {
+                "polynomial": [format_integer(c) for c in root_class.polynomial],
+                "numerators": [[format_rational(c) for c in w] for w in root_class.numerators],
+                "flat": [labels[v] for v in flat],
+            }
+            for root_class, flat in proof.classes
+        ],
+        "roots": list(roots),
+    }
+
+
+def flat_box_entry(sheets: FlatSheets, box: IsolatingBox, labels: Sequence[int]) -> dict[str, Any]:
+    """A root in a box on flat sheets."""
+    return {"flat": sorted(labels[v] for v in sheets.vertices), **box_entry(box)}
+
+
+def class_entry(
+    proof: AlgebraicProof, root_class: RootClass, index: int, bits: int = 64
+) -> dict[str, Any]:
+    """The `index`-th real root of a class of the proof."""
+    number = next(k for k, (c, _) in enumerate(proof.classes) if c is root_class)
+    interval = root_class.real_roots(bits)[index]
+    return {"class": number, "interval": [format_rational(x) for x in interval]}
+
+
+def write_certificate(certificate: Document, path: str | os.PathLike[str]) -> None:
+    """Write a certificate whole or not at all; raises `UnwritableFileError`."""
+    write_text(path, json.dumps(certificate, separators=(",", ":")) + "\n")

@@ -1,0 +1,31 @@
+"""Certificates that are checked part by part, shared among processes without threads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from exactfold._support.shared_work import in_order
+from exactfold.checker.branches import compact
+
+
+class _Started:
+    """What each process does with parts: it makes its own verifier of the file, then asks it.
+
+    The verifier is in the copy that a worker process was sent, and goes with this process.
+    """
+
+    def __init__(self, engine: compact.Engine, header: str) -> None:
+        self.engine, self.header = engine, header
+        self.verifier: compact.Verifier | None = None
+
+    def __call__(self, part: tuple[str, int]) -> str | None:
+        if self.verifier is None:
+            self.verifier = self.engine.verifier(self.header)
+        return self.verifier.refusal(*part)
+
+
+def shared(
+    engine: compact.Engine, workers: int, header: str, parts: Iterator[tuple[str, int]]
+) -> compact.Said:
+    """Parts of a file checked in several processes, in their order; raises as `in_order`."""
+    return in_order(workers, _Started(engine, header), parts, 3)

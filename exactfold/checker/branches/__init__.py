@@ -1,0 +1,1 @@
+"""Certificates of branches: all, one, or the components that they form."""

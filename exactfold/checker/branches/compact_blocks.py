@@ -1,0 +1,163 @@
+"""The blocks of a compact certificate, and the tests of their roots.
+
+Root number s lies in a box with exactly one zero (Krawczyk); on the whole box the sign functional
+of the k-th foldable vertex is negative if bit k of s is set and positive if not. So the 2^n zeros
+are pairwise different without any comparison, and by refined Bezout they are all zeros of n
+quadrics in P^n, all simple and real.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from ..core.formats import COUNTS, UNPROVED
+from ..core.krawczyk import Krawczyk
+from ..core.limits import MOST_BLOCK, MOST_DIGITS, MOST_UNITS, MOST_UNKNOWNS, MOST_WIDTH
+from ..core.lines import read_object
+from ..core.reading import CertificateError, items, keys, natural, require, text_of
+from ..sheets.boxes import Box, read_box
+from ..sheets.equations import BranchSystem, read_chart
+from ..sheets.flat_folds import close_flat
+from ..sheets.sheet import facts_of, read_sheet
+from ..sheets.stress import check_triangles
+from .listing import agrees, digit
+
+
+class Block(NamedTuple):
+    """The decoded contents of one block, root after root."""
+
+    first: int
+    bits: int
+    width: int
+    centers: bytes
+    radii: bytes
+    folds: bytes
+    exact: dict[int, tuple[Box, str]]
+
+    def center(self, index: int, size: int) -> list[int]:
+        """The centre of a root of the block, in units of 2^-bits."""
+        width, start = self.width, index * size * self.width
+        return [
+            int.from_bytes(self.centers[k : k + width], "little", signed=True)
+            for k in range(start, start + size * width, width)
+        ]
+
+
+class CompactSheet:
+    """The sheet of a header, verified, with everything that tests its roots."""
+
+    def __init__(self, header: dict[str, Any]) -> None:
+        evidence = header["evidence"]
+        keys(evidence, "kind triangles chart block", "evidence")
+        require(evidence["kind"] == "chambers", "unknown kind of evidence")
+        faces, vertices = (len(header["pattern"][k]) for k in ("triangles", "vertices"))
+        require(  # by Euler; so the boundary is short before it is looked at
+            faces == 2 * vertices - 6 > 2, "the sheet has not four boundary vertices and an inner"
+        )
+        self.sheet, self.sha256 = read_sheet(header["pattern"])
+        require(len(self.sheet.boundary) == 4, "the sheet has not D = 1")
+        self.emptied = check_triangles(self.sheet, evidence["triangles"])
+        self.system = BranchSystem(self.emptied, read_chart(evidence["chart"]))
+        self.size = self.system.size
+        require(0 < self.size <= MOST_UNKNOWNS, "the number of unknowns is out of range")
+        self.block = natural(evidence["block"], "block")
+        require(
+            0 < self.block <= MOST_BLOCK and (1 << self.size) % self.block == 0,
+            "the size of a block does not divide the number of roots",
+        )
+        self.blocks = (1 << self.size) // self.block
+        self.krawczyk = Krawczyk(self.system)
+        self.vertex_rows = [
+            self.system.row(self.emptied.sign_of_vertex(v)) for v in self.emptied.interior
+        ]
+        self.fold_rows = [self.system.row(self.emptied.bend(f)) for f in self.emptied.folds]
+        self.letter_bytes = (len(self.fold_rows) + 7) // 8
+
+    def claims(self) -> dict[str, Any]:
+        """What a complete file proves."""
+        counts = (1 << self.size, 1 << len(self.sheet.interior), 1 << self.size, 0, "proved")
+        facts = facts_of(self.sheet, self.sha256)
+        return facts | dict(zip(COUNTS.split(), counts, strict=True))
+
+    def decode(self, text: str, number: int) -> Block:
+        """The block of a line, which must be block `number`."""
+        what = f"block {number}"
+        data = read_object(text, what)
+        keys(data, "block bits width centers radii folds exact open", what)
+        require(
+            type(data["block"]) is int and data["block"] == number,
+            f"{what} is expected, but here is block {data['block']!a}",
+        )
+        bits, width = natural(data["bits"], "bits"), natural(data["width"], "width")
+        require(bits <= MOST_UNITS and 0 < width <= MOST_WIDTH, f"{what} is out of range")
+        first = number * self.block
+        for entry in items(data["open"], "open"):
+            index, reason = items(entry, "open root", 2)
+            raise CertificateError(f"root {first + index} is open: {reason!a}")
+        parts = []
+        for name, length in (("centers", self.size * width), ("radii", 1), ("folds", 0)):
+            try:
+                part = base64.b64decode(data[name], validate=True)
+            except (binascii.Error, TypeError, ValueError):
+                raise CertificateError(f"{what}: {name} is not base 64") from None
+            length = length or self.letter_bytes
+            require(len(part) == self.block * length, f"{what}: {name} has another length")
+            parts.append(part)
+        exact: dict[int, tuple[Box, str]] = {}
+        for entry in items(data["exact"], "exact"):
+            keys(entry, "root bits radius center assignment", "exact root")
+            index = natural(entry["root"], "root")
+            require(index < self.block, f"{what} has no root {index}")
+            require(index not in exact, f"root {first + index} is given twice")
+            box = read_box({k: entry[k] for k in ("bits", "radius", "center")}, self.size)
+            require(
+                box.bits <= MOST_DIGITS
+                and all(len(text) <= MOST_DIGITS for text in (entry["radius"], *entry["center"])),
+                f"root {first + index} is out of range",
+            )
+            exact[index] = (box, text_of(entry["assignment"]))
+        centers, radii, folds = parts
+        return Block(first, bits, width, centers, radii, folds, exact)
+
+    def check_block(self, block: Block, done: Sequence[bool] | None = None) -> None:
+        """Verify every root of a block but those marked as done; raises `CertificateError`."""
+        for index in range(self.block):
+            given = index in block.exact
+            what = f"root {block.first + index}"
+            require(
+                given == (block.radii[index] == UNPROVED), f"{what} is given twice or not at all"
+            )
+            if given:
+                root, letters = block.exact[index]
+                self.check_root(root, block.first + index, letters)
+            elif done is None or not done[index]:
+                require(block.radii[index] <= MOST_UNITS, f"{what}: no such radius")
+                center = block.center(index, self.size)
+                root = Box(center, 1 << block.radii[index], block.bits)
+                self.check_root(root, block.first + index, self.letters(block, index))
+
+    def letters(self, block: Block, index: int) -> str:
+        """The assignment of a root: M where the bit of a fold is not set, V where it is."""
+        start = index * self.letter_bytes
+        bits = int.from_bytes(block.folds[start : start + self.letter_bytes], "little")
+        require(not bits >> len(self.fold_rows), "a bit of no fold is set")
+        return "".join("MV"[bits >> k & 1] for k in range(len(self.fold_rows)))
+
+    def check_root(self, root: Box, number: int, letters: str) -> None:
+        """One regular zero in the box, with the signs of its number and the folds given."""
+        self.krawczyk.check(root.center, root.radius, root.bits)
+        for k, row in enumerate(self.vertex_rows):
+            require(
+                root.sign(row) == (-1 if number >> k & 1 else 1),
+                f"root {number}: vertex {self.emptied.interior[k]} has not the sign of its number",
+            )
+        signs = {
+            f: root.sign(row) for f, row in zip(self.emptied.folds, self.fold_rows, strict=True)
+        }
+        if None in signs.values():
+            close_flat(self.emptied, signs)
+        found = "".join("MFVU"[1 + digit(signs[f])] for f in self.emptied.folds)
+        require(agrees(letters, found), f"root {number}: folds are {found}, not {letters}")

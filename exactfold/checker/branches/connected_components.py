@@ -1,0 +1,199 @@
+"""Certificates of the pieces of the solutions of a sheet (docs/any_border.md).
+
+Why it is a proof: with a convex border of five or more vertices the solutions are 2^n graphs, one
+for each sign vector of the n vertices that can pop (Theorem 6), and the pieces are the components
+of the sign vectors, two that differ at v being joined if some solution with these signs is flat at
+v (Theorem 7). Evidence names stars that are held flat; the checker leaves their folds out, makes
+the flat closure, and finds the solutions that are left (`pieces_flat`). Each joins all sign vectors
+that agree with its signs. At a vertex of which all such solutions are found nothing else is joined;
+at others every two are taken to be joined for the lower bound. A fold from border to border joins
+all.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..core import limits
+from ..core.formats import PIECES, PIECES_VERSION
+from ..core.reading import counted, document, items, keys, natural, refusing, require, same
+from ..core.towers import Tower
+from ..panels.spaces import Spaces
+from ..sheets.panels import PanelSheet, pair
+from ..sheets.reduced import check_convex
+from ..sheets.sheet import read_sheet
+from .branch import Place
+from .flat_stars import Signs, solutions
+
+MOST_VERTICES = limits.PIECE_VERTICES
+_REFLECTED = str.maketrans("+-", "-+")
+Cube = tuple[int, int]
+"""All sign vectors that agree with the second number on the bits of the first."""
+
+
+def read(data: Any) -> dict[str, Any]:
+    """`data` if it is a certificate of pieces; raises `FormatError`."""
+    return document(data, PIECES, PIECES_VERSION, "format version pattern claims evidence")
+
+
+@refusing()
+def check(data: dict[str, Any]) -> dict[str, Any]:
+    """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
+
+    Returns the claims, the SHA-256 of the pattern, and the `chord` that joins all, if there is one.
+    The claims are: `vertices` can pop; the solutions, without the flat state, fall into `at_least`
+    to `at_most` pieces; `joints` are the signs of all solutions with flat stars that the evidence
+    shows, "0" at these stars, each up to reflection, and none that joins only what another joins;
+    no others join sign vectors that differ at one vertex of `complete` only.
+    """
+    given, digest = read_sheet(data["pattern"])
+    claims, evidence = data["claims"], data["evidence"]
+    keys(claims, "vertices at_least at_most joints complete", "claims")
+    keys(evidence, "emptied chord flat", "evidence")
+    place = Place(given, evidence["emptied"])
+    require(len(place.sheet.boundary) > 4, "there are fewer than five boundary vertices")
+    check_convex(place.sheet)
+    search = _Search(place)
+    require(same(claims["vertices"], search.vertices), "other vertices can pop")
+    chord = evidence["chord"]
+    if chord is not None:
+        i, j = (natural(v, "a vertex") for v in items(chord, "chord", 2))
+        require((i, j) in search.chords, "no fold from border to border is named")
+        low = high = 1
+    else:
+        require(not search.chords, "a fold goes from border to border")
+        for entry in items(evidence["flat"], "flat"):
+            search.hold(entry)
+        low, high = search.bounds()
+    _check_joints(items(claims["joints"], "joints"), search)
+    complete = same(claims["complete"], sorted(search.complete))
+    require(complete, "other vertices are complete")
+    shown = f"the evidence shows {low} to {high} pieces"
+    require(same([claims["at_least"], claims["at_most"]], [low, high]), shown)
+    more = {} if chord is None else {"chord": chord}
+    return {"sha256": digest, "interior": len(given.interior), **more, **claims}
+
+
+def _check_joints(listed: list[Any], search: _Search) -> None:
+    """The joints that are listed are the largest that are shown, each once up to reflection."""
+    largest = search.largest()
+    known: set[str] = set()
+    for text in listed:
+        require(text in largest, f"the joint {text!a} is not shown, or another one joins more")
+        require(text not in known, f"the joint {text!a} is listed twice, or with its reflection")
+        known |= {text, text.translate(_REFLECTED)}
+    left = sorted(largest - known)
+    require(not left, f"the joint {left[:1]} is not listed")
+
+
+class _Search:
+    """What is shown of the joints of one sheet."""
+
+    def __init__(self, place: Place) -> None:
+        sheet = self.sheet = place.sheet
+        self.vertices = list(sheet.interior)
+        require(self.vertices, "no vertex can pop")
+        require(len(self.vertices) <= MOST_VERTICES, f"more than {MOST_VERTICES} vertices can pop")
+        border = set(sheet.boundary)
+        self.chords = {fold for fold in sheet.folds if border.issuperset(fold)}
+        self._kept = sorted(sheet.points)
+        self._new = {v: k for k, v in enumerate(self._kept)}
+        tower = Tower()
+        points = [tuple(tower.number(x) for x in sheet.points[v]) for v in self._kept]
+        edges = sorted((self._new[i], self._new[j]) for i, j in sheet.edges)
+        self._panels = PanelSheet(tower, [(x, y) for x, y in points], edges)
+        self.joints: set[str] = set()
+        self.cubes: set[Cube] = set()
+        self.complete: set[int] = set()
+
+    def hold(self, entry: Any) -> None:
+        """Find the solutions with some stars held flat."""
+        keys(entry, "held complete parts", "a set of flat stars")
+        near = self._near([natural(v, "a vertex") for v in items(entry["held"], "held")])
+        parts = [self._renamed(part) for part in items(entry["parts"], "parts")]
+        found = True
+        if near:
+            spaces = Spaces(self._panels, near)
+            joints, found = solutions(spaces, spaces.first_order, parts)
+            for signs in joints:
+                self._add(signs)
+        for v in (natural(v, "a vertex") for v in items(entry["complete"], "complete")):
+            require(found, f"not all solutions with vertex {v} flat are shown")
+            require(self._near([v]) == near, f"other folds may bend with vertex {v} flat")
+            self.complete.add(v)
+
+    def _near(self, held: list[int]) -> dict[int, list[int]]:
+        inside = set(self.vertices)
+        require(held and inside.issuperset(held), "a star that is held flat is none")
+        flat = {pair(self._new[v], self._new[u]) for v in held for u in self.sheet.star(v)}
+        return self._panels.live(flat)
+
+    def _renamed(self, part: Any) -> Any:
+        folds = [
+            pair(*(self._new[v] for v in items(fold, "a fold", 2)))
+            for fold in items(part["folds"], "folds")
+        ]
+        return {**part, "folds": folds}
+
+    def _add(self, signs: Signs) -> None:
+        own = {self._kept[k]: sign for k, sign in signs.items()}
+        for turn in (1, -1):
+            values = [turn * own.get(v, 0) for v in self.vertices]
+            self.joints.add("".join("-0+"[value + 1] for value in values))
+            mask = sum(1 << k for k, value in enumerate(values) if value)
+            self.cubes.add((mask, sum(1 << k for k, value in enumerate(values) if value > 0)))
+
+    def largest(self) -> set[str]:
+        """The joints that join sign vectors which no other joint joins, with their reflections."""
+        return {
+            text
+            for text in self.joints
+            if not any(_within(text, other) for other in self.joints if other != text)
+        }
+
+    def bounds(self) -> tuple[int, int]:
+        """The least and the largest number of pieces."""
+        high = components(len(self.vertices), self.cubes)
+        kept = [k for k, v in enumerate(self.vertices) if v in self.complete]
+        cut = {(_bits(mask, kept), _bits(value, kept)) for mask, value in self.cubes}
+        return components(len(kept), cut), high
+
+
+def _within(joint: str, other: str) -> bool:
+    """Whether a joint joins only what another one joins."""
+    return all(b in (a, "0") for a, b in zip(joint, other, strict=True))
+
+
+def _bits(number: int, kept: list[int]) -> int:
+    return sum(1 << n for n, k in enumerate(kept) if number >> k & 1)
+
+
+def components(size: int, cubes: set[Cube]) -> int:
+    """The components of 2^size sign vectors if those in each cube are joined."""
+    waiting = set(cubes)
+    number = 0
+    while waiting:
+        number += 1
+        reached = [waiting.pop()]
+        while reached:
+            mask, value = reached.pop()
+            near = {(m, x) for m, x in waiting if not (x ^ value) & m & mask}
+            waiting -= near
+            reached += near
+    alone = sum(
+        all((vector ^ value) & mask for mask, value in cubes) for vector in range(1 << size)
+    )
+    return number + alone
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    low, high = claims["at_least"], claims["at_most"]
+    graphs = 1 << len(claims["vertices"])
+    pieces = counted(high, "piece", "pieces") if low == high else f"{low} to {high} pieces"
+    joints = f"with {counted(len(claims['joints']), 'joint', 'joints')} shown"
+    if "chord" in claims:
+        joints = "joined by the fold {}-{} from border to border".format(*claims["chord"])
+    return (
+        f"VALID: the solutions are {graphs} graphs in {pieces}, {joints}; sha256 {claims['sha256']}"
+    )

@@ -1,0 +1,182 @@
+"""Certificates that list every branch (docs/certificate.md).
+
+What each kind of evidence proves, in short:
+
+  isolated       2^n disjoint boxes, each with exactly one zero by Krawczyk's test in integers:
+                 by refined Bezout these are all zeros of n quadrics in P^n, all real and simple;
+  algebraic      zeros as roots of squarefree polynomials, in boxes, or in boxes on the sheets
+                 that are flat at given vertices; a zero at which f of the
+                 quadrics have order 2 has multiplicity 2^f or more, and the sum reaches 2^n, so
+                 that the bounds are exact and nothing is missing;
+  rigid          a positive definite stress: the sheet cannot fold;
+  single vertex  the inertia (1, N - 3, 3) of one curvature form, N >= 5: one double cone.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..core.formats import COUNTS, FACTS, LISTING, LISTING_VERSION
+from ..core.reading import (
+    CertificateError,
+    counted,
+    document,
+    items,
+    keys,
+    refusing,
+    require,
+    text_of,
+)
+from ..sheets.boxes import Root, check_isolated
+from ..sheets.equations import BranchSystem, read_chart
+from ..sheets.flat_folds import close_flat
+from ..sheets.sheet import Sheet, facts_of, read_sheet
+from ..sheets.stress import check_lorentzian, check_triangles
+from .algebraic import check_algebraic
+
+UPSIDE_DOWN = str.maketrans("+-MV", "-+VM")
+Counts = tuple[int, int, int, int, str]
+
+
+def read(data: Any) -> dict[str, Any]:
+    """`data` if it is a certificate that lists branches; raises `FormatError`."""
+    names = "format version pattern claims evidence provenance"
+    return document(data, LISTING, LISTING_VERSION, names)
+
+
+@refusing()
+def check(data: dict[str, Any]) -> dict[str, Any]:
+    """Verify every claim of a certificate; raises `CertificateError` at the first failure.
+
+    Returns the verified claims. Passing means that the claims hold for the pattern in the file.
+    """
+    claims, evidence = data["claims"], data["evidence"]
+    keys(claims, f"{FACTS} {COUNTS} branches", "claims")
+    require(isinstance(evidence, dict), "the evidence is not an object")
+    sheet, digest = read_sheet(data["pattern"])
+    emptied = check_triangles(sheet, evidence.get("triangles"))
+    kind = evidence.get("kind")
+    branches = items(claims["branches"], "branches")
+    if kind == "rigid":
+        counts = _rigid(sheet, emptied, evidence, branches)
+    elif kind == "single vertex":
+        counts = _single_vertex(sheet, emptied, evidence, branches)
+    elif kind in ("isolated", "algebraic"):
+        counts = _lines(sheet, emptied, evidence, branches)
+    else:
+        raise CertificateError(f"unknown kind of evidence {kind!a}")
+    facts = facts_of(sheet, digest) | dict(zip(COUNTS.split(), counts, strict=True))
+    for key, fact in facts.items():
+        require(
+            type(claims[key]) is type(fact) and claims[key] == fact,
+            f"claim {key} = {claims[key]!a}, but it is {fact!a}",
+        )
+    return dict(claims)
+
+
+def _rigid(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> Counts:
+    keys(evidence, "kind triangles", "evidence")
+    require(
+        len(sheet.boundary) == 3 and not emptied.interior and sheet.interior,
+        "the sheet is no triangulated triangle",
+    )
+    require(not branches, "a rigid sheet has no branches")
+    return 0, 0, 0, 0, "proved"
+
+
+def _single_vertex(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> Counts:
+    keys(evidence, "kind triangles", "evidence")
+    require(
+        len(emptied.interior) == 1
+        and len(emptied.star(emptied.interior[0])) == len(emptied.boundary) >= 5,
+        "the emptied sheet is no single vertex of degree 5 or more",
+    )
+    check_lorentzian(emptied, emptied.interior[0])
+    require(not branches, "a branch of dimension two or more is not listed")
+    return 1, 1 << len(sheet.interior) - 1, 1, 0, "proved"
+
+
+def _lines(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> Counts:
+    """D = 1: each branch is a line, a zero of the branch system of the emptied sheet."""
+    require(len(sheet.boundary) == 4 and sheet.interior, "the sheet has not D = 1")
+    system, nonreal = BranchSystem(emptied, read_chart(evidence.get("chart"))), 0
+    if evidence["kind"] == "isolated":
+        roots = check_isolated(system, evidence)
+    else:
+        roots, nonreal = check_algebraic(system, evidence)
+    require(len(branches) == len(roots), f"{len(branches)} branches for {len(roots)} roots")
+    check_branches(sheet, system, roots, branches)
+    simple = all(m == 1 for _, m in roots)
+    true_branches = "proved" if simple and not nonreal else "undecided"
+    real = len(roots)
+    return real + nonreal, 1 << len(sheet.interior), real, nonreal, true_branches
+
+
+def check_branches(
+    sheet: Sheet, system: BranchSystem, roots: list[tuple[Root, int]], branches: list[Any]
+) -> None:
+    """Vertex signs, mountain-valley assignment and multiplicity of every branch.
+
+    The letter U claims nothing. The signs that are known on all branches must tell zeros listed in
+    different ways apart.
+    """
+    texts: list[tuple[str, str]] = []
+    emptied = system.sheet
+    removed = len(sheet.interior) - len(emptied.interior)
+    vertex_rows = {v: system.row(emptied.sign_of_vertex(v)) for v in emptied.interior}
+    fold_rows = {f: system.row(emptied.bend(f)) for f in emptied.folds}
+    saddle = system.row(system.saddle)
+    for number, ((root, multiplicity), branch) in enumerate(zip(roots, branches, strict=True)):
+        keys(branch, "vertex_signs assignment multiplicity representative", f"branch {number}")
+        signs = {f: root.sign(row) for f, row in fold_rows.items()}
+        close_flat(emptied, signs)
+        at = {v: root.sign(row) for v, row in vertex_rows.items()}
+        up_down = "".join("-0+?"[1 + digit(at.get(v, 0))] for v in sheet.interior)
+        letters = "".join("MFVU"[1 + digit(signs.get(f, 0))] for f in sheet.folds)
+        require("?" not in up_down, f"branch {number}: signs are open")
+        seen = (up_down, letters)
+        texts.append(seen)
+        mirror = (up_down.translate(UPSIDE_DOWN), letters.translate(UPSIDE_DOWN))
+        side = root.sign(saddle)
+        allowed = {1: (seen,), -1: (mirror,)}.get(side or 0, (seen, mirror))
+        require(
+            any(
+                branch["vertex_signs"] == up_down and agrees(text_of(branch["assignment"]), letters)
+                for up_down, letters in allowed
+            )
+            and branch["representative"] == ("saddle" if side else "either"),
+            f"branch {number}: not {' or '.join(map(' '.join, allowed))} as shown by "
+            f"{'its positive saddle' if side else 'either side'}",
+        )
+        require(
+            type(branch["multiplicity"]) is int
+            and branch["multiplicity"] == multiplicity << removed,
+            f"branch {number}: multiplicity is {multiplicity << removed}",
+        )
+    known = [k for k in range(len(sheet.folds)) if all(text[1][k] != "U" for text in texts)]
+    kinds: dict[tuple[str, str], object] = {}
+    for (up_down, letters), (root, _) in zip(texts, roots, strict=True):
+        key = (up_down, "".join(letters[k] for k in known))
+        require(kinds.setdefault(key, root.kind) == root.kind, "a root may be counted twice")
+
+
+def agrees(claimed: str, letters: str) -> bool:
+    """Whether every letter claimed is right; U claims nothing."""
+    return len(claimed) == len(letters) and all(
+        a in (b, "U") for a, b in zip(claimed, letters, strict=True)
+    )
+
+
+def digit(sign: int | None) -> int:
+    """-1, 0 or 1 for a sign, 2 for an open one."""
+    return 2 if sign is None else sign
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    branches = counted(claims["distinct"], "branch", "branches")
+    return (
+        f"VALID: {branches} ({claims['with_multiplicity']} with "
+        f"multiplicity, {claims['real']} real) of the sheet with {claims['interior']} interior "
+        f"and {claims['boundary']} boundary vertices, sha256 {claims['sha256']}"
+    )

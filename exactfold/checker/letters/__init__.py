@@ -1,0 +1,1 @@
+"""Certificates of mountains and valleys: of branches and of rigid panels."""

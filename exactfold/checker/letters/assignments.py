@@ -1,0 +1,145 @@
+"""Certificates of all mountain-valley assignments of a sheet with five corners (docs/circles.md).
+
+Why it is a proof: for each sign vector the solutions are a circle over the directions of the border
+(Theorem 1 there). Evidence goes round it by points, heights inside the nappes of these signs. From
+each point to the next the letters of all solutions are known but for some folds (`arcs`), and those
+of the points themselves are shown to occur. If all letters that are possible between two points are
+shown somewhere, no other assignment occurs. Signs that begin with a minus are reflections. A fold
+from border to border bends by itself, so that the sheet without the corner behind it is looked at:
+a point for either side of its border is enough.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Any
+
+from ..branches.branch import Place
+from ..core import limits
+from ..core.formats import ASSIGNMENTS, ASSIGNMENTS_VERSION
+from ..core.reading import counted, document, items, keys, parse_integer, refusing, require
+from ..sheets.reduced import check_convex
+from ..sheets.sheet import Edge, Sheet, read_sheet, turn
+from .arcs import Arcs, Word
+
+MOST_VERTICES = limits.ASSIGNED_VERTICES
+"""Most vertices that can pop."""
+
+
+def read(data: Any) -> dict[str, Any]:
+    """`data` if it is a certificate of assignments; raises `FormatError`."""
+    return document(
+        data, ASSIGNMENTS, ASSIGNMENTS_VERSION, "format version pattern claims evidence"
+    )
+
+
+@refusing()
+def check(data: dict[str, Any]) -> dict[str, Any]:
+    """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
+
+    Returns the claims and the SHA-256 of the pattern. The claim is: `assignments` are the letters,
+    by fold in lexicographic order, of all solutions that bend every fold but those inside
+    triangulated triangles, which are "F".
+    """
+    given, digest = read_sheet(data["pattern"])
+    claims, evidence = data["claims"], data["evidence"]
+    keys(claims, "assignments", "claims")
+    keys(evidence, "emptied circles", "evidence")
+    texts = _shown(given, evidence)
+    listed = items(claims["assignments"], "assignments")
+    require(listed == texts, f"the evidence shows {len(texts)} assignments, and not these")
+    return {"sha256": digest, "interior": len(given.interior), **claims}
+
+
+def _shown(given: Sheet, evidence: dict[str, Any]) -> list[str]:
+    """The letters that occur, in order."""
+    sheet = Place(given, evidence["emptied"]).sheet
+    require(len(sheet.boundary) == 5, "there are not five boundary vertices")
+    check_convex(sheet)
+    border = set(sheet.boundary)
+    chords = [fold for fold in sheet.folds if border.issuperset(fold)]
+    circles = _Circles(_without_ear(sheet) if chords else sheet)
+    words = circles.shown(evidence["circles"])
+    return sorted(text for word in words for text in circles.texts(word, given.folds, chords))
+
+
+def free_border(sheet: Sheet) -> list[int]:
+    """The border vertices but three that are not on a line, which modulo planes have height 0."""
+    first, second, *others = sheet.boundary
+    p, q = sheet.points[first], sheet.points[second]
+    third = next(v for v in others if turn(p, q, sheet.points[v]))
+    return [v for v in others if v != third]
+
+
+def _without_ear(sheet: Sheet) -> Sheet:
+    """The sheet without a corner that is on one face only."""
+    tip, *_ = (v for v in sheet.boundary if len(sheet.next[v]) == 1)
+    faces = [sheet.face(t) for t in sheet.triangles if tip not in t]
+    return Sheet({v: p for v, p in sheet.points.items() if v != tip}, faces)
+
+
+class _Circles:
+    """The solutions of one sheet, a circle for each sign vector; with four corners two rays."""
+
+    def __init__(self, sheet: Sheet) -> None:
+        self.sheet = sheet
+        require(sheet.interior, "no vertex can pop")
+        number = len(sheet.interior)
+        require(number <= MOST_VERTICES, f"more than {MOST_VERTICES} vertices can pop")
+        free = free_border(sheet)
+        self.free = len(free)
+        self.arcs = Arcs(sheet, [*free, *sheet.interior])
+        self.signs = [(1, *rest) for rest in product((1, -1), repeat=number - 1)]
+
+    def shown(self, entries: Any) -> set[Word]:
+        """The letters that occur, once they are shown to be all that bend every fold."""
+        circles = [
+            self._points(entry, signs, f"circle {k}")
+            for k, (entry, signs) in enumerate(
+                zip(items(entries, "circles", len(self.signs)), self.signs, strict=True)
+            )
+        ]
+        seen = {self.arcs.letters(a, a) for points in circles for a in points}
+        found = {tuple(turn * x for x in word) for word in seen if all(word) for turn in (1, -1)}
+        for k, (points, signs) in enumerate(zip(circles, self.signs, strict=True)):
+            for j, (a, b) in enumerate(self._steps(points)):
+                left = self.arcs.possible(self.arcs.letters(a, b), signs) - found
+                require(not left, f"circle {k}: other letters are possible behind point {j}")
+        return found
+
+    def _points(self, entry: Any, signs: Word, name: str) -> list[list[int]]:
+        """The points of a circle: inside the nappes, and all round the border."""
+        points = []
+        for heights in items(entry, name):
+            point = items(heights, "heights", self.free + len(self.sheet.interior))
+            points.append([parse_integer(z) for z in point])
+            self.arcs.check_nappes(points[-1], signs, name)
+        if self.free == 1:
+            first, last = points
+            require(first[0] > 0 > last[0], f"{name}: the points are not on the two sides")
+        else:
+            for j, (a, b) in enumerate(self._steps(points)):
+                ahead = a[0] * b[1] - a[1] * b[0] > 0
+                require(ahead, f"{name}: the border does not go round behind point {j}")
+            require(points, f"{name} has no points")
+        return points
+
+    def _steps(self, points: list[list[int]]) -> list[tuple[list[int], list[int]]]:
+        """From each point to the next, or to itself."""
+        after = points if self.free == 1 else points[1:] + points[:1]
+        return list(zip(points, after, strict=True))
+
+    def texts(self, word: Word, folds: list[Edge], chords: list[Edge]) -> list[str]:
+        """The letters of all folds of the given sheet; a fold from border to border has either."""
+        own = {fold: "MV"[x > 0] for fold, x in zip(self.sheet.folds, word, strict=True)}
+        either = [own.get(fold, "MV" if fold in chords else "F") for fold in folds]
+        return ["".join(letters) for letters in product(*either)]
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    number = len(claims["assignments"])
+    which = counted(
+        number, "mountain-valley assignment occurs", "mountain-valley assignments occur"
+    )
+    return f"VALID: exactly {which} with no fold flat; sha256 {claims['sha256']}"

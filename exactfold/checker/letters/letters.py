@@ -1,0 +1,152 @@
+"""Certificates of all halves of branches with given letters (docs/assignment.md).
+
+Why it is a proof: a branch is a line of solutions; each of its two halves lies in the closed nappes
+of some sign vector. The tree covers all sign vectors. Those that contain the signs of a refuted set
+have no solution with these letters (`letters_refuted`); for each other, that is left as a leaf, the
+two halves are proved as those of one branch are (`branch`, Theorem 5 of docs/branch.md): the one in
+its nappes with a positive saddle, and the opposite of the one in the opposite nappes. With another
+number of boundary vertices there are no leaves: every solution lies in the closed nappes of some
+sign vector all the same, so that none has the letters if all ends of the tree are refuted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from ..branches.branch import Place
+from ..branches.branch_proof import Proof
+from ..core.formats import LETTERS, LETTERS_VERSION
+from ..core.reading import counted, document, integer, items, keys, natural, refusing, require
+from ..sheets.sheet import Edge, read_sheet
+from .refuted import Signs, Stars
+
+Half = tuple[tuple[int, ...], int]
+"""The signs of the interior vertices, 0 where the star is flat, and the side."""
+
+_TURNED = str.maketrans("MV", "VM")
+
+
+def read(data: Any) -> dict[str, Any]:
+    """`data` if it is a certificate of letters; raises `FormatError`."""
+    return document(data, LETTERS, LETTERS_VERSION, "format version pattern claims evidence")
+
+
+@refusing()
+def check(data: dict[str, Any]) -> dict[str, Any]:
+    """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
+
+    Returns the claims and the SHA-256 of the pattern. The claims are: the halves of branches with
+    these letters, by fold in lexicographic order, "U" for any, are those listed and no others.
+    """
+    given, digest = read_sheet(data["pattern"])
+    claims, evidence = data["claims"], data["evidence"]
+    keys(claims, "letters halves", "claims")
+    keys(evidence, "emptied refuted tree leaves", "evidence")
+    place = Place(given, evidence["emptied"])
+    if len(place.sheet.boundary) == 4:
+        place.fix_rim()  # the boundary is convex then
+    text = claims["letters"]
+    fits = isinstance(text, str) and len(text) == len(given.folds) and set(text) <= set("MVFU")
+    require(fits, "letters do not fit")
+    wanted = dict(zip(given.folds, text, strict=True))
+    search = _Search(place, wanted)
+    found = search.halves(
+        items(evidence["refuted"], "refuted"),
+        items(evidence["tree"], "tree"),
+        items(evidence["leaves"], "leaves"),
+    )
+    listed = [_half(entry, len(given.interior)) for entry in items(claims["halves"], "halves")]
+    require(len(set(listed)) == len(listed), "a half is listed twice")
+    for half in listed:
+        require(half in found, "a half that is listed has not these letters")
+    require(len(listed) == len(found), "a half with these letters is not listed")
+    return {"sha256": digest, "interior": len(given.interior), **claims}
+
+
+def _half(entry: Any, size: int) -> Half:
+    keys(entry, "vertex_signs side", "half")
+    signs = items(entry["vertex_signs"], "vertex_signs", size)
+    return tuple(map(integer, signs)), integer(entry["side"])
+
+
+class _Search:
+    """The walk over the tree, for one sheet and its letters."""
+
+    def __init__(self, place: Place, wanted: dict[Edge, str]) -> None:
+        self.place, self.wanted = place, wanted
+        self.inside = set(place.open.interior)
+        self.rigid = {fold for fold in wanted if not place.removed.isdisjoint(fold)}
+        own = {fold: wanted[fold] for fold in place.open.folds}
+        self.stars = Stars(place.open, own)
+
+    def halves(self, refuted: list[Any], tree: list[Any], leaves: list[Any]) -> set[Half]:
+        """The halves with the letters, once all that is refuted and the cover are verified."""
+        sets = [self.stars.refuted(entry, f"refuted set {k}") for k, entry in enumerate(refuted)]
+        found: set[Half] = set()
+        entries = iter(leaves)
+        for signs in self._left(sets, tree):
+            both = items(next(entries, None), "a leaf", 2)
+            for side, half in zip((1, -1), both, strict=True):
+                found |= self._matching(signs, side, half)
+        require(next(entries, None) is None, "there are more leaves than the tree has")
+        return found
+
+    def _left(self, sets: list[Signs], tree: list[Any]) -> Iterator[Signs]:
+        """The complete sign vectors that the tree leaves; raises if it does not cover all."""
+        stack: list[Signs] = [{}]
+        for step in tree:
+            signs = stack.pop()
+            kind, *given = items(step, "a step")
+            at = [natural(k, "a number of a step") for k in given]
+            if kind == "leaf":
+                require(self.place.fixed, "a leaf needs a sheet with four corners")
+                require(signs.keys() == self.inside, "a leaf has not the signs of all vertices")
+                yield signs
+            elif kind == "split":
+                (v,) = at
+                stack += [signs | {v: -1}, signs | {v: 1}]
+            elif kind == "force":
+                k, v = at
+                others = dict(sets[k])
+                sign = others.pop(v)
+                require(others.items() <= signs.items(), f"set {k} does not force vertex {v}")
+                stack.append(signs | {v: -sign})
+            elif kind == "refuted":
+                (k,) = at
+                contained = sets[k].items() <= signs.items()
+                require(contained, f"set {k} is not contained in the signs")
+            else:
+                require(kind == "flat", f"a step of the tree is {kind!a}")
+                i, j = at
+                held = (i, j) in self.rigid and self.wanted[i, j] in "MV"
+                require(held, "no mountain or valley is asked for where the sheet is rigid")
+        require(not stack, "the tree does not cover all sign vectors")
+
+    def _matching(self, signs: Signs, side: int, entry: Any) -> set[Half]:
+        """The half on one side of a leaf, if it has the letters."""
+        keys(entry, "heights denominator", "half of a leaf")
+        proof = self.place.proof(entry["heights"], entry["denominator"])
+        for v, sign in signs.items():
+            # The heights are exact where a sign is 0: that star is flat, and in both closed nappes.
+            require(proof.signs[v] in (0, side * sign), f"vertex {v} of a leaf has another sign")
+        letters = self._letters(proof, side)
+        compared = list(zip(self.wanted.values(), letters, strict=True))
+        if any(other not in ("U", letter) and letter != "U" for other, letter in compared):
+            return set()
+        known = all(letter != "U" for other, letter in compared if other != "U")
+        require(known, "a letter of a leaf is not known")
+        return {(tuple(side * sign for sign in self.place.signs(proof)), side)}
+
+    def _letters(self, proof: Proof, side: int) -> list[str]:
+        letters = "".join(self.place.letters(proof))
+        return list(letters if side > 0 else letters.translate(_TURNED))
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    halves, text = len(claims["halves"]), claims["letters"]
+    asked = counted(len(text) - text.count("U"), "letter", "letters")
+    found = counted(halves, "half of a branch has", "halves of branches have")
+    which = f"exactly {found}" if halves else "no branch has"
+    return f"VALID: {which} the {asked} asked for on {len(text)} folds; sha256 {claims['sha256']}"

@@ -1,0 +1,91 @@
+"""Certificates of whether rigid panels start to fold with given letters (docs/assignment.md).
+
+That they do not is shown by case distinctions, each of which ends in a contradiction
+(`panel_letters_refuted`); that they do, by a motion of each part of the sheet
+(`panel_letters_motion`). The flat closure and the parts are found again.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..core.formats import PANEL_LETTERS, PANEL_LETTERS_VERSION
+from ..core.reading import counted, document, items, keys, refusing, require
+from ..sheets.panels import read_panels
+from .panels_motion import check_motion
+from .panels_refuted import Cases
+from .panels_together import check_never, check_together
+
+_TRULY = {
+    "proved": "and true motions begin like this",
+    "refuted": "and no true motion begins like this",
+    "undecided": "of true motions nothing is claimed",
+}
+
+
+def read(data: Any) -> dict[str, Any]:
+    """`data` if it is a certificate of letters on panels; raises `FormatError`."""
+    names = "format version pattern claims evidence"
+    return document(data, PANEL_LETTERS, PANEL_LETTERS_VERSION, names)
+
+
+@refusing()
+def check(data: dict[str, Any]) -> dict[str, Any]:
+    """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
+
+    Returns the claims and the SHA-256 of the pattern. The claims are: whether there is a motion to
+    second order with these letters, by fold in lexicographic order, "U" for any; whether true
+    motions begin like this, "undecided" if nothing is claimed; and the folds with a letter of which
+    the evidence shows that they can go their way together to first order where none goes against
+    its letter, and that they never do; nothing of these if both lists are empty.
+    """
+    claims, evidence = data["claims"], data["evidence"]
+    keys(claims, "letters starts truly together never", "claims")
+    starts, truly, text = claims["starts"], claims["truly"], claims["letters"]
+    require(starts in ("proved", "refuted"), f"starts is {starts!a}")
+    require(truly in _TRULY, f"truly is {truly!a}")
+    names = ["flat", "densities", *(["motion"] if starts == "proved" else [])]
+    if "refuted" in (starts, truly):
+        names += ["refuted", "tree"]
+    keys(evidence, " ".join(names), "evidence")
+    sheet, digest = read_panels(data["pattern"])
+    fits = isinstance(text, str) and len(text) == len(sheet.folds) and set(text) <= set("MVFU")
+    require(fits, "letters do not fit")
+    wanted = dict(zip(sheet.folds, text, strict=True))
+    near = sheet.live(fold for fold, letter in wanted.items() if letter == "F")
+    if starts == "proved":
+        check_motion(sheet, near, wanted, evidence["motion"], true=truly == "proved")
+    else:
+        require(truly != "proved", "true motions have letters that no motion has")
+    if "refuted" in (starts, truly):
+        cases = Cases(sheet, near, wanted, true=starts == "proved")
+        few = cases.cover(items(evidence["refuted"], "refuted"), items(evidence["tree"], "tree"))
+        require(truly == "undecided" or few, "that says nothing of true motions")
+    steps, densities = (items(evidence[key], key) for key in ("flat", "densities"))
+    whole = check_never(sheet, near, wanted, claims["never"], steps)
+    whole = check_together(sheet, near, wanted, claims["together"], densities) and whole
+    listed = claims["together"] or claims["never"]
+    require(
+        whole or not listed, "not all folds that are shown to go together, or never, are listed"
+    )
+    return {"sha256": digest, "interior": len(sheet.interior), **claims}
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    text = claims["letters"]
+    asked = counted(len(text) - text.count("U"), "letter", "letters")
+    folds = counted(len(text), "fold", "folds")
+    if not {"M", "V"} & set(text):
+        return f"VALID: no fold of {folds} is asked to fold; sha256 {claims['sha256']}"
+    answer = "starts" if claims["starts"] == "proved" else "does not start"
+    together, never = len(claims["together"]), len(claims["never"])
+    first = (
+        f"; to first order {together} are shown to fold together, {never} never to fold"
+        if together + never
+        else ""
+    )
+    return (
+        f"VALID: the sheet of rigid panels {answer} to fold with the {asked} asked for on {folds}, "
+        f"{_TRULY[claims['truly']]}{first}; sha256 {claims['sha256']}"
+    )

@@ -1,0 +1,1 @@
+"""Certificates of motions and of loops."""

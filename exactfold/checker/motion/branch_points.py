@@ -1,0 +1,165 @@
+"""Arcs through nodes: configurations with a flat patch, where curves cross (docs/motions.md).
+
+Why it is a proof: let x* be a configuration whose patch is flat, X_e its edge vectors, and w_v the
+wheel stresses of the flat vertices. They are in equilibrium in x*, as they are in the flat sheet.
+So for s not 0 the equations X_e . y_e + (s / 2) |y_e|^2 = 0 of all edges, which say that x* + s y
+is a configuration, follow from those of all edges but one for each flat vertex, and from
+sum_e w_v,e |y_e|^2 / 2 = 0, where the stresses on the edges left out are independent. With
+T . y = 1 these have one analytic curve y(s) of zeros near a polynomial, whatever x* in its box is.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import lcm
+
+from ..core.limits import MOTION_BITS
+from ..core.reading import require
+from .bounds import (
+    INVERSE_BITS,
+    WEIGHT_BITS,
+    Columns,
+    Vector,
+    bounds,
+    dot,
+    norm,
+    product,
+    weights_of,
+)
+from .equations import Curve, LengthEquations, Parts, convolved, extended
+from .patches import Patch, wheel_stress
+from .tubes import ROW_BITS, Ball, Piece, slopes
+
+
+class Stresses:
+    """The wheel stresses of some vertices, by number of the edge: integers over 2^`bits`.
+
+    The k-th takes the place of the equation of edge `replaced[k]`.
+    """
+
+    def __init__(self, equations: LengthEquations, flat: list[int]) -> None:
+        place = {e: k for k, e in enumerate(equations.edges)}
+        self.rows: list[dict[int, int]] = []
+        for v in flat:
+            stress = wheel_stress(equations.sheet, v)
+            whole = lcm(*(w.denominator for w in stress.values()))
+            self.rows.append({place[e]: int(w * whole) for e, w in stress.items() if e in place})
+        sizes = [max(map(abs, row.values())).bit_length() for row in self.rows]
+        self.bits = max(sizes)
+        require(self.bits <= MOTION_BITS, "the stresses are out of range")
+        for row, size in zip(self.rows, sizes, strict=True):
+            for e in row:
+                row[e] <<= self.bits - size
+        self.replaced = independent(self.rows)
+
+
+def independent(rows: list[dict[int, int]]) -> list[int]:
+    """Columns, one for each row, on which the rows are independent; raises where they are not."""
+    left = [{k: Fraction(x) for k, x in row.items()} for row in rows]
+    chosen: list[int] = []
+    for n, row in enumerate(left):
+        column = max(row, key=lambda k: abs(row[k]))
+        require(row[column], "the stresses of flat vertices are not independent")
+        chosen.append(column)
+        for other in left[n + 1 :]:
+            factor = other.get(column, Fraction(0)) / row[column]
+            for k, x in row.items() if factor else ():
+                other[k] = other.get(k, Fraction(0)) - factor * x
+    return chosen
+
+
+class NodeTube(Piece):
+    """Configurations x* + s y(s), T . y(s) = 1, of an arc through the node x* in a box.
+
+    T = row / 2^ROW_BITS. The pieces of `Piece` are those of y.
+    """
+
+    def __init__(
+        self, patch: Patch, node: Ball, centre: Vector, row: Vector, reach: Fraction
+    ) -> None:
+        equations, self.node = patch.equations, node
+        bits, stresses = equations.bits, Stresses(equations, patch.flat)
+        more, replaced = stresses.bits, stresses.replaced
+        kept = [int(e not in replaced) for e in range(len(equations.edges))]
+        x = [
+            tuple(a + b for a, b in zip(u, d, strict=True))
+            for u, d in zip(equations.flat, equations.along(node.centre), strict=True)
+        ]
+
+        def derivative(parts: Parts, k: int) -> Columns:
+            """The coefficient of s^k of DH, over 2^(bits + more)."""
+            rows = x if k == 0 else parts[k - 1]
+            last = [t << bits + more - ROW_BITS for t in row]
+            scaled = [[a * m << more for a in e] for m, e in zip(kept, rows, strict=True)]
+            columns = equations.columns(scaled, () if k else equations.last_rows(last, more))
+            for edge, stress in zip(replaced, stresses.rows, strict=True):
+                terms = parts[k] if k < len(parts) else [(0, 0, 0)] * len(x)
+                here = [[a * stress.get(e, 0) for a in y] for e, y in enumerate(terms)]
+                for column, found in zip(columns, equations.columns(here), strict=True):
+                    if total := sum(value for _, value in found):
+                        column.append((edge, total))
+            return columns
+
+        def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
+            """That of s^k of H, over 2^(2 bits + more + 1)."""
+            total = [0] * len(x)
+            if k < len(curve):
+                total = [2 * dot(a, y) for a, y in zip(x, parts[k], strict=True)]
+            if k:
+                bent = convolved(parts, slice(0, 3), k - 1)
+                total = [a + b for a, b in zip(total, bent, strict=True)]
+            total = [a << more for a in total]
+            squares = convolved(parts, slice(0, 3), k)
+            for edge, stress in zip(replaced, stresses.rows, strict=True):
+                total[edge] = sum(w * squares[e] for e, w in stress.items())
+            here = curve[k] if k < len(curve) else [0] * equations.size
+            ties = [t << more + 1 for t in equations.tied(here)]
+            last = dot(row, here) - (int(k == 0) << bits + ROW_BITS)
+            return [*total, *ties, last << bits + more - ROW_BITS + 1]
+
+        columns = derivative([equations.along(centre)], 0)
+        p = equations.approximate_inverse(columns, bits + more)
+        curve = extended(equations, centre, p, coefficient, bits + more + 1)
+        parts = [equations.along(a) for a in curve]
+        matrices = [product(p, derivative(parts, k)) for k in range(len(curve) + 1)]
+        weights = weights_of(slopes(matrices, bits + more))
+        sums = equations.weight_sums(weights)
+        square = [dot(e, e) for e in sums]
+        stressed = [0] * len(x)
+        for edge, stress in zip(replaced, stresses.rows, strict=True):
+            stressed[edge] = (sum(abs(w) * square[e] for e, w in stress.items()) >> more) + 1
+        proof = bounds(
+            p,
+            [coefficient(curve, parts, k) for k in range(2 * len(curve))],
+            2 * bits + more + 1,
+            matrices,
+            bits + more,
+            [stressed, [a * m for a, m in zip(square, kept, strict=True)]],
+            weights,
+        )
+        # How far X_e may be from x_e, and what that does to the equations and their derivatives.
+        spread = equations.weight_sums(node.radii)
+        sizes = [[abs(a) * m for a, m in zip(line, kept, strict=False)] for line in p]
+
+        def off(rows: list[tuple[int, ...]], places: int) -> Fraction:
+            """A bound of |P v| with v_e = spread_e . rows_e where the equation of e is kept."""
+            most = [dot(r, map(abs, a)) for r, a in zip(spread, rows, strict=True)]
+            return norm([dot(line, most) for line in sizes], weights, INVERSE_BITS + places)
+
+        for k, part in enumerate(parts):
+            proof.b[k] += off(part, 2 * bits)
+        proof.q[0] += off(sums, bits + WEIGHT_BITS)
+        Piece.__init__(self, equations, curve, weights, proof, reach)
+
+    def configuration(self, s: Fraction) -> tuple[Ball, Ball]:
+        """Boxes that hold the displacements x* + s y and their derivative y + s y'."""
+        y, rate = self.enclosure(s), self.velocity(s)
+        return _sum(self.node, s, y), _sum(y, s, rate)
+
+
+def _sum(a: Ball, s: Fraction, b: Ball) -> Ball:
+    """A box that holds a + s b."""
+    return Ball(
+        [x + int(s * y) for x, y in zip(a.centre, b.centre, strict=True)],
+        [x + int(abs(s) * y) + 2 for x, y in zip(a.radii, b.radii, strict=True)],
+    )

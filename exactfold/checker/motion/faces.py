@@ -1,0 +1,159 @@
+"""Pairs of faces of a sheet in motion, and the tests that they do not touch (docs/contacts.md, 1).
+
+Two faces without a common vertex do not touch if a plane parts them; two with one common vertex
+touch only there if a plane through it does; two at a fold touch only there unless it is closed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from itertools import combinations
+
+from ..core.reading import require
+from ..sheets.sheet import Edge
+from .bounds import Vector
+from .boxes import (
+    Boxes,
+    Curved,
+    Direction,
+    best_apart,
+    best_corner,
+    boxes_on,
+    open_by_distance,
+    parted,
+    parted_at,
+    upright,
+    volume_sign,
+)
+
+_NARROWEST = 1 << 16  # of an interval of x, over 2^GRID
+_KEPT = 1 << 10  # stretches whose boxes are kept for the next pairs
+
+Hinge = tuple[int, int, int]
+"""Of a fold: the corners left and right of it, and how near they are where it is closed, squared,
+rounded up, over 2^(2 GRID)."""
+
+
+class FacePairs:
+    """All pairs of triangles of a sheet by what they share; those of one body are left out.
+
+    `bodies[k]` is the same for faces that move as one; `names[k]` is what the face k is called.
+    `flat` and `place` as `boxes_on` takes them; `work` is how many tests may be made.
+    """
+
+    def __init__(
+        self,
+        faces: Sequence[tuple[int, ...]],
+        names: Sequence[tuple[int, ...]],
+        bodies: Sequence[int],
+        folds: Mapping[Edge, Hinge],
+        flat: dict[int, Vector],
+        place: dict[int, int],
+        work: int,
+    ) -> None:
+        self.faces, self.names, self.folds = faces, names, folds
+        self.flat, self.place, self.work = flat, place, work
+        self.apart: list[tuple[int, int]] = []
+        self.corner: list[tuple[int, int]] = []
+        for i, j in combinations(range(len(faces)), 2):
+            shared = len(set(faces[i]) & set(faces[j]))
+            if shared < 2 and bodies[i] != bodies[j]:
+                (self.corner if shared else self.apart).append((i, j))
+        self.known: dict[tuple[int, int], Direction] = {}
+
+    def spend(self, tests: int) -> None:
+        """Count tests; raises `CertificateError` if they are too many."""
+        self.work -= tests
+        require(self.work >= 0, "the contacts take too much work")
+
+    def clear(self, path: Curved, low: int, high: int, planar: bool = False) -> None:
+        """Refuse unless no two faces touch for low <= x <= high beyond what they share."""
+        may = self.may_touch(path, low, high, _NARROWEST, planar)
+        require(not may, f"{may} may touch where the motion is claimed to be clear")
+
+    def may_touch(
+        self, path: Curved, low: int, high: int, narrowest: int, planar: bool = False
+    ) -> str:
+        """Two faces that are not shown to stay apart for low <= x <= high, in words; else nothing.
+
+        Where two are not parted the interval is halved, down to `narrowest`.
+        """
+        boxes: dict[tuple[int, int], Boxes] = {}
+
+        def on(a: int, b: int) -> Boxes:
+            if (a, b) not in boxes:
+                self.spend(len(self.flat))
+                if len(boxes) >= _KEPT:
+                    boxes.clear()
+                boxes[a, b] = boxes_on(path, self.flat, self.place, a, b, planar)
+            return boxes[a, b]
+
+        tests = (
+            (self._apart, self.apart),
+            (self._at_corner, self.corner),
+            (self._open, self.folds),
+        )
+        for test, pairs in tests:
+            for i, j in pairs:
+                stack = [(low, high)] if low <= high else []
+                while stack:
+                    a, b = stack.pop()
+                    self.spend(1)
+                    if test(on(a, b), i, j, planar):
+                        continue
+                    if b - a <= narrowest:
+                        names = (i, j) if test == self._open else (self.names[i], self.names[j])
+                        what = "the faces at {}-{}" if test == self._open else "the faces {} and {}"
+                        return what.format(*names)
+                    middle = (a + b) >> 1
+                    stack += [(middle, b), (a, middle)]
+        return ""
+
+    def _apart(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
+        """Whether a plane parts two faces: with the direction that did last, or a new one."""
+        one, two = self.faces[i], self.faces[j]
+        known = self.known.get((i, j))
+        if known and not (planar and known[2]) and parted(boxes, one, two, known):
+            return True
+        self.spend(3)
+        found = self.known[i, j] = best_apart(boxes, one, two, planar)
+        return parted(boxes, one, two, found)
+
+    def _at_corner(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
+        """Whether a plane through their common vertex parts two faces."""
+        [v] = set(self.faces[i]) & set(self.faces[j])
+        one, two = ([w for w in self.faces[k] if w != v] for k in (i, j))
+        known = self.known.get((i, j))
+        if known and not (planar and known[2]) and parted_at(boxes, v, one, two, known):
+            return True
+        self.spend(3)
+        found = self.known[i, j] = best_corner(boxes, v, one, two, planar)
+        return parted_at(boxes, v, one, two, found)
+
+    def _open(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
+        """Whether the fold between two vertices is not closed."""
+        left, right, closed = self.folds[i, j]
+        if open_by_distance(boxes, left, right, closed):
+            return True
+        if planar:
+            return upright(boxes, i, j, left) and upright(boxes, j, i, right)
+        return volume_sign(boxes, i, j, left, right) != 0
+
+    def crossing(self, path: Curved, s: Fraction, one: Sequence[int], two: Sequence[int]) -> bool:
+        """Whether a side of one face runs through the other at a parameter."""
+        boxes = self.at(path, s, s)
+        for first, second in ((one, two), (two, one)):
+            a, b, c = second
+            for p, q in combinations(first, 2):
+                if {p, q} & set(second):
+                    continue
+                ends = [volume_sign(boxes, v, a, b, c) for v in (p, q)]
+                around = [volume_sign(boxes, p, q, *side) for side in ((a, b), (b, c), (c, a))]
+                if ends[0] * ends[1] == -1 and abs(sum(around)) == 3:
+                    return True
+        return False
+
+    def at(self, path: Curved, first: Fraction, last: Fraction) -> Boxes:
+        """The boxes of all vertices between two parameters."""
+        return boxes_on(path, self.flat, self.place, path.below(first), path.above(last), False)

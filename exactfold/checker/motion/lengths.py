@@ -1,0 +1,143 @@
+"""Positions along a piece of a motion as polynomials on |x| <= 1, and bounds of its length."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from fractions import Fraction
+from math import floor, isqrt
+from operator import mul
+
+from .bounds import Vector, dot
+from .equations import Curve
+from .tubes import ROW_BITS, Ball, Tube
+
+GRID = 60  # places after the point of positions and of x
+PIECES = 32  # of a link, for bounds of its length
+ONE = 1 << GRID
+
+
+class Path:
+    """Unknowns q(x) + e for |x| <= 1, |e_i| <= `errors[i]`, where |dq/dx + e'| has |e'| <= `off`.
+
+    `columns[i]` are the coefficients of q_i, integers over 2^GRID as the errors; x = s / `scale`
+    for the parameter s of the piece.
+    """
+
+    def __init__(
+        self,
+        rows: Sequence[Sequence[Fraction]],
+        radii: Sequence[Fraction],
+        off: Fraction,
+        scale: Fraction,
+    ) -> None:
+        self.columns = [[floor(c * ONE) for c in column] for column in zip(*rows, strict=True)]
+        degree = len(rows) - 1
+        self.degree = degree
+        # The coefficients were rounded down: q by at most a unit each, dq/dx by its degree.
+        self.errors = [floor(r * ONE) + degree + 2 for r in radii]
+        self.off = off + Fraction(len(radii) * degree * (degree + 1), 2 * ONE)
+        self.scale = scale
+
+    @classmethod
+    def of_start(
+        cls, curve: Curve, bits: int, halvings: int, tau: Fraction, radii: Vector, rates: Vector
+    ) -> Path:
+        """d = (t^2 u, t h) for 0 <= tau' <= tau, x = tau' / tau, from (u, h) near a curve.
+
+        `radii` and `rates`: bounds of the distance from it, and of the derivatives by tau'^2.
+        """
+        powers = [1 if i % 3 == 2 else 2 for i in range(len(radii))]
+        ends = [(tau / (1 << halvings)) ** p / (1 << bits) for p in powers]
+        rows = [[Fraction(0)] * len(radii) for _ in range(2 * len(curve) + 1)]
+        for k, row in enumerate(curve):
+            for i, (a, p, t) in enumerate(zip(row, powers, ends, strict=True)):
+                rows[2 * k + p][i] = a * t * tau ** (2 * k)
+        # The derivative of x^p y(s), s = tau^2 x^2, is x^(p - 1) (p y + 2 s y').
+        fast = [
+            (p * r + 2 * tau**2 * v) * t
+            for r, v, p, t in zip(radii, rates, powers, ends, strict=True)
+        ]
+        return cls(rows, [r * t for r, t in zip(radii, ends, strict=True)], norm(fast), tau)
+
+    @classmethod
+    def of_tube(
+        cls, curve: Curve, bits: int, reach: Fraction, radii: Vector, rates: Vector
+    ) -> Path:
+        """A whole tube, x = s / reach; `radii` and `rates` as above."""
+        one = 1 << bits
+        rows = [[a * reach**k / one for a in row] for k, row in enumerate(curve)]
+        fast = norm([Fraction(r, one) * reach for r in rates])
+        return cls(rows, [Fraction(r, one) for r in radii], fast, reach)
+
+    def below(self, s: Fraction) -> int:
+        """x for a parameter, over 2^GRID, rounded down."""
+        return floor(s / self.scale * ONE)
+
+    def above(self, s: Fraction) -> int:
+        """x for a parameter, over 2^GRID, rounded up."""
+        return -floor(-s / self.scale * ONE)
+
+    def shortest(self, low: int, high: int) -> Fraction:
+        """A lower bound of the length from `low` to `high`, over 2^GRID: by chords of q."""
+        if high <= low:
+            return Fraction(0)
+        points = [[_at(column, x) for column in self.columns] for x in nodes(low, high)]
+        total = 0
+        for a, b in itertools.pairwise(points):
+            total += isqrt(sum((y - x) ** 2 for x, y in zip(a, b, strict=True)))
+        # Every coordinate of a point is off by less than a unit for each step of Horner's scheme.
+        total -= PIECES * (2 * len(self.columns) * self.degree + 1)
+        return max(Fraction(0), Fraction(total, ONE) - self.off * Fraction(high - low, ONE))
+
+    def longest(self, low: int, high: int) -> Fraction:
+        """An upper bound of the length from `low` to `high`.
+
+        On each part the integral of |q'| is at most the root of its width times that of |q'|^2,
+        which is a polynomial.
+        """
+        if high <= low:
+            return Fraction(0)
+        speeds = [[k * c for k, c in enumerate(column)][1:] for column in self.columns]
+        square = [0] * (2 * self.degree - 1)
+        for speed in speeds:
+            for j, c in enumerate(speed):
+                if c:
+                    for k, d in enumerate(speed, j):
+                        square[k] += c * d
+        whole = [0, *(c // k for k, c in enumerate(square, 1))]  # over 2^(2 GRID)
+        off = 4 * len(whole)  # the roundings of both ends of a part
+        total, ends = 0, nodes(low, high)
+        values = [_at(whole, x) for x in ends]
+        for k in range(PIECES):
+            integral = values[k + 1] - values[k] + off
+            total += isqrt((ends[k + 1] - ends[k]) * max(integral, 0)) + 1
+        bits = GRID + GRID // 2
+        return Fraction(total, 1 << bits) + self.off * Fraction(high - low, ONE)
+
+
+def norm(values: Sequence[Fraction]) -> Fraction:
+    """An upper bound of the Euclidean norm."""
+    total = floor(sum((x * x for x in values), Fraction(0)) * (1 << 4 * GRID)) + 1
+    return Fraction(isqrt(total) + 1, 1 << 2 * GRID)
+
+
+def nodes(low: int, high: int) -> list[int]:
+    """The ends of the parts of an interval."""
+    return [low + (high - low) * k // PIECES for k in range(PIECES + 1)]
+
+
+def entry(tube: Tube, ball: Ball) -> tuple[Fraction, Fraction]:
+    """Between which parameters of the tube a configuration lies that is in a box."""
+    gaps = [x - c for x, c in zip(ball.centre, tube.curve[0], strict=True)]
+    unit = Fraction(1, 1 << tube.bits + ROW_BITS)
+    middle, spread = dot(tube.row, gaps), sum(map(mul, map(abs, tube.row), ball.radii))
+    return (middle - spread) * unit, (middle + spread) * unit
+
+
+def _at(column: Vector, x: int) -> int:
+    """A polynomial at x, by Horner's scheme: rounded down by less than its degree in units."""
+    total = 0
+    for c in reversed(column):
+        total = (total * x >> GRID) + c
+    return total

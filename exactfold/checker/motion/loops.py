@@ -1,0 +1,199 @@
+"""Certificates of loops, line by line: motions from the flat state back to it (docs/motions.md).
+
+Why it is a proof: a loop leaves the flat state as the motions of `motion` do. It passes from tube
+to tube, and through nodes on arcs that are analytic there (`motion_nodes`). On its last tube lies a
+point of the start tube of another half-branch, which passes it in the opposite direction: so it
+ends in the flat state along this one. Every half-branch is the beginning of one curve only, which
+makes loops that are given a matching, complete if all 2^(n + 1) names occur in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from typing import Any
+
+from ..branches.compact import Engine, Share, here, on_processes
+from ..core.formats import LOOPS, LOOPS_VERSION
+from ..core.lines import read_object
+from ..core.reading import (
+    CertificateError,
+    FormatError,
+    UnfinishedError,
+    counted,
+    document,
+    integer,
+    items,
+    keys,
+    parse_rational,
+    read_json,
+    refusing,
+    require,
+)
+from ..sheets.sheet import read_sheet
+from .certificate import check_steps, framework, walked
+from .names import names
+from .paths import Path
+from .pieces import first_piece, land
+from .tubes import Start
+
+HalfBranch = tuple[tuple[int, ...], int]
+"""The signs of the interior vertices, 0 for those that cannot fold, and the side."""
+
+
+def read_header(text: str) -> dict[str, Any]:
+    """The first line, if it is that of a certificate of loops."""
+    names_of = "format version pattern emptied pinned bits"
+    return document(read_json(text), LOOPS, LOOPS_VERSION, names_of)
+
+
+class LoopSheet:
+    """The sheet of a file, and what checks its loops."""
+
+    def __init__(self, header: dict[str, Any]) -> None:
+        self.given, self.sha256 = read_sheet(header["pattern"])
+        self.equations, self.removed = framework(self.given, header)
+
+    @property
+    def half_branches(self) -> int:
+        """How many there are."""
+        return 2 << len(self.equations.sheet.interior)
+
+    def half_branch(self, entry: Any) -> HalfBranch:
+        """A half-branch of its keys."""
+        keys(entry, "vertex_signs side", "half-branch")
+        signs = items(entry["vertex_signs"], "vertex_signs", len(self.given.interior))
+        return tuple(map(integer, signs)), integer(entry["side"])
+
+    def check_loop(self, entry: dict[str, Any]) -> None:
+        """Raise unless a loop, which has the keys of one, is proved by its evidence.
+
+        The claims are: from the flat state on, the half-branch `from` is followed by one analytic
+        curve of configurations that ends in the flat state along the half-branch `to`. All of them
+        are regular but the nodes it passes. It is at least `length` long, as in `motion`.
+        """
+        evidence = entry["evidence"]
+        keys(evidence, "start steps landing", "evidence")
+        steps = items(evidence["steps"], "steps")
+        check_steps(self.equations, steps)
+        start, tau = first_piece(self.equations, evidence["start"])
+        require(self._named(start) == self.half_branch(entry["from"]), "it begins along another")
+        path = Path(start.configuration(tau), self.equations.bits)
+        walked(self.equations, path, steps, leaves=False)
+        end, side = land(self.equations, path, evidence["landing"])
+        signs, saddle = self._named(end)
+        target = tuple(side * s for s in signs), side * saddle
+        require(target == self.half_branch(entry["to"]), "it ends along another")
+        claimed = parse_rational(entry["length"])
+        require(claimed <= path.land() * self.equations.unit, "it is shorter than claimed")
+
+    def _named(self, start: Start) -> HalfBranch:
+        signs, side = names(self.given, self.removed, start)
+        return tuple(signs), side
+
+
+# --- files ---------------------------------------------------------------------------------------
+
+
+class LoopVerifier:
+    """Verifies the loops of one file."""
+
+    def __init__(self, header: str) -> None:
+        self.sheet = LoopSheet(read_header(header))
+
+    def refusal(self, text: str, number: int) -> str | None:
+        """Verify one loop: None, or why it does not hold."""
+        try:
+            with refusing():
+                self.sheet.check_loop(read_object(text, "a loop"))
+        except CertificateError as error:
+            return f"loop {number}: {error}"
+        return None
+
+
+class Matching:
+    """Which half-branches are matched: there and back, and in the mirror image."""
+
+    def __init__(self) -> None:
+        self.loops, self.matched = 0, set[HalfBranch]()
+
+    def add(self, source: HalfBranch, target: HalfBranch) -> None:
+        """A loop; raises if one of its half-branches is matched already, or with itself."""
+        require(source != target, f"loop {self.loops}: a half-branch is matched with itself")
+        ends = {source, target}
+        ends |= {(tuple(-s for s in signs), -side) for signs, side in ends}
+        new = self.matched.isdisjoint(ends)
+        require(new, f"loop {self.loops}: a half-branch is matched twice")
+        self.loops += 1
+        self.matched |= ends
+
+
+def check_lines(
+    found: Iterator[str], workers: int = 1, share: Share = on_processes
+) -> dict[str, Any]:
+    """Verify every claim, given the lines of a file; returns the claims.
+
+    With several workers, loops are checked in that many processes, which `share` starts. The claims
+    are: so many loops, as `LoopSheet.check_loop` says, which match so many of the half-branches,
+    none twice, none with itself; and whether these are all.
+    """
+    first = next(found, None)
+    if first is None:
+        raise FormatError("the file is empty")
+    header = read_header(first)
+    with refusing("in the first line"):
+        sheet = LoopSheet(header)
+    matching, last, late = Matching(), list[Any](), list[Exception]()
+
+    def loops() -> Iterator[tuple[str, int]]:
+        try:
+            for text in found:
+                entry = read_object(text, "a line")
+                require(not last, "something follows the claims")
+                if "claims" in entry:
+                    keys(entry, "claims", "the last line")
+                    last.append(entry["claims"])
+                    continue
+                keys(entry, "from to length evidence provenance", "loop")
+                ends = (sheet.half_branch(entry[key]) for key in ("from", "to"))
+                matching.add(*ends)
+                yield text, matching.loops - 1
+        except (CertificateError, FormatError) as error:
+            late.append(error)
+
+    engine = Engine(LoopVerifier, 1, share)
+    if workers > 1:
+        said = engine.share(engine, workers, first, loops())
+    else:
+        said = here(engine, first, loops())
+    with closing(said):
+        for reason in said:
+            if reason is not None:
+                raise CertificateError(reason)
+    if late:  # a loop before it that does not hold comes first
+        raise late[0]
+    if not last:
+        number = counted(matching.loops, "loop holds", "loops hold")
+        raise UnfinishedError(f"{number}, but the claims are missing")
+    facts: dict[str, Any] = {
+        "sha256": sheet.sha256,
+        "loops": matching.loops,
+        "matched": len(matching.matched),
+        "half_branches": sheet.half_branches,
+        "complete": len(matching.matched) == sheet.half_branches,
+    }
+    (claims,) = last
+    keys(claims, " ".join(facts), "claims")
+    for key, fact in facts.items():
+        claim = claims[key]
+        require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
+    return facts
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    loops = counted(claims["loops"], "loop", "loops")
+    matched, all_of_them = claims["matched"], claims["half_branches"]
+    how = f"all {all_of_them}" if claims["complete"] else f"{matched} of {all_of_them}"
+    digest = claims["sha256"]
+    return f"VALID: {loops} of true motions, which match {how} half-branches; sha256 {digest}"

@@ -1,0 +1,1 @@
+"""Certificates of motions of rigid panels."""

@@ -1,0 +1,44 @@
+"""Panels cut into triangles, so that what is proved of triangles can be proved of panels."""
+
+from __future__ import annotations
+
+from ...core.reading import require
+from ...sheets.panels import PanelSheet, cross
+
+Triangle = tuple[int, int, int]
+
+
+def cut(sheet: PanelSheet, panel: tuple[int, ...]) -> list[Triangle]:
+    """Triangles that make up a panel, counter-clockwise, with no other corners than its own.
+
+    Ears are cut off: a corner that turns left, with its neighbours, and no other corner of what is
+    left inside the triangle or on its sides. Every simple polygon has one
+    (docs/panel_motion.md, 6).
+    """
+    require(len(set(panel)) == len(panel), f"the panel {panel} passes a corner twice")
+    left, found = list(panel), []
+    while len(left) > 3:
+        k = next(k for k in range(len(left)) if _is_ear(sheet, left, k))
+        found.append(_corner(left, k))
+        del left[k]
+    found.append(_corner(left, 1))
+    return found
+
+
+def _corner(walk: list[int], k: int) -> Triangle:
+    return walk[k - 1], walk[k], walk[(k + 1) % len(walk)]
+
+
+def _is_ear(sheet: PanelSheet, walk: list[int], k: int) -> bool:
+    triangle = _corner(walk, k)
+    if _turn(sheet, *triangle) <= 0:
+        return False
+    a, b, c = triangle
+    others = [v for v in walk if v not in triangle]
+    return not any(
+        all(_turn(sheet, *side, v) >= 0 for side in ((a, b), (b, c), (c, a))) for v in others
+    )
+
+
+def _turn(sheet: PanelSheet, a: int, b: int, c: int) -> int:
+    return cross(sheet.vector(a, b), sheet.vector(a, c)).sign()

@@ -1,0 +1,274 @@
+"""Where the vertices of a sheet of panels are while it folds: polynomials with proved errors.
+
+The panels are placed one after the other, each turned about the fold to the one before. Rotations
+have the norm 1, so that the errors of a product add up (docs/panel_motion.md, 6).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from functools import cmp_to_key, partial
+from itertools import pairwise
+from math import floor
+from operator import itemgetter
+
+from ...core.intervals import Interval
+from ...core.reading import require
+from ...sheets.panels import Edge, PanelSheet, pair
+from ..lengths import GRID
+from .drive import Drive, length
+from .series import BITS, DEGREE, ONE, Polynomial, Series, polynomial, scaled, thin, times
+from .times import Clock
+
+_SHIFT = BITS - GRID
+_THIN = 1 << GRID - 20
+_WIDEST = Fraction(1, 16)
+_NARROWEST = Fraction(1, 1 << 40)
+_STILL: Polynomial = [0] * (DEGREE + 1)
+_UNIT: Polynomial = [ONE, *_STILL[1:]]
+_TRIES = 4
+_ROUNDED = DEGREE + 1  # what one rounded product with a number is off at most
+Row = tuple[Polynomial, Polynomial, Polynomial]
+
+
+class Piece:
+    """Positions for `low` <= x <= `high`: a `motion_boxes.Curved` with 3 places for each vertex."""
+
+    degree = DEGREE
+
+    def __init__(
+        self, low: Fraction, high: Fraction, columns: list[Polynomial], errors: list[int]
+    ) -> None:
+        self.low, self.high, self.columns, self.errors = low, high, columns, errors
+
+    def below(self, s: Fraction) -> int:
+        """The place of a parameter between -1 and 1, over 2^GRID, rounded down."""
+        return floor((2 * s - self.low - self.high) / (self.high - self.low) * (1 << GRID))
+
+    def above(self, s: Fraction) -> int:
+        """The same, rounded up."""
+        return -floor(-(2 * s - self.low - self.high) / (self.high - self.low) * (1 << GRID))
+
+
+def shrunk(sheet: PanelSheet) -> None:
+    """Move a corner of the sheet to 0, and bring all coordinates below 1 by a power of two."""
+    x, y = sheet.points[sheet.panels[0][0]]
+    moved = [(a - x, b - y) for a, b in sheet.points]
+    bits, most = 32, 0
+    while most < 1 << 16:  # until the largest is known to some digits
+        bits += bits
+        ends = [c.enclosed(bits) for point in moved for c in point]
+        most = max(max(abs(c.low), abs(c.high)) for c in ends)
+    factor = sheet.tower.number(Fraction(1 << bits, 1 << most.bit_length()))
+    sheet.points = [(a * factor, b * factor) for a, b in moved]
+
+
+class Places:
+    """The positions of the vertices of a sheet that was shrunk, a panel in its middle being held.
+
+    So errors grow over half the sheet only, and what folds onto that panel is not turned with it.
+    """
+
+    def __init__(self, drive: Drive, clock: Clock) -> None:
+        self.drive, self.clock, sheet = drive, clock, drive.sheet
+        ends = [[thin(c) for c in point] for point in sheet.points]
+        self._flat = [[(c.low + c.high) >> 1 for c in point] for point in ends]
+        self._blur = 1 + max(c.high - c.low for point in ends for c in point)
+        self.held = _middle(sheet)
+        self._steps = list(_order(sheet, self.held))
+        self._owner: dict[int, int] = {}
+        for panel in (self.held, *(after for after, *_ in self._steps)):
+            for v in sheet.panels[panel]:
+                self._owner.setdefault(v, panel)
+        self._axes: dict[Edge, tuple[int, int, int]] = {}
+        for _, _, i, j in self._steps:
+            if pair(i, j) in drive.active:
+                size = length(sheet, i, j)
+                x, y = (thin(c) / size for c in sheet.vector(i, j))
+                off = x.high - x.low + y.high - y.low + 2
+                self._axes[i, j] = (x.low + x.high) >> 1, (y.low + y.high) >> 1, off
+
+    @property
+    def work(self) -> int:
+        """How many tests of two faces a piece is as much work as."""
+        return 64 * len(self._steps)
+
+    @property
+    def bodies(self) -> list[int]:
+        """For each panel a number, the same for those between which folds are flat."""
+        sheet, found = self.drive.sheet, list(range(len(self.drive.sheet.panels)))
+        sides = panels_of(sheet)
+        for i, j in sheet.folds:
+            if (i, j) not in self.drive.active:
+                one, two = found[sides[i, j]], found[sides[j, i]]
+                found = [one if body == two else body for body in found]
+        return found
+
+    def each(self, first: Fraction, last: Fraction, said: Callable[[Piece | None], str]) -> None:
+        """Refuse unless `said` has nothing to say against pieces that reach from `first` to `last`.
+
+        It names what may touch, and is given None where positions are not known well. Where it says
+        something the piece is halved.
+        """
+        count = int((last - first) / _WIDEST) + 1
+        ends = [first + (last - first) * k / count for k in range(count + 1)]
+        stack = list(pairwise(ends))[::-1] if first < last else []
+        while stack:
+            low, high = stack.pop()
+            what = said(self.piece(low, high))
+            if what and high - low > _NARROWEST:
+                middle = (low + high) / 2
+                stack += [(middle, high), (low, middle)]
+            else:
+                require(not what, f"{what} may touch where the motion is claimed to be clear")
+
+    def piece(self, low: Fraction, high: Fraction) -> Piece | None:
+        """The positions for low <= x <= high, None if they are not known well."""
+        half = Interval.of((high - low) / 2, BITS)
+        try:
+            there = self._turns(Interval.of((low + high) / 2, BITS))
+            around = self._turns(
+                Interval(Interval.of(low, BITS).low, Interval.of(high, BITS).high, BITS)
+            )
+        except ZeroDivisionError:
+            return None
+        turns = {
+            fold: [polynomial(f, g, half) for f, g in zip(there[fold], around[fold], strict=True)]
+            for fold in there
+        }
+        columns, most = self._placed(turns)
+        error = (most >> _SHIFT) + 1 + _ROUNDED
+        if error > _THIN:
+            return None
+        return Piece(low, high, columns, [error] * len(columns))
+
+    def _turns(self, x: Interval) -> dict[Edge, tuple[Series, Series]]:
+        """Sine and 1 - cosine of all fold angles, as series about a number or an interval."""
+        one = Interval(ONE, ONE, BITS)
+        found = {}
+        known: dict[tuple[int, ...], tuple[Series, Series]] = {}
+        driven = partial(self.clock.driven, x)
+        for fold, (c, s) in self.drive.tangents(driven).items():
+            key = (*c.ends, *s.ends)
+            if key not in known:
+                square = s * s
+                over = Series([one + one]) / (c * c + square)
+                known[key] = c * s * over, square * over
+            found[fold] = known[key]
+        return found
+
+    def _placed(
+        self, turns: dict[Edge, list[tuple[Polynomial, int]]]
+    ) -> tuple[list[Polynomial], int]:
+        """The coordinates of all vertices over 2^GRID, and how far a vertex is off over 2^BITS."""
+        rows = [(_UNIT, _STILL, _STILL), (_STILL, _UNIT, _STILL), (_STILL, _STILL, _UNIT)]
+        # Of each panel its rotation and its shift, and how far they are off.
+        placed: dict[int, tuple[list[Row], int, list[Polynomial], int]] = {
+            self.held: (rows, 0, [_STILL] * 3, 0)
+        }
+        for panel, before, i, j in self._steps:
+            if (i, j) not in self._axes:
+                placed[panel] = placed[before]
+                continue
+            rows, off, shift, missed = placed[before]
+            axis = self._axes[i, j]
+            (sine, sine_off), (versine, versine_off) = turns[pair(i, j)]
+            new, rounded = _turned(rows, sine, versine, axis)
+            spin_off = 2 * sine_off + 4 * versine_off + 16 * axis[2]
+            new_off = off + 2 * spin_off + rounded
+            x, y = self._flat[i]
+            moved = []
+            for old, fresh, s in zip(rows, new, shift, strict=True):
+                a, b = ([p - q for p, q in zip(old[k], fresh[k], strict=True)] for k in (0, 1))
+                terms = zip(s, scaled(a, x), scaled(b, y), strict=True)
+                moved.append([p + q + r for p, q, r in terms])
+            missed += 2 * (off + new_off) + 4 * self._blur + 6 * _ROUNDED
+            placed[panel] = new, new_off, moved, missed
+        if max(off for _, off, _, _ in placed.values()) > ONE:
+            return [], 1 << 2 * BITS
+        columns, most = [], 0
+        for v, (x, y) in enumerate(self._flat):
+            rows, off, shift, missed = placed[self._owner[v]]
+            most = max(most, missed + 2 * off + 2 * self._blur + 6 * _ROUNDED)
+            for row, s in zip(rows, shift, strict=True):
+                terms = zip(s, scaled(row[0], x), scaled(row[1], y), strict=True)
+                columns.append([p + q + r >> _SHIFT for p, q, r in terms])
+        return columns, most
+
+
+def panels_of(sheet: PanelSheet) -> dict[Edge, int]:
+    """For each edge, in either direction, the panel to its left."""
+    return {
+        side: k
+        for k, panel in enumerate(sheet.panels)
+        for side in zip(panel, (*panel[1:], panel[0]), strict=True)
+    }
+
+
+def _middle(sheet: PanelSheet) -> int:
+    """The largest of the panels from which others are few folds away: few from those tried."""
+    most = [0] * len(sheet.panels)
+    for _ in range(_TRIES):
+        last = max(enumerate(_depths(sheet, most.index(min(most)))), key=itemgetter(1))[0]
+        most = list(map(max, most, _depths(sheet, last)))
+    near = [k for k, depth in enumerate(most) if depth <= min(most) + 1]
+    areas = {k: sheet.area(sheet.panels[k]) for k in near}
+
+    def larger(i: int, j: int) -> int:
+        return (areas[i] - areas[j]).sign()
+
+    return max(near, key=cmp_to_key(larger))
+
+
+def _depths(sheet: PanelSheet, held: int) -> list[int]:
+    found = [0] * len(sheet.panels)
+    for after, before, _, _ in _order(sheet, held):
+        found[after] = found[before] + 1
+    return found
+
+
+def _order(sheet: PanelSheet, held: int) -> Iterator[tuple[int, int, int, int]]:
+    """The panels in the order in which they are placed: each with the one before, and the fold
+    i to j between them that it is left of."""
+    sides = panels_of(sheet)
+    seen, waiting = {held}, [held]
+    for before in waiting:
+        panel = sheet.panels[before]
+        for i, j in zip(panel, (*panel[1:], panel[0]), strict=True):
+            after = sides.get((j, i))
+            if after is not None and after not in seen:
+                seen.add(after)
+                waiting.append(after)
+                yield after, before, j, i
+
+
+def _turned(
+    rows: list[Row], sine: Polynomial, versine: Polynomial, axis: tuple[int, int, int]
+) -> tuple[list[Row], int]:
+    """Rows times the rotation about an axis (x, y, 0), and how far they are off by rounding.
+
+    A row (a, b, c) becomes (a - y q, b + x q, c + z), where w = y a - x b, q = c sine + w versine
+    and z = w sine - c versine.
+    """
+    x, y, _ = axis
+    found, off = [], 0
+    for a, b, c in rows:
+        w = [p - q for p, q in zip(scaled(a, y), scaled(b, x), strict=True)]
+        (cs, e), (wv, f), (ws, g), (cv, h) = (
+            times(c, sine),
+            times(w, versine),
+            times(w, sine),
+            times(c, versine),
+        )
+        q = [r + s for r, s in zip(cs, wv, strict=True)]
+        found.append(
+            (
+                [r - s for r, s in zip(a, scaled(q, y), strict=True)],
+                [r + s for r, s in zip(b, scaled(q, x), strict=True)],
+                [p + r - s for p, r, s in zip(c, ws, cv, strict=True)],
+            )
+        )
+        # w is off by less than 2 _ROUNDED, and sine and versine are at most 2 in size.
+        off += 2 * (e + f) + g + h + 16 * _ROUNDED
+    return found, off

@@ -1,0 +1,101 @@
+"""Pieces of a motion, of their keys in a file: start tubes, tubes, arcs through nodes, landings."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+from ..core.limits import MOTION_BITS
+from ..core.reading import integer, items, keys, natural, require
+from .branch_points import NodeTube
+from .equations import SPARE, LengthEquations
+from .patches import Patch
+from .paths import Path
+from .tubes import Ball, Start, Tube
+
+REACH_BITS = 6
+PARAMETER_BITS = 40
+ROOT_BITS = 20
+
+
+def tube_of(equations: LengthEquations, entry: Any) -> Tube:
+    """A tube of its keys."""
+    size = equations.size
+    return Tube(
+        equations,
+        vector(entry["centre"], "centre", size, equations.bits),
+        vector(entry["row"], "row", size, 0),
+        reach_of(entry["reach"]),
+    )
+
+
+def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> NodeTube:
+    """An arc through a node at which some vertices are flat, of its keys."""
+    size, bits = equations.size, equations.bits
+    require(equations.drive is None, "a driven motion has a node")
+    patch = Patch(equations, [natural(v, "flat vertex") for v in items(flat, "flat")])
+    return NodeTube(
+        patch,
+        patch.node(vector(entry["node"], "node", size, bits)),
+        vector(entry["centre"], "centre", size, bits),
+        vector(entry["row"], "row", size, 0),
+        reach_of(entry["reach"]),
+    )
+
+
+def vector(value: Any, what: str, size: int, bits: int) -> list[int]:
+    """Integers over 2^bits that are not too large."""
+    found = [integer(x) for x in items(value, what, size)]
+    small = all(abs(x) >> bits + SPARE == 0 for x in found)
+    require(small, f"a number of the {what} is out of range")
+    return found
+
+
+def reach_of(value: Any) -> Fraction:
+    """How far a piece reaches."""
+    reach = Fraction(natural(value, "reach"), 1 << REACH_BITS)
+    require(0 < reach <= 16, "the reach is out of range")
+    return reach
+
+
+def first_piece(equations: LengthEquations, entry: Any) -> tuple[Start, Fraction]:
+    """The first piece, and where the motion leaves it."""
+    keys(entry, "centre halvings held reach exit", "start")
+    start = start_of(equations, entry)
+    tau = Fraction(natural(entry["exit"], "exit"), 1 << ROOT_BITS)
+    require(tau > 0, "the motion does not leave the flat state")
+    return start, tau
+
+
+def start_of(equations: LengthEquations, entry: Any) -> Start:
+    """A start tube of its keys."""
+    centre = vector(entry["centre"], "centre", equations.size, equations.bits)
+    halvings = natural(entry["halvings"], "halvings")
+    require(halvings <= MOTION_BITS, "halvings are out of range")
+    held = natural(entry["held"], "held vertex")
+    require(held in equations.place, "the vertex held at its height is pinned, or none")
+    place = equations.place[held] + 2
+    return Start(equations, centre, halvings, place, reach_of(entry["reach"]))
+
+
+def parameter_of(value: Any) -> Fraction:
+    """A parameter within a piece."""
+    return Fraction(integer(value), 1 << PARAMETER_BITS)
+
+
+def land(equations: LengthEquations, path: Path, entry: Any) -> tuple[Start, int]:
+    """The start tube on which a motion comes back, against its direction, to the flat state.
+
+    A point of it, or of its mirror image for a side of -1, lies on the last tube.
+    """
+    keys(entry, "centre halvings held reach tau", "landing")
+    end, side = start_of(equations, entry), 1
+    tau = Fraction(integer(entry["tau"]), 1 << ROOT_BITS)
+    require(tau, "a loop does not land before the flat state")
+    point, velocity = end.configuration(tau)
+    if tau > 0:
+        velocity = Ball([-x for x in velocity.centre], velocity.radii)
+    else:
+        side = -1
+    path.meet(point, velocity)
+    return end, side

@@ -1,0 +1,92 @@
+"""The parts of tubes, and of arcs through nodes, that a motion passes."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import zip_longest
+from typing import NamedTuple
+
+from .branch_points import NodeTube
+from .lengths import Path, entry
+from .tubes import Ball, Start, Tube
+
+
+class Link(NamedTuple):
+    """A tube, the box in which the motion enters it, and the parameter at which it leaves it.
+
+    None if it goes over to an arc through a node.
+    """
+
+    tube: Tube
+    here: Ball
+    end: Fraction | None
+
+
+class Arc(NamedTuple):
+    """An arc through a node, and the parameters at which the motion comes to it, and leaves it.
+
+    The second is after the node or, where the motion ends there, at it.
+    """
+
+    tube: NodeTube
+    begin: Fraction
+    end: Fraction
+
+
+Step = Link | Arc
+
+_Interval = tuple[Fraction, Fraction]
+
+
+class Stretch:
+    """The part of a piece that the motion passes: it enters and leaves between two parameters.
+
+    The piece goes from `least` to `most`.
+    """
+
+    def __init__(
+        self, path: Path, entered: _Interval, left: _Interval, least: Fraction, most: Fraction
+    ) -> None:
+        self.path, self.least, self.most = path, least, most
+        (self.low, self.high), (self.first, self.last) = entered, left
+
+    def end_at(self, s: Fraction) -> None:
+        """Leave it at this parameter."""
+        self.first = self.last = s
+
+    def length(self) -> tuple[Fraction, Fraction]:
+        """Bounds of its length."""
+        path = self.path
+        return (
+            path.shortest(path.above(self.high), path.below(self.first)),
+            path.longest(path.below(self.low), path.above(self.last)),
+        )
+
+
+def stretches_of(start: Start, tau: Fraction, steps: list[Step]) -> list[Stretch]:
+    """The parts of all pieces of a motion, in order."""
+    zero = Fraction(0)
+    radii, rates = start.enclosure(tau**2).radii, start.velocity(tau**2).radii
+    path = Path.of_start(start.curve, start.bits, start.halvings, tau, radii, rates)
+    found = [Stretch(path, (zero, zero), (tau, tau), zero, tau)]
+    for step, after in zip_longest(steps, steps[1:]):
+        if isinstance(step, Arc):
+            found.append(_on_arc(step))
+            continue
+        tube, reach = step.tube, step.tube.reach
+        radii, rates = tube.enclosure(reach).radii, tube.velocity(reach).radii
+        path = Path.of_tube(tube.curve, tube.bits, reach, radii, rates)
+        left = (step.end, step.end) if step.end is not None else (reach, reach)
+        if isinstance(after, Arc):
+            left = entry(tube, after.tube.configuration(after.begin)[0])
+        found.append(Stretch(path, entry(tube, step.here), left, -reach, reach))
+    return found
+
+
+def _on_arc(arc: Arc) -> Stretch:
+    """The part of an arc."""
+    piece, begin, end = arc
+    far = max(-begin, end)
+    box, rate = piece.configuration(far)
+    path = Path.of_tube([piece.node.centre, *piece.curve], piece.bits, far, box.radii, rate.radii)
+    return Stretch(path, (begin, begin), (end, end), begin, end)

@@ -1,0 +1,1 @@
+"""Certificates of all motions of a sheet of rigid panels."""

@@ -1,0 +1,273 @@
+"""Certificates of all motions of a sheet of rigid panels (docs/certificate.md, panels).
+
+Only the pattern and the folds that are held flat are taken from the file. The flat closure, the
+lines of motions at each vertex, the supports with the numbers of their modes, the components and
+which modes truly fold are found again, and every claim is compared. Why the answer is complete:
+the structure theorem, and the theorem of transmissions, in docs/panels.md, 2 and 4. Parts of the
+sheet where more than four folds of a vertex may fold are split into spaces (`panel_leaves`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ..core import limits
+from ..core.formats import LISTING, PANELS, PANELS_VERSION
+from ..core.reading import (
+    FormatError,
+    counted,
+    document,
+    items,
+    keys,
+    natural,
+    refusing,
+    require,
+    same,
+)
+from ..sheets.panels import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
+from .components import components, times
+from .leaves import Verified, verified_part
+from .loops import MOST_ORDER, Loops
+from .modes import Modes, Support, corners_of, name, named
+
+MOST_LISTED = limits.MOST_LISTED
+MOST_SUPPORTS = limits.MOST_SUPPORTS
+
+FACTS = "interior border folds sha256 held flat free second_order true rigid modes"
+
+
+def read(data: Any) -> dict[str, Any]:
+    """`data` if it is a certificate of a sheet of panels; raises `FormatError`."""
+    names = "format version kind pattern claims provenance"
+    if document(data, LISTING, PANELS_VERSION, names)["kind"] != PANELS:
+        raise FormatError(f"the kind {data['kind']!a} is not known to this checker")
+    return dict(data)
+
+
+@refusing()
+def check(data: dict[str, Any]) -> dict[str, Any]:
+    """Verify every claim of a certificate; raises `CertificateError` at the first failure.
+
+    Returns the verified claims. They hold for the pattern in the file, if the folds in `held` are
+    held flat.
+    """
+    claims = data["claims"]
+    given = claims.get("spaces", []) if isinstance(claims, dict) else []
+    keys(claims, f"{FACTS} supports" + (" spaces" if given else ""), "claims")
+    sheet, digest = read_panels(data["pattern"])
+    held = read_edges(claims["held"], "held")
+    for i, j in held:
+        require((i, j) in sheet.folds, f"{i}-{j} is held flat, and no fold")
+    near = sheet.live(held)
+    groups = connected(near)
+    large = [group for group in groups if any(len(around) > 4 for around in group.values())]
+    small = {v for group in groups if group not in large for v in group}
+    modes = Modes(sheet, {v: around for v, around in near.items() if v in small})
+    free = [e for e in sheet.folds if sheet.border.issuperset(e) and e not in held]
+    live = {pair(v, u) for v, around in near.items() for u in around}
+    pairs = _paired(_supports(modes), items(claims["supports"], "supports"))
+    found, loops = [support for support, _ in pairs], Loops(modes)
+    extending = [_extending(loops, support, entry) for support, entry in pairs]
+    parts = _parts(sheet, large, items(given, "spaces"))
+    second = components([(s.vertices, s.count) for s in found], len(free))
+    second = times(second, [part.second for part in parts])
+    true = None
+    known = [part.true for part in parts if part.true is not None]
+    if all(complete for _, complete in extending) and len(known) == len(parts):
+        counted = zip(found, extending, strict=True)
+        true = components([(s.vertices, n) for s, (n, _) in counted if n], len(free))
+        true = times(true, known)
+    moves = free or any(n for n, _ in extending) or any(part.folds for part in parts)
+    facts = {
+        "interior": len(sheet.interior),
+        "border": len(sheet.border),
+        "folds": len(sheet.folds),
+        "sha256": digest,
+        "held": [list(edge) for edge in held],
+        "flat": [list(e) for e in sheet.folds if e not in live and e not in free],
+        "free": [list(edge) for edge in free],
+        "second_order": second,
+        "true": true,
+        "rigid": _rigid(second, true, moves),
+        "modes": None if large else sum(support.count for support in found),
+    }
+    if claims["rigid"] == "undecided":  # which claims nothing
+        facts["rigid"] = "undecided"
+    for key, fact in facts.items():
+        require(same(claims[key], fact), f"claim {key} = {claims[key]!a}, but it is {fact!a}")
+    return dict(claims)
+
+
+def _rigid(second: dict[str, int], true: dict[str, int] | None, moves: object) -> str:
+    if set(second) == {"0"} or (true is not None and set(true) == {"0"}):
+        return "proved"
+    return "refuted" if moves else "undecided"
+
+
+def _parts(sheet: PanelSheet, large: list[Near], given: list[Any]) -> list[Verified]:
+    """Each part with vertices of more than four folds, with what the file says of it."""
+    entries: dict[tuple[int, ...], Any] = {}
+    for entry in given:
+        keys(entry, "vertices complete leaves", "a part")
+        vertices = tuple(natural(v, "a vertex") for v in items(entry["vertices"], "vertices"))
+        entries[vertices] = entry
+    require(len(entries) == len(given), "a part of the sheet appears twice")
+    places = [tuple(part) for part in large]
+    require(sorted(entries) == sorted(places), "the parts with spaces of motions are others")
+    return [verified_part(sheet, part, entries[tuple(part)]) for part in large]
+
+
+# --- supports ------------------------------------------------------------------------------------
+
+
+def _supports(modes: Modes) -> list[Support]:
+    found = []
+    for support in modes.supports():
+        found.append(support)
+        require(len(found) <= MOST_SUPPORTS, f"there are more than {MOST_SUPPORTS} supports")
+    return found
+
+
+def _paired(found: Sequence[Support], given: list[Any]) -> list[tuple[Support, dict[str, Any]]]:
+    """Each support with what the file says of it: all of them, each once, and no other."""
+    known = {support.folds: support for support in found}
+    entries: dict[tuple[Edge, ...], dict[str, Any]] = {}
+    for entry in given:
+        keys(entry, "vertices folds count extending by modes", "a support")
+        folds = tuple(read_edges(entry["folds"], "folds of a support"))
+        require(folds in known, f"the folds {list(folds)[:20]} are no support")
+        require(folds not in entries, f"a support with the folds {list(folds)[:20]} appears twice")
+        entries[folds] = entry
+    for folds, support in known.items():
+        require(folds in entries, f"{named(support)} is missing")
+        for key, fact in (("vertices", list(support.vertices)), ("count", support.count)):
+            claim = entries.get(folds, {}).get(key, fact)
+            require(same(claim, fact), f"{key} of {named(support)}: {claim!a}, but it is {fact!a}")
+    return [(support, entries[folds]) for folds, support in known.items() if folds in entries]
+
+
+def _extending(loops: Loops, support: Support, entry: dict[str, Any]) -> tuple[int, bool]:
+    """How many modes of a support truly fold, verified, and whether that is claimed of all."""
+    kind = kind_of(loops, support)
+    by, number = entry["by"], entry["extending"]
+    require(by == kind, f"{named(support)} extends by {kind}, not by {by!a}")
+    require(number is not None or kind == "loops", f"all modes of {named(support)} extend")
+    if entry["modes"] is None and (number is None or kind != "loops"):
+        good = 0 if number is None else support.count
+    else:
+        require(support.count <= MOST_LISTED, f"the modes of {named(support)} are too many")
+        rows = loops.modes.listed(support)
+        verdicts = [
+            _extends(loops, support, row, mode, number is None)
+            for row, mode in _listed(loops.modes, support, rows, entry["modes"])
+        ]
+        good = sum(verdict is True for verdict in verdicts)
+    shown = f"{good} modes of {named(support)} extend, not {number!a}"
+    require(number is None or same(number, good), shown)
+    return good, number is not None
+
+
+def kind_of(loops: Loops, support: Support) -> str:
+    """Why the modes of a support extend, or by what it is to be decided."""
+    if not support.loops:
+        return "forest"
+    chosen = {v: choices[0] for v, choices in support.choices.items()}  # all are linear, or none
+    steps = [found for loop in support.loops for found in loops.steps(chosen, loop)]
+    return "linear" if all(found.quadratic is None for found in steps) else "loops"
+
+
+def _listed(
+    modes: Modes, support: Support, rows: list[dict[int, int]], given: Any
+) -> list[tuple[dict[int, int], dict[str, Any] | None]]:
+    """Each mode with what the file says of it: all of them, if any are listed."""
+    if given is None:
+        return [(row, None) for row in rows]
+    known = {_choice(support, row): row for row in rows}
+    entries: dict[str, dict[str, Any]] = {}
+    for mode in items(given, "modes"):
+        keys(mode, "choice assignment extends loop order", "a mode")
+        choice = mode["choice"]
+        require(choice in known, f"{choice!a} is no mode of {named(support)}")
+        require(choice not in entries, f"the mode {choice} of {named(support)} appears twice")
+        entries[choice] = mode
+    for choice, row in known.items():
+        require(choice in entries, f"the mode {choice} of {named(support)} is missing")
+        letters = letters_of(modes, support, row)
+        mirrored = letters.translate(str.maketrans("MV", "VM"))
+        require(
+            entries.get(choice, {}).get("assignment", letters) in (letters, mirrored),
+            f"the mode {choice} of {named(support)} has the letters {letters}",
+        )
+    return [(known[choice], mode) for choice, mode in entries.items() if choice in known]
+
+
+def _choice(support: Support, row: dict[int, int]) -> str:
+    """The lines of a mode, vertex by vertex: 0 where there is only one, else - and +."""
+    places = ((support.choices[v], row[v]) for v in support.vertices)
+    return "".join("0" if len(lines) == 1 else "-+"[lines.index(k)] for lines, k in places)
+
+
+def letters_of(modes: Modes, support: Support, row: dict[int, int]) -> str:
+    """V or M for each active fold, as its density has the sign of the first or not."""
+    signs = {support.folds[0]: 1}
+    waiting = set(support.vertices)
+    while waiting:
+        v = next(u for u in sorted(waiting) if any(pair(u, w) in signs for w in support.active[u]))
+        waiting.remove(v)
+        known = next(w for w in sorted(support.active[v]) if pair(v, w) in signs)
+        for w in support.active[v]:
+            turn = modes.gain(v, row[v], known, w).sign()
+            signs[pair(v, w)] = signs[pair(v, known)] * turn
+    return "".join("V" if signs[fold] > 0 else "M" for fold in support.folds)
+
+
+def _extends(
+    loops: Loops,
+    support: Support,
+    row: dict[int, int],
+    mode: dict[str, Any] | None,
+    open_ones: bool,
+) -> bool | None:
+    """Whether a mode truly folds, which must be what the file says of it; None if it is open."""
+    said = None if mode is None else mode["extends"]
+    if mode is not None and said == "refuted":
+        loop = tuple(natural(v, "vertex") for v in items(mode["loop"], "a loop"))
+        order = natural(mode["order"], "order")
+        require(order % 2 and 3 <= order <= MOST_ORDER, f"there is no order {order}")
+        for v, before, after in corners_of(loop):
+            require(
+                {before, after} <= support.active.get(v, frozenset()) and before != after,
+                f"{name(loop)} is no loop of {named(support)}",
+            )
+        shown = f"the loop {name(loop)} of {named(support)} is not seen to fail at order {order}"
+        require(loops.fails(row, loop, order), shown)
+        return False
+    require(mode is None or mode["loop"] is mode["order"] is None, "a loop that fails nothing")
+    if open_ones and (mode is None or said == "undecided"):
+        return None
+    good = all(loops.closes(row, loop) for loop in support.loops)
+    verdict = "proved" if good else "refuted"
+    require(
+        mode is None or said == verdict, f"a mode of {named(support)} is {verdict}, not {said!a}"
+    )
+    return good
+
+
+def summary(claims: dict[str, Any]) -> str:
+    """One line for verified claims."""
+    shown = ", ".join(f"{n} of dimension {d}" for d, n in claims["second_order"].items())
+    true = "not decided" if claims["true"] is None else "the same"
+    leaves = [leaf for part in claims.get("spaces", ()) for leaf in part["leaves"]]
+    folding = sum(leaf["extending"] for leaf in leaves)
+    if claims["true"] is None and folding:
+        true += f" (of the components of its parts at least {folding} truly fold)"
+    if claims["true"] not in (None, claims["second_order"]):
+        true = ", ".join(f"{n} of dimension {d}" for d, n in claims["true"].items())
+    held = f", {counted(len(claims['held']), 'fold', 'folds')} held flat" if claims["held"] else ""
+    size = counted(claims["folds"], "fold", "folds")
+    inner = counted(claims["interior"], "interior vertex", "interior vertices")
+    return (
+        f"VALID: the motions of the sheet of {size} and {inner}{held} have the components "
+        f"{shown} to second order, truly {true}; sha256 {claims['sha256']}"
+    )

@@ -1,0 +1,203 @@
+"""Which spaces of motions truly fold, and whether they are all true motions (docs/panels.md, 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from ..core.intervals import Interval
+from ..core.reading import integer, items, keys, natural, require
+from ..sheets.panels import Edge, PanelSheet, pair
+from .cones import Place, cone_motion
+from .loops import Loops
+from .modes import Modes, Support
+from .reduction import BITS, enclosed, reduced
+from .spaces import Leaf, Motion, Spaces, folds_of
+
+Kind = tuple[tuple[Edge, ...], int, tuple[int, ...]]
+
+
+@dataclass
+class Verified:
+    """{dimension: number} of the components of a part: to second order, and truly if it is known.
+
+    `folds` says whether some of them are shown to fold.
+    """
+
+    second: dict[int, int]
+    true: dict[int, int] | None
+    folds: bool
+
+
+def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) -> Verified:
+    """The components of a part, found again and compared with what the file says of it.
+
+    The file gives the leaves by their folds, dimension and cones, with how many there are, and how
+    many of these are said to fold; "complete" says that all true motions are among them.
+    """
+    what = f"the part of vertex {next(iter(near))}"
+    spaces = Spaces(sheet, near)
+    found: dict[Kind, list[Leaf]] = {}
+    for leaf in spaces.leaves():
+        _check_component(spaces, leaf)
+        found.setdefault((leaf.folds, leaf.dimension, leaf.cones), []).append(leaf)
+    claimed = dict(_kinds(given["leaves"]))
+    require(len(claimed) == len(given["leaves"]), f"{what} has leaves of one kind twice")
+    require(claimed.keys() == found.keys(), f"{what} has other leaves than those listed")
+    second: dict[int, int] = {}
+    folding = 0
+    for kind, (number, extending) in claimed.items():
+        leaves = found.get(kind, [])
+        require(number == len(leaves), f"{what} has {len(leaves)} leaves of a kind, not {number}")
+        shown = sum(extends(spaces, leaf) for leaf in leaves) if extending else 0
+        folds = f"{what} has {shown} leaves of a kind that fold, not {extending}"
+        require(extending <= shown, folds)
+        second[kind[1]] = second.get(kind[1], 0) + number
+        folding += extending
+    second = second or {0: 1}
+    true = None
+    require(type(given["complete"]) is bool, f'{what}: "complete" is neither true nor false')
+    if given["complete"]:
+        total = sum(number for number, _ in claimed.values())
+        require(folding == total, f"{what} has leaves that are not shown to fold")
+        regular = complete(spaces, [leaf for leaves in found.values() for leaf in leaves])
+        require(regular, f"{what} may have other true motions")
+        true = second
+    return Verified(second, true, folding > 0)
+
+
+def _kinds(given: Any) -> Iterable[tuple[Kind, tuple[int, int]]]:
+    for entry in items(given, "leaves"):
+        keys(entry, "folds dimension cones number extending", "a leaf")
+        ends = [items(fold, "a fold", 2) for fold in items(entry["folds"], "folds")]
+        folds = tuple((integer(i), integer(j)) for i, j in ends)
+        cones = tuple(natural(v, "a vertex") for v in items(entry["cones"], "cones"))
+        numbers = natural(entry["number"], "number"), natural(entry["extending"], "extending")
+        yield (folds, natural(entry["dimension"], "dimension"), cones), numbers
+
+
+def _check_component(spaces: Spaces, leaf: Leaf) -> None:
+    """Refuse a leaf with several forms of one part that are not shown to be one component."""
+    for part in spaces.parts(leaf.basis):
+        cones = _cones(part, leaf)
+        shown = len(cones) < 2 or cone_motion(spaces, part, cones) is not None
+        require(shown, f"the forms of vertices {', '.join(map(str, cones))} stay")
+
+
+def _cones(part: list[Motion], leaf: Leaf) -> list[int]:
+    """The vertices of a part whose forms are left."""
+    active = {v for fold in folds_of(part) for v in fold}
+    return [v for v in leaf.cones if v in active]
+
+
+def extends(spaces: Spaces, leaf: Leaf) -> bool:
+    """Whether a leaf is shown to be tangent to true motions: its parts fold apart from each other.
+
+    A part that is all local motions of one vertex folds, by Morse's lemma; one at a point of which
+    all closing conditions are independent, by the implicit function theorem. A part with one
+    parameter, at whose vertices two or four folds are active, is a mode, which folds if its loops
+    close.
+    """
+    return all(_folds(spaces, part, _cones(part, leaf)) for part in spaces.parts(leaf.basis))
+
+
+def _folds(spaces: Spaces, part: list[Motion], cones: list[int]) -> bool:
+    folds = set(folds_of(part))
+    near = {v: [u for u in around if pair(v, u) in folds] for v, around in spaces.near.items()}
+    near = {v: around for v, around in near.items() if around}
+    if len(near) == 1 and len(part) == len(folds) - 2:
+        return True
+    inner = Spaces(spaces.sheet, near, spaces.work)
+    point = cone_motion(inner, part, cones) if cones else enclosed(_sum(inner, part))
+    if point is not None and _independent(inner, point):
+        return True
+    if cones:
+        return False
+    if len(part) != 1 or any(len(around) > 4 for around in near.values()):
+        return False
+    return _closes(spaces.sheet, near, part[0])
+
+
+def _closes(sheet: PanelSheet, near: Mapping[int, list[int]], motion: Motion) -> bool:
+    """Whether the mode of a motion closes its loops: it is the one that intervals leave over."""
+    modes = Modes(sheet, near)
+    support = modes.support({v: frozenset(around) for v, around in near.items()})
+    rows = [row for row in modes.listed(support) if _agrees(modes, support, row, motion)]
+    loops = Loops(modes)
+    return len(rows) == 1 and all(loops.closes(rows[0], loop) for loop in support.loops)
+
+
+def _agrees(modes: Modes, support: Support, row: dict[int, int], motion: Motion) -> bool:
+    """Whether the quotients of the densities may be those of a mode."""
+    for v, around in support.active.items():
+        first, *others = sorted(around)
+        for u in others:
+            start, end = (pair(v, w) for w in (first, u))
+            quotient = (motion[end] / motion[start]).enclosed(BITS)
+            if (quotient - modes.gain(v, row[v], first, u).enclosed(BITS)).sign():
+                return False
+    return True
+
+
+def complete(spaces: Spaces, leaves: list[Leaf]) -> bool:
+    """Whether true motions are shown to be no more than the leaves that extend.
+
+    So it is for one vertex alone; where each leaf is a line at which the derivatives of all forms
+    leave, in the space of first-order motions, that line alone; and where all first-order motions
+    are one leaf, with the form of every vertex that has one, and their conditions are independent.
+    """
+    if len(spaces.near) == 1 or all(_regular(spaces, leaf) for leaf in leaves):
+        return True
+    whole = [leaf for leaf in leaves if len(leaf.basis) == len(spaces.first_order)]
+    full = [v for v, around in spaces.near.items() if len(around) > 2]
+    return bool(whole) and sorted(whole[0].cones) == sorted(full) and _all_count(spaces)
+
+
+def _all_count(spaces: Spaces) -> bool:
+    """Whether the conditions of first order are independent.
+
+    They are two for each vertex, and one for a straight pair, which has no form.
+    """
+    folds = {pair(v, u) for v, around in spaces.near.items() for u in around}
+    full = [v for v, around in spaces.near.items() if len(around) > 2]
+    return len(spaces.first_order) == len(folds) - len(spaces.near) - len(full)
+
+
+def _regular(spaces: Spaces, leaf: Leaf) -> bool:
+    if len(leaf.basis) != 1:
+        return False
+    return _rank(spaces, enclosed(leaf.basis[0])) >= len(spaces.first_order) - 1
+
+
+def _sum(spaces: Spaces, part: list[Motion]) -> Motion:
+    """A motion of a part: once the first of its basis, twice the second, and so on."""
+    found: Motion = {}
+    for weight, motion in enumerate(part, 1):
+        found = spaces.plus(found, spaces.sheet.tower.number(weight), motion)
+    return found
+
+
+def _independent(spaces: Spaces, point: Place) -> bool:
+    """Whether the conditions of first order are independent, and all forms at a motion."""
+    full = [v for v, around in spaces.near.items() if len(around) > 2]
+    if not _all_count(spaces):
+        return False
+    if any(len(spaces.near[v]) < 4 for v in full):
+        return False
+    return _rank(spaces, point) == len(full)
+
+
+def _rank(spaces: Spaces, place: Place) -> int:
+    """A lower bound of the rank of the derivatives of all forms at a point, by intervals."""
+    basis = [enclosed(motion) for motion in spaces.first_order]
+    rows = []
+    for v in spaces.near:
+        weights = spaces.gradient(v, place, BITS)
+        row = {}
+        for k, motion in enumerate(basis):
+            terms = (weights[fold] * motion[fold] for fold in weights.keys() & motion.keys())
+            row[k, k] = sum(terms, start=Interval.of(Fraction(0), BITS))
+        rows.append(row)
+    return len(reduced(rows))

@@ -1,0 +1,107 @@
+"""Vectors of densities by fold, reduced by others: exactly in one field, or in intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from ..core import limits
+from ..core.intervals import Interval
+from ..core.reading import require
+from ..core.towers import Number, Parts, Tower
+from ..sheets.panels import Edge
+
+MOST_ROOTS = limits.SPACE_ROOTS
+BITS = 256
+
+Vector = Mapping[Edge, Any]
+"""Numbers of one field, or intervals, by fold; what is left out is 0."""
+Rows = list[tuple[Edge, Vector]]
+
+
+def zero(value: Any) -> bool:
+    """Whether a number is 0; of an interval that is not known."""
+    return isinstance(value, Number) and not any(value.parts)
+
+
+def rest_of(vector: Vector, rows: Rows) -> Vector:
+    """The vector less multiples of the rows, so that none of their leading folds is left."""
+    rest = dict(vector)
+    for lead, row in rows:
+        if lead in rest:
+            factor = rest[lead] / row[lead]
+            for fold, value in row.items():
+                rest[fold] = rest[fold] - factor * value if fold in rest else -(factor * value)
+            rest = {fold: value for fold, value in rest.items() if fold != lead and not zero(value)}
+    return rest
+
+
+def reduced(vectors: Iterable[Vector]) -> Rows:
+    """A basis of the span, each with a leading fold that is in none of those after it.
+
+    Vectors of intervals that are not shown to be independent of those before are left out.
+    """
+    rows: Rows = []
+    for vector in vectors:
+        rest = rest_of(vector, rows)
+        lead = next((fold for fold in sorted(rest) if rest[fold].sign()), None)
+        if lead is not None:
+            rows.append((lead, rest))
+    return rows
+
+
+def enclosed(vector: Mapping[Edge, Number]) -> dict[Edge, Interval]:
+    """The vector in intervals."""
+    return {fold: value.enclosed(BITS) for fold, value in vector.items()}
+
+
+def inside(space: Sequence[Mapping[Edge, Number]], other: Sequence[Mapping[Edge, Number]]) -> bool:
+    """Whether the span of some vectors lies in that of independent others.
+
+    Refuted by intervals where they show that the others and one more are independent; else decided
+    in one field.
+    """
+    folds = {fold for vector in other for fold in vector}
+    if any(fold not in folds for vector in space for fold in vector):
+        return False
+    rows = reduced(map(enclosed, other))
+    if len(rows) == len(other):
+        rests = [rest_of(enclosed(vector), rows) for vector in space]
+        if any(value.sign() for rest in rests for value in rest.values()):
+            return False
+    joined = Joined()
+    exact = reduced([joined.vector(vector) for vector in other])
+    return not any(rest_of(joined.vector(vector), exact) for vector in space)
+
+
+class Joined:
+    """A tower that numbers of several towers are taken to."""
+
+    def __init__(self) -> None:
+        self.tower = Tower()
+        self._roots: dict[tuple[Parts, ...], Number] = {}
+
+    def vector(self, vector: Mapping[Edge, Number]) -> dict[Edge, Number]:
+        """The vector in the tower."""
+        return {fold: self.of(value) for fold, value in vector.items()}
+
+    def of(self, value: Number) -> Number:
+        """A number in the tower, which is made higher if that is needed."""
+        radicands = value.tower.radicands
+        for k, radicand in enumerate(radicands):
+            key = radicands[: k + 1]
+            if key not in self._roots:
+                self.tower, root = self.tower.adjoined(self._taken(radicand, radicands))
+                require(self.tower.size <= 1 << MOST_ROOTS, "two spaces need too many square roots")
+                self._roots[key] = root
+        return self.tower.number(self._taken(value.parts, radicands))
+
+    def _taken(self, parts: Parts, radicands: tuple[Parts, ...]) -> Number:
+        if len(parts) == 1:
+            return self.tower.number(parts[0])
+        half = len(parts) // 2
+        low = self._taken(parts[:half], radicands)
+        if not any(parts[half:]):
+            return low
+        root = self._roots[radicands[: half.bit_length()]]
+        return low + self._taken(parts[half:], radicands) * root

@@ -1,0 +1,248 @@
+"""The sheet of rigid panels: rebuilt from vertices and edges, and verified to be one disk."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping
+from functools import cmp_to_key
+from itertools import pairwise
+from typing import Any
+
+from ..core.limits import MOST_ABOVE, MOST_MEETINGS, MOST_ROOTS
+from ..core.reading import Coordinates, at_most, digits, items, keys, natural, require
+from ..core.towers import Number, Tower
+
+Edge = tuple[int, int]
+Vector = tuple[Number, Number]
+Near = dict[int, list[int]]
+"""The neighbours of vertices, counter-clockwise."""
+_GRID = 64  # bits of the rounded boxes in which edges are looked for
+
+
+def cross(a: Vector, b: Vector) -> Number:
+    """a x b."""
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def dot(a: Vector, b: Vector) -> Number:
+    """a . b."""
+    return a[0] * b[0] + a[1] * b[1]
+
+
+def pair(i: int, j: int) -> Edge:
+    """The edge with these ends."""
+    return (i, j) if i < j else (j, i)
+
+
+class PanelSheet:
+    """A plane drawing of panels that make up one disk, verified.
+
+    `around` holds the neighbours of each vertex, counter-clockwise; `panels` the corners of each
+    panel, counter-clockwise; `border` the vertices of the border; `folds` the other edges.
+    """
+
+    def __init__(self, tower: Tower, points: list[Vector], edges: list[Edge]) -> None:
+        self.tower, self.points, self.edges = tower, points, edges
+        self.around: dict[int, list[int]] = {v: [] for v in range(len(points))}
+        for i, j in edges:
+            require(i < j < len(points), f"{i}-{j} is no edge")
+            self.around[i].append(j)
+            self.around[j].append(i)
+        for v, near in self.around.items():
+            require(near, f"vertex {v} is on no edge")
+        self._check_apart()
+        self.around = {v: self._turned(v, near) for v, near in self.around.items()}
+        outer: list[tuple[int, ...]] = []
+        self.panels: list[tuple[int, ...]] = []
+        for walk in walks(self.around):
+            (self.panels if self.area(walk).sign() > 0 else outer).append(walk)
+        require(len(outer) == 1, f"the drawing has {len(outer)} outer faces, not one")
+        for walk in (*self.panels, *outer):
+            sides = set(zip(walk, (*walk[1:], walk[0]), strict=True))
+            for i, j in sorted(sides):
+                require(i > j or (j, i) not in sides, f"edge {i}-{j} has one face on both sides")
+        rim = outer[0]
+        self.border = set(rim)
+        require(len(self.border) == len(rim), "the border passes a vertex twice")
+        sides = {pair(i, j) for i, j in zip(rim, (*rim[1:], rim[0]), strict=True)}
+        self.folds = [edge for edge in edges if edge not in sides]
+        self.interior = [v for v in range(len(points)) if v not in self.border]
+
+    def vector(self, v: int, u: int) -> Vector:
+        """From v to u."""
+        (ax, ay), (bx, by) = self.points[v], self.points[u]
+        return bx - ax, by - ay
+
+    def area(self, walk: tuple[int, ...]) -> Number:
+        """Twice the area inside, positive if the walk is counter-clockwise."""
+        total = self.tower.number(0)
+        for i, j in pairwise(walk[1:]):
+            total = total + cross(self.vector(walk[0], i), self.vector(walk[0], j))
+        return total
+
+    def live(self, held: Iterable[Edge]) -> dict[int, list[int]]:
+        """The flat closure: the neighbours over folds that may fold, for each inner vertex.
+
+        A vertex keeps all its folds if there are four or more and all sectors are less than pi, two
+        that form a straight line at the side of an empty half plane, or none. A fold is flat if it
+        is at one end.
+        """
+        flat = set(held)
+        inner = set(self.interior)
+        waiting = list(self.interior)
+        kept: dict[int, list[int]] = {}
+        while waiting:
+            v = waiting.pop()
+            near = [u for u in self.around[v] if pair(v, u) not in flat]
+            kept[v] = self._foldable(v, near)
+            for u in near:
+                if u not in kept[v]:
+                    flat.add(pair(v, u))
+                    if u in inner:
+                        waiting.append(u)
+        return {v: near for v, near in sorted(kept.items()) if near}
+
+    def _foldable(self, v: int, near: list[int]) -> list[int]:
+        for k, u in enumerate(near):
+            after = near[(k + 1) % len(near)]
+            a, b = self.vector(v, u), self.vector(v, after)
+            turn = cross(a, b).sign()
+            if turn < 0 or u == after:
+                return []
+            if turn == 0:
+                return [w for w in near if w in (u, after)]
+        return near if len(near) > 3 else []
+
+    def _turned(self, v: int, near: list[int]) -> list[int]:
+        """Neighbours in counter-clockwise order."""
+        spokes = {u: self.vector(v, u) for u in near}
+        upper = {u: (y.sign() or x.sign()) > 0 for u, (x, y) in spokes.items()}
+
+        def order(a: int, b: int) -> int:
+            return upper[b] - upper[a] or -cross(spokes[a], spokes[b]).sign()
+
+        turned = sorted(near, key=cmp_to_key(order))
+        for u, w in zip(turned, [*turned[1:], *turned[:1]], strict=True):
+            alike = u != w and cross(spokes[u], spokes[w]).sign() == 0
+            apart = not alike or dot(spokes[u], spokes[w]).sign() < 0
+            (i, j), (k, m) = sorted((pair(v, u), pair(v, w)))
+            require(apart, f"edges {i}-{j} and {k}-{m} meet")
+        return turned
+
+    def _check_apart(self) -> None:
+        """No two edges without a common end meet; compared where their boxes do."""
+        spots = [tuple(c.enclosed(_GRID) for c in point) for point in self.points]
+        boxes = []
+        for i, j in self.edges:
+            low = [min(spots[i][k].low, spots[j][k].low) for k in (0, 1)]
+            high = [max(spots[i][k].high, spots[j][k].high) for k in (0, 1)]
+            boxes.append((low[0], high[0], low[1], high[1], (i, j)))
+        above = meetings = 0
+        active: list[tuple[int, int, int, int, Edge]] = []
+        for box in sorted(boxes):
+            active = [other for other in active if other[1] >= box[0]]
+            i, j = box[4]
+            near = [
+                other[4]
+                for other in active
+                if other[2] <= box[3] and box[2] <= other[3] and not {i, j} & {*other[4]}
+            ]
+            above, meetings = above + len(active), meetings + len(near)
+            at_most(above, MOST_ABOVE, "the pairs of edges above one another")
+            at_most(meetings, MOST_MEETINGS, "the pairs of edges whose boxes meet")
+            for k, m in near:
+                require(not self._meet((k, m), box[4]), f"edges {k}-{m} and {i}-{j} meet")
+            active.append(box)
+
+    def _meet(self, first: Edge, second: Edge) -> bool:
+        (a1, b1), (a2, b2) = first, second
+        one = [self._side(a1, b1, v) for v in second]
+        two = [self._side(a2, b2, v) for v in first]
+        if one == [0, 0]:
+            ends = [dot(self.vector(a1, b1), self.vector(a1, v)) for v in (a1, b1, a2, b2)]
+            before = all((x - y).sign() < 0 for x in ends[:2] for y in ends[2:])
+            return not (before or all((x - y).sign() > 0 for x in ends[:2] for y in ends[2:]))
+        return one[0] * one[1] <= 0 and two[0] * two[1] <= 0
+
+    def _side(self, a: int, b: int, v: int) -> int:
+        return cross(self.vector(a, b), self.vector(a, v)).sign()
+
+
+def connected(near: Near) -> list[Near]:
+    """The parts of a graph, its vertices sorted; neighbours that are no vertices join nothing."""
+    found, left = [], dict(near)
+    while left:
+        stack = [min(left)]
+        part = {stack[0]: left.pop(stack[0])}
+        while stack:
+            fresh = [u for u in part[stack.pop()] if u in left]
+            part.update({u: left.pop(u) for u in fresh if u in left})
+            stack += fresh
+        found.append(dict(sorted(part.items())))
+    return found
+
+
+def walks(around: Mapping[int, list[int]]) -> list[tuple[int, ...]]:
+    """The faces of a plane graph, each with its corners in the order that has it to the left."""
+    found = []
+    left = {(v, u) for v, near in around.items() for u in near}
+    for start in sorted(left):
+        walk, (v, u) = [], start
+        while (v, u) in left:
+            left.remove((v, u))
+            walk.append(v)
+            v, u = u, around[u][around[u].index(v) - 1]
+        if walk:
+            found.append(tuple(walk))
+    return found
+
+
+def read_panels(data: Any) -> tuple[PanelSheet, str]:
+    """The verified sheet and its SHA-256."""
+    keys(data, "radicands vertices edges", "pattern")
+    lines = ["exactfold panels 1"]
+    tower = Tower()
+
+    coordinate = Coordinates()
+
+    def coefficients(value: Any, what: str) -> Number:
+        parts = tuple(coordinate(c) for c in items(value, what, tower.size))
+        return Number(tower, parts)
+
+    for k, value in enumerate(items(data["radicands"], "radicands")):
+        require(k < MOST_ROOTS, f"the field has more than {MOST_ROOTS} square roots")
+        radicand = coefficients(value, f"radicand {k}")
+        require(tower.adjoined(radicand)[0] is not tower, f"radicand {k} is a square")
+        lines.append(f"r {_text(radicand)}")
+        tower = Tower((*tower.radicands, radicand.parts))
+    points = []
+    for k, value in enumerate(items(data["vertices"], "vertices")):
+        x, y = (coefficients(c, f"vertex {k}") for c in items(value, f"vertex {k}", 2))
+        points.append((x, y))
+        lines.append(f"v {_text(x)} {_text(y)}")
+    edges = []
+    for value in items(data["edges"], "edges"):
+        i, j = (natural(v, "a vertex") for v in items(value, "an edge", 2))
+        edges.append((i, j))
+        lines.append(f"e {i} {j}")
+    require(edges == sorted(set(edges)), "the edges are not sorted")
+    digest = hashlib.sha256("".join(line + "\n" for line in lines).encode()).hexdigest()
+    return PanelSheet(tower, points, edges), digest
+
+
+def read_edges(value: Any, what: str) -> list[Edge]:
+    """Folds, sorted, each once."""
+    found = []
+    for edge in items(value, what):
+        i, j = (natural(v, "a vertex") for v in items(edge, "an edge", 2))
+        found.append((i, j))
+    require(found == sorted(set(found)), f"{what} are not sorted")
+    return found
+
+
+def _text(value: Number) -> str:
+    parts = []
+    for c in value.parts:
+        whole = digits(c.numerator)
+        parts.append(whole if c.denominator == 1 else f"{whole}/{digits(c.denominator)}")
+    return " ".join(parts)

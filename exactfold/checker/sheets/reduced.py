@@ -1,0 +1,49 @@
+"""What of a sheet can fold: without the vertices inside 3-cycles, and with its notch closed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..core.reading import items, keys, natural, require
+from .sheet import Sheet, turn
+
+
+def emptied_sheet(given: Sheet, points: dict[int, Any], evidence: Any) -> tuple[Sheet, set[int]]:
+    """The sheet in integer coordinates without the vertices inside the 3-cycles of the list."""
+    removed: set[int] = set()
+    added: list[tuple[int, ...]] = []
+    edges = set(given.edges)
+    for entry in items(evidence, "emptied"):
+        keys(entry, "corners inside", "3-cycle")
+        a, b, c = (natural(v, "corner") for v in items(entry["corners"], "corners", 3))
+        for i, j in ((a, b), (b, c), (a, c)):
+            require((min(i, j), max(i, j)) in edges, f"{i}-{j} is no edge")
+        for v in (natural(v, "vertex inside") for v in items(entry["inside"], "inside")):
+            sides = [turn(points[i], points[j], points[v]) for i, j in ((a, b), (b, c), (c, a))]
+            require(min(sides) > 0, f"vertex {v} is not inside {(a, b, c)}")
+            removed.add(v)
+        added.append((a, b, c))
+    kept = [given.face(t) for t in given.triangles if removed.isdisjoint(t)]
+    # What is left is verified again: a disk of positive faces with a simple boundary.
+    rest = {v: p for v, p in points.items() if v not in removed}
+    return Sheet(rest, [*kept, *added]), removed
+
+
+def closed(sheet: Sheet) -> tuple[Sheet, int | None]:
+    """The sheet with the notch at its reflex corner closed, and that corner."""
+    cycle = sheet.boundary
+    for k, v in enumerate(cycle):
+        before, after = cycle[k - 1], cycle[(k + 1) % len(cycle)]
+        if turn(*(sheet.points[u] for u in (before, v, after))) < 0:
+            faces = [sheet.face(t) for t in sheet.triangles]
+            return Sheet(sheet.points, [*faces, (before, after, v)]), v
+    return sheet, None
+
+
+def check_convex(sheet: Sheet) -> None:
+    """Raise unless the boundary is convex."""
+    cycle = sheet.boundary
+    for k, v in enumerate(cycle):
+        corner = (cycle[k - 1], v, cycle[(k + 1) % len(cycle)])
+        side = turn(*(sheet.points[u] for u in corner))
+        require(side >= 0, "the boundary is not convex")

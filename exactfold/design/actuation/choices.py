@@ -1,0 +1,153 @@
+"""Which creases to drive if only some may be: branch and bound, every bound proved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from heapq import heappop, heappush
+
+import numpy as np
+
+from exactfold._support.arrays import BoolArray, FloatArray
+from exactfold._support.progress import Progress
+from exactfold.design.actuation.directions import Directions
+from exactfold.design.actuation.powers import Ray, exact_weights, margin_bound
+from exactfold.design.actuation.programs import Proposal, largest_margin
+
+_JOINING = 8
+"""Rivals that join the linear programs at once."""
+
+_SHORT = 1e-7
+"""A rival that falls short of a margin by less does not join: the tolerance of the solver."""
+
+_CLOSE = 1e-4
+"""A share of the margin for which it is not worth to go on."""
+
+_ZERO = 1e-9
+"""A torque, or a margin, that is taken for 0."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Proposed `torques`, and a proved bound of the margins of all torques on so few folds."""
+
+    torques: FloatArray
+    bound: Fraction
+
+
+@dataclass(order=True)
+class _Node:
+    """The choices that drive the folds `inside` and leave those `barred` alone."""
+
+    order: tuple[float, int]
+    inside: BoolArray = field(compare=False)
+    barred: BoolArray = field(compare=False)
+    bound: Fraction | None = field(compare=False)
+
+
+class CreaseChoice:
+    """Branch and bound over the choices of at most `most` folds.
+
+    A node is bounded by a linear program that limits the sum of the sizes of the torques instead of
+    their number, so that its dual solution bounds all choices of the node (`margin_bound`). Few
+    rivals decide, so the programs are about some of them, and others join when they are needed; a
+    bound from some of the rivals holds for all of them.
+    """
+
+    def __init__(
+        self,
+        directions: Directions,
+        chosen: int,
+        rays: list[Ray],
+        gaps: FloatArray,
+        allowed: BoolArray,
+        most: int,
+    ) -> None:
+        self.directions, self.chosen, self.rays, self.gaps = directions, chosen, rays, gaps
+        self.allowed, self.most = allowed, most
+        start = largest_margin(gaps, allowed, allowed, most)
+        self.known = np.flatnonzero(start.weights > 0)
+        self.torques, self.margin = np.zeros(len(allowed)), 0.0
+        self.tried: set[bytes] = set()
+        self._improve(start.torques)
+
+    def best(self, nodes: int, progress: Progress | None = None) -> Choice:
+        """The best torques found within so many nodes, and the bound of all choices."""
+        nothing = np.zeros(len(self.allowed), dtype=np.bool_)
+        queue = [_Node((-np.inf, 0), nothing, ~self.allowed, None)]
+        settled: list[Fraction] = []
+        made = 1
+        for done in range(nodes):
+            if not queue or (-queue[0].order[0] <= self._enough and queue[0].bound is not None):
+                break
+            if progress is not None:
+                progress("choice of creases", done, nodes)
+            node = heappop(queue)
+            found, bound = self._bounded(node)
+            fold = self._undecided(found, node)
+            if found.margin <= self._enough or fold is None:
+                settled.append(bound)
+                continue
+            for taken in (True, False):
+                inside, barred = node.inside.copy(), node.barred.copy()
+                (inside if taken else barred)[fold] = True
+                if inside.sum() == self.most:
+                    barred = ~inside
+                heappush(queue, _Node((-found.margin, made), inside, barred, bound))
+                made += 1
+        open_bounds = [node.bound for node in queue if node.bound is not None]
+        return Choice(self.torques, max([*settled, *open_bounds]))
+
+    @property
+    def _enough(self) -> float:
+        return self.margin * (1 + _CLOSE) + _ZERO
+
+    def _bounded(self, node: _Node) -> tuple[Proposal, Fraction]:
+        """The linear program of a node, and the proved bound of its choices."""
+        limited = ~node.inside & ~node.barred
+        left = self.most - int(node.inside.sum())
+        while True:
+            found = largest_margin(self.gaps[self.known], ~node.barred, limited, left)
+            values = self.gaps @ found.torques
+            worst = np.argsort(values, kind="stable")[:_JOINING]
+            joining = np.setdiff1d(worst[values[worst] < found.margin - _SHORT], self.known)
+            if not len(joining):
+                break
+            self.known = np.union1d(self.known, joining)
+        self._improve(found.torques)
+        rays = [self.rays[r] for r in self.known]
+        bound = margin_bound(
+            self.directions,
+            self.chosen,
+            exact_weights(rays, found.weights),
+            limited.tolist(),
+            left,
+            node.barred.tolist(),
+        )
+        return found, bound
+
+    def _improve(self, torques: FloatArray) -> None:
+        """Take the folds with the largest torques, if no better choice is known."""
+        sizes = np.where(self.allowed, np.abs(torques), -1.0)
+        support = np.zeros(len(torques), dtype=np.bool_)
+        support[np.argsort(-sizes, kind="stable")[: self.most]] = True
+        if support.tobytes() in self.tried:
+            return
+        self.tried.add(support.tobytes())
+        known = largest_margin(self.gaps[self.known], support & self.allowed)
+        if known.margin <= self._enough:  # all rivals leave no more than some do
+            return
+        found = largest_margin(self.gaps, support & self.allowed)
+        if found.margin > self.margin:
+            self.torques, self.margin = found.torques, found.margin
+
+    def _undecided(self, found: Proposal, node: _Node) -> int | None:
+        """The fold with the largest torque that is neither inside nor barred.
+
+        None where so few folds are driven that the program has found the best of the node.
+        """
+        driven = np.abs(found.torques) > _ZERO
+        if int((driven | node.inside).sum()) <= self.most:
+            return None
+        sizes = np.where(node.inside | node.barred, -1.0, np.abs(found.torques))
+        return int(np.argmax(sizes))

@@ -1,0 +1,153 @@
+"""`actuate_all`: the torques with the best margin for every branch of a sheet, found together."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+
+from exactfold._support.progress import Progress
+from exactfold.branches.values.branch import Branch
+from exactfold.design.actuation.actuate import NODES, Search, judged, proved_branches, require_few
+from exactfold.design.actuation.directions import Directions
+from exactfold.design.actuation.interior import RayProposal, largest_margins
+from exactfold.design.actuation.orthogonal import Alone, alone_each
+from exactfold.design.actuation.powers import (
+    TORQUE_DIGITS,
+    Powers,
+    exact_weights,
+    leading_rivals,
+    margin_bound,
+)
+from exactfold.design.actuation.result import Actuation, outward
+from exactfold.errors import NotApplicableError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.loading import PatternLike, as_pattern
+from exactfold.rigidity.equations.problem import Problem
+
+_CLOSE = Fraction(1, 10_000)
+"""A margin that falls short of its bound by a larger share of it is looked for once more."""
+
+_SHARP = 64
+"""Bits of the roots of branches for which that is so, and of their closest rivals."""
+
+
+def actuate_all(pattern: PatternLike, *, progress: Progress | None = None) -> tuple[Actuation, ...]:
+    """For each branch of a sheet the torques that prefer it to all others, by most.
+
+    In the order of `count_branches`, each for the ray that is listed there, with the 2B - 1 rivals
+    of `actuate`, and margin, bound and dimension proved in the same way. The opposite ray has the
+    same margin and dimension, with opposite torques: turning the sheet over permutes all rays and
+    reverses all powers (docs/actuation.md, 6). The linear programs are solved together, and
+    whatever does not depend on the branch is computed once. Torques are decimals with twelve digits
+    after the point; where several are equally good they may be others than those of `actuate`.
+
+    Raises `TooManyRivalsError` for more than 12 foldable vertices, `UnprovedRivalsError` if not all
+    branches are proved, and the errors of `count_branches`.
+
+    >>> for found in actuate_all("two-vertex"):
+    ...     print(found)
+    <Actuation of --: proved, margin 0.8007 of at most 0.8007>
+    <Actuation of -+: proved, margin 1.295 of at most 1.295>
+    <Actuation of +-: proved, margin 0.982 of at most 0.982>
+    <Actuation of ++: proved, margin 1.903 of at most 1.903>
+    """
+    start = time.perf_counter()
+    pattern = as_pattern(pattern)
+    problem = Problem.of(pattern)
+    problem.require_foldable()
+    require_few(problem.size)
+    branches = proved_branches(pattern, progress)
+    found = _Together(pattern, branches, problem.size + 1, progress).found()
+    seconds = (time.perf_counter() - start) / max(1, len(found))
+    return tuple(replace(result, seconds=seconds) for result in found)
+
+
+class _Together:
+    """The work of one call; `branches` are sharpened where that is needed."""
+
+    def __init__(
+        self,
+        pattern: CreasePattern,
+        branches: list[Branch],
+        size: int,
+        progress: Progress | None,
+    ) -> None:
+        self.pattern, self.branches, self.size, self.progress = pattern, branches, size, progress
+        self.directions = Directions.of(branches)
+        self.signs = tuple(branch.sign_text for branch in branches)
+        self.alone: list[Alone] = list(alone_each(self.directions, branches, size))
+        self.deciding: dict[int, set[int]] = {}
+        self.results: dict[int, Actuation] = {}
+
+    def found(self) -> list[Actuation]:
+        """The answers, in the order of the branches."""
+        places = range(len(self.branches))
+        self._try(places)
+        left = [b for b in places if b not in self.results]
+        if left:
+            self._sharpen({b for place in left for b in self.deciding.get(place, {place})})
+            self._try(left)
+        return [self.results.get(b) or self._one(b) for b in places]
+
+    def _try(self, places: Sequence[int]) -> None:
+        """Torques of some branches, kept where what is proved of them leaves little room."""
+        if self.progress is not None:
+            self.progress("torques", len(self.results), len(self.branches))
+        proposals = largest_margins(self.directions.middles, np.array(places))
+        known = {b: found for b, found in zip(places, proposals, strict=True) if found is not None}
+        scale = 10**TORQUE_DIGITS
+        rows = [np.rint(scale * found.torques).astype(np.int64) for found in known.values()]
+        torques = np.array(rows, dtype=np.int64).reshape(len(known), len(self.directions.folds))
+        leading = leading_rivals(self.directions, list(known), torques)
+        for k, (place, proposal) in enumerate(known.items()):
+            exact = [Fraction(t, scale) for t in torques[k].tolist()]
+            found = self._proved(place, proposal, exact, leading[k])
+            if found is not None:
+                self.results[place] = found
+            self.deciding[place] = {place, *leading[k], *(b for b, _ in proposal.rays)}
+
+    def _proved(
+        self, place: int, proposal: RayProposal, torques: list[Fraction], leading: list[int]
+    ) -> Actuation | None:
+        """The answer, if what is proved of the margin leaves little room."""
+        margin = Powers.of(self.directions, torques, [place, *leading]).margin(0)
+        best = margin_bound(self.directions, place, exact_weights(proposal.rays, proposal.weights))
+        if margin[0] < best * (1 - _CLOSE):
+            return None
+        margin, (_, best) = outward(margin), outward((best, best))
+        status, reason = judged(margin, torques)
+        alone = self.alone[place]
+        return Actuation(
+            self.pattern,
+            self.branches[place],
+            status,
+            reason,
+            dict(zip(self.directions.folds, torques, strict=True)),
+            margin,
+            best,
+            None,
+            False,
+            alone.dimension,
+            tuple(self.signs[b] for b in alone.independent),
+            alone.orthogonal,
+            self.directions,
+            place,
+            self.signs,
+        )
+
+    def _sharpen(self, places: set[int]) -> None:
+        for b in sorted(places):
+            with suppress(NotApplicableError):
+                self.branches[b] = self.branches[b].sharpened(_SHARP)
+        self.directions = Directions.of(self.branches)
+
+    def _one(self, place: int) -> Actuation:
+        """The answer of `actuate`."""
+        branches, named = list(self.branches), self.branches[place]
+        search = Search(self.pattern, named, branches, self.size, None, None, NODES, self.progress)
+        return search.found(time.perf_counter())

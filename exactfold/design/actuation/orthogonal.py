@@ -1,0 +1,215 @@
+"""The torques that do no work on any branch but one: their dimension, proved, and one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from scipy.linalg import qr
+
+from exactfold._support.arrays import BigArray, BoolArray, FloatArray
+from exactfold.branches.values.angles import fold_angles
+from exactfold.branches.values.branch import Branch
+from exactfold.design.actuation.directions import BITS, Directions
+from exactfold.design.actuation.powers import Powers
+from exactfold.design.actuation.programs import strongest_within
+from exactfold.pattern.crease_pattern import Edge
+from exactfold.rigidity.functionals import fold_functional
+
+_INDEPENDENT = 1e-6
+"""Pivots below this are taken for 0: what is proposed has to pass an exact test anyway."""
+
+_SCALE = 60
+"""Bits after the point of an approximate inverse."""
+
+
+@dataclass(frozen=True, repr=False)
+class OrthogonalTorques:
+    """Torques at most 1 whose power on every other branch is nearly 0, where there are such.
+
+    `share` is a proved bound of the largest power on another branch, over the power on this one.
+    It is not 0, as the fold angles of branches are irrational in general, and torques rational.
+    """
+
+    torques: Mapping[Edge, Fraction]
+    share: Fraction
+
+    def __repr__(self) -> str:
+        return f"<OrthogonalTorques: rivals have at most {float(self.share):.2g} of the power>"
+
+
+def independent_rows(
+    directions: Directions, places: Sequence[int]
+) -> tuple[list[int], list[int]] | None:
+    """Some of the branches at `places`, and as many folds, whose minor is proved not to be 0.
+
+    As many as seem independent in floating point; their vectors are then linearly independent.
+    The proof: an approximate inverse C with |C A - 1| < 1 in the norm of row sums, for every A
+    within the bounds. None where that fails, which does not mean that they are dependent.
+    """
+    matrix = directions.middles[list(places)]
+    if not len(matrix):
+        return [], []
+    _, triangle, order = qr(matrix.T, mode="economic", pivoting=True)
+    rank = int((np.abs(np.diag(triangle)) > _INDEPENDENT).sum())
+    rows = sorted(places[k] for k in order[:rank])
+    columns = sorted(qr(directions.middles[rows], mode="r", pivoting=True)[1][:rank].tolist())
+    low = directions.lows[np.ix_(rows, columns)]
+    high = directions.highs[np.ix_(rows, columns)]
+    return (rows, columns) if _is_regular(low, high) else None
+
+
+def _is_regular(low: BigArray, high: BigArray) -> bool:
+    """Whether every matrix within the bounds, in units of 2^-BITS, is proved to be regular."""
+    try:
+        inverse = np.linalg.inv(((low + high) / (2 << BITS)).astype(float))
+    except np.linalg.LinAlgError:
+        return False
+    if not np.isfinite(inverse).all():
+        return False
+    size = len(low)
+    scaled = [int(Fraction(x) * (1 << _SCALE)) for x in inverse.ravel().tolist()]
+    c = np.array(scaled, dtype=object).reshape(size, size)
+    one = 1 << _SCALE + BITS + 1
+    unit = np.array([one * (i == j) for i in range(size) for j in range(size)], dtype=object)
+    errors = abs(c @ (low + high) - unit.reshape(size, size)) + abs(c) @ (high - low)
+    return bool(max(errors.sum(axis=1)) < one)
+
+
+@dataclass(frozen=True)
+class Alone:
+    """Of the torques that do no work on any branch but one: bounds of their dimension, and proof.
+
+    `independent`: the places of other branches that are proved to be linearly independent.
+    """
+
+    dimension: tuple[int, int]
+    independent: list[int]
+    orthogonal: OrthogonalTorques | None
+
+
+def alone(
+    directions: Directions,
+    branches: Sequence[Branch],
+    place: int,
+    size: int,
+    independent: list[int] | None = None,
+) -> Alone:
+    """What is proved of the torques that do no work on any branch but that at `place`.
+
+    `size` is the dimension of all first-order motions. `independent`: other branches that have
+    been proved to be independent, if some are known.
+    """
+    others = [b for b in range(len(branches)) if b != place]
+    if independent is None:
+        independent, _ = independent_rows(directions, others) or ([], [])
+    dimension = dimension_bounds(branches, others, len(independent), size)
+    orthogonal = None
+    if dimension[0] > 0:
+        orthogonal = orthogonal_torques(directions, place, independent, directions.moving)
+    return Alone(dimension, independent, orthogonal)
+
+
+def alone_each(directions: Directions, branches: Sequence[Branch], size: int) -> Iterator[Alone]:
+    """`alone` for each branch.
+
+    Two disjoint sets of `size` independent branches, as there are in general if there are so many
+    branches, prove all: one of them is without the branch in question.
+    """
+    places = range(len(branches))
+    full: list[list[int]] = []
+    for _ in range(2):
+        rest = [b for b in places if not any(b in rows for rows in full)]
+        rows, _ = independent_rows(directions, rest) or ([], [])
+        if len(rows) < size:
+            break
+        full.append(rows)
+    for place in places:
+        known = next((rows for rows in full if place not in rows), None)
+        yield alone(directions, branches, place, size, known)
+
+
+def dimension_bounds(
+    branches: Sequence[Branch], others: Sequence[int], proved_rank: int, size: int
+) -> tuple[int, int]:
+    """Bounds of the dimension of torques orthogonal to the branches at `others`.
+
+    Torques are taken modulo those that do no work on any first-order motion, a space of dimension
+    `size`. The dimension is `size` less the rank of the others. That is at least `proved_rank`; it
+    is at most their number, and at most the dimension of the motions on which all folds are flat
+    that are proved flat on all of them; and it is known where all heights are exact rationals.
+    """
+    chosen = [branches[b] for b in others]
+    most = min(len(chosen), size)
+    if proved_rank < most:
+        most = min(most, _motions_with_flat_folds(chosen))
+    if proved_rank < most:
+        exact = _exact_rank(chosen)
+        if exact is not None:
+            return size - exact, size - exact
+    return size - most, size - proved_rank
+
+
+def _motions_with_flat_folds(branches: Sequence[Branch]) -> int:
+    """The dimension of the first-order motions with the folds flat that all branches have flat."""
+    from exactfold.exact.linalg import rank  # FLINT, for this alone
+
+    pattern = branches[0].pattern
+    vertices = range(len(pattern.vertices))
+    rows = []
+    for fold in pattern.folds:
+        if all(branch.assignment[fold] == "F" for branch in branches):
+            weights = fold_functional(pattern, fold)
+            rows.append([weights.get(v, 0) for v in vertices])
+    return len(vertices) - 3 - rank(rows)
+
+
+def _exact_rank(branches: Sequence[Branch]) -> int | None:
+    """The rank of branches all of whose heights are known to be rational, else None.
+
+    Heights modulo planes: three corners of the boundary have height 0 in every branch of a count.
+    """
+    from exactfold.exact.linalg import rank  # FLINT, for this alone
+
+    rows = []
+    for branch in branches:
+        heights = branch.exact_heights
+        if heights is None or not all(isinstance(h, Fraction) for h in heights.values()):
+            return None
+        rows.append(_densities(branch, heights))
+    return rank(rows)
+
+
+def _densities(branch: Branch, heights: Mapping[int, Fraction]) -> list[Fraction]:
+    """Exact fold densities: fold angles over lengths, which does not change the rank."""
+    found = fold_angles(branch.pattern, {v: (h, h) for v, h in heights.items()})
+    return [low for low, _ in found.densities.values()]
+
+
+def orthogonal_torques(
+    directions: Directions, chosen: int, silent: Sequence[int], moving: BoolArray
+) -> OrthogonalTorques | None:
+    """The strongest torques on branch `chosen` that do no work on the branches at `silent`.
+
+    `silent` span all others. None where none is found that works on the chosen branch.
+    """
+    units: FloatArray = directions.middles
+    found = strongest_within(units[chosen], units[list(silent)], moving)
+    if found is None:
+        return None
+    # The solver allows errors of 1e-7: project onto what is orthogonal, to rounding errors.
+    basis = qr(units[list(silent)].T, mode="economic")[0] if len(silent) else units[:0].T
+    for _ in range(2):
+        found = found - basis @ (basis.T @ found)
+    found = np.where(moving, found, 0.0) / max(1.0, np.abs(found).max())
+    torques = [Fraction(round(x * 10**15), 10**15) for x in found.tolist()]
+    powers = Powers.of(directions, torques)
+    least = powers.bounds(chosen)[0]
+    others = np.arange(len(directions)) != chosen
+    largest = max(np.maximum(powers.high, -powers.low)[others].tolist(), default=0)
+    if least <= 0:
+        return None
+    share = Fraction(largest, powers.unit) / least
+    return OrthogonalTorques(dict(zip(directions.folds, torques, strict=True)), share)

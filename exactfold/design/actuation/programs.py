@@ -1,0 +1,65 @@
+"""Linear programs that propose torques; what they return is floating point and proves nothing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linprog
+
+from exactfold._support.arrays import BoolArray, FloatArray
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """`torques` by fold, their `margin`, and `weights` of the rivals: the dual solution."""
+
+    torques: FloatArray
+    margin: float
+    weights: FloatArray
+
+
+def largest_margin(
+    gaps: FloatArray, allowed: BoolArray, limited: BoolArray | None = None, most: int = 0
+) -> Proposal:
+    """Maximise m with gaps @ tau >= m, |tau_e| <= 1, tau_e = 0 unless allowed.
+
+    Row r of `gaps` is u - u_r for rival r. With `limited`, the sizes of the torques on these folds
+    add up to at most `most`: that admits all torques on at most `most` of them, and more.
+    """
+    count, folds = gaps.shape
+    reach = allowed.astype(float)
+    # tau = up - down, then m.
+    rows = np.column_stack([-gaps, gaps, np.ones(count)])
+    limits = np.zeros(count)
+    if limited is not None:
+        rows = np.vstack([rows, [*limited.astype(float), *limited.astype(float), 0.0]])
+        limits = np.append(limits, most)
+    found = linprog(
+        [*np.zeros(2 * folds), -1.0],
+        A_ub=rows,
+        b_ub=limits,
+        bounds=[*((0.0, r) for r in [*reach, *reach]), (None, None)],
+        method="highs-ds",
+    )
+    if found.x is None:
+        return Proposal(np.zeros(folds), 0.0, np.full(count, 1 / count))
+    weights = np.maximum(-found.ineqlin.marginals[:count], 0.0)
+    total = weights.sum()
+    weights = weights / total if total > 0 else np.full(count, 1 / count)
+    return Proposal(found.x[:folds] - found.x[folds : 2 * folds], float(found.x[-1]), weights)
+
+
+def strongest_within(
+    target: FloatArray, silent: FloatArray, allowed: BoolArray
+) -> FloatArray | None:
+    """Maximise target . tau with silent @ tau = 0, |tau_e| <= 1; None if that fails."""
+    reach = allowed.astype(float)
+    found = linprog(
+        -target,
+        A_eq=silent if len(silent) else None,
+        b_eq=np.zeros(len(silent)) if len(silent) else None,
+        bounds=[(-r, r) for r in reach],
+        method="highs-ds",
+    )
+    return None if found.x is None else np.asarray(found.x, dtype=np.float64)

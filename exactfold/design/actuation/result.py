@@ -1,0 +1,204 @@
+"""Torques for one branch with what is proved of them, and how they rank all branches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import Verdict
+from exactfold.branches.values.branch import Branch
+from exactfold.design.actuation.directions import Directions
+from exactfold.design.actuation.orthogonal import OrthogonalTorques
+from exactfold.design.actuation.powers import Powers
+from exactfold.errors import UsageError
+from exactfold.exact.numbers import RationalLike, as_rational, format_rational
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.described import described
+from exactfold.pattern.near_degeneracy import warnings
+
+Bounds = tuple[Fraction, Fraction]
+
+_DIGITS = 15
+"""Digits after the point of bounds that are shown or kept, rounded outwards."""
+
+
+def outward(bounds: Bounds) -> Bounds:
+    """The bounds as decimals with 15 digits after the point, no narrower.
+
+    >>> outward((Fraction(1, 3), Fraction(1, 2)))
+    (Fraction(333333333333333, 1000000000000000), Fraction(1, 2))
+    """
+    scale = 10**_DIGITS
+    low, high = bounds
+    return Fraction(low * scale // 1, scale), Fraction(-(-high * scale // 1), scale)
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """One branch in a ranking by power.
+
+    `signs` name the branch as it is listed; `ray` is 1 if the ray with these signs has the larger
+    power, -1 if the opposite one has it (all signs reversed), 0 if neither is proved. `power`:
+    bounds of that of the stronger ray. `above_next`: it is proved to exceed that of the next.
+    """
+
+    signs: str
+    ray: int
+    power: Bounds
+    above_next: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        """The object in `ranking` of the JSON output."""
+        return {
+            "signs": self.signs,
+            "ray": self.ray,
+            "power": [format_rational(x) for x in self.power],
+            "above_next": self.above_next,
+        }
+
+
+@dataclass(frozen=True, repr=False)
+class Actuation:
+    """Torques that drive a sheet along one ray of one branch, and what is proved of them.
+
+    The power of torques tau along a ray with unit vector u of fold angles is tau . u; the margin is
+    the power along the ray of `branch` less the largest along any of the other 2B - 1 rays, and
+    `margin` are proved bounds of it. All torques have size at most 1, a positive one folds its
+    crease towards a valley. `best`: no such torques, on at most `creases` folds if that is given,
+    have a larger margin; proved. `given` tells torques that were given from those that were found.
+
+    `orthogonal_dimension`: proved bounds of the dimension of the torques that do no work on any
+    other branch (Tachi and Hull's necessary condition), modulo those that do none on any motion.
+    `independent`: other branches whose fold angles are proved to be linearly independent.
+    `orthogonal` is an example, where the dimension is proved to be positive.
+
+    `status` is PROVED if the margin is proved to be positive, REFUTED if it is proved not to be.
+    """
+
+    pattern: CreasePattern
+    branch: Branch
+    status: Verdict
+    reason: str
+    torques: Mapping[Edge, Fraction]
+    margin: Bounds
+    best: Fraction
+    creases: int | None
+    given: bool
+    orthogonal_dimension: tuple[int, int]
+    independent: tuple[str, ...]
+    orthogonal: OrthogonalTorques | None
+    directions: Directions
+    place: int
+    signs: tuple[str, ...]
+    seconds: float = field(default=0.0, compare=False)
+
+    @cached_property
+    def driven(self) -> tuple[Edge, ...]:
+        """The folds with a torque that is not 0."""
+        return tuple(fold for fold, torque in self.torques.items() if torque)
+
+    @cached_property
+    def power(self) -> Bounds:
+        """Proved bounds of the power along the ray of the branch."""
+        return outward(self._powers(self.torques).bounds(self.place))
+
+    @cached_property
+    def largest_rival(self) -> Bounds:
+        """Proved bounds of the largest power along any other ray."""
+        return outward(self._powers(self.torques).largest_rival(self.place))
+
+    def ranking(self, torques: Mapping[Edge, RationalLike] | None = None) -> list[Ranked]:
+        """All branches by the power of their stronger ray, largest first; by default of `torques`.
+
+        `torques` by fold (i, j), i < j, exact numbers of any size; folds that are not named have 0.
+        Raises `UsageError` for what is not a fold of the pattern, `NumberError` for floats.
+
+        >>> from exactfold.design.actuation.actuate import actuate
+        >>> found = actuate("two-vertex", "+-")
+        >>> [(row.signs, row.ray, row.above_next) for row in found.ranking()]
+        [('+-', 1, True), ('--', 1, True), ('-+', -1, True), ('++', 1, True)]
+        """
+        powers = self._powers(self.torques if torques is None else self.checked(torques))
+        low, high = np.maximum(powers.low, -powers.high), np.maximum(powers.high, -powers.low)
+        order = sorted(range(len(low)), key=lambda b: (-low[b] - high[b], b))
+        found = []
+        least_after: list[bool] = []
+        largest = None
+        for b in reversed(order):
+            least_after.append(largest is None or bool(low[b] > largest))
+            largest = high[b] if largest is None else max(largest, high[b])
+        for b, above in zip(order, reversed(least_after), strict=True):
+            ray = 1 if powers.low[b] > 0 else -1 if powers.high[b] < 0 else 0
+            bounds = Fraction(max(low[b], 0), powers.unit), Fraction(high[b], powers.unit)
+            found.append(Ranked(self.signs[b], ray, outward(bounds), above))
+        return found
+
+    def checked(self, torques: Mapping[Edge, RationalLike]) -> dict[Edge, Fraction]:
+        """Torques of all folds from those of some. Raises as `ranking`."""
+        return checked_torques(self.pattern, torques)
+
+    def _powers(self, torques: Mapping[Edge, Fraction]) -> Powers:
+        return Powers.of(self.directions, [torques[fold] for fold in self.directions.folds])
+
+    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold actuate --json`: `schema("actuate")`."""
+        low, high = self.orthogonal_dimension
+        orthogonal = self.orthogonal
+        return {
+            **headed("actuate"),
+            "pattern": described(self.pattern, name),
+            "status": str(self.status),
+            "reason": self.reason,
+            "vertex_signs": {str(v): s for v, s in sorted(self.branch.vertex_signs.items())},
+            "assignment": {f"{i}-{j}": a for (i, j), a in sorted(self.branch.assignment.items())},
+            "torques": _texts(self.torques),
+            "given": self.given,
+            "creases": self.creases,
+            "margin": [format_rational(x) for x in self.margin],
+            "best": format_rational(self.best),
+            "power": [format_rational(x) for x in self.power],
+            "largest_rival": [format_rational(x) for x in self.largest_rival],
+            "orthogonal_dimension": [low, high],
+            "independent": list(self.independent),
+            "orthogonal": None
+            if orthogonal is None
+            else {
+                "torques": _texts(orthogonal.torques),
+                "share": format_rational(outward((orthogonal.share, orthogonal.share))[1]),
+            },
+            "ranking": [row.to_dict() for row in self.ranking()],
+            "warnings": warnings(self.pattern),
+            "seconds": round(self.seconds, 3),
+        }
+
+    def __repr__(self) -> str:
+        signs = self.branch.sign_text
+        text = signs if len(signs) <= 32 else f"{signs[:29]}..."
+        return (
+            f"<Actuation of {text}: {self.status}, margin {float(self.margin[0]):.4g} "
+            f"of at most {float(self.best):.4g}>"
+        )
+
+
+def checked_torques(
+    pattern: CreasePattern, torques: Mapping[Edge, RationalLike]
+) -> dict[Edge, Fraction]:
+    """Exact torques of all folds from those of some.
+
+    Raises `UsageError` for what is not a fold of the pattern, `NumberError` for floats.
+    """
+    folds = set(pattern.folds)
+    for fold in torques:
+        if fold not in folds:
+            raise UsageError(f"{fold!r} is not a fold (i, j), i < j, of the pattern")
+    return {fold: as_rational(torques.get(fold, 0)) for fold in pattern.folds}
+
+
+def _texts(torques: Mapping[Edge, Fraction]) -> dict[str, str]:
+    return {f"{i}-{j}": format_rational(torque) for (i, j), torque in sorted(torques.items())}

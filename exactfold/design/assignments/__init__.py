@@ -1,0 +1,1 @@
+"""Which branches have given mountains and valleys, and why the others have not."""

@@ -1,0 +1,204 @@
+"""`match_rim`: whether some rim of a sheet with more than four corners has given letters."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from typing import Final
+
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.branches.counting.find import find_branch
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.letters import differing
+from exactfold.design.assignments.bend_program import BendProgram
+from exactfold.design.assignments.boundary_search import RimSearch
+from exactfold.design.circles.circles import all_assignments
+from exactfold.design.refutations.asked import by_fold
+from exactfold.design.refutations.refutation import Letters, Refutation
+from exactfold.design.refutations.sign_tree import SignSearch, Tree
+from exactfold.errors import NotCountedError
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.loading import PatternLike, as_pattern
+
+_MOST_LISTED: Final = 4
+"""Most foldable vertices of a pentagon whose assignments are listed where a rim is not found."""
+
+
+@dataclass(frozen=True, repr=False)
+class RimMatch:
+    """Whether a sheet with more than four corners starts to fold with given letters.
+
+    `starts` PROVED: `branch` has them, over the heights `Branch.rim` of the border. REFUTED: no
+    solution has; `tree` covers all signs of vertices by sets that are refuted, `refutations` by
+    vectors, `reasons` says those that need none; `listed`: for some signs that is shown by the
+    complete list of `all_assignments` instead. UNDECIDED: neither was shown for the signs
+    `open_signs`. `sheet` is the pattern without what lies in triangulated triangles, where vertex v
+    is `labels[v]` of the pattern; `leaves`: for how many sign vectors a rim was looked for.
+    """
+
+    pattern: CreasePattern
+    letters: Letters
+    starts: Verdict
+    branch: Branch | None
+    sheet: CreasePattern
+    labels: tuple[int, ...]
+    reasons: tuple[str, ...]
+    open_signs: tuple[Mapping[int, int], ...]
+    tree: Tree[Branch | None]
+    listed: bool = False
+    seconds: float = field(default=0.0, compare=False)
+
+    @property
+    def status(self) -> Verdict:
+        """PROVED if the question is answered, whatever the answer; else UNDECIDED."""
+        return UNDECIDED if self.starts is UNDECIDED else PROVED
+
+    @property
+    def refutations(self) -> tuple[Refutation, ...]:
+        """The vectors that were used."""
+        return self.tree.refutations
+
+    @property
+    def leaves(self) -> int:
+        """For how many sign vectors a rim was looked for."""
+        return len(self.tree.leaves)
+
+    def __repr__(self) -> str:
+        return f"<RimMatch: starts {self.starts}, {self.leaves} sign vectors, {self.pattern!r}>"
+
+
+def match_rim(
+    pattern: PatternLike,
+    letters: Mapping[Edge, str] | str,
+    *,
+    most: int = 16,
+    progress: Progress | None = None,
+) -> RimMatch:
+    """Whether a sheet with more than four corners starts to fold with given letters.
+
+    `letters`: by fold (i, j), i < j, or a text in the order of the folds: "M", "V", "F" for a fold
+    that is to stay flat, "U" where anything may be; folds left out are free. Signs of vertices are
+    refuted as by `match`, for any border. For the signs of all vertices that are left, a rim is
+    looked for, in floating point, whose branch has the letters; its heights are rounded, and the
+    branch over it is proved by `find_branch` (docs/assignment.md, More than four corners). The
+    first that is found ends the search. At most `most` sign vectors are tried; what is open then is
+    decided by `all_assignments` where the sheet has five corners and few vertices.
+
+    A rim is looked for only if the border is convex and no fold with "F" can move. Raises
+    `UsageError` for letters that do not fit, and `NotCountedError` for fewer than five boundary
+    vertices, or if no vertex can pop.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> found = match_rim(single_vertex(5), "MMVMV")
+    >>> found.starts, found.branch.sign_text, found.branch.assignment_text
+    (<Verdict.PROVED: 'proved'>, '+', 'MMVMV')
+    >>> match_rim(single_vertex(5), "MMVVV").starts
+    <Verdict.REFUTED: 'refuted'>
+    """
+    given = as_pattern(pattern)
+    if given.Ve < 5:
+        raise NotCountedError(
+            f"a rim is looked for on sheets with more than four corners; this one has {given.Ve}"
+        )
+    return _Search(given, by_fold(given.folds, letters), most, progress).result()
+
+
+def can_pop(pattern: CreasePattern) -> bool:
+    """Whether some vertex can pop: one that lies in no triangulated triangle.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> can_pop(single_vertex(5))
+    True
+    """
+    return bool(pattern.without_rigid_parts()[0].interior)
+
+
+class _Search(SignSearch["Branch | None"]):
+    """The search whose leaves are branches over a rim that was found, or None."""
+
+    def __init__(
+        self, pattern: CreasePattern, letters: Letters, most: int, progress: Progress | None
+    ) -> None:
+        self.pattern, self.progress = pattern, progress
+        self.start = time.perf_counter()
+        sheet, labels = pattern.without_rigid_parts()
+        if not sheet.interior:
+            raise NotCountedError("no vertex can pop: letters of single creases are free")
+        super().__init__(sheet, labels, letters, most)
+        self.branch: Branch | None = None
+
+    @cached_property
+    def program(self) -> BendProgram:
+        """The cone program in bends, in which partial solutions are in no way."""
+        return BendProgram(self.sheet, self.own)
+
+    @cached_property
+    def rims(self) -> RimSearch | None:
+        """The search for rims; None where none can be shown to have the letters."""
+        if not self.sheet.is_convex or "F" in self.own.values():
+            return None
+        return RimSearch(self.sheet, self.own)
+
+    def result(self) -> RimMatch:
+        self.searched()
+        listed = self.branch is None and bool(self.open) and self._is_listed()
+        if listed or self.branch is not None:
+            self.open = []
+        starts = PROVED if self.branch is not None else UNDECIDED if self.open else REFUTED
+        return RimMatch(
+            self.pattern,
+            self.letters,
+            starts,
+            self.branch,
+            self.sheet,
+            self.labels,
+            tuple(self.reasons),
+            tuple(self.open),
+            self.tree(),
+            listed,
+            time.perf_counter() - self.start,
+        )
+
+    def _is_listed(self) -> bool:
+        """Whether a complete list of assignments shows what is open; the branch, if there is one.
+
+        Letters M and V hold near a solution that has them, and so on some arc without flat folds.
+        Where folds are flat along whole arcs the list has letters of all folds only.
+        """
+        if self.rims is None or self.sheet.Ve != 5 or self.sheet.Vi > _MOST_LISTED:
+            return False
+        found = all_assignments(self.pattern, progress=self.progress)
+        for circle in found.circles:
+            for arc in circle.arcs:
+                letters = dict(zip(self.pattern.folds, arc.letters, strict=True))
+                if not any(differing(self.letters, letters)):
+                    self._take(circle.signs, arc.rim)
+        if found.points is not None and "U" in self.own.values():
+            return False
+        text = "".join(self.letters[fold] for fold in self.pattern.folds)
+        occurs = found.points is not None and text in found.assignments
+        return found.status is PROVED and self.branch is None and not occurs
+
+    def _take(self, signs: str | Mapping[int, int], rim: Mapping[int, Fraction]) -> None:
+        """Keep the branch over a rim if it is proved and has the letters."""
+        branch = find_branch(self.pattern, signs, rim=rim)
+        if branch.status is PROVED and not any(differing(self.letters, branch.assignment)):
+            self.branch, self.done = branch, True
+
+    def _at_leaf(self, signs: dict[int, int]) -> Branch | None:
+        """The branch with these signs over a rim that seems to give it the letters, if it has."""
+        if self.progress is not None:
+            self.progress("sign vectors", len(self.leaves) + 1, 0)
+        bends = self.program.bends.get(frozenset(signs.items()))
+        rim = None
+        if self.rims is not None:
+            rim = self.rims.found(signs, None if bends is None else bends.slopes)
+        if rim is not None:
+            self._take(self.named(signs), {self.labels[v]: height for v, height in rim.items()})
+        if self.branch is None:
+            self.open.append(self.named(signs))
+        return self.branch

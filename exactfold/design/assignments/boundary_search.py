@@ -1,0 +1,218 @@
+"""Rims over which a branch has given letters, looked for in floating point; they prove nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from typing import Final
+
+import numpy as np
+from scipy import sparse
+from scipy.optimize import linprog
+
+from exactfold._support.arrays import FloatArray
+from exactfold.design.refutations.refutation import Letters
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.equations.boundary_heights import above_plane, default_rim
+from exactfold.rigidity.equations.problem import Problem
+from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.solve.numeric.sparse_newton import solve
+from exactfold.solve.numeric.sparse_sheet import FloatSheet
+
+_SAMPLES: Final = 12
+_STARTS: Final = 3
+_STEPS: Final = 40
+_ENOUGH: Final = 0.02
+_POSITIVE: Final = 1e-9
+_MORE: Final = 4
+_WATCHED: Final = 8
+_LEAST_GAIN: Final = 0.1
+_DIGITS: Final = (1, 2, 3, 4, 6, 9, 12)
+
+
+class RimSearch:
+    """Local search for the rims of one convex sheet, for the letters of all its folds.
+
+    Over a rim b there is one solution h_e(b) in the closed nappes of e, continuous in b
+    (docs/circles.md, Theorem 1). The least of the signed fold angles of the folds with letters,
+    over the largest, is to be positive. A linear program on the tangents K_v = 0 proposes a step,
+    of a length that is found by trial; its rim is taken, and Newton's method on the nappes finds
+    the solution over that.
+    """
+
+    def __init__(self, sheet: CreasePattern, letters: Letters) -> None:
+        self.sheet = sheet
+        self._floats = FloatSheet.of(Sheet(Problem.of(sheet, rim=default_rim(sheet))))
+        value = {"V": 1.0, "M": -1.0}
+        self._sides = np.array([value.get(letters[fold], 0.0) for fold in sheet.folds])
+        self._angles = self._rows()
+        self._pinned = _three_corners(sheet)
+        self._rim = np.array(sheet.boundary)
+        self._random = np.random.default_rng(0)
+
+    def _rows(self) -> sparse.csr_matrix:
+        """The fold angle nearly, for small heights, of each fold: omega_f L_f."""
+        floats, count = self._floats, len(self._floats.lengths)
+        values = floats.weights * floats.lengths[:, None]
+        places = (np.repeat(np.arange(count), 4), floats.corners.ravel())
+        return sparse.csr_matrix((values.ravel(), places), shape=(count, len(floats.rim)))
+
+    def found(
+        self, signs: Mapping[int, int], slopes: FloatArray | None
+    ) -> dict[int, Fraction] | None:
+        """A rational rim over which the solution with these signs seems to have the letters.
+
+        `slopes`: fold angles from which to start (`Bends`).
+        """
+        e = np.array([float(signs[v]) for v in self.sheet.interior])
+        over = [self._over(rim, e, None) for rim in self._starts(slopes)]
+        first = [h for h in over[: slopes is not None] if h is not None]
+        rest = sorted((h for h in over[len(first) :] if h is not None), key=self._margin)
+        for h in [*first, *rest[: -_STARTS - 1 : -1]]:
+            best = self._climbed(h, e)
+            rounded = None if best is None else self._rounded(best, e)
+            if rounded is not None:
+                return rounded
+        return None
+
+    # --- solutions over rims ---------------------------------------------------------------------
+
+    def _over(
+        self, rim: FloatArray, signs: FloatArray, start: FloatArray | None
+    ) -> FloatArray | None:
+        """The heights of the solution over a rim, shape (V,), the largest fold angle being 1."""
+        floats = replace(self._floats, rim=rim)
+        with np.errstate(all="ignore"):
+            end = solve(floats, signs, start)
+            if end.failure and start is not None:
+                end = solve(floats, signs, None)
+        if end.failure or not np.isfinite(end.x).all():
+            return None
+        h = floats.heights(end.x)
+        largest = float(np.abs(self._angles @ h).max())
+        return h / largest if largest else None
+
+    def _margin(self, h: FloatArray) -> float:
+        """The least signed fold angle of those with letters, over the largest."""
+        angles = self._angles @ h
+        held = self._sides != 0
+        return float((self._sides * angles)[held].min() / np.abs(angles).max())
+
+    def _starts(self, slopes: FloatArray | None) -> Iterator[FloatArray]:
+        count = len(self._floats.rim)
+        if slopes is not None:
+            free = [v for v in range(count) if v not in self._pinned]
+            h = np.zeros(count)
+            h[free] = np.linalg.lstsq(self._angles.toarray()[:, free], slopes, rcond=None)[0]
+            inside = list(self.sheet.interior)
+            h[inside] = 0.0
+            yield h
+        yield self._floats.rim
+        yield -self._floats.rim
+        for _ in range(_SAMPLES):
+            rim = np.zeros(count)
+            rim[self._rim] = self._random.normal(size=len(self._rim))
+            yield rim
+
+    # --- the way up ------------------------------------------------------------------------------
+
+    def _climbed(self, h: FloatArray, signs: FloatArray) -> FloatArray | None:
+        """Heights with the letters, from others with the same signs; None if none are found."""
+        value, radius, after = self._margin(h), 0.5, 0
+        reached: list[float] = []
+        for _ in range(_STEPS):
+            if value > _ENOUGH or after > _MORE or radius < 1e-4:
+                break
+            if len(reached) >= _WATCHED and value < (1 - _LEAST_GAIN) * reached[-_WATCHED] < 0:
+                break  # it has hardly grown
+            reached.append(value)
+            step = self._step(h, radius)
+            if step is None:
+                break
+            new = self._over(self._on_rim(h + step), signs, (h + step)[list(self.sheet.interior)])
+            gained = -1.0 if new is None else self._margin(new) - value
+            if new is not None and gained > 0:
+                h, value = new, value + gained
+                radius = min(2 * radius, 2.0)
+            else:
+                radius /= 3
+            after += value > _POSITIVE
+        return h if value > _POSITIVE else None
+
+    def _on_rim(self, h: FloatArray) -> FloatArray:
+        rim = np.zeros_like(h)
+        rim[self._rim] = h[self._rim]
+        return rim
+
+    def _step(self, h: FloatArray, radius: float) -> FloatArray | None:
+        """The best step in the tangent space: unknowns are the heights and the margin."""
+        floats, count = self._floats, len(h)
+        held = np.flatnonzero(self._sides)
+        ways = sparse.diags(-self._sides[held]) @ self._angles[held]
+        angles = self._angles @ h
+        bound = sparse.vstack([self._angles, -self._angles])
+        upper = sparse.vstack(
+            [
+                sparse.hstack([ways, np.ones((len(held), 1))]),
+                sparse.hstack([bound, sparse.csr_matrix((bound.shape[0], 1))]),
+            ]
+        )
+        limits = np.concatenate([self._sides[held] * angles[held], 1 - angles, 1 + angles])
+        tangents = self._tangents(floats.bends(h), count)
+        largest = radius * float(np.abs(h - h.mean()).max())
+        bounds = [(0, 0) if v in self._pinned else (-largest, largest) for v in range(count)]
+        found = linprog(
+            np.append(np.zeros(count), -1.0),
+            A_ub=upper.tocsr(),
+            b_ub=limits,
+            A_eq=sparse.hstack([tangents, sparse.csr_matrix((tangents.shape[0], 1))]).tocsr(),
+            b_eq=np.zeros(tangents.shape[0]),
+            bounds=[*bounds, (None, 1)],
+            method="highs",
+        )
+        return np.array(found.x[:count]) if found.status == 0 else None
+
+    def _tangents(self, omega: FloatArray, count: int) -> sparse.csr_matrix:
+        """dK_v at heights with these bends, a row for each interior vertex, scaled to size 1."""
+        i, j = self._floats.corners[:, 0], self._floats.corners[:, 1]
+        values = np.concatenate([omega, -omega, omega, -omega])
+        places = (np.concatenate([i, i, j, j]), np.concatenate([j, i, i, j]))
+        rows = sparse.csr_matrix((values, places), shape=(count, count))[list(self.sheet.interior)]
+        sizes = np.maximum(np.abs(rows).max(axis=1).toarray().ravel(), 1e-300)
+        return sparse.diags(1 / sizes) @ rows
+
+    # --- rational rims ---------------------------------------------------------------------------
+
+    def _rounded(self, h: FloatArray, signs: FloatArray) -> dict[int, Fraction] | None:
+        """A rim near that of h with as few digits as keep half of the margin, the largest 1."""
+        given = {int(v): Fraction(float(h[v])) for v in self._rim}
+        level = above_plane(self.sheet, given)
+        largest = max(map(abs, level.values()))
+        if not largest:
+            return None
+        wanted = self._margin(h) / 2
+        for digits in _DIGITS:
+            unit = 10**digits
+            rim = {v: Fraction(round(unit * x / largest), unit) for v, x in level.items()}
+            heights = np.zeros_like(h)
+            for v, x in rim.items():
+                heights[v] = float(x)
+            if not any(above_plane(self.sheet, rim).values()):
+                continue
+            near = self._over(heights, signs, None)
+            if near is not None and self._margin(near) > wanted:
+                return rim
+        return None
+
+
+def _three_corners(sheet: CreasePattern) -> tuple[int, ...]:
+    """Three boundary vertices that are far from being on one line."""
+    a, b = sheet.boundary[:2]
+    (ax, ay), (bx, by) = sheet.vertices[a], sheet.vertices[b]
+
+    def area(v: int) -> Fraction:
+        x, y = sheet.vertices[v]
+        return abs((bx - ax) * (y - ay) - (by - ay) * (x - ax))
+
+    return a, b, max(sheet.boundary, key=area)

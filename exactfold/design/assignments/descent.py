@@ -1,0 +1,94 @@
+"""A half of a branch with few other letters, found by popping vertices, one or two at a time."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import combinations
+
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED
+from exactfold.branches.counting.find import BranchFinder
+from exactfold.branches.values.letters import differing
+from exactfold.design.assignments.search import Matched
+from exactfold.design.refutations.refutation import Letters
+from exactfold.pattern.crease_pattern import CreasePattern
+
+
+@dataclass
+class Descent:
+    """Looks at branches one by one, `finds` of them at most, and keeps what it has seen.
+
+    Nothing follows from what it does not find.
+    """
+
+    pattern: CreasePattern
+    letters: Letters
+    finds: int
+    progress: Progress | None = None
+    seen: dict[tuple[int, ...], tuple[int, tuple[Matched, ...]]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.finder = BranchFinder(self.pattern)
+        self.done = 0
+
+    def leaning(self) -> dict[int, int]:
+        """For each vertex the sign for which most of its letters speak: up for mountains."""
+        found = {}
+        for v in self.finder.poppable:
+            near = [letter for fold, letter in self.letters.items() if v in fold and letter in "MV"]
+            found[v] = 1 if 2 * near.count("M") >= len(near) else -1
+        return found
+
+    def descended(self, signs: Mapping[int, int]) -> list[Matched]:
+        """The halves seen on the way down from these signs, of all vertices that can pop."""
+        here = dict(signs)
+        best, halves = self._looked_at(here)
+        found = [*halves]
+        moved = True
+        while moved and best and self.done < self.finds:
+            moved = False
+            for moves in self._moves(here):
+                there = here | {v: -here[v] for v in moves}
+                distance, halves = self._looked_at(there)
+                found += halves
+                if distance < best:
+                    here, best, moved = there, distance, True
+                    break
+                if self.done >= self.finds:
+                    break
+        return found
+
+    def _looked_at(self, signs: Mapping[int, int]) -> tuple[int, tuple[Matched, ...]]:
+        """How many letters differ at least on the two halves with these signs, and the halves."""
+        key = tuple(signs[v] for v in self.finder.poppable)
+        if key not in self.seen:
+            halves = []
+            for side in (1, -1):
+                self.done += 1
+                if self.progress is not None:
+                    self.progress("branches near the letters", self.done, self.finds)
+                branch = self.finder.find({v: side * sign for v, sign in signs.items()})
+                if branch.status is PROVED:
+                    halves.append(Matched(branch, side))
+            far = len(self.letters) + 1
+            distance = min((sum(map(len, self._differing(h))) for h in halves), default=far)
+            self.seen[key] = distance, tuple(halves)
+        return self.seen[key]
+
+    def _differing(self, half: Matched) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
+        return differing(self.letters, half.assignment)
+
+    def _moves(self, signs: Mapping[int, int]) -> Iterator[tuple[int, ...]]:
+        """Vertices to pop: one at an end of a fold of another letter, then two of them.
+
+        Those with most such folds first.
+        """
+        _, halves = self._looked_at(signs)
+        wrong: Counter[int] = Counter()
+        for half in halves:
+            wrong.update(v for fold in self._differing(half)[0] for v in fold)
+        near = sorted((v for v in self.finder.poppable if v in wrong), key=lambda v: (-wrong[v], v))
+        yield from ((v,) for v in near)
+        yield from combinations(near, 2)

@@ -1,0 +1,252 @@
+"""`nearest_branches`: the branches whose letters differ at the fewest folds from given ones."""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass
+from itertools import count
+
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.branches.counting.collect import count_branches
+from exactfold.branches.values.letters import differing
+from exactfold.design.assignments.conflicts import (
+    Clause,
+    Folds,
+    Stars,
+    clause_of,
+    disjoint,
+    to_blame,
+)
+from exactfold.design.assignments.descent import Descent
+from exactfold.design.assignments.search import Match, Matched, match
+from exactfold.pattern.crease_pattern import Edge
+
+LISTED = 12
+"""Most foldable vertices of which all branches are listed."""
+_MOST, _LEAST = 1000, 8
+"""Searches for all vertices together, and for a sheet at least."""
+_FINDS = 6
+"""Branches that are looked at one by one, for each of the searches."""
+_LOCAL = 10
+"""So many sets of folds whose stars alone refute them take the time of one that needs more."""
+
+
+@dataclass(frozen=True, repr=False)
+class Nearest:
+    """The halves of branches whose letters differ at the fewest folds from those of `match`.
+
+    `halves` differ at `distance` folds each; None, and no halves, if none was found. Every half of
+    a branch differs at `at_least` folds or more: this is proved. So `status` is PROVED if
+    `distance` is `at_least`; UNDECIDED halves are the nearest found. `complete`: there is no other
+    half as near. `by`: "match" if the letters are those of a branch, "list" if all branches were
+    listed, else "search".
+    """
+
+    match: Match
+    status: Verdict
+    distance: int | None
+    at_least: int
+    halves: tuple[Matched, ...]
+    complete: bool
+    by: str
+
+    def differences(self, half: Matched) -> dict[Edge, tuple[str, str]]:
+        """By fold, the letter wanted and that of a half, where they differ."""
+        letters = half.assignment
+        wanted = self.match.letters
+        return {f: (wanted[f], letters[f]) for f in differing(wanted, letters)[0]}
+
+    def __repr__(self) -> str:
+        far = "none found" if self.distance is None else f"distance {self.distance}"
+        return (
+            f"<Nearest: {self.status}, {far}, at least {self.at_least}, {len(self.halves)} halves>"
+        )
+
+
+def nearest_branches(
+    found: Match, *, tries: int | None = None, progress: Progress | None = None
+) -> Nearest:
+    """The halves of branches whose letters differ at the fewest folds from those of a match.
+
+    Of a sheet with at most 12 foldable vertices all branches are listed. Of others sets of folds
+    are freed, smallest first, until the letters of the rest are those of a branch: where they are
+    not, the refutations name folds of which every branch has one with another letter, so that only
+    these need to be freed (docs/assignment.md, The nearest branches). Beside that, vertices are
+    popped one by one as long as more letters agree. `tries`: how many sets it takes a search
+    (`match`) for, by default 1000 by the number of foldable vertices, or 8; a half of them at most
+    is spent on other halves that are as near as one proved. What is not proved to be nearest is
+    UNDECIDED. Raises the errors of `count_branches`.
+
+    >>> from exactfold.pattern.random_squares import random_square
+    >>> none = match(random_square(8, seed=1), "VMMVMVVMMVVMMVMVMMVVMVVVM")
+    >>> near = nearest_branches(none)
+    >>> near
+    <Nearest: proved, distance 1, at least 1, 1 halves>
+    >>> near.differences(near.halves[0])
+    {(0, 4): ('V', 'M')}
+    """
+    if found.matches:
+        complete = found.status is PROVED
+        return Nearest(found, PROVED, 0, 0, found.matches, complete, "match")
+    if found.sheet.Vi <= LISTED:
+        listed = _listed(found, progress)
+        if listed is not None:
+            return listed
+    return _Search(found, tries, progress).result()
+
+
+def _listed(found: Match, progress: Progress | None) -> Nearest | None:
+    """The nearest of all branches; None if not all are proved, or a letter that counts is not."""
+    listed = count_branches(found.pattern, progress=progress)
+    if listed.status is not PROVED:
+        return None
+    halves = [Matched(branch, side) for branch in listed.branches for side in (1, -1)]
+    sets = [differing(found.letters, half.assignment) for half in halves]
+    least = min(len(other) + len(unknown) for other, unknown in sets)
+    if any(unknown and len(other) <= least for other, unknown in sets):
+        return None
+    near = [h for h, (other, _) in zip(halves, sets, strict=True) if len(other) == least]
+    return Nearest(found, PROVED, least, least, tuple(near), True, "list")
+
+
+class _Search:
+    """Sets of folds that are freed, those with the least bound first.
+
+    A set F stands for the halves that differ at all folds of F. If the other letters are those of
+    no half, each such half is known or differs at one fold more, of some set C; so the sets F with
+    one fold of C take the place of F. Halves that are not known differ at as many folds as
+    the least bound of a set that is left, or more.
+    """
+
+    def __init__(self, found: Match, tries: int | None, progress: Progress | None) -> None:
+        self.found, self.progress = found, progress
+        n = found.sheet.Vi
+        self.tries = max(_LEAST, _MOST // n) if tries is None else tries
+        labels = found.labels
+        moving = {
+            (min(labels[i], labels[j]), max(labels[i], labels[j])) for i, j in found.sheet.folds
+        }
+        self.stuck = [f for f, x in found.letters.items() if x in "MV" and f not in moving]
+        """Folds in triangulated triangles, which differ on every half."""
+        self.letters = {f: x if f in moving else "U" for f, x in found.letters.items()}
+        own = {
+            (i, j): self.letters[min(labels[i], labels[j]), max(labels[i], labels[j])]
+            for i, j in found.sheet.folds
+        }
+        self.stars = Stars(found.sheet, own, labels)
+        self.known: dict[tuple[str, int], Matched] = {}
+        self.unclear: int | None = None
+        self.tried = 0
+
+    def result(self) -> Nearest:
+        bound = self._bound(frozenset())
+        for _, halves in self.found.compared:
+            self._note(halves)
+        descent = Descent(self.found.pattern, self.letters, _FINDS * self.tries, self.progress)
+        alone: dict[int, set[int]] = {}
+        for clause in self.stars.clauses(frozenset()):
+            for v, sign in clause.signs:
+                alone.setdefault(v, set()).add(-sign)
+        forced = {v: sign for v, (sign, *more) in alone.items() if not more}
+        starts = [signs for signs, _ in self.found.compared[:1]] or [forced]
+        self._note(descent.descended(descent.leaning() | dict(starts[0])))
+        left = self._freed(bound)
+        best = self._best()
+        bounds = [bound for bound in (left, best, self.unclear) if bound is not None]
+        at_least = min(bounds, default=len(self.stuck))
+        others = [bound for bound in (left, self.unclear) if bound is not None]
+        return Nearest(
+            self.found,
+            PROVED if best is not None and best == at_least else UNDECIDED,
+            best,
+            at_least,
+            () if best is None else self._at(best),
+            best is not None and all(bound > best for bound in others),
+            "search",
+        )
+
+    def _freed(self, bound: int) -> int | None:
+        """A bound of the distance of all halves that are not known; None if there are none."""
+        order = count()
+        queue: list[tuple[int, int, Folds]] = [(bound, next(order), frozenset())]
+        seen: set[Folds] = {frozenset()}
+        open_: list[int] = []
+        stars = 0
+        while queue:
+            bound, _, freed = queue[0]
+            best = self._best()
+            distance = bound + len(self.stuck)
+            tries = self.tries // 2 if distance == best else self.tries
+            over = self.tried >= tries or stars >= _LOCAL * tries
+            if (best is not None and distance > best) or over:
+                break
+            heapq.heappop(queue)
+            stars += 1
+            blamed = self._blamed(freed)
+            if blamed is None:
+                open_.append(bound)
+                continue
+            sets = [freed | {fold} for fold in sorted(blamed - freed)]
+            bounds = {more: max(bound, self._bound(more)) for more in sets if more not in seen}
+            seen |= bounds.keys()
+            for more, larger in bounds.items():
+                heapq.heappush(queue, (larger, next(order), more))
+            best = self._best()
+            near = sum(row[0] + len(self.stuck) == best for row in queue)
+            if best == distance and self.tried + near > self.tries // 2:
+                break  # there is no time for all that may be as near
+        left = [*open_, *(row[0] for row in queue[:1])]
+        return min(left) + len(self.stuck) if left else None
+
+    def _letters(self, freed: Folds) -> dict[Edge, str]:
+        return {f: "U" if f in freed else x for f, x in self.letters.items()}
+
+    def _bound(self, freed: Folds) -> int:
+        return len(freed) + disjoint(self.stars.conflicts(freed))
+
+    def _blamed(self, freed: Folds) -> Folds | None:
+        """Folds of which each half that is not known has another letter at one; None if not known.
+
+        Every half that has the letters is noted.
+        """
+        found = self.found
+        conflicts = self.stars.conflicts(freed)
+        if conflicts:
+            return min(conflicts.values(), key=lambda folds: (len(folds), sorted(folds)))
+        if freed or self.stuck:
+            self.tried += 1
+            if self.progress is not None:
+                self.progress("letters freed", self.tried, self.tries)
+            found = match(found.pattern, self._letters(freed))
+        for _, halves in found.compared:
+            self._note(halves)
+        if found.status is not PROVED:
+            return None
+        clauses = [clause_of(refutation, found.labels) for refutation in found.refutations]
+        clauses += self.stars.clauses(freed)
+        clauses += [Clause(frozenset(signs.items()), frozenset()) for signs, _ in found.compared]
+        return to_blame(clauses)
+
+    # --- the halves that are known ---------------------------------------------------------------
+
+    def _note(self, halves: list[Matched] | tuple[Matched, ...]) -> None:
+        for half in halves:
+            if half.branch.status is not PROVED or half.names in self.known:
+                continue
+            other, unknown = differing(self.found.letters, half.assignment)
+            if unknown and (self.unclear is None or len(other) < self.unclear):
+                self.unclear = len(other)
+            self.known[half.names] = half
+
+    def _distance(self, half: Matched) -> int | None:
+        other, unknown = differing(self.found.letters, half.assignment)
+        return None if unknown else len(other)
+
+    def _best(self) -> int | None:
+        known = (self._distance(half) for half in self.known.values())
+        return min((d for d in known if d is not None), default=None)
+
+    def _at(self, distance: int) -> tuple[Matched, ...]:
+        near = (half for half in self.known.values() if self._distance(half) == distance)
+        return tuple(sorted(near, key=lambda half: half.names))

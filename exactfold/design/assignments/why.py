@@ -1,0 +1,76 @@
+"""Why the letters at single vertices are those of no branch, in plain words."""
+
+from __future__ import annotations
+
+from exactfold.design.assignments.boundary_match import RimMatch
+from exactfold.design.assignments.search import Match
+from exactfold.design.refutations.refutation import refuted_at
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+
+_NAMES = {"M": "mountain", "V": "valley"}
+_NAMED = 8
+"""Folds that are named; more are counted."""
+
+
+def vertex_conflicts(found: Match | RimMatch) -> dict[int, str]:
+    """By vertex whose letters leave it no way to pop: why it can pop neither up nor down.
+
+    A vertex pops up only if its mountains, and the folds that are free, lie in no closed half-plane
+    and it has a valley: for down, valleys and mountains change places (docs/assignment.md, The
+    search).
+
+    >>> from exactfold.design.assignments.search import match
+    >>> from exactfold.pattern.families import single_vertex
+    >>> vertex_conflicts(match(single_vertex(4), "MMMM"))[4]
+    'neither up (it has no valley) nor down (it has no valley)'
+    >>> vertex_conflicts(match(single_vertex(4), "MMVV"))[4]
+    'neither up (its mountains 0-4, 1-4 lie on one side of a line) nor down (its valleys 2-4, 3-4
+    lie on one side of a line)'
+    """
+    letters, labels = found.letters, found.labels
+    own = {
+        (i, j): letters[min(labels[i], labels[j]), max(labels[i], labels[j])]
+        for i, j in found.sheet.folds
+    }
+    why = {}
+    for v in found.sheet.interior:
+        texts = []
+        for sign in (1, -1):
+            reason = refuted_at(found.sheet, own, v, sign)
+            if reason is None or not (isinstance(reason, str) or reason.holds(found.sheet, own)):
+                break
+            texts.append(_at(found.sheet, labels, own, v, sign))
+        if len(texts) == 2:
+            why[labels[v]] = f"neither up ({texts[0]}) nor down ({texts[1]})"
+    return why
+
+
+def _at(
+    sheet: CreasePattern, labels: tuple[int, ...], own: dict[Edge, str], vertex: int, sign: int
+) -> str:
+    """What is missing for a vertex that cannot pop to one side."""
+    here = {w: own[min(vertex, w), max(vertex, w)] for w in sheet.star(vertex)}
+    needed, other = ("M", "V") if sign > 0 else ("V", "M")
+    folds = {
+        x: [_name(labels, vertex, w) for w, letter in here.items() if letter == x] for x in "MVU"
+    }
+    if not folds[needed] + folds["U"]:
+        return f"it has no {_NAMES[needed]}"
+    if not folds[other] + folds["U"]:
+        return f"it has no {_NAMES[other]}"
+    parts = [_listed(f"{_NAMES[needed]}s", folds[needed]), _listed("free folds", folds["U"])]
+    held = " and ".join(part for part in parts if part)
+    if len(folds[needed]) == 1 and not folds["U"]:
+        return f"it has one {_NAMES[needed]} only, {folds[needed][0]}"
+    return f"its {held} lie on one side of a line"
+
+
+def _listed(name: str, folds: list[str]) -> str:
+    if not folds:
+        return ""
+    return f"{name} {', '.join(sorted(folds))}" if len(folds) <= _NAMED else f"{len(folds)} {name}"
+
+
+def _name(labels: tuple[int, ...], v: int, w: int) -> str:
+    i, j = sorted((labels[v], labels[w]))
+    return f"{i}-{j}"

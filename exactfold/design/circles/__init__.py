@@ -1,0 +1,1 @@
+"""All mountain-valley assignments of a convex sheet with five corners."""

@@ -1,0 +1,124 @@
+"""Lists of all mountain-valley assignments of a sheet: arcs, circles, and the list itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import Verdict
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.letters import UPSIDE_DOWN
+from exactfold.design.circles.covering import Covering
+from exactfold.exact.numbers import format_rational
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.described import described
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A part of a circle on which no fold is flat, by one proved branch on it.
+
+    All branches of the arc have the letters of `branch`, or if `mirrored` those of its mirror
+    image, on which all heights, signs and letters are reversed.
+    """
+
+    branch: Branch
+    mirrored: bool = False
+
+    @property
+    def letters(self) -> str:
+        """The letters of all folds, in order."""
+        text = self.branch.assignment_text
+        return text.translate(UPSIDE_DOWN) if self.mirrored else text
+
+    @property
+    def rim(self) -> dict[int, Fraction]:
+        """Heights of the border on the arc."""
+        heights = self.branch.rim or {}
+        return {v: -height for v, height in heights.items()} if self.mirrored else heights
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A point of a circle at which folds are flat: `folds`, and all those at the `vertices`."""
+
+    folds: tuple[Edge, ...]
+    vertices: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Circle:
+    """The solutions with one sign vector, up to positive factors, in the order of the rim.
+
+    `crossings[k]` lies before `arcs[k]` and behind the arc before that; without crossings there is
+    one arc.
+    """
+
+    signs: str
+    arcs: tuple[Arc, ...]
+    crossings: tuple[Crossing, ...]
+
+    def __repr__(self) -> str:
+        return f"<Circle {self.signs}: {len(self.arcs)} arcs>"
+
+
+@dataclass(frozen=True, repr=False)
+class AllAssignments:
+    """The mountain-valley assignments that occur, complete if `status` is PROVED.
+
+    `circles` are those of all sign vectors, in their order. Where folds are flat along whole arcs,
+    or more than five vertices can pop, there are none, and the list is proved by `points` all round
+    the circles. UNDECIDED: `reason` says what is missing, and the list may be too short.
+    """
+
+    pattern: CreasePattern
+    status: Verdict
+    reason: str
+    circles: tuple[Circle, ...]
+    points: Covering | None = None
+
+    @cached_property
+    def assignments(self) -> tuple[str, ...]:
+        """The different assignments in which no fold is flat but those that always are, sorted."""
+        if self.points is not None:
+            return self.points.assignments
+        return tuple(sorted({arc.letters for circle in self.circles for arc in circle.arcs}))
+
+    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold assignments --json`: `schema("assignments")`."""
+        return {
+            **headed("assignments"),
+            "pattern": described(self.pattern, name),
+            "status": str(self.status),
+            "reason": self.reason,
+            "number": len(self.assignments),
+            "assignments": list(self.assignments),
+            "circles": [
+                {
+                    "signs": circle.signs,
+                    "arcs": [
+                        {
+                            "letters": arc.letters,
+                            "rim": {
+                                str(v): format_rational(height) for v, height in arc.rim.items()
+                            },
+                        }
+                        for arc in circle.arcs
+                    ],
+                    "crossings": [
+                        {
+                            "folds": [f"{i}-{j}" for i, j in crossing.folds],
+                            "vertices": list(crossing.vertices),
+                        }
+                        for crossing in circle.crossings
+                    ],
+                }
+                for circle in self.circles
+            ],
+        }
+
+    def __repr__(self) -> str:
+        return f"<AllAssignments: {self.status}, {len(self.assignments)} of {self.pattern!r}>"

@@ -1,0 +1,36 @@
+"""Certificates of lists of all assignments, for `exactfold.checker`."""
+
+from __future__ import annotations
+
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED
+from exactfold.certificates.entries import Document
+from exactfold.design.circles.assignment_list import AllAssignments
+from exactfold.design.circles.covering import NotCoveredError, covering, verified
+from exactfold.errors import NotApplicableError
+
+
+def assignments_certificate(found: AllAssignments, *, progress: Progress | None = None) -> Document:
+    """The proof of a list of all assignments, as a JSON object (docs/circles.md, The certificate).
+
+    It is found apart from the list, by points all round the circles, and has to show the same
+    list. Raises `NotApplicableError` for a list that is not proved, and where such points are not
+    found.
+
+    >>> from exactfold import checker
+    >>> from exactfold.design.circles.circles import all_assignments
+    >>> from exactfold.pattern.families import single_vertex
+    >>> document = assignments_certificate(all_assignments(single_vertex(5)))
+    >>> len(checker.check(document)["assignments"])
+    20
+    """
+    if found.status is not PROVED:
+        raise NotApplicableError(f"there is no certificate of a list that is {found.status}")
+    try:
+        points = found.points or covering(found.pattern, progress)
+        document = verified(found.pattern, points)
+    except NotCoveredError as error:
+        raise NotApplicableError(str(error)) from None
+    if points.assignments != found.assignments:
+        raise AssertionError("two ways to list all assignments of a sheet differ")
+    return document

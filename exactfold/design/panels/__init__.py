@@ -1,0 +1,1 @@
+"""Whether rigid panels start to fold with given mountains and valleys."""

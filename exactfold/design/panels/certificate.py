@@ -1,0 +1,239 @@
+"""Certificates of whether rigid panels start to fold with given letters, for the checker."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from itertools import combinations
+from math import ceil, log2
+from typing import Any, Final
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.certificates.entries import Document
+from exactfold.checker.core.formats import PANEL_LETTERS, PANEL_LETTERS_VERSION
+from exactfold.design.panels.cells import CellSearch, Steps
+from exactfold.design.panels.match import PanelMatch, flat_with_letters
+from exactfold.design.panels.parts import PartAnswer
+from exactfold.design.panels.refutation import PanelRefutation, held
+from exactfold.design.panels.regular_motion import regular_motion
+from exactfold.errors import NotApplicableError
+from exactfold.exact.surds import Number, exact
+from exactfold.panels.certificate import number_document, panels_document
+from exactfold.panels.extension import Loops, extension
+from exactfold.panels.stars import Star, bracket, stars
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+_BITS: Final = 62
+_SLACK: Final = 8  # bits of the inverse beyond those that make |1 - Y J| small
+
+
+def starting_certificate(found: PanelMatch) -> Document:
+    """The proof that panels start to fold with given letters or not, as a JSON object.
+
+    Raises `NotApplicableError` if the question is open, or was answered by splitting forms.
+    """
+    if found.starts is UNDECIDED:
+        raise NotApplicableError("there is no certificate of an answer that is undecided")
+    moving = stars(found.pattern, held(found.letters))
+    truly, evidence = found.truly, dict[str, Any]()
+    if found.starts is PROVED:
+        evidence["motion"] = [_motion(found, moving, part) for part in found.parts]
+        if truly is REFUTED:
+            part = next(part for part in found.parts if part.truly is REFUTED)
+            evidence |= {
+                "refuted": [],
+                "tree": _failing(found, {v: moving[v] for v in part.vertices}),
+            }
+    else:
+        evidence, truly = _refuted(found, moving)
+    first = found.first_order
+    if first is not None:
+        moved = {"together": _pairs(first.together), "never": _pairs(first.never)}
+    else:
+        moved = {"together": [], "never": []}
+    evidence |= _first_order(found)
+    return {
+        "format": PANEL_LETTERS,
+        "version": PANEL_LETTERS_VERSION,
+        "pattern": panels_document(found.pattern),
+        "claims": {
+            "letters": "".join(found.letters[fold] for fold in found.pattern.folds),
+            "starts": str(found.starts),
+            "truly": str(truly),
+            **moved,
+        },
+        "evidence": evidence,
+    }
+
+
+# --- no motion -----------------------------------------------------------------------------------
+
+
+def _refuted(found: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document, Verdict]:
+    """The evidence of one part that cannot move as is asked for, of true motions if one does."""
+    parts = [part for part in found.parts if part.starts is REFUTED]
+    if not parts:
+        i, j = flat_with_letters(found.pattern, found.letters, moving)[0]
+        return {"refuted": [], "tree": [["flat", i, j]]}, REFUTED
+    part = min(parts, key=lambda part: part.truly is not REFUTED)
+    own = {v: moving[v] for v in part.vertices}
+    if not part.refutations:
+        return {"refuted": [], "tree": _open_loops(found, own, part.named)}, part.truly
+    sets = [_set(found, own, refutation) for refutation in part.refutations]
+    signs = [(v, s) for refutation in part.refutations for v, s in refutation.signs.items()]
+    if not signs:
+        return {"refuted": sets, "tree": [["refuted", 0]]}, part.truly
+    v, first = signs[0]
+    if len(sets) == 1:  # all its letters are one, which refutes both signs
+        return {"refuted": [], "tree": [["curved", v]]}, part.truly
+    ends = [["refuted", 0], ["refuted", 1]]  # the case of the vertex up comes first
+    return {
+        "refuted": sets,
+        "tree": [["split", v], *(ends if first > 0 else ends[::-1])],
+    }, part.truly
+
+
+def _set(found: PanelMatch, moving: Mapping[int, Star], refutation: PanelRefutation) -> Document:
+    """Vectors, and heights of all neighbours over folds that may fold, by number."""
+    field, scale, heights = found.pattern.field, _scale(found.pattern), []
+    for v in sorted({v for v, _ in refutation.heights}):
+        around = sorted(i + j - v for i, j in moving[v].folds)
+        star = [number_document(refutation.heights.get((v, u), 0), field) for u in around]
+        heights.append([v, star])
+    return {
+        "signs": [[v, s] for v, s in sorted(refutation.signs.items())],
+        "planes": [
+            [v, [number_document(x * scale, field) for x in y]]
+            for v, y in sorted(refutation.planes.items())
+        ],
+        "heights": heights,
+    }
+
+
+def _scale(pattern: PanelPattern) -> Number:
+    """By how much the directions of stars are longer than they are drawn."""
+    i, j = pattern.edges[0]
+    axis = 0 if pattern.direction(i, j)[0] else 1
+    drawn = pattern.vertices[j][axis] - pattern.vertices[i][axis]
+    return pattern.direction(i, j)[axis] / exact(drawn)
+
+
+def _open_loops(found: PanelMatch, own: Mapping[int, Star], loop: Iterable[int]) -> list[Any]:
+    """The cases of the vertices of one loop if these are enough, else of all with few folds."""
+    few = {v: star for v, star in own.items() if len(star.folds) <= 4}
+    for stars_ in ({v: few[v] for v in loop}, few):
+        search = CellSearch(stars_, found.letters, found.pattern.field)
+        if stars_ and next(iter(search), None) is None:
+            return _tree(search.cases, [])
+    raise NotApplicableError("the cases of the vertices with few folds were not found again")
+
+
+def _failing(found: PanelMatch, own: Mapping[int, Star]) -> list[Any]:
+    """All cells with the letters, each with a loop that fails at an order in the fold angle."""
+    search = CellSearch(own, found.letters, found.pattern.field)
+    known: Loops = {}
+    failing = []
+    for cell in search:
+        each = (extension(found.pattern, own, mode, known) for mode in cell.modes)
+        fails = next(each for each in each if each.verdict is REFUTED)
+        failing.append(["loop", list(fails.cycle), fails.order])
+    return _tree(search.cases, failing)
+
+
+def _tree(cases: Steps, cells: list[list[Any]]) -> list[list[Any]]:
+    """The steps as the file has them; those of a cell are given."""
+    tree = []
+    for kind, at in cases:
+        if kind == "cell":
+            tree.append(cells[at])
+        else:
+            tree.append([kind, list(at) if kind == "loop" else at])
+    return tree
+
+
+# --- to first order ------------------------------------------------------------------------------
+
+
+def _first_order(found: PanelMatch) -> Document:
+    """The vectors, one step after the other, and the motion of `found.first_order`."""
+    if found.first_order is None:
+        return {"flat": [], "densities": []}
+    field, scale = found.pattern.field, _scale(found.pattern)
+    steps = [
+        [[v, [number_document(x * scale, field) for x in y]] for v, y in sorted(step.items())]
+        for step in found.first_order.steps
+    ]
+    motion = sorted(found.first_order.motion.items())
+    densities = [[i, j, number_document(x, field)] for (i, j), x in motion]
+    return {"flat": steps, "densities": densities}
+
+
+def _pairs(folds: Iterable[Edge]) -> list[list[int]]:
+    return [[i, j] for i, j in folds]
+
+
+# --- motions -------------------------------------------------------------------------------------
+
+
+def _motion(found: PanelMatch, moving: Mapping[int, Star], part: PartAnswer) -> Document | None:
+    """A motion of a part: none if nothing is asked of it, the sides of its folds, or densities."""
+    own = {v: moving[v] for v in part.vertices}
+    folds = sorted({edge for star in own.values() for edge in star.folds})
+    if not any(found.letters[edge] in "MV" for edge in folds):
+        return None
+    if all(len(star.folds) <= 4 for star in own.values()):
+        letters = ("FVM"[int(np.sign(part.densities.get(edge, 0)))] for edge in folds)
+        return {"sides": "".join(letters)}
+    near = {edge: part.densities.get(edge, 0.0) for edge in folds}
+    boxes = regular_motion(own, near)
+    if boxes is None:
+        raise NotApplicableError(
+            "the motion was found by splitting forms, of which no certificate can be written"
+        )
+    unknowns = [k for k, edge in enumerate(folds) if boxes[edge][1]]
+    radius = 2 * max(radius for _, radius in boxes.values())
+    longest = max(abs(float(x)) for s in own.values() for d in s.directions for x in d)
+    true = longest / float(_scale(found.pattern))
+    unit = round(log2(true))
+    matrix = _derivative(own, near, true / longest / 2.0**unit)
+    inverse = np.linalg.inv(matrix[:, unknowns])
+    shift = _SLACK + max(0, ceil(log2(np.abs(matrix).sum())))
+    return {
+        "densities": [round(near[edge] * 2**_BITS) for edge in folds],
+        "bits": _BITS,
+        "unit": unit,
+        "unknowns": unknowns,
+        "inverse": [[round(x * 2**shift) for x in row] for row in inverse.tolist()],
+        "shift": shift,
+        "radius": ceil(radius * 2**_BITS),
+    }
+
+
+def _derivative(own: Mapping[int, Star], near: Mapping[Edge, float], scale: float) -> FloatArray:
+    """The derivatives of all conditions, in the order of the checker: x, y and the form.
+
+    The fold to the neighbour with the least number comes first in the form.
+    """
+    place = {edge: k for k, edge in enumerate(sorted(near))}
+    rows = []
+    for _, star in sorted(own.items()):
+        at = [place[edge] for edge in star.folds]
+        pair = len(star.folds) == 2
+        axes = [0 if star.directions[0][0] else 1] if pair else [0, 1]
+        for axis in axes:
+            row = np.zeros(len(place))
+            row[at] = [scale * float(d[axis]) for d in star.directions]
+            rows.append(row)
+        if pair:
+            continue
+        row = np.zeros(len(place))
+        spokes = list(zip(star.folds, star.directions, strict=True))
+        first = min(range(len(spokes)), key=lambda k: sum(spokes[k][0]))
+        for (e, c), (f, d) in combinations(spokes[first:] + spokes[:first], 2):
+            size = scale**2 * float(bracket(c, d))
+            row[place[e]] += size * near[f]
+            row[place[f]] += size * near[e]
+        rows.append(row)
+    return np.array(rows)

@@ -1,0 +1,244 @@
+"""`match_panels`: whether rigid panels start to fold with given mountains and valleys."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from exactfold._support.plurals import agreeing, counted
+from exactfold._support.progress import Progress
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.branches.counting.ways import Sheet, open_sheet
+from exactfold.design.panels.parts import PartAnswer, answered
+from exactfold.design.panels.refutation import PanelRefutation, held
+from exactfold.design.panels.together import Together, going_together
+from exactfold.design.refutations.asked import by_fold
+from exactfold.design.refutations.refutation import Letters
+from exactfold.panels.decomposition import groups_of
+from exactfold.panels.stars import Star, stars
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.described import described_panels
+from exactfold.pattern.opening import panels
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+
+@dataclass(frozen=True, repr=False)
+class PanelMatch:
+    """Whether a sheet of rigid panels starts to fold with given letters.
+
+    `starts`: whether there is a motion to second order in which every fold with a letter goes its
+    way; `truly`: whether true motions of the panels begin like that (docs/assignment.md, Rigid
+    panels).
+    `status` is PROVED if `starts` is decided. `reasons` says why, one sentence each;
+    `densities` is one such motion nearly (fold angle / length, up to a positive factor for each
+    part), empty if there is none; `ways` the number of different sets of signs that motions with
+    these letters have, None if it is not known. `refutations` are vectors that refute letters by
+    themselves (`PanelRefutation.holds`). `vertices` are those named in a reason. `parts` are the
+    answers for the parts of the sheet that move apart from each other. `first_order` says which
+    folds can go their way together to first order, and which never; None if the sheet starts to
+    fold, or is too large.
+    """
+
+    pattern: PanelPattern
+    letters: Letters
+    starts: Verdict
+    truly: Verdict
+    reasons: tuple[str, ...]
+    densities: Mapping[Edge, float]
+    ways: int | None
+    refutations: tuple[PanelRefutation, ...]
+    vertices: tuple[int, ...]
+    parts: tuple[PartAnswer, ...]
+    first_order: Together | None = None
+    seconds: float = field(default=0.0, compare=False)
+
+    @property
+    def status(self) -> Verdict:
+        """PROVED if the question is answered, whatever the answer; else UNDECIDED."""
+        return UNDECIDED if self.starts is UNDECIDED else PROVED
+
+    @property
+    def assignment(self) -> dict[Edge, str]:
+        """The letters of the motion in `densities`, by fold; F where it is flat."""
+        letters = dict.fromkeys(self.pattern.folds, "F") if self.densities else {}
+        return letters | {e: "V" if x > 0 else "M" for e, x in self.densities.items() if x}
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The answer in words, one line each, for a terminal."""
+        answer = {
+            PROVED: "the sheet starts to fold with these mountains and valleys"
+            if _goes(self.letters)
+            else "no fold is asked to be a mountain or a valley: this holds if nothing moves",
+            REFUTED: "the sheet does not start to fold with these mountains and valleys",
+            UNDECIDED: "whether the sheet starts to fold with these mountains and valleys is open",
+        }
+        return (answer[self.starts], *self.reasons)
+
+    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+        """The object that `exactfold match --json` prints: `schema("starting")`."""
+        names = {fold: f"{fold[0]}-{fold[1]}" for fold in self.pattern.folds}
+        match = {
+            "assignment": {names[e]: letter for e, letter in self.assignment.items()},
+            "densities": {names[e]: x for e, x in self.densities.items()},
+        }
+        first = self.first_order
+        return {
+            **headed("starting"),
+            "pattern": described_panels(self.pattern, name),
+            "status": str(self.status),
+            "starts": str(self.starts),
+            "truly": str(self.truly),
+            "letters": {names[e]: letter for e, letter in self.letters.items()},
+            "matches": [match] if self.starts is PROVED else [],
+            "ways": self.ways,
+            "reasons": list(self.reasons),
+            "together": None if first is None else [names[e] for e in first.together],
+            "never": None if first is None else [names[e] for e in first.never],
+            "vertices": list(self.vertices),
+            "seconds": round(self.seconds, 3),
+        }
+
+    def __repr__(self) -> str:
+        return f"<PanelMatch: starts {self.starts}, truly {self.truly}, {self.pattern!r}>"
+
+
+def match_panels(
+    pattern: Sheet,
+    letters: Mapping[Edge, str] | str | None = None,
+    *,
+    progress: Progress | None = None,
+) -> PanelMatch:
+    """Whether rigid panels start to fold with given mountains and valleys, with a proof.
+
+    `letters`: by fold (i, j), i < j, or a text in the order of the folds: "M", "V", "F" for a fold
+    that is to stay flat, "U" where anything may be; folds left out are free. None: the letters of
+    the file (`Opened.letters`). The question is whether some w with sum_k w_k d_k = 0 and
+    K_v(w) = 0 at every vertex is > 0 at all valleys, < 0 at all mountains and 0 at folds that stay
+    flat. No is shown at one vertex, by vectors (`PanelRefutation`), or by loops that do not close;
+    yes by exact modes where vertices have at most four folds, else by a candidate that balls or
+    bounds prove (docs/assignment.md, Rigid panels). UNDECIDED where neither is found.
+
+    Raises `UsageError` for letters that do not fit, and the errors of `open_pattern`.
+
+    >>> from exactfold.design import match_panels
+    >>> found = match_panels("bird-base")
+    >>> found.starts, found.truly, match_panels("zigzags").starts
+    (<Verdict.PROVED: 'proved'>, <Verdict.PROVED: 'proved'>, <Verdict.REFUTED: 'refuted'>)
+    """
+    start = time.perf_counter()
+    opened = open_sheet(pattern)
+    sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
+    if letters is None:
+        letters = opened.letters
+    asked = by_fold(sheet.folds, letters)
+    moving = stars(sheet, held(asked))
+    interior = set(sheet.interior)
+    dead = flat_with_letters(sheet, asked, moving)
+    free = {
+        e: 1.0 if asked[e] == "V" else -1.0
+        for e in sheet.folds
+        if asked[e] in "MV" and not interior & set(e)
+    }
+    groups = groups_of(moving)
+    parts: list[PartAnswer] = []
+    for number, group in enumerate(groups if not dead else ()):
+        if progress is not None:
+            progress("parts of the sheet", number, len(groups))
+        parts.append(answered(sheet, {v: moving[v] for v in group}, asked))
+    found = _result(sheet, asked, dead, free, parts)
+    if found.starts is not PROVED:
+        if progress is not None:
+            progress("first order", 0, 1)
+        found = replace(found, first_order=_first_order(moving, asked, dead, free))
+    return replace(found, seconds=time.perf_counter() - start)
+
+
+def _first_order(
+    moving: Mapping[int, Star], asked: Letters, dead: Iterable[Edge], free: Iterable[Edge]
+) -> Together | None:
+    """With the folds that the flat closure holds flat, and those from border to border."""
+    found = going_together(moving, asked)
+    if found is None:
+        return None
+    together, never = sorted({*found.together, *free}), sorted({*found.never, *dead})
+    return replace(found, together=tuple(together), never=tuple(never))
+
+
+def flat_with_letters(
+    sheet: PanelPattern, letters: Letters, moving: Mapping[int, Star]
+) -> list[Edge]:
+    """The folds with a letter that the flat closure, which leaves these stars, holds flat."""
+    active = {edge for star in moving.values() for edge in star.folds}
+    inner = set(sheet.interior)
+    return [e for e in sheet.folds if letters[e] in "MV" and e not in active and inner & set(e)]
+
+
+def _result(
+    sheet: PanelPattern,
+    letters: Letters,
+    dead: list[Edge],
+    free: dict[Edge, float],
+    parts: list[PartAnswer],
+) -> PanelMatch:
+    if dead:
+        (i, j), more = dead[0], len(dead) - 1
+        others = f", and so {agreeing(more, 'stays')} {counted(more, 'fold')} more" if more else ""
+        reason = (
+            f"fold {i}-{j} has a letter and stays flat in every motion: at one of its ends the "
+            f"folds leave a sector of 180 degrees or more, or there are fewer than four{others}"
+        )
+        return PanelMatch(sheet, letters, REFUTED, REFUTED, (reason,), {}, 0, (), (), ())
+    starts = _all(part.starts for part in parts)
+    truly = _all(part.truly for part in parts)
+    named = [part for part in parts if part.starts is starts and part.reason]
+    densities: dict[Edge, float] = {}
+    if starts is PROVED:
+        densities = dict(free)
+        for part in parts:
+            densities |= part.densities
+    ways: int | None = 0 if starts is REFUTED else 1
+    if starts is not REFUTED:
+        for part in parts:
+            ways = None if ways is None or part.ways is None else ways * part.ways
+        if any(not set(e) & set(sheet.interior) and x == "U" for e, x in letters.items()):
+            ways = None
+    reasons = list(dict.fromkeys(part.reason for part in named))
+    if starts is PROVED and _goes(letters):
+        reasons.append(_of_true(truly))
+    return PanelMatch(
+        sheet,
+        letters,
+        starts,
+        truly,
+        tuple(reasons),
+        dict(sorted(densities.items())),
+        ways,
+        tuple(r for part in parts for r in part.refutations),
+        tuple(v for part in named for v in part.named),
+        tuple(parts),
+    )
+
+
+def _goes(letters: Letters) -> bool:
+    """Whether some fold is asked to be a mountain or a valley."""
+    return not {"M", "V"}.isdisjoint(letters.values())
+
+
+def _of_true(truly: Verdict) -> str:
+    if truly is PROVED:
+        return "true motions of the rigid panels begin like this"
+    if truly is REFUTED:
+        return "to second order only: no true motion of the rigid panels begins like this"
+    return "to second order; whether true motions of the rigid panels begin like this is not known"
+
+
+def _all(verdicts: Any) -> Verdict:
+    """REFUTED if one is, PROVED if all are."""
+    found = set(verdicts)
+    if REFUTED in found:
+        return REFUTED
+    return UNDECIDED if UNDECIDED in found else PROVED

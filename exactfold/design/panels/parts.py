@@ -1,0 +1,187 @@
+"""One part of a sheet of panels that moves apart from the others: has it given letters?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Final
+
+from exactfold._support.plurals import counted
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.design.panels.candidates import MotionSearch
+from exactfold.design.panels.cells import Cell, CellSearch
+from exactfold.design.panels.first_order_program import FirstOrderProgram
+from exactfold.design.panels.proof import proved_motion
+from exactfold.design.panels.refutation import PanelRefutation
+from exactfold.design.panels.vertex_reasons import VertexReason, vertex_reason
+from exactfold.design.refutations.refutation import Letters
+from exactfold.errors import TooManyModesError
+from exactfold.panels.densities import UndecidedDensityError
+from exactfold.panels.extension import Loops, extension
+from exactfold.panels.stars import Star
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+_MOST_CELLS: Final = 64
+
+
+@dataclass(frozen=True)
+class PartAnswer:
+    """Whether a part starts to fold with its letters, and truly, and why.
+
+    `ways` is the number of cells with these letters, None if it is not known; `densities` one
+    motion, nearly; `named` the vertices of the reason.
+    """
+
+    vertices: tuple[int, ...]
+    starts: Verdict
+    truly: Verdict
+    reason: str = ""
+    ways: int | None = None
+    densities: Mapping[Edge, float] = field(default_factory=dict)
+    refutations: tuple[PanelRefutation, ...] = ()
+    named: tuple[int, ...] = ()
+
+
+def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> PartAnswer:
+    """The answer for a part, from the cheapest proof to the dearest.
+
+    Single vertices first; then vectors that refute all first-order motions; then loops of vertices
+    with at most four folds, which are the complete answer if there are no others; then a candidate.
+    """
+    vertices = tuple(moving)
+    few = all(len(star.folds) <= 4 for star in moving.values())
+    no = REFUTED if few else UNDECIDED  # of true motions: their cells are those to second order
+    if not any(letters[edge] in "MV" for star in moving.values() for edge in star.folds):
+        return PartAnswer(vertices, PROVED, PROVED, ways=None)
+    if stuck := _stuck(moving, letters):
+        return _refused_at(vertices, moving, stuck)
+    program = FirstOrderProgram(moving, letters)
+    start = program.motion()
+    if start is None and (refutation := program.refutation()) is not None:
+        named = tuple(refutation.planes)
+        return PartAnswer(
+            vertices,
+            REFUTED,
+            no,
+            _first_order_text(named),
+            refutations=(refutation,),
+            named=named,
+        )
+    if few:
+        return _by_cells(pattern, moving, letters)
+    if (loop := _loop(pattern, moving, letters)) is not None:
+        return PartAnswer(vertices, REFUTED, REFUTED, loop[1], named=loop[0])
+    if start is not None and (near := MotionSearch(program).found(start)) is not None:
+        proved = proved_motion(moving, letters, near)
+        if proved is not None:
+            truly = PROVED if proved.folds else UNDECIDED
+            return PartAnswer(vertices, PROVED, truly, densities=proved.densities)
+    if start is None:
+        text = "no motion was found, and no vectors that refute one"
+    else:
+        text = "there are first-order motions with these letters, and none to second order is known"
+    return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {text}")
+
+
+def _stuck(moving: Mapping[int, Star], letters: Letters) -> list[VertexReason]:
+    found = (vertex_reason(star, letters) for star in moving.values())
+    return [reason for reason in found if reason is not None]
+
+
+def _refused_at(
+    vertices: tuple[int, ...], moving: Mapping[int, Star], stuck: list[VertexReason]
+) -> PartAnswer:
+    """The vertex with the fewest folds stands for all; with four it decides true motions too."""
+    first = min(stuck, key=lambda reason: (len(moving[reason.vertex].folds), reason.vertex))
+    more = len(stuck) - 1
+    others = f"; {counted(more, 'vertex')} more cannot have theirs" if more else ""
+    return PartAnswer(
+        vertices,
+        REFUTED,
+        REFUTED if len(moving[first.vertex].folds) <= 4 else UNDECIDED,
+        f"{first.text}{others}",
+        refutations=first.refutations,
+        named=tuple(reason.vertex for reason in stuck),
+    )
+
+
+def _by_cells(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> PartAnswer:
+    """The structure theorem: all cells, as far as they are few, and which of them truly fold."""
+    vertices = tuple(moving)
+    try:
+        search = CellSearch(moving, letters, pattern.field)
+        cells = list(islice(search, _MOST_CELLS + 1))
+    except (TooManyModesError, UndecidedDensityError) as error:
+        return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {error}")
+    if not cells:
+        text = "at no choice of their modes do the vertices fit together"
+        loop = search.open_loops[0] if search.open_loops else None
+        return PartAnswer(
+            vertices,
+            REFUTED,
+            REFUTED,
+            loop.text if loop else text,
+            named=loop.loop if loop else (),
+        )
+    known: Loops = {}
+    folding: list[Verdict] = []
+    chosen = cells[0]
+    for cell in cells:
+        folding.append(_extends(pattern, moving, cell, known))
+        if folding[-1] is PROVED:
+            chosen = cell
+            break
+    complete = len(cells) <= _MOST_CELLS
+    if folding[-1] is PROVED:
+        truly = PROVED
+    else:
+        truly = REFUTED if complete and set(folding) == {REFUTED} else UNDECIDED
+    return PartAnswer(
+        vertices,
+        PROVED,
+        truly,
+        ways=len(cells) if complete else None,
+        densities=chosen.densities,
+    )
+
+
+def _extends(
+    pattern: PanelPattern, moving: Mapping[int, Star], cell: Cell, known: Loops
+) -> Verdict:
+    verdicts = {extension(pattern, moving, mode, known).verdict for mode in cell.modes}
+    if REFUTED in verdicts:
+        return REFUTED
+    return UNDECIDED if UNDECIDED in verdicts else PROVED
+
+
+def _loop(
+    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
+) -> tuple[tuple[int, ...], str] | None:
+    """Why the vertices with at most four folds alone cannot have these letters; None if they can.
+
+    Folds that lead to other vertices are in no other condition then.
+    """
+    few = {v: star for v, star in moving.items() if len(star.folds) <= 4}
+    if any(letters[edge] == "U" for star in few.values() for edge in star.folds):
+        return None
+    try:
+        search = CellSearch(few, letters, pattern.field)
+        if next(iter(search), None) is not None or not search.open_loops:
+            return None
+    except (TooManyModesError, UndecidedDensityError):
+        return None
+    return search.open_loops[0].loop, search.open_loops[0].text
+
+
+def _first_order_text(named: Iterable[int]) -> str:
+    shown = [str(v) for v in named]
+    where = ", ".join(shown[:12]) + (f" and {len(shown) - 12} more" if len(shown) > 12 else "")
+    return (
+        f"the vertices {where} cannot have their letters together, even at the first instant: that "
+        "the folds around each of them close up contradicts these mountains and valleys"
+    )
+
+
+def _where(vertices: tuple[int, ...]) -> str:
+    return f"the part of {counted(len(vertices), 'vertex')} with vertex {vertices[0]}"

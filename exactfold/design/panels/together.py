@@ -1,0 +1,177 @@
+"""Which creases can fold their way together to first order, and which never."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from exactfold.design.panels.first_order_program import SIDES, FirstOrderProgram, solved
+from exactfold.design.refutations.refutation import Letters
+from exactfold.exact.surds import Number, sign
+from exactfold.panels.kernel import entry, number
+from exactfold.panels.stars import Star
+from exactfold.pattern.panel_pattern import Edge, Point
+
+Planes = Mapping[int, Point]
+"""A vector for each of some vertices."""
+
+_ROUNDS: Final = 12
+_MOST_FOLDS: Final = 6_000
+
+
+@dataclass(frozen=True, repr=False)
+class Together:
+    """Which folds with letters can fold their way together to first order, and which never.
+
+    Of the first-order motions sum_k w_k d_k = 0 in which no fold goes against its letter, `motion`
+    is one in which all of `together` go their way; in all of them the folds `never` stay flat, as
+    `steps` show, one after the other (`FlatByLetters`). `undecided` are the folds of which neither
+    is proved. Motions are densities of the folds that the flat closure leaves; the others with
+    letters are among `never`, and those from border to border among `together`.
+    """
+
+    together: tuple[Edge, ...]
+    never: tuple[Edge, ...]
+    undecided: tuple[Edge, ...]
+    motion: Mapping[Edge, Number]
+    steps: tuple[Planes, ...]
+
+    def __repr__(self) -> str:
+        return f"<Together: {len(self.together)}, never {len(self.never)}>"
+
+
+def going_together(stars: Mapping[int, Star], letters: Letters) -> Together | None:
+    """Which folds of these stars can go their way together, and which never; None if too many.
+
+    Single vertices first, then linear programs, the motion and the vectors of which are made exact.
+
+    >>> star = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))
+    >>> found = going_together({0: star}, dict(zip(star.folds, "MVVV")))
+    >>> found.together, found.never, found.undecided
+    (((0, 2), (0, 4)), ((0, 1), (0, 3)), ())
+    """
+    folds = {edge for star in stars.values() for edge in star.folds}
+    if len(folds) > _MOST_FOLDS:
+        return None
+    asked = sorted(edge for edge in folds if letters[edge] in SIDES)
+    flat = FlatByLetters(stars, letters)
+    for _ in range(_ROUNDS):
+        program = FirstOrderProgram(flat.left(), letters)
+        if not program.lettered:
+            return _result(asked, flat, {}, letters)
+        near, rest = program.going_together()
+        planes = program.holding_flat(rest) if rest else None
+        if planes is None or not flat.add(planes):
+            break
+    motion = _motion(program, letters, near, rest)
+    return _result(asked, flat, motion, letters)
+
+
+def _result(
+    asked: Iterable[Edge], flat: FlatByLetters, motion: Mapping[Edge, Number], letters: Letters
+) -> Together:
+    going = [edge for edge in asked if motion.get(edge)]
+    left = [edge for edge in asked if edge not in flat.flat and not motion.get(edge)]
+    return Together(tuple(going), tuple(sorted(flat.flat)), tuple(left), motion, tuple(flat.steps))
+
+
+def _motion(
+    program: FirstOrderProgram, letters: Letters, near: Mapping[Edge, float], rest: Iterable[Edge]
+) -> dict[Edge, Number]:
+    """An exact motion near one in floating point in which some folds are flat; empty if none.
+
+    Where rounded coordinates let folds go against their letters, these are held flat as well.
+    """
+    held = set(rest)
+    order = sorted(program.stars, key=lambda v: min(program.stars[v].folds))
+    for _ in range(_ROUNDS):
+        rows = [
+            {
+                edge: entry(d[axis])
+                for edge, d in zip(star.folds, star.directions, strict=True)
+                if edge not in held
+            }
+            for star in (program.stars[v] for v in order)
+            for axis in (0, 1)
+        ]
+        values = solved(rows, {edge: x for edge, x in near.items() if edge not in held})
+        if values is None:
+            return {}
+        exact = {edge: number(x) for edge, x in values.items()}
+        against = {e for e, x in exact.items() if sign(x) == -SIDES.get(letters[e], 0) != 0}
+        if not against:
+            return {edge: x for edge, x in exact.items() if x}
+        held |= against
+    return {}
+
+
+class FlatByLetters:
+    """Folds with letters that stay flat in all first-order motions where none goes against its own.
+
+    If w_f s_f is at most 0 for all folds that are not flat, and 0 for free ones, in the sum 0 =
+    sum_v y_v . sum_k w_k d_k = sum_f w_f s_f, then w_f = 0 where s_f is not (docs/assignment.md,
+    Theorem 7). `steps` are such vectors, each with the folds before it flat; `flat` these folds.
+    """
+
+    def __init__(self, stars: Mapping[int, Star], letters: Letters) -> None:
+        self.stars, self.letters = stars, letters
+        self.flat: set[Edge] = set()
+        self.steps: list[Planes] = []
+        self._spread(stars)
+
+    def left(self) -> dict[int, Star]:
+        """The stars of the folds that are not known to stay flat."""
+        found = {
+            v: star.only(edge for edge in star.folds if edge not in self.flat)
+            for v, star in self.stars.items()
+        }
+        return {v: star for v, star in found.items() if star.folds}
+
+    def add(self, planes: Planes) -> bool:
+        """Take the folds for flat that vectors show to be so, and what follows at single vertices.
+
+        False if they show nothing.
+        """
+        found = self._shown(planes)
+        if not found:
+            return False
+        self._take(planes, found)
+        self._spread({v for fold in found for v in fold if v in self.stars})
+        return True
+
+    def _take(self, planes: Planes, found: Iterable[Edge]) -> None:
+        self.steps.append(planes)
+        self.flat.update(found)
+
+    def _shown(self, planes: Planes) -> list[Edge]:
+        total: dict[Edge, Number] = {}
+        for v, (x, y) in planes.items():
+            star = self.stars[v]
+            for edge, (a, b) in zip(star.folds, star.directions, strict=True):
+                if edge not in self.flat:
+                    value = x * a + y * b
+                    total[edge] = total[edge] + value if edge in total else value
+        sides = {edge: sign(value) for edge, value in total.items()}
+        against = (side not in (0, -SIDES.get(self.letters[e], 0)) for e, side in sides.items())
+        return [] if any(against) else [edge for edge, side in sides.items() if side]
+
+    def _spread(self, vertices: Iterable[int]) -> None:
+        waiting = dict.fromkeys(vertices)
+        while waiting:
+            v, _ = waiting.popitem()
+            for y in _candidates(self.stars[v], self.flat):
+                found = self._shown({v: y})
+                if found:
+                    self._take({v: y}, found)
+                    waiting |= {u: None for edge in found for u in edge if u in self.stars}
+                    break
+
+
+def _candidates(star: Star, flat: set[Edge]) -> Iterator[Point]:
+    for edge, (x, y) in zip(star.folds, star.directions, strict=True):
+        if edge not in flat:
+            yield -y, x
+            yield y, -x
+            yield x, y
+            yield -x, -y

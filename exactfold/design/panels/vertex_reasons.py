@@ -1,0 +1,143 @@
+"""Why one vertex of a sheet of rigid panels cannot have its letters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from exactfold.design.panels.refutation import PanelRefutation, wedge
+from exactfold.design.refutations.refutation import Letters
+from exactfold.exact.surds import sign
+from exactfold.panels.local import local_modes
+from exactfold.panels.stars import Star
+from exactfold.pattern.panel_pattern import Edge, Point
+
+
+@dataclass(frozen=True)
+class VertexReason:
+    """Why a vertex cannot have the letters of its folds, in words, and by what it is refuted.
+
+    One refutation without signs, or one for each of the two signs, where a sign is not refuted
+    because a star of mountains alone, or of valleys alone, is curved (`curved` has these signs).
+    """
+
+    vertex: int
+    text: str
+    refutations: tuple[PanelRefutation, ...]
+    curved: tuple[int, ...] = ()
+
+
+def vertex_reason(star: Star, letters: Letters) -> VertexReason | None:
+    """Why a vertex cannot have these letters, by its own folds alone; None if it can.
+
+    The star is what the flat closure leaves: a straight pair, or four folds or more with all
+    sectors less than pi. To first order sum_k w_k d_k = 0 is refuted by a vector y with y . d_k
+    <= 0 for valleys, >= 0 for mountains, 0 for free folds and not always 0. To second order the
+    vertex pops up only if its mountains lie in no closed half-plane and it has a valley, and down
+    with letters exchanged (docs/assignment.md, Theorem 4).
+
+    >>> star = Star(4, ((0, 4), (1, 4), (2, 4), (3, 4)), ((2, 1), (-1, 1), (-1, -1), (1, -2)))
+    >>> vertex_reason(star, dict(zip(star.folds, "MMMV")))
+    >>> vertex_reason(star, dict(zip(star.folds, "MVMV"))).text
+    'the folds of vertex 4 have the letters VVVM, VVMV when they fold, or the opposite, not MVMV'
+    """
+    letter = [letters[fold] for fold in star.folds]
+    if not {"M", "V"} & set(letter):
+        return None
+    pair = len(star.folds) == 2  # only a vector along the pair tells its two folds apart
+    for y in star.directions if pair else _normals(star):
+        if _first_order(star, letter, y):
+            text = _first_order_text(star, letter)
+            return VertexReason(star.vertex, text, (PanelRefutation({star.vertex: y}),))
+    if pair:
+        return None
+    found = {side: refuted_side(star, letters, side) for side in (1, -1)}
+    if any(value is None for value in found.values()):
+        return None
+    refutations = tuple(r for r in found.values() if isinstance(r, PanelRefutation))
+    curved = tuple(side for side, r in found.items() if isinstance(r, str))
+    return VertexReason(star.vertex, _second_order_text(star, letter), refutations, curved)
+
+
+def refuted_side(star: Star, letters: Letters, side: int) -> PanelRefutation | str | None:
+    """Why a vertex cannot pop up (1) or down (-1) with these letters; None if it may.
+
+    A text if it has no valley (mountain) to pop up (down) with: the star is curved then, unless
+    all its folds stay flat or it is bent along one straight line, which first order decides.
+    """
+    mountain, valley = ("M", "V") if side > 0 else ("V", "M")
+    letter = [letters[fold] for fold in star.folds]
+    pairs = list(zip(star.directions, letter, strict=True))
+    heldback = [d for d, x in pairs if x in (mountain, "U")]
+    others = [d for d, x in pairs if x == valley]
+    for nx, ny in _normals(star):
+        if all(sign(nx * x + ny * y) <= 0 for x, y in heldback) and any(
+            sign(nx * x + ny * y) > 0 for x, y in others
+        ):
+            return wedge(star, side, (nx, ny))
+    if set(letter) == {mountain}:
+        return "a star of mountains alone, or of valleys alone, is curved"
+    return None
+
+
+def _normals(star: Star) -> Iterator[Point]:
+    """Normals of the lines along the folds: a closed half-plane can be turned to one of these."""
+    for x, y in star.directions:
+        yield -y, x
+        yield y, -x
+
+
+def _first_order(star: Star, letter: list[str], y: Point) -> bool:
+    strict = False
+    for (a, b), x in zip(star.directions, letter, strict=True):
+        side = sign(y[0] * a + y[1] * b)
+        if side and side != {"M": 1, "V": -1}.get(x):
+            return False
+        strict = strict or side != 0
+    return strict
+
+
+def _first_order_text(star: Star, letter: list[str]) -> str:
+    where = f"at vertex {star.vertex}"
+    if len(star.folds) == 2:
+        both = _pair(star.folds)
+        return f"{where} the folds {both} are one straight crease and have different letters"
+    if len(star.folds) == 4:
+        return _four_text(star, letter)
+    if "U" in letter:
+        where += ", whatever its free folds do,"
+    return f"{where} the valleys, and the mountains turned round, lie on one side of a line"
+
+
+def _second_order_text(star: Star, letter: list[str]) -> str:
+    where = f"vertex {star.vertex}"
+    if len(star.folds) == 4:
+        return _four_text(star, letter)
+    if len(set(letter)) == 1:
+        word = {"M": "mountains", "V": "valleys"}.get(letter[0], "folds")
+        return f"{where} has {word} only, and is curved when they fold"
+    return (
+        f"{where} can pop neither up, as its mountains lie in a half-plane or it has no valley, "
+        "nor down, as its valleys lie in a half-plane or it has no mountain"
+    )
+
+
+def _four_text(star: Star, letter: list[str]) -> str:
+    ways = ", ".join(_four(star))
+    return (
+        f"the folds of vertex {star.vertex} have the letters {ways} when they fold, or the "
+        f"opposite, not {''.join(letter)}"
+    )
+
+
+def _four(star: Star) -> list[str]:
+    """The letters of the two modes of four folds, F where a fold stays flat."""
+    found = []
+    for mode in local_modes(star):
+        values = dict(zip(mode.folds, mode.values, strict=True))
+        found.append("".join("MFV"[sign(values.get(fold, 0)) + 1] for fold in star.folds))
+    return found
+
+
+def _pair(folds: tuple[Edge, ...]) -> str:
+    return " and ".join(f"{i}-{j}" for i, j in folds)

@@ -1,0 +1,14 @@
+from exactfold.interop.export import form_to_sage as form_to_sage
+from exactfold.interop.export import to_homotopy_continuation as to_homotopy_continuation
+from exactfold.interop.export import to_macaulay2 as to_macaulay2
+from exactfold.interop.export import to_msolve as to_msolve
+from exactfold.interop.export import to_sage as to_sage
+from exactfold.interop.export import to_singular as to_singular
+from exactfold.interop.export import to_sympy as to_sympy
+from exactfold.interop.formal import to_coq as to_coq
+from exactfold.interop.formal_branch import branch_to_coq as branch_to_coq
+from exactfold.interop.formal_branch import branches_to_coq as branches_to_coq
+from exactfold.interop.frameworks import from_pyrigi as from_pyrigi
+from exactfold.interop.frameworks import to_pyrigi as to_pyrigi
+from exactfold.interop.graphs import to_networkx as to_networkx
+from exactfold.interop.meshes import to_trimesh as to_trimesh

@@ -1,0 +1,1 @@
+"""The first contact of faces, and fold angles along a motion, enclosed."""

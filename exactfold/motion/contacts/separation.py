@@ -1,0 +1,314 @@
+"""Proof that the faces of a sheet do not touch while it moves along a piece of a curve.
+
+Between two faces without a common vertex stands a plane if some direction n has n.(x - y) > 0 for
+all corners x of one and y of the other; between two that share only the vertex v, if n.(x - v) > 0
+and n.(v - y) > 0 for the other corners. Two faces with a common fold touch beyond it only where the
+fold is closed: where the distance of their other corners is as small as in the sheet folded over
+along it, which is a rational number. So sums of a few products decide everything.
+
+The sums are computed in floats, u = 2^-53, and their roundings are bounded as follows.
+
+- Positions are a + b (s - m) + e with floats a, b, m, exactly these numbers, and |e| <= `error`.
+  They come from c_0, ..., c_K, K <= 20, with sum |c_k| M^k < `_MOST` = 4 for every coordinate,
+  M = max |s|; else the error is infinite, and nothing is separated. The terms of the expansion at
+  m are products of at most K + 2 factors: each is rounded at most 3 K times, and those of all a, b,
+  ... times the powers of half add up to at most 4, as |m| + half = M: 240 u. The ulps of m and half
+  move s by less than 2 u M, and the position by less than 2 u K 4 = 160 u. The sum of the rest is
+  off by less than 45 u of 4 = 180 u, and the coefficients by 4 u of 4 when they were converted. All
+  is less than 700 u < 1e-13 = `_ROUND`.
+- So a, b half and e are at most 4 and those of differences at most 8. With |n| <= 1 the three parts
+  of a sum n.x are at most 8 sqrt(3) < 14 and rounded less than 10 times: off by less than 30 u 14,
+  with the subtractions less than 60 u 14 < 1e-13. The squares and products of folds are sums of
+  terms that add up to less than 1500, each rounded less than 20 times: off by less than 4e-12.
+  `_MARGIN` is more than either.
+- The six products of a determinant add up to at most 3^(3/2) times the product of the lengths of
+  its rows, each rounded less than 10 times; the products of lengths are off by less than 40 u of
+  themselves, twice. Less than 2e-14 of the product, of which `_OF_VOLUME` is demanded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import combinations
+from math import comb
+from typing import Any
+
+import numpy as np
+
+from exactfold._support.arrays import BoolArray, FloatArray, IndexArray, cross
+from exactfold.motion.contacts.face_pairs import AnyPairs, Open
+from exactfold.pattern.crease_pattern import Edge, Triangle
+
+_MOST, _ROUND, _MARGIN, _OF_VOLUME = 4.0, 1e-13, 1e-11, 1e-13
+_MOST_ROWS = 21
+_PRODUCTS = 2_000_000
+_SUMS = "...k,k...vc->...vc"
+
+
+@dataclass(frozen=True)
+class Swept:
+    """Positions of all vertices on |s - middle| <= half: a + b (s - middle) + e, |e| <= error.
+
+    Arrays of shape (V, 3), in units of the framework; `planar` if the third component is not
+    bounded and must not be used. For many intervals at once, they have one more axis in front.
+    """
+
+    start: FloatArray
+    slope: FloatArray
+    error: FloatArray
+    half: Any
+    planar: bool = False
+
+    @classmethod
+    def of(
+        cls,
+        coefficients: FloatArray,
+        radius: FloatArray,
+        low: Any,
+        high: Any,
+        *,
+        planar: bool = False,
+    ) -> Swept:
+        """From p(s) = sum_k c_k s^k, shape (order + 1, V, 3), and |x - p| <= radius, shape (V, 3).
+
+        The polynomial is expanded at the middle; what is beyond the slope goes into the error.
+        `low` and `high` are numbers, or arrays of shape (intervals, 1, 1). Then each interval may
+        have a polynomial and a radius of its own: (order + 1, intervals, V, 3), (intervals, V, 3).
+        """
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        most = np.maximum(np.abs(low), np.abs(high))
+        count = len(coefficients)
+        shape = np.broadcast_shapes(np.shape(middle), radius.shape)
+        sizes = np.einsum(_SUMS, _powers(most, count), np.abs(coefficients))
+        binomials, excess = _binomials(count)
+        moved = binomials * _powers(middle, count)[..., excess]
+        rows = np.einsum("...kj,j...vc->k...vc", moved, coefficients)  # p^(k)(middle) / k!
+        rest = np.einsum(_SUMS, _powers(half, count)[..., 2:], np.abs(rows[2:]))
+        error = np.broadcast_to(radius + rest, shape).copy()
+        slope = rows[1] if count > 1 else np.zeros_like(rows[0])
+        small = (np.broadcast_to(sizes, shape) + radius).max(axis=(-1, -2)) < _MOST
+        error[~(small & (count <= _MOST_ROWS))] = np.inf
+        start, slope = np.broadcast_to(rows[0], shape), np.broadcast_to(slope, shape)
+        return cls(start, slope, error + _ROUND, half, planar)
+
+
+def _powers(x: Any, count: int) -> FloatArray:
+    """1, x, ..., x^(count - 1), along a new last axis instead of the last two; by products."""
+    x = np.asarray(x, dtype=float)
+    factors = np.ones((*x.shape[:-2], count))
+    factors[..., 1:] = x.reshape(x.shape[:-2])[..., None]
+    return np.asarray(np.cumprod(factors, axis=-1))
+
+
+@cache
+def _binomials(count: int) -> tuple[FloatArray, IndexArray]:
+    """j over k in row k and column j, and j - k where that is not negative, else 0."""
+    rows = range(count)
+    return (
+        np.array([[float(comb(j, k)) for j in rows] for k in rows]),
+        np.array([[max(j - k, 0) for j in rows] for k in rows], dtype=np.intp),
+    )
+
+
+def not_separated(pairs: AnyPairs, swept: Swept, among: Open) -> Open:
+    """Which of the pairs are not proved to stay apart on a stretch of the motion."""
+    apart = np.array_split(among.apart, 1 + len(among.apart) * 9 * 23 // _PRODUCTS)
+    triangles = pairs.triangles
+    left = [part[~_apart(swept, triangles, pairs.apart[part])] for part in apart]
+    return Open(
+        np.concatenate(left),
+        among.corner[~_at_corner(swept, pairs.corners[among.corner])],
+        among.folds[~_open_folds(swept, pairs, among.folds)],
+    )
+
+
+def clear_until(
+    pairs: AnyPairs,
+    coefficients: FloatArray,
+    radius: FloatArray,
+    low: float,
+    high: float,
+    *,
+    planar: bool = False,
+    among: Open | None = None,
+    finest: float = 1e-6,
+) -> tuple[float, Open]:
+    """How far along a piece no two faces touch, proved, and what was not proved right after that.
+
+    The piece is p(s) = sum_k c_k s^k for low <= s <= high, shape (order + 1, V, 3), with every
+    coordinate within `radius` of it, shape (V, 3). It is halved where a pair is not separated, down
+    to the part `finest` of it; the second answer is empty where all of it is clear. Pairs that are
+    named there may be apart all the same.
+    """
+    shortest = finest * (high - low)
+    stack = [(low, high, Open.all_of(pairs) if among is None else among)]
+    while stack:
+        a, b, asked = stack.pop()
+        swept = Swept.of(coefficients, radius, a, b, planar=planar)
+        left = not_separated(pairs, swept, asked)
+        if not left:
+            continue
+        middle = 0.5 * (a + b)
+        if b - a <= shortest or not a < middle < b:
+            return a, left
+        stack += [(middle, b, left), (a, middle, left)]
+    return high, Open(*(np.zeros(0, dtype=np.intp),) * 3)
+
+
+def _apart(swept: Swept, triangles: IndexArray, rows: IndexArray) -> BoolArray:
+    """Whether pairs of faces without a common vertex are separated by a plane."""
+    one, two = triangles[rows[:, 0]], triangles[rows[:, 1]]
+    axes = np.broadcast_to(np.eye(3)[: 2 if swept.planar else 3], (len(rows), 3 - swept.planar, 3))
+    done = _separated(swept, one, two, axes)
+    rest = np.flatnonzero(~done)
+    if len(rest):
+        a, b = swept.start[one[rest]], swept.start[two[rest]]
+        done[rest] = _separated(swept, one[rest], two[rest], _axes(a, b, swept.planar))
+    return done
+
+
+def _at_corner(swept: Swept, rows: IndexArray) -> BoolArray:
+    """Whether pairs of faces with one common vertex are separated by a plane through it."""
+    if not len(rows):
+        return np.zeros(0, dtype=bool)
+    v, one, two = rows[:, :1], rows[:, 1:3], rows[:, 3:]
+    at = swept.start if not swept.planar else swept.start * np.array([1.0, 1.0, 0.0])
+    axes = _nearest_points(_unit(np.concatenate([at[one] - at[v], at[v] - at[two]], axis=1)))
+    if swept.planar:
+        axes = axes * np.array([1.0, 1.0, 0.0])
+    # The plane passes through the moving vertex: both sides are differences from it.
+    left = _least(swept, axes, one, np.broadcast_to(v, one.shape))
+    right = _least(swept, axes, np.broadcast_to(v, two.shape), two)
+    return np.asarray((np.minimum(left, right) > _MARGIN).any(axis=1))
+
+
+def _open_folds(swept: Swept, pairs: AnyPairs, rows: IndexArray) -> BoolArray:
+    """Whether folds are proved not to be closed."""
+    hinges = pairs.hinges[rows]
+    left, right = hinges[:, 2], hinges[:, 3]
+    gap = swept.start[left] - swept.start[right]
+    spread = swept.half * np.abs(swept.slope[left] - swept.slope[right])
+    spread += swept.error[left] + swept.error[right]
+    if swept.planar:
+        gap, spread = gap[:, :2], spread[:, :2]
+    # |gap + d|^2 >= |gap|^2 + 2 gap.d; the part linear in s is kept together.
+    drift = swept.half * np.abs(
+        (gap * (swept.slope[left] - swept.slope[right])[:, : gap.shape[1]]).sum(axis=1)
+    )
+    error = (np.abs(gap) * (swept.error[left] + swept.error[right])[:, : gap.shape[1]]).sum(axis=1)
+    least = (gap * gap).sum(axis=1) - 2 * (drift + error)
+    far = least > pairs.closed[rows] + _MARGIN
+    if swept.planar:
+        i, j = hinges[:, 0], hinges[:, 1]
+        return np.asarray(far | (_upright(swept, i, j, left) & _upright(swept, j, i, right)))
+    return np.asarray(far | (bends(swept, hinges) != 0))
+
+
+def _upright(swept: Swept, i: IndexArray, j: IndexArray, k: IndexArray) -> BoolArray:
+    """Whether the projections of faces ijk to the plane are proved to stay counter-clockwise.
+
+    Where those of both faces at a fold do, they are on different sides of it: it is not closed.
+    """
+    a, b = (swept.start[v, :2] - swept.start[i, :2] for v in (j, k))
+    u, v = (swept.slope[w, :2] - swept.slope[i, :2] for w in (j, k))
+    e, f = ((swept.error[w, :2] + swept.error[i, :2]).sum(axis=1) for w in (j, k))
+    size_a, size_b = (
+        np.abs(p).max(axis=1) + swept.half * np.abs(q).max(axis=1) for p, q in ((a, u), (b, v))
+    )
+    least = _cross(a, b) - swept.half * np.abs(_cross(a, v) + _cross(u, b))
+    least = least - swept.half**2 * np.abs(_cross(u, v)) - e * size_b - f * size_a - e * f
+    return np.asarray(least > _MARGIN)
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+
+
+def bends(swept: Swept, hinges: IndexArray) -> IndexArray:
+    """1 for folds that are valleys all the time, -1 for mountains, 0 if neither is proved.
+
+    By the sign of det(j - i, left - i, right - i), the volume between the two faces.
+    """
+    if swept.planar:
+        return np.zeros(len(hinges), dtype=np.intp)
+    # A valley has the left corner above the right face: a positive volume.
+    return _volume_signs(swept, hinges)
+
+
+def through(swept: Swept, edge: Edge, face: Triangle) -> bool:
+    """Whether an edge is proved to run through a face without touching its sides."""
+    (p, q), (a, b, c) = edge, face
+    rows = [(p, a, b, c), (q, a, b, c), (p, q, a, b), (p, q, b, c), (p, q, c, a)]
+    start, end, *sides = _volume_signs(swept, np.array(rows, dtype=np.intp))
+    return bool(start * end == -1 and abs(sum(sides)) == 3)
+
+
+def _volume_signs(swept: Swept, rows: IndexArray) -> IndexArray:
+    """The sign of det(x_j - x_i, x_k - x_i, x_l - x_i) for rows (i, j, k, l); 0 if not certain."""
+    i = rows[:, 0]
+    arms = [swept.start[rows[:, k]] - swept.start[i] for k in (1, 2, 3)]
+    spreads = [
+        swept.half * np.abs(swept.slope[rows[:, k]] - swept.slope[i])
+        + swept.error[rows[:, k]]
+        + swept.error[i]
+        for k in (1, 2, 3)
+    ]
+    size = [np.linalg.norm(arm, axis=1) for arm in arms]
+    most = [n + np.linalg.norm(spread, axis=1) for n, spread in zip(size, spreads, strict=True)]
+    volume = (arms[0] * cross(arms[1], arms[2])).sum(axis=1)
+    # |det(e + de, ...) - det(e, ...)| is at most the product of the larger lengths less the others.
+    product = most[0] * most[1] * most[2]
+    change = product - size[0] * size[1] * size[2]
+    clear = np.abs(volume) > change + _OF_VOLUME * product
+    return np.where(clear, np.sign(volume), 0).astype(np.intp)
+
+
+def _separated(swept: Swept, one: IndexArray, two: IndexArray, axes: FloatArray) -> BoolArray:
+    """Whether one of the axes, shape (pairs, axes, 3), separates two faces, shape (pairs, 3)."""
+    i, j = np.repeat(one, 3, axis=1), np.tile(two, (1, 3))
+    best = np.maximum(_least(swept, axes, i, j), _least(swept, -axes, i, j))
+    return np.asarray((best > _MARGIN).any(axis=1))
+
+
+def _least(swept: Swept, axes: FloatArray, i: IndexArray, j: IndexArray) -> FloatArray:
+    """The least of n.(x_i - x_j) over pairs of vertices, for each axis: shape (pairs, axes)."""
+    at = np.einsum("pac,pkc->pak", axes, swept.start[i] - swept.start[j])
+    drift = np.einsum("pac,pkc->pak", axes, swept.slope[i] - swept.slope[j])
+    error = np.einsum("pac,pkc->pak", np.abs(axes), swept.error[i] + swept.error[j])
+    return np.asarray((at - swept.half * np.abs(drift) - error).min(axis=2))
+
+
+def _axes(a: FloatArray, b: FloatArray, planar: bool) -> FloatArray:
+    """Directions among which one separates two triangles (pairs, 3, 3) if any does; length <= 1."""
+    sides_a, sides_b = (np.roll(t, -1, axis=1) - t for t in (a, b))
+    if planar:
+        sides = np.concatenate([sides_a, sides_b], axis=1)
+        return _unit(np.stack([-sides[..., 1], sides[..., 0], np.zeros(sides.shape[:2])], axis=-1))
+    normals = [cross(sides[:, :1], sides[:, 1:2]) for sides in (sides_a, sides_b)]
+    crossed = cross(sides_a[:, :, None], sides_b[:, None]).reshape(len(a), 9, 3)
+    across = [cross(sides, _unit(n)) for sides, n in zip((sides_a, sides_b), normals, strict=True)]
+    return _unit(np.concatenate([*across, *normals, crossed], axis=1))
+
+
+def _nearest_points(p: FloatArray) -> FloatArray:
+    """Of four points, shape (pairs, 4, 3), the point next to 0 of each line and plane they span.
+
+    n.p > 0 for all four points has a solution n exactly if 0 is not in their convex hull; then the
+    point of the hull next to 0 is one, and it is among the points, these, or there is none.
+    """
+    found = [p]
+    for i, j in combinations(range(4), 2):
+        side = p[:, j] - p[:, i]
+        square = np.maximum((side * side).sum(axis=1), 1e-300)
+        share = (p[:, i] * side).sum(axis=1) / square
+        found.append((p[:, i] - share[:, None] * side)[:, None])
+    for i, j, k in combinations(range(4), 3):
+        normal = cross(p[:, j] - p[:, i], p[:, k] - p[:, i])
+        found.append((normal * np.sign((normal * p[:, i]).sum(axis=1))[:, None])[:, None])
+    return _unit(np.concatenate(found, axis=1))
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.maximum(length, 1e-300) * (1 - 1e-12))

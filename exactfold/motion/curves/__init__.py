@@ -1,0 +1,1 @@
+"""Curves of configurations that are followed in floating point; nothing is proved here."""

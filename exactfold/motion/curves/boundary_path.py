@@ -1,0 +1,114 @@
+"""The rim path: linear equations that keep the heights of the border in a given ratio."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import gcd
+
+from exactfold.branches.values.branch import Branch
+from exactfold.exact.numbers import integer_row
+from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.framework import Framework, Tie
+from exactfold.pattern.crease_pattern import CreasePattern, Triangle
+from exactfold.rigidity.equations.problem import Problem, barycentric
+
+
+def problem_of(branch: Branch) -> Problem:
+    """The problem of the sheet of a branch; with more than four corners, with the rim it has."""
+    rim = branch.rim if branch.pattern.Ve > 4 else None
+    return Problem.of(branch.pattern, rim=rim)
+
+
+def ties_of(problem: Problem) -> tuple[Tie, ...]:
+    """The D - 1 equations of the rim path of a problem, none with four boundary vertices.
+
+    The heights of all boundary vertices v satisfy them iff z_v = l b_v + an affine function of the
+    flat vertex U_v, with the given heights b and some number l (docs/motion.md, More than four
+    corners). Vertices are those of `rigidity.equations.sheet`.
+
+    >>> from exactfold.branches.counting.find import find_branch
+    >>> from exactfold.pattern.families import single_vertex
+    >>> ties_of(problem_of(find_branch(single_vertex(4), "+")))
+    ()
+    >>> len(ties_of(problem_of(find_branch(single_vertex(7), "+"))))
+    3
+    """
+    sheet, rim = problem.sheet, problem.gauge.rim
+    if sheet.Ve < 5:
+        return ()
+    base, raised = _base(sheet, rim)
+    unit = level(sheet, base, raised)
+    height = _value(unit, rim)
+    found = []
+    for v in sorted(set(sheet.boundary).difference(base, [raised])):
+        own = level(sheet, base, v)
+        slope = _value(own, rim) / height
+        row = dict(own)
+        for w, c in unit.items():
+            row[w] = row.get(w, Fraction(0)) - slope * c
+        found.append(_whole(row))
+    return tuple(found)
+
+
+def framework_of(
+    problem: Problem, pinned: Triangle | None = None, drive: Drive | None = None
+) -> Framework:
+    """The framework of a problem, with a drive or else with the ties of the rim path."""
+    if drive is None:
+        return Framework.of(problem.sheet, pinned, ties_of(problem))
+    place = {label: v for v, label in enumerate(problem.labels)}
+    coupling = drive.coupling(problem.sheet, place)
+    return Framework.of(problem.sheet, pinned, coupling=coupling)
+
+
+def factor_functional(sheet: CreasePattern, rim: Mapping[int, Fraction]) -> dict[int, Fraction]:
+    """The functional of the heights of the border that is l on l b + an affine function.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> sheet = single_vertex(5)
+    >>> rim = {v: Fraction(v * v) for v in sheet.boundary}
+    >>> sum(c * rim[v] for v, c in factor_functional(sheet, rim).items())
+    Fraction(1, 1)
+    """
+    base, raised = _base(sheet, rim)
+    row = level(sheet, base, raised)
+    height = _value(row, rim)
+    return {v: c / height for v, c in row.items()}
+
+
+def level(sheet: CreasePattern, base: tuple[int, ...], v: int) -> dict[int, Fraction]:
+    """The height of a vertex above the plane through three others, as a functional."""
+    row = {w: -c for w, c in zip(base, barycentric(sheet, base, v), strict=True)}
+    return row | {v: Fraction(1)}
+
+
+def _base(sheet: CreasePattern, rim: Mapping[int, Fraction]) -> tuple[tuple[int, ...], int]:
+    """Three boundary vertices far apart, and the one whose given height above them is largest."""
+    points, _ = sheet.integer_vertices
+
+    def apart(v: int, w: int) -> int:
+        return (points[v][0] - points[w][0]) ** 2 + (points[v][1] - points[w][1]) ** 2
+
+    def area(v: int) -> int:
+        (ax, ay), (bx, by), (x, y) = points[a], points[b], points[v]
+        return abs((bx - ax) * (y - ay) - (by - ay) * (x - ax))
+
+    ordered = sorted(sheet.boundary)
+    a = ordered[0]
+    b = max(ordered, key=lambda v: apart(v, a))
+    base = (a, b, max(ordered, key=area))
+    others = [v for v in ordered if v not in base]
+    return base, max(others, key=lambda v: abs(_value(level(sheet, base, v), rim)))
+
+
+def _value(row: Mapping[int, Fraction], heights: Mapping[int, Fraction]) -> Fraction:
+    return sum((c * heights[v] for v, c in row.items()), Fraction(0))
+
+
+def _whole(row: Mapping[int, Fraction]) -> Tie:
+    """The multiple with integers that have no common divisor."""
+    vertices = sorted(v for v, c in row.items() if c)
+    whole = integer_row([row[v] for v in vertices])
+    common = gcd(*whole)
+    return tuple((v, c // common) for v, c in zip(vertices, whole, strict=True))

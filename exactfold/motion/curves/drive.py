@@ -1,0 +1,219 @@
+"""Drives: folds whose angles grow together, in the ratio in which their goals are."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import atan2, copysign, cos, degrees, gcd, prod, radians, sqrt
+
+from exactfold.errors import BadDriveError
+from exactfold.exact.numbers import format_rational, integer_row
+from exactfold.motion.curves.coupling import NO_COUPLING, Coupling
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+
+_DENOMINATOR = 10**12
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Folds that are driven from 0 to given angles: the sines of half of these keep their ratio.
+
+    With the fold angles a_k the numbers sin(a_k / 2) are in a fixed ratio all along, which is that
+    at the goal. `squares[k]` is sin(a_k / 2)^2 at the goal, exactly, with the sign of the angle:
+    positive for a valley. It is 1/2 for 90 degrees, and rational for all angles, but of most only a
+    number near it with a denominator up to 10^12, to 1e-12. `folds` are those of a pattern.
+
+    >>> Drive.of({(3, 7): 90, (4, 9): -45})
+    <Drive: 3-7 to 90, 4-9 to -45 degrees>
+    """
+
+    folds: tuple[Edge, ...]
+    squares: tuple[Fraction, ...]
+
+    @classmethod
+    def of(cls, angles: Mapping[Edge, float]) -> Drive:
+        """From angles in degrees by fold; raises `BadDriveError` for one that is no goal."""
+        for fold, angle in angles.items():
+            if not 0 < abs(angle) <= 180 or not square_of(angle):
+                raise BadDriveError(
+                    f"fold {fold_text(fold)}: the angle {angle:g}: {_why_not(angle)}", [fold]
+                )
+        return cls(tuple(angles), tuple(square_of(angle) for angle in angles.values()))
+
+    @property
+    def angles(self) -> dict[Edge, float]:
+        """The goals in degrees."""
+        return {
+            fold: copysign(degrees(2 * atan2(sqrt(abs(q)), sqrt(1 - abs(q)))), q)
+            for fold, q in zip(self.folds, self.squares, strict=True)
+        }
+
+    @property
+    def sines(self) -> tuple[float, ...]:
+        """sin(a_k / 2) at the goal: to first order the ratio of the angles near the flat sheet."""
+        return tuple(copysign(sqrt(abs(q)), q) for q in self.squares)
+
+    @property
+    def text(self) -> str:
+        """The folds and their goals, in words."""
+        goals = ", ".join(f"{fold_text(fold)} to {a:.6g}" for fold, a in self.angles.items())
+        return f"{goals} degrees"
+
+    @property
+    def ratio(self) -> str:
+        """To first order the ratio of the angles, the largest 1, in words."""
+        largest = max(map(abs, self.sines))
+        pairs = zip(self.folds, self.sines, strict=True)
+        return ", ".join(f"{fold_text(fold)} {sine / largest:.4g}" for fold, sine in pairs)
+
+    def to_dict(self) -> dict[str, dict[str, object]]:
+        """By fold its goal in degrees, and its square, exactly."""
+        return {
+            fold_text(fold): {"angle": angle, "square": format_rational(q)}
+            for (fold, angle), q in zip(self.angles.items(), self.squares, strict=True)
+        }
+
+    def coupling(self, sheet: CreasePattern, place: Mapping[int, int]) -> Coupling:
+        """The equations of the drive in a sheet; `place[v]` is its vertex for v.
+
+        With the two faces at fold k of areas A, B and its length l, half the change of the square
+        of the distance of its two opposite vertices is g_k = -8 (A B / l^2) sin(a_k / 2)^2. So
+        these squares are in the ratio of q_k iff w_m g_k = w_k g_m, w_k = q_k A B / l^2, for one m
+        and all other k (docs/motion.md, 10). None are needed for one fold.
+
+        >>> from exactfold.pattern.families import single_vertex
+        >>> star = single_vertex(5)
+        >>> Drive.of({(0, 5): 90, (2, 5): 90}).coupling(star, range(6)).diagonals
+        ((4, 1), (1, 3))
+        """
+        if len(self.folds) < 2:
+            return NO_COUPLING
+        diagonals, weights = [], []
+        for (v, w), q in zip(self.folds, self.squares, strict=True):
+            i, j = sorted((place[v], place[w]))
+            left, right = sheet.opposite((i, j))
+            (ax, ay), (bx, by), (px, py), (rx, ry) = (
+                sheet.vertices[u] for u in (i, j, left, right)
+            )
+            ux, uy = bx - ax, by - ay
+            areas = (ux * (py - ay) - uy * (px - ax)) * (uy * (rx - ax) - ux * (ry - ay))
+            diagonals.append((left, right))
+            weights.append(abs(q) * areas / (ux * ux + uy * uy))
+        most = max(range(len(weights)), key=weights.__getitem__)
+        rows = []
+        for k, weight in enumerate(weights):
+            if k != most:
+                row = [Fraction(0)] * len(weights)
+                row[k], row[most] = weights[most], -weight
+                whole = integer_row(row)
+                rows.append(tuple(c // gcd(*whole) for c in whole))
+        return Coupling(tuple(diagonals), _alike(rows))
+
+    def passed(
+        self,
+        sheet: CreasePattern,
+        place: Mapping[int, int],
+        points: Sequence[Sequence[Fraction]],
+        radius: Fraction,
+    ) -> bool:
+        """Whether all folds are proved to be bent as far as their goals or farther, to their sides.
+
+        `points` are those of the vertices of the sheet in its unit, each coordinate off by at most
+        `radius`; `place` as in `coupling`. With the diagonal of fold k this is g_k <= -8 (A B /
+        l^2) |q_k|, and the sign of the volume of its two faces. False says nothing.
+
+        >>> from exactfold.pattern.families import single_vertex
+        >>> star = single_vertex(5)
+        >>> flat = [(*point, Fraction(0)) for point in star.vertices]
+        >>> Drive.of({(0, 5): 90, (2, 5): 90}).passed(star, range(6), flat, Fraction(0))
+        False
+        """
+        for (v, w), q in zip(self.folds, self.squares, strict=True):
+            i, j = sorted((place[v], place[w]))
+            left, right = sheet.opposite((i, j))
+            flat = [(*sheet.vertices[u], Fraction(0)) for u in (i, j, left, right)]
+            moved = [points[u] for u in (i, j, left, right)]
+            (ux, uy, _), (px, py, _), (rx, ry, _) = (_minus(x, flat[0]) for x in flat[1:])
+            turned, other = ux * py - uy * px, uy * rx - ux * ry
+            gap = _minus(flat[2], flat[3])
+            off = _minus(_minus(moved[2], moved[3]), gap)
+            g = sum(((a + x / 2) * x for a, x in zip(gap, off, strict=True)), Fraction(0))
+            spread = 2 * radius
+            g += sum(abs(a) + abs(x) + spread / 2 for a, x in zip(gap, off, strict=True)) * spread
+            if g > -2 * abs(q) * turned * other / (ux * ux + uy * uy):
+                return False
+            arms = [_minus(x, moved[0]) for x in moved[1:]]
+            sizes = [sum(map(abs, arm)) for arm in arms]
+            most = prod(size + 3 * spread for size in sizes) - prod(sizes)
+            if not _volume(*arms) * (1 if q > 0 else -1) > most:
+                return False
+        return True
+
+    def ways(self, labels: Sequence[int]) -> tuple[tuple[Edge, int], ...]:
+        """The folds by vertices of the sheet of a framework, 1 for a valley and -1 for a mountain.
+
+        `labels[v]` is the vertex of the pattern that vertex v of that sheet is.
+        """
+        place = {label: v for v, label in enumerate(labels)}
+        return tuple(
+            ((min(place[v], place[w]), max(place[v], place[w])), 1 if q > 0 else -1)
+            for (v, w), q in zip(self.folds, self.squares, strict=True)
+        )
+
+    def __repr__(self) -> str:
+        return f"<Drive: {self.text}>"
+
+
+def _why_not(angle: float) -> str:
+    """Why an angle in degrees is no goal."""
+    if angle != angle:
+        return "it is no number"
+    if abs(angle) > 180:
+        return "it is beyond 180"
+    if angle:
+        return "a fold is driven to 0.0001 degrees or more"
+    return "a fold that stays flat is not driven"
+
+
+def _alike(rows: list[tuple[int, ...]]) -> tuple[tuple[int, ...], ...]:
+    """Rows multiplied by powers of 2, so that their largest numbers have the same length."""
+    lengths = [max(abs(c).bit_length() for c in row) for row in rows]
+    most = max(lengths)
+    return tuple(tuple(c << most - n for c in row) for row, n in zip(rows, lengths, strict=True))
+
+
+def _minus(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
+def _volume(a: Sequence[Fraction], b: Sequence[Fraction], c: Sequence[Fraction]) -> Fraction:
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        + a[1] * (b[2] * c[0] - b[0] * c[2])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
+
+
+def square_of(angle: float) -> Fraction:
+    """sin(a / 2)^2 of an angle in degrees with its sign, rounded as `Drive` says."""
+    square = Fraction((1 - cos(radians(abs(angle)))) / 2).limit_denominator(_DENOMINATOR)
+    return square if angle > 0 else -square
+
+
+def fold_text(fold: Edge) -> str:
+    """A fold as it is printed."""
+    return f"{fold[0]}-{fold[1]}"
+
+
+def not_a_fold(edges: Container[Edge], pair: Edge, purpose: str) -> str:
+    """Why two vertices are no fold: they are an edge of the border, or none.
+
+    >>> not_a_fold([(0, 1), (0, 4)], (0, 1), "to drive")
+    '0-1 is an edge of the border, not a fold to drive'
+    >>> not_a_fold([(0, 1), (0, 4)], (1, 4), "to drive")
+    'there is no fold 1-4 to drive'
+    """
+    if pair in edges:
+        return f"{fold_text(pair)} is an edge of the border, not a fold {purpose}"
+    return f"there is no fold {fold_text(pair)} {purpose}"

@@ -1,0 +1,282 @@
+"""What happens along a motion: contacts, closed folds, creases that turn back, nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold.motion.curves.angles import angle_rates, fold_angles_of
+from exactfold.motion.curves.crossing_curves import crossing_in, flat_star_in, flat_vertices
+from exactfold.motion.curves.crossings import Crossings
+from exactfold.motion.curves.curve import Piece
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.curves.zeros import least_of, zero_of
+from exactfold.pattern.crease_pattern import Edge, Triangle
+
+CONTACT, FLAT_FOLD, TURNING = "contact", "flat-fold", "turning"
+NODE, SINGULAR, RETURN = "node", "singular", "return"
+ANGLE, LENGTH = "angle", "length"
+DRIVEN, DEAD_POINT = "driven", "dead-point"
+
+_SAMPLES = 8
+_NEAR_FLAT = 0.3
+_FLAT = 1e-5
+_STILL = 1e-9
+_HINGE = np.arange(4)[None]
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happens between two times of a motion.
+
+    `kind`: "contact", two `faces` meet; "flat-fold", a fold reaches 180 degrees; "turning", a fold
+    angle has a critical point, so that the crease turns back; "node", another curve of
+    configurations crosses, often where the stars of `vertices` are flat; "singular", the curve
+    could not be followed further; "return", the sheet is flat again; "angle", the angle that was
+    asked for is reached; "driven", the driven folds have their angles; "dead-point", they turn back
+    before. `time`: of the motion, lower and upper bound. `faces`: by their corners.
+    `detail` says more in words.
+    """
+
+    kind: str
+    time: tuple[float, float]
+    faces: tuple[tuple[int, ...], ...] = ()
+    folds: tuple[Edge, ...] = ()
+    vertices: tuple[int, ...] = ()
+    detail: str = ""
+
+    def to_dict(self) -> dict[str, object]:
+        """The event as `exactfold fold --json` prints it."""
+        return {
+            "kind": self.kind,
+            "time": list(self.time),
+            "faces": [list(face) for face in self.faces],
+            "folds": [f"{i}-{j}" for i, j in self.folds],
+            "vertices": list(self.vertices),
+            "detail": self.detail,
+        }
+
+
+@dataclass(repr=False)
+class Watch:
+    """Looks for events on one piece of a curve after the other.
+
+    Vertices are those of the framework; times are its arclength. `angles` are the fold angles at
+    the end of the last piece, continued past +-pi. `driven`: folds and the sizes of the angles in
+    radians to which they are driven, all of which are reached at once.
+    """
+
+    framework: Framework
+    largest_angle: float | None = None
+    look_for_contacts: bool = True
+    driven: tuple[tuple[Edge, float], ...] = ()
+    angles: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.angles = np.zeros(len(self.framework.hinges))
+        self._crossings = Crossings(self.framework)
+        self._before: Piece | None = None
+
+    def events(self, piece: Piece) -> list[tuple[float, Event]]:
+        """The events of a piece with their parameters, in order."""
+        grid = np.linspace(0.0, piece.reach, _SAMPLES + 1)
+        positions = self.framework.positions(piece.at(grid))
+        raw = fold_angles_of(positions, self.framework.hinges)
+        angles = np.unwrap(np.vstack([self.angles, raw]), axis=0)[1:]
+        found = [
+            *self._node(piece),
+            *self._angle_events(piece, grid, angles),
+            *self._turnings(piece, grid, positions, angles),
+            *self._returns(piece, grid, raw),
+        ]
+        if self.look_for_contacts:
+            found += self._contacts(piece, grid, positions)
+        self.angles = angles[-1]
+        return sorted(found, key=lambda item: item[0])
+
+    def _event(
+        self, piece: Piece, kind: str, low: float, high: float, **more: object
+    ) -> tuple[float, Event]:
+        times = piece.time + piece.length_to(low), piece.time + piece.length_to(high)
+        return high, Event(kind, times, **more)  # type: ignore[arg-type]
+
+    def _node(self, piece: Piece) -> list[tuple[float, Event]]:
+        """A crossing of curves on the piece before: its orientation changes, or a star is flat."""
+        before, self._before = self._before, piece
+        if before is None or not before.orientation:
+            return []
+        turns = before.orientation * piece.orientation < 0
+        ends = (crossing_in if turns else flat_star_in)(self.framework, before)
+        if ends is None:
+            return []
+        low, high = (before.time + before.length_to(s) for s in ends)
+        flat = flat_vertices(self.framework, before.at(ends[1]))
+        return [(0.0, Event(NODE, (low, high), vertices=flat))]
+
+    def _angle_events(
+        self, piece: Piece, grid: FloatArray, angles: FloatArray
+    ) -> list[tuple[float, Event]]:
+        found = []
+        goals = [(np.pi, FLAT_FOLD)]
+        if self.largest_angle is not None and self.largest_angle < np.pi:
+            goals.append((self.largest_angle, ANGLE))
+        every = list(range(angles.shape[1]))
+        watched = [(goal, kind, every) for goal, kind in goals]
+        if self.driven:
+            # That of a fold that does not close there has a rate.
+            driven, goal = min(self.driven, key=lambda item: abs(item[1] - np.pi / 2))
+            watched.append((goal, DRIVEN, [self.framework.sheet.folds.index(driven)]))
+        for goal, kind, columns in watched:
+            beyond = np.abs(angles) >= goal
+            for k, e in np.argwhere(beyond[1:] & ~beyond[:-1]):
+                if e not in columns:
+                    continue
+                reaching = _FoldOnPiece.of(self.framework, piece, e)
+
+                def excess(
+                    s: float,
+                    fold: _FoldOnPiece = reaching,
+                    near: float = angles[k + 1, e],
+                    goal: float = goal,
+                ) -> float:
+                    return abs(fold.angle(s, near)) - goal
+
+                low, high = _bracket(excess, grid[k], grid[k + 1])
+                i, j, left, right = (int(v) for v in self.framework.hinges[e])
+                faces = ((i, j, left), (i, right, j)) if kind == FLAT_FOLD else ()
+                folds = tuple(f for f, _ in self.driven) if kind == DRIVEN else ((i, j),)
+                found.append(self._event(piece, kind, low, high, faces=faces, folds=folds))
+        return found
+
+    def _turnings(
+        self, piece: Piece, grid: FloatArray, positions: FloatArray, angles: FloatArray
+    ) -> list[tuple[float, Event]]:
+        framework = self.framework
+        rates = angle_rates(positions, framework.displacement(piece.speed(grid)), framework.hinges)
+        found = []
+        # Folds that stay flat have rates that are rounding errors.
+        sizes = np.abs(rates)
+        moving = np.maximum(sizes[1:], sizes[:-1]) > _STILL * sizes.max(initial=0.0)
+        for k, e in np.argwhere((rates[1:] * rates[:-1] < 0) & moving):
+            fold = _FoldOnPiece.of(framework, piece, e)
+            low, high = _bracket(fold.rate, grid[k], grid[k + 1])
+            i, j = (int(v) for v in framework.hinges[e, :2])
+            size = abs(np.degrees(fold.angle(high, angles[k + 1, e])))
+            found.append(
+                self._event(
+                    piece, TURNING, low, high, folds=((i, j),), detail=f"at {size:.4g} degrees"
+                )
+            )
+            if self.driven and (i, j) == self.driven[0][0]:
+                folds = tuple(fold for fold, _ in self.driven)
+                found.append(self._event(piece, DEAD_POINT, low, high, folds=folds))
+        return found
+
+    def _returns(
+        self, piece: Piece, grid: FloatArray, raw: FloatArray
+    ) -> list[tuple[float, Event]]:
+        """The flat sheet again, where all fold angles have a common zero."""
+        if piece.time == 0.0:
+            return []
+        sizes = np.max(np.abs(raw), axis=1, initial=0.0)
+        k = int(np.argmin(sizes))
+        if sizes[k] > _NEAR_FLAT:
+            return []
+
+        def bend(s: float) -> float:
+            positions = self.framework.positions(piece.at(s))
+            return float(np.abs(fold_angles_of(positions, self.framework.hinges)).max(initial=0.0))
+
+        # The polynomial is good a little beyond its piece: near the flat sheet pieces are short.
+        ends = grid[max(k - 1, 0)], grid[k + 1] if k < _SAMPLES else 2.5 * piece.reach
+        s, least = least_of(bend, *ends, within=1e-13)
+        if least > _FLAT:
+            return []
+        return [self._event(piece, RETURN, s, s)]
+
+    def _contacts(
+        self, piece: Piece, grid: FloatArray, positions: FloatArray
+    ) -> list[tuple[float, Event]]:
+        """The first parameter at which an edge runs through a face, by bisection."""
+        hits = self._crossings.any_of(positions)
+        if not hits.any() or hits[0]:
+            return []
+        k = int(np.argmax(hits))
+        low, high = grid[k - 1], grid[k]
+        pair = pairs = self._crossings.pairs(positions[k])
+        while len(pairs):  # others may cross before those that cross at the end
+            start, pair = low, pairs
+            while high - start > 1e-13 * max(piece.reach, 1e-300):
+                middle = 0.5 * (start + high)
+                if not start < middle < high:
+                    break
+                there = self.framework.positions(piece.at(middle))
+                if self._crossings.cross(there[None], pairs).any():
+                    high = middle
+                else:
+                    start = middle
+            pairs = self._crossings.pairs(self.framework.positions(piece.at(start)))
+            if len(pairs):
+                high = start
+        low = start
+        there = self.framework.positions(piece.at(high))
+        first = pair[self._crossings.cross(there[None], pair)[0]][0]
+        crossing = self._crossings.named(first)
+        faces = (self._face_at(crossing.edge, crossing.face), crossing.face)
+        detail = self._crossings.kind(crossing, there)
+        return [self._event(piece, CONTACT, low, high, faces=faces, detail=detail)]
+
+    def _face_at(self, edge: Edge, other: Triangle) -> Triangle:
+        """A face with the edge, if possible one that shares no corner with the other face."""
+        faces = [t for t in self.framework.sheet.triangles if set(edge) <= set(t)]
+        return min(faces, key=lambda t: len(set(t) & set(other)))
+
+
+@dataclass(frozen=True)
+class _FoldOnPiece:
+    """One fold on a piece of a curve, of which only the four corners are computed.
+
+    `corners`: the piece with their displacements as its twelve unknowns. `flat`: their places in
+    the flat sheet, shape (4, 3).
+    """
+
+    corners: Piece
+    flat: FloatArray
+
+    @classmethod
+    def of(cls, framework: Framework, piece: Piece, fold: int) -> _FoldOnPiece:
+        """The fold with a number of a framework."""
+        hinge = framework.hinges[fold]
+        rows = framework.displacement(piece.coefficients)[:, hinge].reshape(-1, 12)
+        return cls(
+            replace(piece, coefficients=rows), np.pad(framework.flat[hinge], ((0, 0), (0, 1)))
+        )
+
+    def _positions(self, s: float) -> FloatArray:
+        return np.asarray(self.corners.at(s).reshape(4, 3) + self.flat)
+
+    def angle(self, s: float, near: float) -> float:
+        """The angle of the fold, continued to one that is near."""
+        raw = float(fold_angles_of(self._positions(s), _HINGE)[0])
+        return raw + 2 * np.pi * round((near - raw) / (2 * np.pi))
+
+    def rate(self, s: float) -> float:
+        """How fast the angle changes."""
+        speed = self.corners.speed(s).reshape(4, 3)
+        return float(angle_rates(self._positions(s), speed, _HINGE)[0])
+
+
+def _bracket(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
+    """Two close parameters between which a function changes its sign, from two farther ones."""
+    at_low, at_high = function(low), function(high)
+    if at_low * at_high > 0:
+        return low, high
+    if at_low == 0 or at_high == 0:
+        s = low if at_low == 0 else high
+        return s, s
+    s = zero_of(function, low, high)
+    gap = 1e-12 * (high - low)
+    return max(low, s - gap), min(high, s + gap)

@@ -1,0 +1,174 @@
+"""What motions along branches and motions of panels have in common, for writers and reports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from exactfold.motion.curves.events import Event
+    from exactfold.motion.curves.motion import FrameBounds
+    from exactfold.pattern.crease_pattern import CreasePattern, Edge
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+
+def fixed(motion: SheetInMotion, *names: str) -> None:
+    """Make arrays of a motion such that they cannot be written to, as its other fields."""
+    for name in names:
+        array = getattr(motion, name).view()
+        array.flags.writeable = False
+        object.__setattr__(motion, name, array)
+
+
+class SheetInMotion(Protocol):
+    """A sheet as it folds: `Motion` along a branch, or `PanelMotion` along modes of rigid panels.
+
+    `times`, shape (frames,); `coords`, shape (frames, V, 3); `angles`, radians, shape
+    (frames, folds), in the order of `pattern.folds`; `events` in the order of time.
+    """
+
+    @property
+    def pattern(self) -> CreasePattern | PanelPattern:
+        """The flat sheet."""
+
+    @property
+    def name(self) -> str:
+        """What the sheet folds along, in a few words."""
+
+    @property
+    def time_name(self) -> str:
+        """What time is."""
+
+    @property
+    def assignment(self) -> Mapping[Edge, str]:
+        """A letter for each fold, on the side that is followed."""
+
+    @property
+    def leading_angles(self) -> Mapping[Edge, float]:
+        """Fold angles in degrees, small enough to lead a simulator into this motion."""
+
+    @property
+    def leading_angles_are(self) -> str:
+        """What these are, in words."""
+
+    @property
+    def times(self) -> FloatArray:
+        """Of the frames."""
+
+    @property
+    def coords(self) -> FloatArray:
+        """Of all vertices in every frame."""
+
+    @property
+    def angles(self) -> FloatArray:
+        """Of all folds in every frame."""
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """What happens."""
+
+    @property
+    def end(self) -> str:
+        """The kind of event at which the motion stops."""
+
+    @property
+    def status(self) -> str:
+        """What is known of the motion, in a word."""
+
+    @property
+    def bounds(self) -> FrameBounds | None:
+        """How far the frames are from true configurations, None where that is not proved."""
+
+    @property
+    def duration(self) -> float:
+        """The time of the last frame."""
+
+    @property
+    def pinned(self) -> tuple[int, ...]:
+        """The corners of the face that is held."""
+
+    @property
+    def length_error(self) -> float:
+        """The largest relative change of the length of an edge in any frame."""
+
+    @property
+    def largest_angles(self) -> FloatArray:
+        """For each fold its largest angle in any frame in degrees, with its sign."""
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What files say of the motion, as JSON."""
+
+    def at(self, time: float) -> FloatArray:
+        """The positions of all vertices at a time, shape (V, 3)."""
+
+    def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
+        """Times and all fold angles in radians at `least` points or more."""
+
+    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+        """The object printed by `exactfold fold --json`."""
+
+
+def length_error(motion: SheetInMotion) -> float:
+    """The largest relative change of the length of an edge in any frame.
+
+    It is 1 where the ends of an edge of the flat sheet have the same coordinates in floats.
+    """
+    i, j = np.array(motion.pattern.edges, dtype=np.intp).T
+    edges = motion.coords[:, i] - motion.coords[:, j]
+    size = float(np.abs(edges).max())
+    lengths = np.linalg.norm(edges / (size or 1.0), axis=2)
+    if not lengths[0].min() > 0:
+        return 1.0
+    return float(np.max(np.abs(lengths / lengths[0] - 1)))
+
+
+def largest_angles(motion: SheetInMotion) -> FloatArray:
+    """For each fold its largest angle in any frame in degrees, with its sign."""
+    rows = np.argmax(np.abs(motion.angles), axis=0)
+    return np.asarray(np.degrees(motion.angles[rows, np.arange(motion.angles.shape[1])]))
+
+
+def table(motion: SheetInMotion) -> tuple[tuple[str, ...], FloatArray]:
+    """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
+    names = ("time", *(f"{i}-{j}" for i, j in motion.pattern.folds))
+    return names, np.column_stack([motion.times, np.degrees(motion.angles)])
+
+
+def frames_reported(motion: SheetInMotion, written: Sequence[str]) -> dict[str, Any]:
+    """The keys of `schema("motion")` that do not depend on what the sheet folds along."""
+    folds, bounds = [f"{i}-{j}" for i, j in motion.pattern.folds], motion.bounds
+    return {
+        "status": motion.status,
+        "pinned": list(motion.pinned),
+        "frames": {
+            "number": len(motion.times),
+            "times": motion.times.tolist(),
+            "time_bounds": None if bounds is None else [list(time) for time in bounds.times],
+            "radii": None if bounds is None else list(bounds.radii),
+        },
+        "angles": dict(zip(folds, np.degrees(motion.angles).T.tolist(), strict=True)),
+        "largest_angles": dict(zip(folds, motion.largest_angles.tolist(), strict=True)),
+        "events": [event.to_dict() for event in motion.events],
+        "end": motion.end,
+        "duration": motion.duration,
+        "length_error": motion.length_error,
+        "written": list(written),
+        "proof": None,
+    }
+
+
+def facts_of_frames(motion: SheetInMotion) -> dict[str, Any]:
+    """The facts that do not depend on what the sheet folds along."""
+    return {
+        "status": motion.status,
+        "end": motion.end,
+        "duration": motion.duration,
+        "pinned": list(motion.pinned),
+        "length_error": motion.length_error,
+        "pattern": motion.pattern.sha256,
+    }

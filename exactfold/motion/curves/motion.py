@@ -1,0 +1,313 @@
+"""A motion: the sheet as it folds along a branch, with frames, fold angles and events."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold._support.notebook import Picture
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.export import AMOUNT
+from exactfold.branches.values.letters import UPSIDE_DOWN
+from exactfold.errors import UsageError
+from exactfold.exact.numbers import format_rational
+from exactfold.motion.curves import in_motion
+from exactfold.motion.curves.angles import fold_angles_of, hinges_of
+from exactfold.motion.curves.boundary_path import problem_of
+from exactfold.motion.curves.curve import Curve
+from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.events import Event
+from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
+from exactfold.pattern.described import described
+from exactfold.pattern.near_degeneracy import warnings
+from exactfold.rigidity.equations.problem import Problem
+
+FOLLOWED: Final = "followed"
+"""The status of a motion that was followed in floats along a proved branch."""
+
+_SAMPLES = 4
+_LONGEST: Final = 40
+"""Characters of signs in a name."""
+
+
+@dataclass(frozen=True, repr=False)
+class FrameBounds:
+    """What is proved of the frames of a motion, one after the other.
+
+    Every coordinate of frame k is within `radii[k]` of that of one true configuration of the
+    branch's motion, which has a time between the two `times[k]`. Both in the unit of the pattern.
+    """
+
+    radii: tuple[float, ...]
+    times: tuple[tuple[float, float], ...]
+
+    def __repr__(self) -> str:
+        return f"<FrameBounds: {len(self.radii)} frames, radius {max(self.radii):.1e}>"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Motion(Picture):
+    """The sheet folding along a branch; `branch` is proved, the motion is followed in floats.
+
+    With `bounds` its frames are proved: they are those of `prove(motion).motion`. Events, `at` and
+    `sampled` are in floats in any case.
+
+    Faces stay rigid: every edge keeps its length to about 1e-13 of it. Time is the arclength of the
+    curve of configurations: the length of the path in the coordinates of all corners that fold,
+    with the triangle `pinned` held, in the length unit of the pattern.
+
+    `times`: of the frames, shape (frames,), the first 0. `coords`: shape (frames, V, 3), the flat
+    sheet first, `pinned` held in its place in the plane z = 0. `angles`: fold angles in radians,
+    shape (frames, folds), in the order of `pattern.folds`, positive for a valley and continued past
+    +-pi. `events`: in the order of time. `end`: the kind of event at which the motion stops, or
+    "length". `side`: 1 for the ray of the branch that `branch` shows, -1 for its mirror image.
+    `drive`: the folds that are driven, None where there are none.
+    """
+
+    branch: Branch
+    side: int
+    curve: Curve
+    times: FloatArray
+    coords: FloatArray
+    angles: FloatArray
+    events: tuple[Event, ...]
+    end: str
+    seconds: float = field(default=0.0, compare=False)
+    bounds: FrameBounds | None = None
+    drive: Drive | None = None
+
+    def __post_init__(self) -> None:
+        in_motion.fixed(self, "times", "coords", "angles")
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # Arrays are made anew, so they are fixed anew; what is cached stays behind.
+        return Motion, tuple(getattr(self, field.name) for field in fields(self))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Motion):
+            return NotImplemented
+        return (
+            (self.branch, self.side, self.events, self.end, self.bounds, self.drive)
+            == (other.branch, other.side, other.events, other.end, other.bounds, other.drive)
+            and np.array_equal(self.times, other.times)
+            and np.array_equal(self.coords, other.coords)
+            and np.array_equal(self.angles, other.angles)
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # arrays have none
+
+    @property
+    def status(self) -> str:
+        """What is known of the motion.
+
+        "proved": its frames are enclosed (`bounds`); "followed": in floats along a proved branch;
+        "undecided": the branch is not proved.
+        """
+        if self.bounds is not None:
+            return str(PROVED)
+        return FOLLOWED if self.branch.status is PROVED else str(self.branch.status)
+
+    @property
+    def pattern(self) -> CreasePattern:
+        """The flat sheet."""
+        return self.branch.pattern
+
+    @property
+    def rim(self) -> Mapping[int, Fraction] | None:
+        """With more than four corners the heights in the ratio of which the border stays."""
+        return self.branch.rim if self.curve.framework.ties else None
+
+    @property
+    def _rim_reported(self) -> dict[str, str] | None:
+        rim = self.rim
+        return None if rim is None else {str(v): format_rational(h) for v, h in rim.items()}
+
+    @property
+    def name(self) -> str:
+        """ "branch" and its signs, cut where there are many, and whether it is the mirror side."""
+        signs = self.branch.sign_text
+        short = signs if len(signs) <= _LONGEST else f"{signs[: _LONGEST - 3]}..."
+        return f"branch {short}" if self.side > 0 else f"branch {short}, mirror side"
+
+    @property
+    def time_name(self) -> str:
+        """What time is."""
+        return "arclength"
+
+    @property
+    def assignment(self) -> Mapping[Edge, str]:
+        """The letters of the branch on the side that is followed: "M", "V", "F" or "U" by fold."""
+        letters = self.branch.assignment
+        if self.side > 0:
+            return letters
+        return {fold: letter.translate(UPSIDE_DOWN) for fold, letter in letters.items()}
+
+    @property
+    def leading_angles(self) -> Mapping[Edge, float]:
+        """The first-order fold angles of the branch in degrees, the largest 30 (docs/export.md)."""
+        letters = self.assignment
+        return {
+            fold: self.side * angle if letters[fold] in "MV" else 0.0
+            for fold, angle in self.branch.fold_angles.degrees(AMOUNT).items()
+        }
+
+    @property
+    def leading_angles_are(self) -> str:
+        """What these are, in words."""
+        return "the first-order fold angles"
+
+    @property
+    def pinned(self) -> Triangle:
+        """The triangle that is held."""
+        a, b, c = (self._problem.labels[v] for v in self.curve.framework.pinned)
+        return a, b, c
+
+    @property
+    def duration(self) -> float:
+        """The time of the last frame."""
+        return float(self.times[-1])
+
+    @cached_property
+    def _problem(self) -> Problem:
+        return problem_of(self.branch)
+
+    def at(self, time: float) -> FloatArray:
+        """The positions of all vertices at a time, shape (V, 3).
+
+        Raises `UsageError` for a time before the first or after the last frame.
+
+        >>> from exactfold.branches.counting.find import find_branch
+        >>> from exactfold.motion.following import follow
+        >>> motion = follow(find_branch("two-vertex", "+-"))
+        >>> bool(abs(motion.at(motion.duration) - motion.coords[-1]).max() < 1e-12)
+        True
+        """
+        if not 0 <= time <= self.duration * (1 + 1e-12):
+            raise UsageError(f"time {time}: this motion has the times 0 to {self.duration:.6g}")
+        unknowns = self.curve.at(time / float(self.curve.framework.unit))
+        return np.asarray(in_space(self._problem, self.curve, unknowns[None], self.side)[0])
+
+    @property
+    def length_error(self) -> float:
+        """The largest relative change of the length of an edge in any frame."""
+        return in_motion.length_error(self)
+
+    def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
+        """Times and all fold angles in radians at `least` points or more, for plots.
+
+        Shapes (times,) and (times, folds); the angles are continued past +-pi.
+        """
+        each = max(_SAMPLES, -(-least // len(self.curve.pieces)))
+        times, unknowns = self.curve.samples(each)
+        coords = _from_the_pin(self._problem, self.curve, unknowns, self.side)
+        angles = np.unwrap(fold_angles_of(coords, hinges_of(self.branch.pattern)), axis=0)
+        return times * float(self.curve.framework.unit), angles
+
+    def table(self) -> tuple[tuple[str, ...], FloatArray]:
+        """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
+        return in_motion.table(self)
+
+    @property
+    def largest_angles(self) -> FloatArray:
+        """For each fold its largest angle in any frame in degrees, with its sign."""
+        return in_motion.largest_angles(self)
+
+    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+        """The object printed by `exactfold fold --json`: `schema("motion")`.
+
+        `name`: of the pattern; `written`: the files that hold the motion.
+        """
+        branch = self.branch
+        return {
+            **headed("motion"),
+            "pattern": described(branch.pattern, name),
+            "theory": "branches",
+            "reason": branch.reason,
+            "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
+            "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
+            "side": self.side,
+            "rim": self._rim_reported,
+            "drive": None if self.drive is None else self.drive.to_dict(),
+            "modes": None,
+            "component": None,
+            **in_motion.frames_reported(self, written),
+            "warnings": warnings(branch.pattern),
+            "seconds": round(self.seconds, 3),
+        }
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What files say of the motion, as JSON."""
+        rim = self._rim_reported
+        return {
+            "vertex_signs": self.branch.sign_text,
+            "vertices": list(self.pattern.interior),
+            "side": self.side,
+            **({} if rim is None else {"rim": rim}),
+            **({} if self.drive is None else {"drive": self.drive.to_dict()}),
+            **in_motion.facts_of_frames(self),
+        }
+
+    def __repr__(self) -> str:
+        name = self.branch.sign_text
+        short = name if len(name) <= 32 else f"{name[:29]}..."
+        return (
+            f"<Motion: branch {short}, {len(self.times)} frames to {self.end} at "
+            f"{self.duration:.6g}>"
+        )
+
+
+def in_space(problem: Problem, curve: Curve, unknowns: FloatArray, side: int) -> FloatArray:
+    """All vertices of the pattern at given unknowns of the framework, shape (times, V, 3).
+
+    What lies in a triangulated triangle moves with it. In the unit and at the place of the pattern.
+    """
+    framework, pattern = curve.framework, problem.pattern
+    x, y = pattern.vertices[problem.labels[framework.pinned[0]]]
+    place = np.array([float(x), float(y), 0.0])
+    near = _from_the_pin(problem, curve, unknowns, side)
+    return np.asarray(near * float(framework.unit) + place)
+
+
+def _from_the_pin(problem: Problem, curve: Curve, unknowns: FloatArray, side: int) -> FloatArray:
+    """The same from the first pinned corner, in the unit of the framework.
+
+    Angles are read from these: far from the origin, or in very large or small units, coordinates of
+    the pattern have no digits left, or squares of them none.
+    """
+    framework, pattern = curve.framework, problem.pattern
+    coords = np.zeros((len(unknowns), len(pattern.vertices), 3))
+    coords[:, problem.labels] = framework.positions(unknowns)
+    for vertex, cycle, weights in problem.flat_inside:
+        for corner, weight in zip(cycle, weights, strict=True):
+            coords[:, vertex] += float(weight) * coords[:, corner]
+    coords[:, :, 2] *= side
+    return coords
+
+
+def angles_at(
+    problem: Problem, curve: Curve, times: FloatArray, unknowns: FloatArray, side: int
+) -> FloatArray:
+    """Fold angles of frames, continued without jumps along the whole curve, shape (times, folds).
+
+    `unknowns`: of the framework at the times. Between the frames the curve is sampled, so that few
+    frames suffice.
+    """
+    hinges = hinges_of(problem.pattern)
+    between, there = curve.samples(_SAMPLES)
+    unit = float(curve.framework.unit)
+    whole = np.concatenate([between * unit, times])
+    both = np.concatenate([there, unknowns])
+    angles = fold_angles_of(_from_the_pin(problem, curve, both, side), hinges)
+    order = np.argsort(whole, kind="stable")
+    continued = np.empty_like(angles)
+    continued[order] = np.unwrap(angles[order], axis=0)
+    return np.asarray(continued[len(between) :])

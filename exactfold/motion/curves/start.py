@@ -1,0 +1,223 @@
+"""The curve of true configurations that leaves the flat state along a branch, as a series."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold.errors import NotFollowedError
+from exactfold.motion.curves.angles import fold_angles_of
+from exactfold.motion.curves.framework import Framework
+from exactfold.solve.numeric.least_squares import least_squares
+
+if TYPE_CHECKING:  # as in `framework`
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import SuperLU
+
+_NEWTON = 30
+_DENSE = 60
+"""Unknowns up to which matrices are dense, so that SciPy, which takes a while, is not loaded."""
+_SINGULAR = 2.0**48
+"""What the largest entries of a matrix and of its inverse may have as a product."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Start:
+    """The blown-up series at the flat state: d = (t^2 u_x, t^2 u_y, t h) with u, h series in t^2.
+
+    The equations g_e = 0 of `Framework` divided by t^2,
+
+        U_e . u_e + h_e^2 / 2 + t^2 |u_e|^2 / 2 = 0,
+
+    together with the coupling and the ties of the framework, and one height held fixed, are
+    regular at t = 0 where the branch is simple. So their
+    solution is an analytic curve in s = t^2, each coefficient of which solves a linear system with
+    the same matrix. `coefficients[k]` is that of s^k, shape (order + 1, unknowns), each unknown
+    triple being (u_x, u_y, h) of one free vertex; `held` is the unknown that is fixed.
+    """
+
+    framework: Framework
+    coefficients: FloatArray
+    held: int
+
+    @classmethod
+    def of(cls, framework: Framework, heights: FloatArray, order: int = 6) -> Start:
+        """The series from approximate heights of all vertices on a branch, shape (V,).
+
+        The heights are scaled so that the largest fold angle is t to first order. Raises
+        `NotFollowedError` where Newton's method does not converge: the branch is not simple, or
+        the numbers leave the range of floats.
+        """
+        first = _scaled(framework, heights_above_the_pin(framework, heights))
+        guess = np.zeros((len(framework.free), 3))
+        guess[:, 2] = first[framework.free]
+        y = guess.reshape(-1)
+        held = int(np.argmax(np.abs(guess[:, 2]))) * 3 + 2
+        y = _with_plane(framework, y)
+        with np.errstate(all="ignore"):
+            y, factors = _newton(framework, y, held)
+        series = np.zeros((order + 1, framework.size))
+        series[0] = y
+        along = np.zeros((order + 1, len(framework.bars), 3))
+        along[0] = framework.along(y)
+        none = np.zeros(len(framework.ties) + 1)
+        for k in range(1, order + 1):
+            right = sum(
+                (along[m, :, 2] * along[k - m, :, 2] for m in range(1, k)),
+                start=np.zeros(len(framework.bars)),
+            ) + sum((along[m, :, :2] * along[k - 1 - m, :, :2]).sum(axis=1) for m in range(k))
+            right = framework.coupling.combined(-0.5 * right)
+            series[k] = factors.solve(np.append(right, none))
+            along[k] = framework.along(series[k])
+        if not np.isfinite(series).all():
+            raise NotFollowedError("the series of the motion leaves the range of floats")
+        return cls(framework, series, held)
+
+    def in_t(self) -> FloatArray:
+        """The displacement as a polynomial in t: coefficients of shape (2 order + 3, unknowns)."""
+        order = len(self.coefficients) - 1
+        whole = np.zeros((2 * order + 3, self.framework.size))
+        heights = np.zeros(self.framework.size, dtype=bool)
+        heights[2::3] = True
+        for k, row in enumerate(self.coefficients):
+            whole[2 * k + 1, heights] = row[heights]
+            whole[2 * k + 2, ~heights] = row[~heights]
+        return whole
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Start):
+            return NotImplemented
+        same = (self.framework, self.held) == (other.framework, other.held)
+        return same and np.array_equal(self.coefficients, other.coefficients)
+
+    __hash__ = None  # type: ignore[assignment]  # arrays have none
+
+    def __repr__(self) -> str:
+        return f"<Start: order {len(self.coefficients) - 1}, {self.framework!r}>"
+
+
+def blown_up(framework: Framework, y: FloatArray, s: float = 0.0) -> FloatArray:
+    """The left sides U_e . u_e + h_e^2 / 2 + s |u_e|^2 / 2, then those of the ties."""
+    e = framework.along(y)
+    flat = (framework.flat_edges[:, :2] * e[:, :2]).sum(axis=1)
+    bent = flat + 0.5 * e[:, 2] ** 2 + 0.5 * s * (e[:, :2] ** 2).sum(axis=1)
+    return np.concatenate([framework.coupling.combined(bent), framework.tie_rows @ y])
+
+
+def blown_up_jacobian(framework: Framework, y: FloatArray, s: float = 0.0) -> csc_array:
+    """The derivative of `blown_up` by the unknowns, sparse."""
+    return framework.matrix(_blown_up_rows(framework, y, s))
+
+
+def _blown_up_rows(framework: Framework, y: FloatArray, s: float) -> FloatArray:
+    rows = framework.along(y)
+    rows[:, :2] = framework.flat_edges[:, :2] + s * rows[:, :2]
+    return rows
+
+
+def bordered(jacobian: csc_array, held: int) -> csc_array:
+    """The square matrix of a Jacobian with a last row that holds one unknown."""
+    rows, columns = jacobian.shape
+    end = jacobian.indptr[held + 1]
+    starts = jacobian.indptr.copy()
+    starts[held + 1 :] += 1
+    return type(jacobian)(
+        (np.insert(jacobian.data, end, 1.0), np.insert(jacobian.indices, end, rows), starts),
+        shape=(rows + 1, columns),
+    )
+
+
+def factorised(matrix: csc_array) -> SuperLU:
+    """The factors of a square matrix; raises `RuntimeError` for a singular one."""
+    from scipy.sparse.linalg import splu
+
+    return splu(matrix)
+
+
+@dataclass(frozen=True)
+class _Inverse:
+    """What solves with a dense matrix."""
+
+    inverse: FloatArray
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """The solution for a right side."""
+        return np.asarray(self.inverse @ right)
+
+
+def _factors(framework: Framework, y: FloatArray, held: int) -> SuperLU | _Inverse:
+    """What solves with the derivative at t = 0 and a last row that holds one unknown.
+
+    Raises `RuntimeError` or `LinAlgError` where it is singular.
+    """
+    if framework.size > _DENSE:
+        return factorised(bordered(blown_up_jacobian(framework, y), held))
+    last = np.zeros((1, framework.size))
+    last[0, held] = 1.0
+    matrix = np.concatenate([framework.dense(_blown_up_rows(framework, y, 0.0)), last])
+    inverse = np.linalg.inv(matrix)
+    if not np.abs(inverse).max() * np.abs(matrix).max() < _SINGULAR:
+        raise np.linalg.LinAlgError("singular to the precision of floats")
+    return _Inverse(inverse)
+
+
+def _newton(
+    framework: Framework, y: FloatArray, held: int
+) -> tuple[FloatArray, SuperLU | _Inverse]:
+    last = np.inf
+    for _ in range(_NEWTON):
+        try:
+            factors = _factors(framework, y, held)
+        except (RuntimeError, np.linalg.LinAlgError):
+            break
+        step = factors.solve(np.append(-blown_up(framework, y), 0.0))
+        y = y + step
+        size = float(np.max(np.abs(step)) / max(1.0, float(np.max(np.abs(y)))))
+        if not np.isfinite(size):
+            break
+        if size < 1e-9 and size > last / 4:
+            return y, factors
+        if size < 1e-15:
+            return y, factors
+        last = size
+    raise NotFollowedError(
+        "no curve was found that leaves the flat state along this branch: it is not simple, or too "
+        "close to another one for floats"
+    )
+
+
+def heights_above_the_pin(framework: Framework, heights: FloatArray) -> FloatArray:
+    """The heights above the plane through the pinned triangle."""
+    corners = list(framework.pinned)
+    affine = np.column_stack([np.ones(len(framework.flat)), framework.flat])
+    plane = np.linalg.solve(affine[corners], heights[corners])
+    above = np.asarray(heights - affine @ plane)
+    above[corners] = 0.0
+    return above
+
+
+def _scaled(framework: Framework, heights: FloatArray) -> FloatArray:
+    tiny = 1e-6 / max(float(np.max(np.abs(heights))), 1e-300)
+    space = np.column_stack([framework.flat, tiny * heights])
+    largest = float(np.max(np.abs(fold_angles_of(space, framework.hinges)), initial=0.0)) / tiny
+    if not (np.isfinite(largest) and largest > 0):
+        raise NotFollowedError("no fold of this branch bends in floats")
+    return heights / largest
+
+
+def _with_plane(framework: Framework, y: FloatArray) -> FloatArray:
+    """The unknowns with the u of least squares for their heights."""
+    e = framework.along(y)
+    rows = framework.flat_edges
+    columns = np.arange(framework.size) % 3 != 2
+    bent = framework.coupling.combined(-0.5 * e[:, 2] ** 2)
+    right = np.append(bent, np.zeros(len(framework.ties)))
+    y = y.copy()
+    if framework.size > _DENSE:
+        y[columns] = least_squares(framework.matrix(rows)[:, columns], right)
+    else:
+        y[columns] = np.linalg.lstsq(framework.dense(rows)[:, columns], right)[0]
+    return y

@@ -1,0 +1,1 @@
+"""Motions from the flat state back to it, and the graph that they form."""

@@ -1,0 +1,63 @@
+"""Certificates of loops: a header, a line for each loop, the claims (docs/motions.md)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
+from exactfold.checker.core.formats import LOOPS, LOOPS_VERSION
+from exactfold.pattern.crease_pattern import CreasePattern
+
+OPENING = '{"from":'
+"""How the line of a loop begins."""
+
+
+def header_line(pattern: CreasePattern, pinned: Sequence[int], bits: int) -> str:
+    """The first line: the sheet, the triangle that is held, and the unit 2^-bits of all numbers."""
+    return _text(
+        {
+            "format": LOOPS,
+            "version": LOOPS_VERSION,
+            "pattern": pattern_document(pattern),
+            "emptied": emptied_evidence(pattern),
+            "pinned": list(pinned),
+            "bits": bits,
+        }
+    )
+
+
+def loop_line(
+    source: Document, target: Document, length: str, evidence: Document, provenance: Document
+) -> str:
+    """The line of a loop."""
+    return _text(
+        {
+            "from": source,
+            "to": target,
+            "length": length,
+            "evidence": evidence,
+            "provenance": provenance,
+        }
+    )
+
+
+def claims_line(pattern: CreasePattern, loops: int, matched: int) -> str:
+    """The last line."""
+    half_branches = 2 << len(pattern.foldable_vertices)
+    return _text(
+        {
+            "claims": {
+                "sha256": pattern.sha256,
+                "loops": loops,
+                "matched": matched,
+                "half_branches": half_branches,
+                "complete": matched == half_branches,
+            }
+        }
+    )
+
+
+def _text(data: dict[str, Any]) -> str:
+    return json.dumps(data, separators=(",", ":"))

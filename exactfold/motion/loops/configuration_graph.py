@@ -1,0 +1,222 @@
+"""The graph of true configurations: the flat state, the nodes, and the arcs between them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from exactfold._support.verdict import PROVED, Verdict
+from exactfold.motion.contacts.fold_ranges import angle_in_floats
+from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.tubes.arclength import Interval, in_floats
+from exactfold.pattern.crease_pattern import Edge
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+FLAT = "flat"
+
+
+@dataclass(frozen=True, order=True)
+class NodeEnd:
+    """One end of an arc at a node: one of the two sides of a line along which curves go through it.
+
+    The straight, that is analytic, continuation of an arc that ends there is the other side of the
+    same line. `side` is 1 or -1.
+    """
+
+    node: int
+    line: int
+    side: int
+
+    @property
+    def mirrored(self) -> NodeEnd:
+        """The end of the mirror image: nodes 2k and 2k + 1 are mirror images of each other."""
+        return NodeEnd(self.node ^ 1, self.line, self.side)
+
+    @property
+    def opposite(self) -> NodeEnd:
+        """Where the straight continuation begins."""
+        return NodeEnd(self.node, self.line, -self.side)
+
+    def to_dict(self) -> dict[str, object]:
+        """The end as JSON shows it."""
+        return {"node": self.node, "line": self.line, "side": self.side}
+
+
+End = HalfBranch | NodeEnd
+"""An end of an arc: in the flat state along a half-branch, or at a node."""
+
+
+@dataclass(frozen=True, repr=False)
+class GraphNode:
+    """A configuration in which the stars of the vertices `flat` are flat and curves cross.
+
+    `curves`: how many are proved to go through it. `status` is PROVED if no others do. `angles`
+    bound its fold angles in degrees, which tell where it is. `mirror` is the number of its mirror
+    image, and `loops` are the numbers of the loops that pass it or its mirror image.
+    """
+
+    flat: tuple[int, ...]
+    curves: int
+    status: Verdict
+    angles: Mapping[Edge, Interval]
+    mirror: int
+    loops: tuple[int, ...]
+
+    def to_dict(self) -> dict[str, object]:
+        """The node as `exactfold motions --json` prints it."""
+        return {
+            "flat": list(self.flat),
+            "curves": self.curves,
+            "status": str(self.status),
+            "angles": [
+                {"fold": list(fold), "angle": list(angle_in_floats(angle))}
+                for fold, angle in self.angles.items()
+            ],
+            "mirror": self.mirror,
+            "loops": list(self.loops),
+        }
+
+    def __repr__(self) -> str:
+        return f"<GraphNode: flat at {self.flat}, {self.curves} curves, {self.status}>"
+
+
+@dataclass(frozen=True, repr=False)
+class GraphArc:
+    """A curve of regular configurations from one end to another.
+
+    `length` bounds its length in the unit of the sheet. `status` is UNDECIDED where an end is None:
+    for the `reason` given it is not known. `loop` is the number of the loop of which it, or its
+    mirror image, is a part, None if it is on none. `mirror` is the number of its mirror image.
+    """
+
+    start: End | None
+    end: End | None
+    length: Interval
+    status: Verdict
+    reason: str
+    loop: int | None
+    mirror: int
+
+    def to_dict(self) -> dict[str, object]:
+        """The arc as `exactfold motions --json` prints it."""
+        return {
+            "from": _named(self.start),
+            "to": _named(self.end),
+            "length": list(in_floats(self.length)),
+            "status": str(self.status),
+            "reason": self.reason,
+            "loop": self.loop,
+            "mirror": self.mirror,
+        }
+
+    def __repr__(self) -> str:
+        return f"<GraphArc: {_vertex(self.start)} to {_vertex(self.end)}, {self.status}>"
+
+
+@dataclass(frozen=True, repr=False)
+class ConfigurationGraph:
+    """The true configurations that can be reached from the flat state, contact ignored.
+
+    `nodes` are different configurations, mirror images next to each other. At each of them the ends
+    of `arcs` are the sides of the lines in which curves go through it. Nothing is said of curves
+    that cannot be reached. `status` is PROVED if this is the whole connected component of the flat
+    state: all half-branches are matched, no other curve goes through a node, and every arc is
+    followed from end to end. If it is not, `reason` says what is missing; each arc and each node
+    is still proved for itself.
+    """
+
+    nodes: tuple[GraphNode, ...]
+    arcs: tuple[GraphArc, ...]
+    status: Verdict
+    reason: str
+
+    def to_networkx(self) -> nx.MultiGraph[int | str]:
+        """The graph, frozen: its vertices are "flat" and the numbers of the nodes.
+
+        Edges are the arcs with two known ends, by their number as key, with `arc`, the `GraphArc`.
+
+        >>> from exactfold.motion.loops.matching import find_loops
+        >>> graph = find_loops("two-vertex").graph
+        >>> graph
+        <ConfigurationGraph: proved, 0 nodes, 4 arcs>
+        >>> graph.to_networkx().degree("flat")
+        8
+        """
+        import networkx as nx
+
+        found: nx.MultiGraph[int | str] = nx.MultiGraph()
+        found.add_node(FLAT)
+        found.add_nodes_from((k, {"node": node}) for k, node in enumerate(self.nodes))
+        for k, arc in enumerate(self.arcs):
+            if arc.start is not None and arc.end is not None:
+                found.add_edge(_vertex(arc.start), _vertex(arc.end), key=k, arc=arc)
+        return nx.freeze(found)
+
+    @property
+    def independent_cycles(self) -> int | None:
+        """The first Betti number of the connected component of the flat state; None if open.
+
+        Its number of arcs less that of its vertices, plus 1.
+        """
+        return len(self.arcs) - len(self.nodes) if self.status is PROVED else None
+
+    @cached_property
+    def closed_curves(self) -> tuple[tuple[int, ...], ...]:
+        """The closed curves that pass nodes but not the flat state, each by its arcs in order.
+
+        They go straight on at every node. A motion reaches them if it turns off at a node.
+        """
+        after = {
+            end: (k, other)
+            for k, arc in enumerate(self.arcs)
+            for end, other in ((arc.start, arc.end), (arc.end, arc.start))
+            if end is not None
+        }
+        seen: set[int] = set()
+        found = []
+        for k, arc in enumerate(self.arcs):
+            if k in seen:
+                continue
+            curve, end = [k], arc.end
+            while isinstance(end, NodeEnd) and end != _opposite(arc.start):
+                number, end = after.get(end.opposite, (k, None))
+                curve.append(number)
+            seen.update(curve)
+            if isinstance(end, NodeEnd):
+                found.append(tuple(curve))
+        return tuple(found)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The graph as `exactfold motions --json` prints it."""
+        return {
+            "status": str(self.status),
+            "reason": self.reason,
+            "nodes": [node.to_dict() for node in self.nodes],
+            "arcs": [arc.to_dict() for arc in self.arcs],
+            "closed_curves": [list(curve) for curve in self.closed_curves],
+            "independent_cycles": self.independent_cycles,
+        }
+
+    def __repr__(self) -> str:
+        return (
+            f"<ConfigurationGraph: {self.status}, {len(self.nodes)} nodes, {len(self.arcs)} arcs>"
+        )
+
+
+def _opposite(end: End | None) -> NodeEnd | None:
+    return end.opposite if isinstance(end, NodeEnd) else None
+
+
+def _vertex(end: End | None) -> int | str:
+    """The vertex of the graph at an end of an arc."""
+    return "open" if end is None else end.node if isinstance(end, NodeEnd) else FLAT
+
+
+def _named(end: End | None) -> dict[str, object] | None:
+    if end is None:
+        return None
+    return end.to_dict() if isinstance(end, NodeEnd) else {"half_branch": end.to_dict()}

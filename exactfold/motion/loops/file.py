@@ -1,0 +1,141 @@
+"""Files of proved loops, written as they are found and continued after an interruption."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+from exactfold._support.verdict import PROVED
+from exactfold.certificates.journal import Journal
+from exactfold.motion.contacts.fold_ranges import FoldRange
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.loops.certificate import OPENING, claims_line, header_line
+from exactfold.motion.loops.proofs import Loop
+from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.tubes.arclength import Interval
+from exactfold.motion.tubes.length_equations import LengthEquations
+from exactfold.motion.tubes.piece import Ball
+from exactfold.motion.tubes.tube_start import StartTube
+from exactfold.motion.tubes.visits import Visit
+from exactfold.rigidity.equations.problem import Problem
+
+
+@dataclass(repr=False)
+class LoopFile:
+    """A certificate of loops under way: no half-branch is in it twice.
+
+    `known` are the loops that an earlier run has left in it.
+    """
+
+    journal: Journal
+    problem: Problem
+    known: tuple[Loop, ...]
+    matched: set[HalfBranch] = field(default_factory=set)
+
+    @classmethod
+    def opened(
+        cls,
+        path: str | os.PathLike[str],
+        problem: Problem,
+        resume: bool,
+        replace: bool,
+        *,
+        like: StartTube | None = None,
+    ) -> LoopFile:
+        """A new file, or with `resume` one that is continued; raises the errors of `Journal`.
+
+        All loops of a file hold the same triangle and have the same bits: those of `like`, by
+        default those of `LoopFinder`.
+        """
+        framework = Framework.of(problem.sheet) if like is None else like.framework
+        pinned = [problem.labels[v] for v in framework.pinned]
+        bits = LengthEquations.of(framework).bits if like is None else like.bits
+        header = header_line(problem.pattern, pinned, bits)
+        if not resume:
+            return cls(Journal(path, header, replace=replace), problem, ())
+        known: list[Loop] = []
+        matched: set[HalfBranch] = set()
+
+        def refusal(text: str, _: int) -> str | None:
+            loop = _loop_of(text, problem, bits)
+            if loop is None or not matched.isdisjoint(_ends(loop)):
+                return "it is no loop of this sheet, or the same as one before"
+            known.append(loop)
+            matched.update(_ends(loop))
+            return None
+
+        journal = Journal.resumed(
+            path, header, refusal, opening=OPENING, kind="certificate of loops"
+        )
+        return cls(journal, problem, tuple(known), matched)
+
+    def add(self, loop: Loop, line: str) -> None:
+        """Write a loop, unless it is there, perhaps run through backwards or mirrored."""
+        ends = _ends(loop)
+        if self.matched.isdisjoint(ends):
+            self.journal.append(line)
+            self.matched |= ends
+
+    def finish(self) -> None:
+        """Write the claims; raises `UnwritableFileError`."""
+        pattern = self.problem.pattern
+        self.journal.finish(claims_line(pattern, self.journal.blocks, len(self.matched)))
+
+    def close(self) -> None:
+        """Close the file; what was written stays."""
+        self.journal.close()
+
+    def __repr__(self) -> str:
+        return f"<LoopFile: {self.journal.path}, {self.journal.blocks} loops>"
+
+
+def _ends(loop: Loop) -> set[HalfBranch]:
+    """The half-branches that a loop and its mirror image match."""
+    ends = {loop.source, loop.source.mirrored}
+    return ends if loop.target is None else ends | {loop.target, loop.target.mirrored}
+
+
+def _loop_of(text: str, problem: Problem, bits: int) -> Loop | None:
+    """The loop of a line; None if this program did not write it."""
+    try:
+        data = json.loads(text)
+        source, target = (_half_branch(data[key], problem) for key in ("from", "to"))
+        steps = data["evidence"]["steps"]
+        known = data["provenance"]
+        nodes = [step for step in steps if "flat" in step]
+        through = tuple(tuple(step["flat"]) for step in nodes)
+        visits = tuple(
+            _visit(step, node, problem, bits)
+            for step, node in zip(nodes, known["nodes"], strict=True)
+        )
+        folds = tuple(
+            FoldRange((i, j), turns, _interval(least), _interval(greatest))
+            for i, j, turns, least, greatest in known["folds"]
+        )
+        length = _interval(known["length"])
+    except (ValueError, LookupError, TypeError, ZeroDivisionError):
+        return None
+    return Loop(source, target, through, length, PROVED, "", len(steps) + 1, visits, folds)
+
+
+def _visit(step: dict[str, Any], node: dict[str, Any], problem: Problem, bits: int) -> Visit:
+    flat = tuple(problem.labels.index(v) for v in step["flat"])
+    place = Ball(bits, tuple(step["node"]), tuple(node["radii"]))
+    along = Ball(bits, tuple(step["centre"]), tuple(node["spread"]))
+    return Visit(flat, place, along, _interval(node["time"]))
+
+
+def _interval(texts: list[str]) -> Interval:
+    low, high = (Fraction(x) for x in texts)
+    return low, high
+
+
+def _half_branch(data: dict[str, Any], problem: Problem) -> HalfBranch:
+    signs = dict(zip(problem.pattern.interior, data["vertex_signs"], strict=True))
+    side = data["side"]
+    if side not in (1, -1) or any(signs[v] not in (1, -1) for v in problem.foldable):
+        raise ValueError("this is no half-branch")
+    return HalfBranch(tuple(signs[v] for v in problem.foldable), 1 if side == 1 else -1)

@@ -1,0 +1,252 @@
+"""How the graph of configurations is put together: nodes recognised, arcs followed, all counted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import lru_cache
+
+from exactfold._support.plurals import agreeing, counted
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.counting.pools import Pool
+from exactfold.errors import WorkerDiedError
+from exactfold.motion.contacts.fold_ranges import box_angles
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.loops.configuration_graph import (
+    ConfigurationGraph,
+    End,
+    GraphArc,
+    GraphNode,
+    NodeEnd,
+)
+from exactfold.motion.loops.loops import LoopFinder
+from exactfold.motion.loops.proofs import Arc, Loop
+from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.tubes.arclength import Interval
+from exactfold.motion.tubes.branch_point_tube import prove_node_tube
+from exactfold.motion.tubes.flat_patches import FlatPatch
+from exactfold.motion.tubes.piece import Ball
+from exactfold.motion.tubes.visits import LocatedNode, Visit
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.equations.problem import Problem
+
+_NOT_LEFT = "no arc that leaves the node along this line was enclosed again"
+
+
+def graph_of(
+    problem: Problem,
+    loops: Sequence[Loop],
+    missing: str,
+    pool: Pool,
+    progress: Progress | None = None,
+) -> ConfigurationGraph:
+    """The graph of the loops of a sheet, and of all arcs that leave their nodes elsewhere.
+
+    `missing`: why not all half-branches are matched, empty if they are. Raises `WorkerDiedError`,
+    and `ArithmeticError` if two proofs contradict each other, which is a defect.
+    """
+    census = _Census(problem, Framework.of(problem.sheet))
+    for number, loop in enumerate(loops):
+        census.add_loop(number, loop)
+    work = _FollowArc(problem.pattern)
+    while pending := census.open_ends:
+        with closing(pool(work, census.jobs(pending, progress))) as results:
+            for job, result in results:
+                if isinstance(result, WorkerDiedError):
+                    raise result
+                census.add_followed(job, result)
+    return census.graph(missing)
+
+
+@dataclass(frozen=True)
+class _Job:
+    """An end at a node from which an arc is to be followed: about where, and in which direction."""
+
+    end: NodeEnd
+    flat: tuple[int, ...]
+    node: Ball
+    line: Ball
+
+
+@dataclass(frozen=True)
+class _FollowArc:
+    """Follows an arc from a node in a worker process; None if it is not enclosed at the node."""
+
+    pattern: CreasePattern
+
+    def __call__(self, job: _Job) -> Arc | None:
+        """Follow it to the next node."""
+        finder = _finder(self.pattern)
+        framework = Framework.of(finder.problem.sheet)
+        patch = FlatPatch.of(framework, job.flat)
+        if patch is None:
+            return None
+        along = job.end.side * job.line.floats[0]
+        tube = prove_node_tube(framework, patch, job.node.floats[0], along)
+        return None if tube is None else finder.follow_from_node(tube).arc
+
+
+@lru_cache(maxsize=4)
+def _finder(pattern: CreasePattern) -> LoopFinder:
+    return LoopFinder(Problem.of(pattern))
+
+
+@dataclass
+class _Census:
+    """The nodes and arcs that are known, with their mirror images: numbers 2k and 2k + 1.
+
+    `at` has the arc of each end, `failed` the ends whose arcs were not followed to an end.
+    """
+
+    problem: Problem
+    framework: Framework
+    nodes: list[LocatedNode] = field(default_factory=list)
+    passed: list[set[int]] = field(default_factory=list)
+    arcs: list[GraphArc] = field(default_factory=list)
+    at: dict[End, int] = field(default_factory=dict)
+    failed: dict[End, tuple[Interval, str, int | None]] = field(default_factory=dict)
+    reasons: dict[str, None] = field(default_factory=dict)
+
+    def add_loop(self, number: int, loop: Loop) -> None:
+        """The arcs of a loop from node to node; the last is open if it is not proved to its end."""
+        begin: End | None = loop.source
+        time: Interval = Fraction(0), Fraction(0)
+        for visit in loop.visits:
+            left = self._side(visit)
+            if left is not None:
+                for node in (left.node, left.node ^ 1):
+                    self.passed[node].add(number)
+            reached = None if left is None else left.opposite
+            self._add(begin, reached, _between(time, visit.time), "", number)
+            begin, time = left, visit.time
+        self._add(begin, loop.target, _between(time, loop.length), loop.reason, number)
+
+    @property
+    def open_ends(self) -> list[NodeEnd]:
+        """Ends at nodes of which no arc is known, one of each pair of mirror images."""
+        return [
+            end
+            for k, node in enumerate(self.nodes)
+            if k % 2 == 0 and node.has_all_lines
+            for line in range(len(node.lines))
+            for end in (NodeEnd(k, line, 1), NodeEnd(k, line, -1))
+            if self.failed.keys().isdisjoint({end, end.mirrored}) and end not in self.at
+        ]
+
+    def jobs(self, pending: Sequence[NodeEnd], progress: Progress | None) -> Iterator[_Job]:
+        """Ends to be followed, but for those at which an arc has ended in the meantime."""
+        for k, end in enumerate(pending):
+            if progress is not None:
+                progress("arcs", k, len(pending))
+            if end not in self.at:
+                node = self.nodes[end.node]
+                yield _Job(end, node.flat, node.point.ball, node.lines[end.line])
+
+    def add_followed(self, job: _Job, arc: Arc | None) -> None:
+        """An arc that was followed from an open end, if it is proved to begin there."""
+        if arc is None or self._side(arc.begin) != job.end:
+            self.failed[job.end] = (Fraction(0), Fraction(0)), _NOT_LEFT, None
+            return
+        end: End | None = None
+        if isinstance(arc.end, HalfBranch):
+            end = arc.end
+        elif arc.end is not None:
+            left = self._side(arc.end)
+            end = None if left is None else left.opposite
+        self._add(job.end, end, arc.length, arc.reason, None)
+
+    def graph(self, missing: str) -> ConfigurationGraph:
+        """All of it; ends whose arc has come from elsewhere are no longer open."""
+        for end, (length, reason, loop) in self.failed.items():
+            if end not in self.at:
+                self._append(end, None, length, reason, loop)
+        nodes = tuple(self._node(k) for k in range(len(self.nodes)))
+        reasons = [missing] if missing else []
+        if number := sum(node.status is not PROVED for node in nodes):
+            reasons.append(
+                f"at {counted(number, 'node')} not all curves that go through are proved"
+            )
+        if number := sum(arc.status is not PROVED for arc in self.arcs):
+            reasons.append(
+                f"{counted(number, 'arc')} {agreeing(number, 'is')} not proved to an end"
+            )
+        reasons += self.reasons
+        status = UNDECIDED if reasons else PROVED
+        return ConfigurationGraph(nodes, tuple(self.arcs), status, "; ".join(reasons))
+
+    def _node(self, k: int) -> GraphNode:
+        node, labels = self.nodes[k], self.problem.labels
+        folds = [
+            (min(labels[i], labels[j]), max(labels[i], labels[j]))
+            for i, j in self.framework.sheet.folds
+        ]
+        angles = box_angles(self.framework, node.point.ball)
+        return GraphNode(
+            tuple(labels[v] for v in node.flat),
+            len(node.lines),
+            PROVED if node.has_all_lines else UNDECIDED,
+            dict(zip(folds, angles, strict=True)),
+            k ^ 1,
+            tuple(sorted(self.passed[k])),
+        )
+
+    def _side(self, visit: Visit) -> NodeEnd | None:
+        """The end at which a curve leaves the node it visits; None, with a reason, if not known."""
+        met = [node.meets(visit) for node in self.nodes]
+        if True not in met and None in met:
+            self.reasons["whether two nodes are the same is not decided"] = None
+            return None
+        if True in met:
+            k = met.index(True)
+        else:
+            located = LocatedNode.of(self.framework, visit)
+            if located is None or not located.point.ball.misses(located.mirrored.point.ball):
+                self.reasons["a node that is passed is not located"] = None
+                return None
+            k = len(self.nodes)
+            self.nodes += [located, located.mirrored]
+            self.passed += [set(), set()]
+        side = self.nodes[k].side(visit)
+        if side is None:
+            self.reasons["along which line a node is passed is not decided"] = None
+            return None
+        return NodeEnd(k, *side)
+
+    def _add(
+        self, start: End | None, end: End | None, length: Interval, reason: str, loop: int | None
+    ) -> None:
+        """An arc and its mirror image, unless they are known; later, if one end is not."""
+        if start is None or end is None:
+            for known in (start, end):
+                if known is not None:
+                    why = reason or "the node at the other end is not identified"
+                    self.failed[known] = length, why, loop
+            return
+        if before := {self.at[e] for e in (start, end) if e in self.at}:
+            arc = self.arcs[min(before)]
+            if len(before) > 1 or {start, end} != {arc.start, arc.end}:
+                raise ArithmeticError("two proofs contradict each other about an arc")
+            return
+        if start.mirrored in (start, end):
+            raise ArithmeticError("an arc that is its own mirror image has a flat configuration")
+        self._append(start, end, length, "", loop)
+
+    def _append(
+        self, start: End, end: End | None, length: Interval, reason: str, loop: int | None
+    ) -> None:
+        image = None if end is None else end.mirrored
+        for a, b in ((start, end), (start.mirrored, image)):
+            number = len(self.arcs)
+            status = UNDECIDED if b is None else PROVED
+            self.arcs.append(GraphArc(a, b, length, status, reason, loop, number ^ 1))
+            self.at[a] = number
+            if b is not None:
+                self.at[b] = number
+
+
+def _between(begin: Interval, end: Interval) -> Interval:
+    """Bounds of the difference of two times."""
+    return max(end[0] - begin[1], Fraction(0)), end[1] - begin[0]

@@ -1,0 +1,167 @@
+"""Loops: from the flat state along a half-branch, and back to the flat state along another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold._support.progress import Progress
+from exactfold.branches.values.branch import Branch
+from exactfold.errors import NotProvedAtTheFlatStateError
+from exactfold.motion.curves.angles import fold_angles_of
+from exactfold.motion.loops.proofs import ArcProof, Landing, LoopProof, named
+from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.tubes.branch_point_tube import NodeTube
+from exactfold.motion.tubes.chain import Chain, Step
+from exactfold.motion.tubes.links import Link
+from exactfold.motion.tubes.tracks import half_branch
+from exactfold.motion.tubes.tube import Tube
+from exactfold.motion.tubes.tube_start import (
+    ROOT_BITS,
+    StartTube,
+    prove_start,
+)
+from exactfold.pattern.crease_pattern import Triangle
+from exactfold.rigidity.equations.problem import Problem
+
+MOST_TUBES = 4000
+_ALIKE = 0.25
+"""How different heights may be, of the largest one, that are taken to be those of a start tube."""
+_NEAR_FLAT = 0.8
+"""Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
+
+
+@dataclass(frozen=True)
+class LoopFinder:
+    """Follows the half-branches of one sheet; what they share is computed once."""
+
+    problem: Problem
+
+    def follow(
+        self,
+        branch: Branch,
+        side: int = 1,
+        *,
+        pinned: Triangle | None = None,
+        bits: int = 64,
+        progress: Progress | None = None,
+    ) -> LoopProof:
+        """The loop that leaves the flat state along a half-branch of a simple, proved branch.
+
+        `pinned` and `bits` as in `half_branch`, whose errors are raised. `progress` is told how
+        many tubes there are.
+
+        >>> from exactfold.branches.counting.find import find_branch
+        >>> branch = find_branch("two-vertex", "+-")
+        >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
+        <Loop: +-, saddle + to +-, saddle -, proved>
+        """
+        return self._proof(half_branch(branch, side, pinned, bits=bits).start, progress)
+
+    def follow_from(self, branch: Branch, source: HalfBranch) -> LoopProof:
+        """The loop that leaves the flat state along `source`, one of the halves of a branch.
+
+        Raises as `half_branch`, and `NotProvedAtTheFlatStateError` if it is neither half.
+        """
+        for side in (1, -1):
+            start = half_branch(branch, side).start
+            if named(start) == source:
+                return self._proof(start)
+        raise NotProvedAtTheFlatStateError(f"the branch has not the half-branch {source}")
+
+    def _proof(self, start: StartTube, progress: Progress | None = None) -> LoopProof:
+        chain = Chain.from_flat(start, self.problem.labels)
+        steps, landing, reason = self._followed(chain, progress=progress)
+        return LoopProof(self.problem, start, tuple(steps), landing, reason)
+
+    def follow_from_node(self, tube: NodeTube) -> ArcProof:
+        """The arc from a node on, forwards along a tube through it, to the next node."""
+        chain = Chain.from_node(tube, self.problem.labels)
+        steps, landing, reason = self._followed(chain, at_node=True)
+        return ArcProof(tube, tuple(steps), landing, reason)
+
+    def _followed(
+        self, chain: Chain, at_node: bool = False, progress: Progress | None = None
+    ) -> tuple[list[Step], Landing | None, str]:
+        """The steps of a chain to a landing, or to what stopped the proof.
+
+        With `at_node` the passage of the first node is the last step.
+        """
+        known: StartTube | None = None
+        while len(chain.steps) < MOST_TUBES:
+            step = chain.extend()
+            if isinstance(step, str):
+                return chain.steps, None, step
+            if isinstance(step, Link):
+                if progress is not None:
+                    progress("proving, tubes", len(chain.steps), 0)
+                landing, known = self._landing(step, known)
+                if landing is not None:
+                    return chain.steps, landing, ""
+            elif at_node:
+                return chain.steps, None, ""
+        return chain.steps, None, f"{MOST_TUBES} tubes were not enough"
+
+    def _landing(
+        self, link: Link, known: StartTube | None
+    ) -> tuple[Landing | None, StartTube | None]:
+        """That a point of the start tube of another half-branch lies on this tube; and that tube.
+
+        `known`: the start tube found on the link before. It is not sought anew where the motion
+        points to it and is still beyond its reach.
+        """
+        tube = link.tube
+        x, velocity = tube.enclosure(link.exit).floats[0], tube.velocity(link.exit).floats[0]
+        if x @ velocity > 0:  # away from the flat state
+            return None, None
+        framework = tube.framework
+        angles = fold_angles_of(framework.positions(x), framework.hinges)
+        if np.abs(angles).max(initial=0.0) > _NEAR_FLAT:
+            return None, None
+        if known is not None and _points_to(known, x):
+            if abs(tau := _tau_at(known, x)) > known.last:
+                return None, known
+            landing = _landed(link, known, tau)
+            if landing is not None:
+                return landing, known
+        start = self._start(tube, framework.displacement(x)[:, 2])
+        return (None if start is None else _landed(link, start, _tau_at(start, x))), start
+
+    def _start(self, tube: Tube, heights: FloatArray) -> StartTube | None:
+        try:
+            return prove_start(tube.framework, self.problem.gauge, heights, bits=tube.bits)
+        except NotProvedAtTheFlatStateError:
+            return None
+
+
+def _tau_at(start: StartTube, x: FloatArray) -> int:
+    """The tau at which a start tube, or for negative ones its mirror image, is next to unknowns x.
+
+    The height that is held is the same along the whole start tube: it gives t, and tau.
+    """
+    held = start.coefficients[0][start.held] / (1 << start.bits)
+    return round(float(x[start.held]) / held * (1 << (ROOT_BITS + start.halvings)))
+
+
+def _points_to(start: StartTube, x: FloatArray) -> bool:
+    """Whether the heights of unknowns x are nearly a multiple of those of a start tube."""
+    heights = np.array([a / (1 << start.bits) for a in start.coefficients[0][2::3]])
+    scale = float(x[start.held]) / heights[start.held // 3]
+    off, most = np.abs(x[2::3] - scale * heights).max(), np.abs(scale * heights).max()
+    return bool(off < _ALIKE * most)
+
+
+def _landed(link: Link, start: StartTube, tau: int) -> Landing | None:
+    """That a point of a start tube lies on the tube of a link, which it passes backwards."""
+    tube = link.tube
+    if not 0 < abs(tau) <= start.last:
+        return None
+    found = tube.located(start.ball(tau))
+    if found is None or found[0] < link.entry[1]:
+        return None
+    velocity = start.ball_velocity(tau)
+    if tube.goes_along(velocity) * (1 if tau > 0 else -1) != -1:
+        return None
+    return Landing(named(start, 1 if tau > 0 else -1), start, tau)

@@ -1,0 +1,314 @@
+"""Loops, and their proofs: from the flat state along a half-branch, and back along another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import zip_longest
+
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.certificates.entries import Document
+from exactfold.errors import NotCountedError
+from exactfold.exact.numbers import format_rational
+from exactfold.motion.certificate import motion_certificate
+from exactfold.motion.contacts.fold_ranges import SLACK, FoldRange, fold_ranges
+from exactfold.motion.contacts.stretches import on_node_tube, on_start_tube, on_tube
+from exactfold.motion.loops.certificate import loop_line
+from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.tubes.arclength import Interval, in_floats
+from exactfold.motion.tubes.branch_point_tube import NodeTube
+from exactfold.motion.tubes.chain import Step, chords, step_documents
+from exactfold.motion.tubes.links import Link
+from exactfold.motion.tubes.passages import Passage
+from exactfold.motion.tubes.piece import PARAMETER_BITS, Ball
+from exactfold.motion.tubes.tube_start import StartTube
+from exactfold.motion.tubes.visits import Visit
+from exactfold.rigidity.equations.problem import Problem
+
+
+@dataclass(frozen=True, repr=False)
+class Landing:
+    """Where a motion comes back to the flat state: on the last tube lies a point of `start`.
+
+    At `tau` the start tube of the half-branch `to`, which is that of its mirror image for a
+    negative `tau`, passes the last tube in the opposite direction; so the motion ends in the flat
+    state along `to`.
+    """
+
+    to: HalfBranch
+    start: StartTube
+    tau: int
+
+    @property
+    def ball(self) -> Ball:
+        """A box of unknowns of the length equations that holds the configuration at `tau`."""
+        return self.start.ball(self.tau)
+
+    def __repr__(self) -> str:
+        return f"<Landing: {self.to}>"
+
+
+@dataclass(frozen=True, repr=False)
+class Loop:
+    """The true configurations from the flat state along `source` back to it along `target`.
+
+    `through`: the vertices that are flat at each node on the way, in order, and `visits` where and
+    when these are passed. `length` bounds the length in the unit of the sheet; where `status` is
+    UNDECIDED that of the part that is proved, `target` is None, and `reason` says what stopped the
+    proof. `tubes`: how many proved it. `folds`: the ranges of the angles of all folds, empty if the
+    status is UNDECIDED or a range was not proved, and in an outline.
+    """
+
+    source: HalfBranch
+    target: HalfBranch | None
+    through: tuple[tuple[int, ...], ...]
+    length: Interval
+    status: Verdict
+    reason: str
+    tubes: int
+    visits: tuple[Visit, ...] = ()
+    folds: tuple[FoldRange, ...] = ()
+
+    def to_dict(self) -> dict[str, object]:
+        """The loop as `exactfold motions --json` prints it."""
+        return {
+            "from": self.source.to_dict(),
+            "to": None if self.target is None else self.target.to_dict(),
+            "through": [{"flat": list(vertices)} for vertices in self.through],
+            "length": list(in_floats(self.length)),
+            "status": str(self.status),
+            "reason": self.reason,
+            "tubes": self.tubes,
+            "windings": [
+                {"fold": list(fold.fold), "turns": fold.turns} for fold in self.folds if fold.turns
+            ],
+            "angles": [fold.to_dict() for fold in self.folds],
+        }
+
+    def __repr__(self) -> str:
+        return f"<Loop: {self.source} to {self.target}, {self.status}>"
+
+
+@dataclass(frozen=True, repr=False)
+class LoopProof:
+    """One analytic curve of configurations from `start` through `steps` to `landing`, no gap.
+
+    Without `landing` it ends after the last step, and `reason` says why.
+    """
+
+    problem: Problem
+    start: StartTube
+    steps: tuple[Step, ...]
+    landing: Landing | None
+    reason: str
+
+    @cached_property
+    def loop(self) -> Loop:
+        """What is proved."""
+        return replace(self.outline, folds=self._folds())
+
+    @cached_property
+    def outline(self) -> Loop:
+        """The same without the ranges of the fold angles, which take time."""
+        landing, unit = self.landing, self.start.framework.unit
+        low, high = self.steps[-1].left if self.steps else self.start.length(0, self.start.last)
+        if landing is not None:
+            low, high = whole_length(self.steps[-1], landing)
+        return Loop(
+            named(self.start),
+            None if landing is None else landing.to,
+            tuple(step.vertices for step in self.steps if isinstance(step, Passage)),
+            (low * unit, high * unit),
+            UNDECIDED if landing is None else PROVED,
+            self.reason,
+            len(self.steps) + 1,
+            tuple(step.visit(unit) for step in self.steps if isinstance(step, Passage)),
+        )
+
+    def _folds(self) -> tuple[FoldRange, ...]:
+        """The ranges of the fold angles on the loop; none without a landing."""
+        if self.landing is None:
+            return ()
+        chain = [on_start_tube(self.start, 0, self.start.last)]
+        vague = 0
+        for step, after in zip_longest(self.steps, self.steps[1:]):
+            if isinstance(step, Passage):
+                chain.append(on_node_tube(step.tube, step.entry, step.exit))
+                continue
+            # To the point that lies on the next piece, which is known but for its box.
+            end = step.exit
+            vague = max(vague, step.entry[1] - step.entry[0])
+            if not isinstance(after, Link):
+                ball = self.landing.ball if after is None else after.tube.ball(after.entry)
+                found = step.tube.located(ball)
+                if found is None:
+                    raise ArithmeticError("a loop has a gap")
+                end = found[1]
+                vague = max(vague, end - found[0])
+            chain.append(on_tube(step.tube, step.entry[0], end))
+        if vague >= SLACK * (1 << PARAMETER_BITS):
+            return ()
+        chain.append(on_start_tube(self.landing.start, self.landing.tau, 0))
+        framework, labels = self.start.framework, self.problem.labels
+        names = [
+            (min(labels[i], labels[j]), max(labels[i], labels[j])) for i, j in framework.sheet.folds
+        ]
+        return fold_ranges(framework, chain, names) or ()
+
+    def line(self) -> str:
+        """The line of a loop that is proved to its end, for `exactfold.checker` (docs/motions.md).
+
+        It claims a length a little smaller than that of the loop, as far as straight chords show
+        it. Raises `NotCountedError` for a loop without a landing.
+        """
+        if self.landing is None:
+            raise NotCountedError(f"the loop is not proved to its end: {self.reason}")
+        landing, loop, unit = self.landing, self.loop, self.start.framework.unit
+        length = chords(self.start, self.steps, leaves=False, landing=landing.ball)
+        return loop_line(
+            self._named(loop.source),
+            self._named(landing.to),
+            format_rational(length * unit),
+            {
+                "start": {**self._flat_end(self.start), "exit": self.start.last},
+                "steps": step_documents(self.steps, leaves=False),
+                "landing": {**self._flat_end(landing.start), "tau": landing.tau},
+            },
+            provenance_of(loop),
+        )
+
+    def certificate(self, rim: Mapping[int, Fraction]) -> Document:
+        """The proof of a motion along the rim path of `rim`, there and back (docs/motion.md, 9).
+
+        Unlike a loop it is a motion of its own kind, not one of those that all half-branches of the
+        sheet are matched by. Raises `NotCountedError` as `line`.
+        """
+        if self.landing is None:
+            raise NotCountedError(f"the motion is not proved to its end: {self.reason}")
+        landing, start, problem = self.landing, self.start, self.problem
+        length = chords(start, self.steps, leaves=False, landing=landing.ball)
+        return motion_certificate(
+            problem.pattern,
+            dict(zip(problem.foldable, start.vertex_signs, strict=True)),
+            start.side,
+            length * start.framework.unit,
+            [problem.labels[v] for v in start.framework.pinned],
+            start.bits,
+            {**self._flat_end(start), "exit": start.last},
+            step_documents(self.steps, leaves=False),
+            rim=rim,
+            returning=(
+                self._named(landing.to),
+                {**self._flat_end(landing.start), "tau": landing.tau},
+            ),
+        )
+
+    def _named(self, half_branch: HalfBranch) -> Document:
+        """A half-branch by the signs of all interior vertices of the pattern."""
+        signs = dict(zip(self.problem.foldable, half_branch.vertex_signs, strict=True))
+        interior = self.problem.pattern.interior
+        return {"vertex_signs": [signs.get(v, 0) for v in interior], "side": half_branch.saddle}
+
+    def _flat_end(self, start: StartTube) -> Document:
+        held = int(start.framework.free[start.held // 3])
+        return {
+            "centre": list(start.coefficients[0]),
+            "halvings": start.halvings,
+            "held": self.problem.labels[held],
+            "reach": start.reach,
+        }
+
+    def __repr__(self) -> str:
+        return f"<LoopProof: {len(self.steps)} steps, {self.outline!r}>"
+
+
+@dataclass(frozen=True, repr=False)
+class Arc:
+    """A curve of regular configurations from a node to the next one, or to the flat state.
+
+    It leaves the node of `begin` in the direction of this visit, and ends with the visit `end` of
+    another node, or in the flat state along the half-branch `end`; None if it is proved as far as
+    `length` only, for the `reason` given. `length` is in the unit of the sheet.
+    """
+
+    begin: Visit
+    end: Visit | HalfBranch | None
+    length: Interval
+    reason: str
+    tubes: int
+
+    def __repr__(self) -> str:
+        return f"<Arc: from {self.begin!r} to {self.end!r}>"
+
+
+@dataclass(frozen=True, repr=False)
+class ArcProof:
+    """One analytic curve of configurations from the middle of `begin` through `steps`, no gap.
+
+    It ends in the flat state with `landing`, at the node of the last step, or for `reason`.
+    """
+
+    begin: NodeTube
+    steps: tuple[Step, ...]
+    landing: Landing | None
+    reason: str
+
+    @property
+    def arc(self) -> Arc:
+        """What is proved."""
+        unit, last = self.begin.framework.unit, self.steps[-1] if self.steps else None
+        begin = Visit.of(self.begin, (Fraction(0), Fraction(0)))
+        end: Visit | HalfBranch | None = None
+        if last is None:
+            low, high = self.begin.length(0, self.begin.longest * 3 // 4)
+        elif self.landing is not None:
+            (low, high), end = whole_length(last, self.landing), self.landing.to
+        elif isinstance(last, Passage):
+            end = last.visit(unit)
+            return Arc(begin, end, end.time, "", len(self.steps) + 1)
+        else:
+            low, high = last.left
+        return Arc(begin, end, (low * unit, high * unit), self.reason, len(self.steps) + 1)
+
+    def __repr__(self) -> str:
+        return f"<ArcProof: {self.arc!r}>"
+
+
+def provenance_of(loop: Loop) -> Document:
+    """What the line of a loop keeps for a run that is continued; it is not verified."""
+    return {
+        "length": _texts(loop.length),
+        "nodes": [
+            {
+                "radii": list(visit.node.radii),
+                "spread": list(visit.direction.radii),
+                "time": _texts(visit.time),
+            }
+            for visit in loop.visits
+        ],
+        "folds": [
+            [*fold.fold, fold.turns, _texts(fold.least), _texts(fold.greatest)]
+            for fold in loop.folds
+        ],
+    }
+
+
+def _texts(interval: Interval) -> list[str]:
+    return [format_rational(x) for x in interval]
+
+
+def named(start: StartTube, side: int = 1) -> HalfBranch:
+    """The half-branch of a start tube, or of its mirror image."""
+    named = HalfBranch(start.vertex_signs, start.side)
+    return named if side > 0 else named.mirrored
+
+
+def whole_length(step: Step, landing: Landing) -> Interval:
+    """Bounds of the length of a loop, whose last tube is met by the start tube of the landing."""
+    found = step.tube.located(landing.ball) if isinstance(step, Link) else None
+    if not isinstance(step, Link) or found is None or found[0] < step.entry[1]:
+        raise ArithmeticError("the landing is not on the tube")
+    shortest, longest = landing.start.length(0, abs(landing.tau))
+    return step.time(found[0])[0] + shortest, step.time(found[1])[1] + longest

@@ -1,0 +1,1 @@
+"""Motions of sheets of rigid panels."""

@@ -1,0 +1,241 @@
+"""The first contact of a motion of panels, enclosed in time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf, nextafter, pi
+
+import numpy as np
+from flint import arb, ctx
+
+from exactfold._support.arrays import FloatArray, IndexArray
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.errors import NotApplicableError
+from exactfold.exact.surds import ball
+from exactfold.motion.contacts.face_pairs import AnyPairs, Open
+from exactfold.motion.contacts.separation import Swept, clear_until, through
+from exactfold.motion.curves.events import CONTACT, FLAT_FOLD, Event
+from exactfold.motion.panels.contacts import PanelContacts
+from exactfold.motion.panels.curves import LinearCurve
+from exactfold.motion.panels.motion import PanelMotion
+from exactfold.motion.panels.pieces import PanelPieces
+from exactfold.panels.stars import dot
+
+Panel = tuple[int, ...]
+
+_BITS = 128
+_FINEST = 2.0**-24
+_STEPS = 40
+_FIRST = 1e-12
+"""Radians after which a crossing is looked for at first."""
+_NARROW = 1e-3
+"""Radians within which a first contact counts as enclosed."""
+
+
+@dataclass(frozen=True, repr=False)
+class PanelClearance:
+    """What is proved of the contacts of a motion of panels, ignoring thickness.
+
+    No two panels touch, but for the folds and corners they share, at any time from 0 until before
+    `clear`. `event`: a contact, or folds that close, that is proved to happen in `event.time` =
+    (not before, at the latest); None if the motion ends before, or nothing is proved to touch. The
+    first contact of all is between these times, too; whether it is of the same panels, or other
+    ones touch shortly before, is not proved. `open_panels`: pairs that are not proved to stay apart
+    right after `clear`.
+
+    `status` is PROVED if the whole motion is clear or its first contact is enclosed within a
+    thousandth of a radian; else `reason` says what is missing.
+    """
+
+    status: Verdict
+    clear: float
+    event: Event | None
+    open_panels: tuple[tuple[Panel, Panel], ...]
+    reason: str
+
+    def __repr__(self) -> str:
+        what = "" if self.event is None else f", {self.event.kind} by {self.event.time[1]:.6g}"
+        return f"<PanelClearance: {self.status}, clear until {self.clear:.6g}{what}>"
+
+
+def prove_contacts(motion: PanelMotion) -> PanelClearance:
+    """The first contact of a motion of panels, proved (docs/panel_motion.md, 5).
+
+    The positions of all vertices are enclosed over stretches of time from the exact motion, and
+    planes are found that stand between all panels (docs/contacts.md, Theorem 1). What touches is an
+    edge that runs through a panel, or folds that close at time pi, where they all do.
+
+    Raises `NotApplicableError` for a motion that is not proved to exist (`motion.exists`).
+
+    >>> from exactfold.motion.panels.following import follow_panels
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> motion = follow_panels(panels(single_vertex(4)), until="90deg", frames=3)
+    >>> found = prove_contacts(motion)
+    >>> found.status, found.event, found.clear >= motion.duration
+    (<Verdict.PROVED: 'proved'>, None, True)
+    """
+    if motion.exists is not PROVED:
+        raise NotApplicableError("the motion is not proved to exist, and so are no contacts")
+    contacts = PanelContacts(motion.pattern)
+    pieces = PanelPieces(motion)
+    pairs = PanelPairs(contacts, pieces.unit)
+    clear, left = 0.0, Open.all_of(pairs)
+    for piece in pieces.between(0.0, motion.duration):
+        last = min(piece.half, nextafter(motion.duration - piece.middle, inf))
+        at, left = clear_until(
+            pairs, piece.coefficients, piece.radius, -piece.half, last, finest=_FINEST
+        )
+        clear = nextafter(piece.middle + at, 0.0)  # the sum is rounded by less
+        if left:
+            break
+    else:
+        if clear >= nextafter(motion.duration, 0.0):
+            return PanelClearance(PROVED, motion.duration, None, (), "")
+    event = _crossing(motion, contacts, pieces, clear) or _closing(motion, clear)
+    if event is None:
+        reason = "some panels are not proved to stay apart, nor to touch"
+        return PanelClearance(UNDECIDED, clear, None, pairs.named(left), reason)
+    low, high = event.time
+    if high - low > _NARROW:
+        reason = "some panels are not proved to stay apart long before others are proved to touch"
+        return PanelClearance(UNDECIDED, clear, event, pairs.named(left), reason)
+    return PanelClearance(PROVED, clear, event, (), "")
+
+
+def with_proved_contact(motion: PanelMotion) -> tuple[PanelMotion, PanelClearance]:
+    """The motion with its first contact as it is proved, in place of that in floats.
+
+    Raises as `prove_contacts`. An event that is not proved stays as it is.
+    """
+    found = prove_contacts(motion)
+    event = found.event
+    if found.status is not PROVED or event is None:
+        return motion, found
+    kept = [e for e in motion.events if e.kind != event.kind]
+    if event.kind == FLAT_FOLD:  # with the folds that close in floats
+        folds = next((e.folds for e in motion.events if e.kind == FLAT_FOLD), event.folds)
+        event = replace(event, folds=folds)
+    events = tuple(sorted((event, *kept), key=lambda e: e.time))
+    return replace(motion, events=events), found
+
+
+@dataclass(frozen=True, repr=False)
+class PanelPairs(AnyPairs):
+    """Pairs of triangles of different panels, in units of `unit`; the cuts are no folds."""
+
+    contacts: PanelContacts
+    unit: float
+
+    @cached_property
+    def triangles(self) -> IndexArray:
+        """The triangles into which the panels are cut."""
+        return np.array(self.contacts.cut.faces, dtype=np.intp)
+
+    @cached_property
+    def hinges(self) -> IndexArray:
+        """The folds of the panels with the corners of the triangles on both sides."""
+        cut, rows = self.contacts.cut, []
+        for i, j in self.contacts.pattern.folds:
+            sides = (cut.faces[cut.sides[i, j]], cut.faces[cut.sides[j, i]])
+            left, right = (next(v for v in face if v not in (i, j)) for face in sides)
+            rows.append([i, j, left, right])
+        return np.array(rows, dtype=np.intp).reshape(-1, 4)
+
+    @cached_property
+    def closed(self) -> FloatArray:
+        """Of each fold, not less than exact, by Arb."""
+        points = self.contacts.pattern.vertices
+        found = []
+        for i, j, left, right in self.hinges.tolist():
+            (ix, iy), (jx, jy), (lx, ly), (rx, ry) = (points[v] for v in (i, j, left, right))
+            e = (jx - ix, jy - iy)
+            along = (lx - rx) * e[0] + (ly - ry) * e[1]
+            across = e[0] * (ly - iy) - e[1] * (lx - ix) + e[0] * (ry - iy) - e[1] * (rx - ix)
+            with ctx.workprec(_BITS):
+                square = ball(dot(e, e), _BITS) * arb(self.unit) ** 2
+                value = (ball(along, _BITS) ** 2 + ball(across, _BITS) ** 2) / square
+                found.append(float(value.upper()) * (1 + 1e-12))
+        return np.array(found)
+
+    def one_body(self, i: int, j: int) -> bool:
+        """Whether two triangles are of one panel."""
+        return self.contacts.panel_of[i] == self.contacts.panel_of[j]
+
+    def named(self, left: Open) -> tuple[tuple[Panel, Panel], ...]:
+        """The pairs of panels of what is left, each once."""
+        rows = [self.apart[left.apart], self.corner[left.corner]]
+        found = {self._panels(i, j) for row in rows for i, j in row.tolist()}
+        sides = self.contacts.cut.sides
+        for i, j, _, _ in self.hinges[left.folds].tolist():
+            found.add(self._panels(sides[i, j], sides[j, i]))
+        return tuple(sorted(found))
+
+    def _panels(self, i: int, j: int) -> tuple[Panel, Panel]:
+        faces, panel = self.contacts.pattern.faces, self.contacts.panel_of
+        a, b = sorted((faces[panel[i]], faces[panel[j]]))
+        return a, b
+
+    def __repr__(self) -> str:
+        return f"<PanelPairs: {len(self.contacts.pattern.faces)} panels>"
+
+
+def _crossing(
+    motion: PanelMotion, contacts: PanelContacts, pieces: PanelPieces, clear: float
+) -> Event | None:
+    """A contact that is proved to have happened shortly after `clear`, None if none is found."""
+    known = [event.time[1] for event in motion.events if event.kind == CONTACT]
+    if not known:
+        return None
+    begin, most = known[0], pi
+    step = _FIRST
+    while begin + step < most:
+        found = _crossed(contacts, pieces, begin + step)
+        if found is not None:
+            good, bad = begin + step, begin + step / 2 if step > _FIRST else begin
+            break
+        step *= 2
+    else:
+        return None
+    for _ in range(_STEPS):
+        middle = 0.5 * (good + bad)
+        if not bad < middle < good:
+            break
+        other = _crossed(contacts, pieces, middle)
+        found, good, bad = (found, good, middle) if other is None else (other, middle, bad)
+    faces = tuple(contacts.pattern.faces[panel] for panel in found)
+    return Event(CONTACT, (clear, good), faces=faces, detail="an edge runs through a face")
+
+
+def _crossed(contacts: PanelContacts, pieces: PanelPieces, time: float) -> tuple[int, int] | None:
+    """Two panels of which an edge of one runs through the other at a time, proved."""
+    piece = pieces.around(time)
+    if piece is None:
+        return None
+    point = Swept.of(piece.coefficients, piece.radius, 0.0, 0.0)
+    # Crossings are looked for in a sheet of size one.
+    scale = piece.unit / contacts.unit
+    crossings = contacts.crossings
+    for crossing in map(crossings.named, crossings.pairs(point.start * scale)):
+        if through(point, crossing.edge, crossing.face):
+            return contacts.who(crossing)
+    return None
+
+
+def _closing(motion: PanelMotion, clear: float) -> Event | None:
+    """That all folds of linear modes and free folds of rate 1 are closed at time pi, exactly.
+
+    Of other modes some fold is closed by then, which is not named.
+    """
+    if motion.duration < pi:
+        return None
+    folds: list[Iterable[tuple[int, int]]] = [
+        curve.folds
+        for curve, rate in zip(motion.curves, motion.rates, strict=True)
+        if abs(rate) == 1.0 and isinstance(curve, LinearCurve)
+    ]
+    folds += [[fold] for fold, rate in motion.free_rates.items() if abs(rate) == 1.0]
+    closed = tuple(sorted(fold for some in folds for fold in some))
+    return Event(FLAT_FOLD, (clear, nextafter(pi, inf)), folds=closed)

@@ -1,0 +1,125 @@
+"""The first contact of two panels of a sheet in motion, in floats."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Final, NamedTuple, cast
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold.motion.curves.crossings import Crossing, Crossings
+from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.triangulating import cut_panels
+
+if TYPE_CHECKING:
+    from exactfold.motion.curves.framework import Framework
+
+_CHUNK: Final = 16
+_CLOSE: Final = 1e-13
+"""Radians within which a contact is enclosed."""
+
+
+class Contact(NamedTuple):
+    """Two panels, by their numbers, that meet between two times; `kind` says how."""
+
+    low: float
+    high: float
+    panels: tuple[int, int]
+    kind: str
+
+
+@dataclass(frozen=True)
+class PanelContacts:
+    """Finds panels that run into each other: cut into triangles, for this test only.
+
+    Panels that share a fold are not looked at: until the fold is closed their planes meet in its
+    line only.
+    """
+
+    pattern: PanelPattern
+
+    @cached_property
+    def cut(self) -> PanelPattern:
+        """The sheet with its panels cut into triangles."""
+        return cut_panels(self.pattern)
+
+    @cached_property
+    def panel_of(self) -> dict[int, int]:
+        """The panel of each triangle: spread from the edges of the panels across the cuts."""
+        cut, sides = self.cut, self.pattern.sides
+        found = {cut.sides[half]: panel for half, panel in sides.items()}
+        inside = [edge for edge in cut.edges if edge not in set(self.pattern.edges)]
+        while len(found) < len(cut.faces):
+            for i, j in inside:
+                one, other = cut.sides[i, j], cut.sides[j, i]
+                if one in found or other in found:
+                    panel = found.get(one, found.get(other, -1))
+                    found[one] = found[other] = panel
+        return found
+
+    @cached_property
+    def _panels(self) -> dict[tuple[int, ...], int]:
+        return {face: self.panel_of[k] for k, face in enumerate(self.cut.faces)}
+
+    @cached_property
+    def crossings(self) -> Crossings:
+        """Edges of triangles that run through others, in a sheet of size one."""
+        # It takes no more of a framework than these.
+        framework = SimpleNamespace(
+            sheet=self.cut, triangles=np.array(self.cut.faces, dtype=np.intp), flat=self._flat
+        )
+        return Crossings(cast("Framework", framework))
+
+    @cached_property
+    def _flat(self) -> FloatArray:
+        points = np.array([(float(x), float(y)) for x, y in self.pattern.vertices])
+        return np.asarray(points / self.unit)
+
+    @cached_property
+    def unit(self) -> float:
+        """The size of the sheet: crossings are looked for in a sheet of size one."""
+        points = np.array([(float(x), float(y)) for x, y in self.pattern.vertices])
+        return float(np.ptp(points, axis=0).max())
+
+    def first(
+        self, times: Sequence[float], places: Callable[[FloatArray], FloatArray]
+    ) -> Contact | None:
+        """The first contact, looked for at these times and then enclosed by bisection.
+
+        `places` gives the positions at many times, shape (times, V, 3). Panels that only touch, or
+        run through each other between two of the times, are not found.
+        """
+        for start in range(1, len(times), _CHUNK):
+            some = np.asarray(times[start : start + _CHUNK], dtype=np.float64)
+            for k, there in enumerate(places(some) / self.unit, start):
+                if len(self.crossings.pairs(there)):
+                    return self._enclosed(float(times[k - 1]), float(times[k]), places)
+        return None
+
+    def _enclosed(
+        self, low: float, high: float, places: Callable[[FloatArray], FloatArray]
+    ) -> Contact:
+        def place(time: float) -> FloatArray:
+            return np.asarray(places(np.array([time]))[0] / self.unit)
+
+        while low < (middle := 0.5 * (low + high)) < high and high - low > _CLOSE:
+            if len(self.crossings.pairs(place(middle))):
+                high = middle
+            else:
+                low = middle
+        there = place(high)
+        crossing = self.crossings.named(self.crossings.pairs(there)[0])
+        return Contact(low, high, self.who(crossing), self.crossings.kind(crossing, there))
+
+    def who(self, crossing: Crossing) -> tuple[int, int]:
+        """The two panels of a crossing; of the two at an edge the one with less in common."""
+        other = self._panels[crossing.face]
+        corners = set(self.pattern.faces[other])
+        i, j = crossing.edge
+        sides = [self.cut.sides.get(half) for half in ((i, j), (j, i))]
+        near = [self.panel_of[k] for k in sides if k is not None and self.panel_of[k] != other]
+        return min(near, key=lambda p: len(corners & set(self.pattern.faces[p]))), other

@@ -1,0 +1,292 @@
+"""All fold angles of one elementary mode, from those of one fold: exact gains, or transmissions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import permutations
+from math import pi
+from types import MappingProxyType
+from typing import Final, Protocol
+
+import numpy as np
+from flint import arb, ctx
+
+from exactfold._support.arrays import FloatArray
+from exactfold.errors import NotApplicableError
+from exactfold.exact.surds import Number, ball, simple
+from exactfold.motion.panels.followable import PanelMode
+from exactfold.panels.local import LocalMode
+from exactfold.panels.stars import Star, dot
+from exactfold.panels.transmission import Transmission
+from exactfold.pattern.panel_pattern import Edge
+
+CLOSED: Final = float(np.tan(pi / 2))
+"""The tangent that floats have for half of 180 degrees; its arc tangent is half of pi exactly."""
+_BITS: Final = 256
+_SAME: Final = 1e-13
+"""Two folds that close within this of each other, relatively, close at once."""
+_AT_180: Final = 1e-9
+
+
+class ModeCurve(Protocol):
+    """The true motion of a mode from the flat sheet to the first fold at 180 degrees.
+
+    `driver` is a fold that reaches 180 degrees first, `folds` are all active ones.
+    """
+
+    @property
+    def driver(self) -> Edge:
+        """A fold that reaches 180 degrees no later than any other."""
+
+    @property
+    def folds(self) -> tuple[Edge, ...]:
+        """The active folds, sorted."""
+
+    @property
+    def turning(self) -> tuple[Edge, ...]:
+        """The folds that would turn back at the end, were the motion continued."""
+
+    def angles(self, driver: FloatArray) -> FloatArray:
+        """All fold angles at angles of the driver in [-pi, pi], shape (times, folds), radians.
+
+        At positive angles of the driver the signs are the letters of the mode.
+        """
+
+
+@dataclass(frozen=True, repr=False)
+class LinearCurve:
+    """A mode with `tau_e = c_e T` for all T: every vertex closes for every T, proved exactly.
+
+    All folds close together, at T = infinity. `driver` is the fold whose angle is largest, at every
+    T; c is 1 or -1 there, so that T is its tau.
+    """
+
+    mode: PanelMode
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return LinearCurve, (self.mode,)  # what is cached stays behind
+
+    @property
+    def folds(self) -> tuple[Edge, ...]:
+        """The active folds, sorted."""
+        return self.mode.folds
+
+    def exact_tangents(self, bits: int) -> dict[Edge, arb]:
+        """tan(angle / 2) of each fold at T = 1, up to a common factor, enclosed."""
+        with ctx.workprec(bits):
+            return {
+                fold: density.ball(bits) * _length(self.mode, fold)
+                for fold, density in self.mode.densities.items()
+            }
+
+    @cached_property
+    def _tangents(self) -> FloatArray:
+        """The same in floats."""
+        return np.array([float(value) for value in self.exact_tangents(_BITS).values()])
+
+    @cached_property
+    def driver(self) -> Edge:
+        """The fold with the largest angle."""
+        sizes = np.abs(self._tangents)
+        return self.folds[int(np.argmax(sizes > (1 - _SAME) * sizes.max()))]
+
+    @property
+    def turning(self) -> tuple[Edge, ...]:
+        """None: all folds close together."""
+        return ()
+
+    @cached_property
+    def ratios(self) -> Mapping[Edge, Number] | None:
+        """c_e exactly, in the field of the coordinates with the roots that the gains need.
+
+        None where more than three roots are needed: then the gains are exact, their products not.
+        """
+        densities = self.mode.densities
+        unit = densities[self.driver]
+        ratios = {fold: density.over(unit) for fold, density in densities.items()}
+        if any(ratio.factors for ratio in ratios.values()):
+            return None
+        turn = 1 if self.mode.letters[self.driver] == "V" else -1
+        return MappingProxyType({fold: simple(turn * r.base) for fold, r in ratios.items()})
+
+    def angles(self, driver: FloatArray) -> FloatArray:
+        """2 arctan(c_e length_e T) at T = tan(driver / 2) / its length."""
+        relative = self._tangents / abs(self._tangents[self.folds.index(self.driver)])
+        return np.asarray(2 * np.arctan(np.tan(driver / 2)[:, None] * relative))
+
+
+@dataclass(frozen=True, repr=False)
+class FollowedCurve:
+    """A mode with nonlinear transmissions, in floats from closed formulas (docs/panels.md, All fold
+    angles).
+
+    Up to the first fold at 180 degrees all fold angles of a mode grow strictly with each other
+    (docs/panel_motion.md, 2). `driver` is found by trying: a fold is closed, and where a vertex
+    does not follow, that vertex has a fold that closes before.
+    """
+
+    mode: PanelMode
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return FollowedCurve, (self.mode,)  # what is cached stays behind
+
+    @property
+    def folds(self) -> tuple[Edge, ...]:
+        """The active folds, sorted."""
+        return self.mode.folds
+
+    @cached_property
+    def _vertices(self) -> tuple[_Vertex, ...]:
+        pairs = zip(self.mode.stars, self.mode.choice, strict=True)
+        return tuple(_Vertex(star, local) for star, local in pairs)
+
+    @cached_property
+    def driver(self) -> Edge:
+        """The fold that closes first."""
+        fold = self._vertices[0].leader
+        for _ in self._vertices:
+            late = self._late(fold)
+            if late is None:
+                return fold
+            fold = self._vertices[late].leader
+        raise NotApplicableError(
+            f"mode {self.mode.number}: no fold was found that reaches 180 degrees first"
+        )
+
+    def _late(self, driver: Edge) -> int | None:
+        """A vertex with a fold that closes before the driver does, None if there is none."""
+        tangents = {driver: np.array([CLOSED])}
+        for k, fold in self.mode.order_from(driver):
+            if not self._vertices[k].spread(fold, tangents):
+                return k
+        return None
+
+    def angles(self, driver: FloatArray) -> FloatArray:
+        """All fold angles, each found from one at the same vertex."""
+        turn = 1 if self.mode.letters[self.driver] == "V" else -1
+        tangents = {self.driver: turn * np.tan(driver / 2)}
+        for k, fold in self.mode.order_from(self.driver):
+            self._vertices[k].spread(fold, tangents)
+        return np.column_stack([2 * np.arctan(tangents[fold]) for fold in self.folds])
+
+    @cached_property
+    def turning(self) -> tuple[Edge, ...]:
+        """The folds opposite to those that close, where these close alone."""
+        end = dict(zip(self.folds, np.abs(self.angles(np.array([pi]))[0]), strict=True))
+        closed = {fold for fold, angle in end.items() if angle > pi - _AT_180}
+        found = set()
+        for vertex in self._vertices:
+            if not vertex.is_linear:
+                pairs = zip(vertex.folds, vertex.folds[2:] + vertex.folds[:2], strict=True)
+                found |= {across for fold, across in pairs if fold in closed} - closed
+        return tuple(sorted(found))
+
+
+class _Vertex:
+    """The transmissions of one vertex in floats, between the tangents of half fold angles.
+
+    With `X = tan(start / 2)`, `Y = tan(end / 2) = U X`, U is the root of `(A0 + A1 X^2) U^2 + B U +
+    C = 0` that is the gain at X = 0. It stays the same root up to the first fold that closes:
+    where two roots meet, the fold opposite to `start` is closed.
+    """
+
+    def __init__(self, star: Star, mode: LocalMode) -> None:
+        if len(star.folds) not in (2, 4):
+            raise NotApplicableError(
+                f"vertex {star.vertex} has {len(star.folds)} folds that fold, not in proportion: "
+                "only vertices with at most four are followed"
+            )
+        self.folds = star.folds
+        pairs = list(permutations(star.folds, 2))
+        steps = {pair: Transmission(star, mode, *pair) for pair in pairs}
+        self.is_linear = all(step.is_linear for step in steps.values())
+        with ctx.workprec(_BITS):
+            lengths = {
+                fold: ball(dot(d, d), _BITS).sqrt()
+                for fold, d in zip(star.folds, star.directions, strict=True)
+            }
+            self._steps = {(i, j): _Step(steps[i, j], lengths[i], lengths[j]) for i, j in pairs}
+        self.leader = self._leader()
+
+    def _leader(self) -> Edge:
+        """The fold that closes first, in floats."""
+        first = self.folds[0]
+        for other in self.folds[1:]:
+            if self._steps[first, other].ends_before:
+                first = other
+        return first
+
+    def spread(self, fold: Edge, tangents: dict[Edge, FloatArray]) -> bool:
+        """Add the tangents of all folds, from that of one; false if it cannot be so large."""
+        start, reached = fold, True
+        if not self.is_linear:
+            start = self.leader
+            if start not in tangents:
+                tangents[start], reached = self._steps[fold, start](tangents[fold])
+        for other in self.folds:
+            if other not in tangents:
+                tangents[other], _ = self._steps[start, other](tangents[start])
+        return reached
+
+
+class _Step:
+    """One transmission between the tangents of half fold angles."""
+
+    def __init__(self, step: Transmission, start: arb, end: arb) -> None:
+        ratio = end / start
+        self.gain = float(ball(step.gain, _BITS) * ratio)
+        self.quadratic: tuple[float, float, float, float] | None = None
+        if step.is_linear or step.quadratic is None:
+            return
+        a0, a1, b, c = (ball(value, _BITS) for value in step.quadratic)
+        a0, a1, b = a0 / ratio**2, a1 / end**2, b / ratio
+        self._sign = 1.0 if 2 * a0 * ball(step.gain, _BITS) * ratio + b > 0 else -1.0
+        size = max(abs(x) for x in (a0, b, c))
+        self.quadratic = tuple(float(x / size) for x in (a0, a1, b, c))  # type: ignore[assignment]
+
+    @property
+    def _pole(self) -> float | None:
+        """X^2 at which the end is closed, if it is on this root; the start is not closed yet."""
+        if self.quadratic is None:
+            return None
+        a0, a1, b, _ = self.quadratic
+        on_root = b == 0 or self._sign * b < 0
+        return -a0 / a1 if on_root and a0 * a1 < 0 else None
+
+    @property
+    def ends_before(self) -> bool:
+        """Whether the end is closed before the start is."""
+        return self._pole is not None
+
+    def __call__(self, start: FloatArray) -> tuple[FloatArray, bool]:
+        """The tangents of the end; and whether all of them are reached."""
+        if self.quadratic is None:
+            return self.gain * start, True
+        a0, a1, b, c = self.quadratic
+        squared = start * start
+        pole = self._pole
+        reached = True
+        leading = a0 + a1 * squared
+        closed = np.zeros(start.shape, dtype=bool)
+        if pole is not None:
+            reached = bool(np.all(squared <= pole * (1 + _SAME)))
+            closed = squared >= pole * (1 - 1e-15)
+        root = self._sign * np.sqrt(np.maximum(b * b - 4 * leading * c, 0.0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            stable = b == 0 or self._sign * b < 0  # no cancellation in root - b
+            u = (root - b) / (2 * leading) if stable else -2 * c / (root + b)
+        values = np.where(closed, np.copysign(CLOSED, self.gain * start), u * start)
+        return np.clip(values, -CLOSED, CLOSED), reached
+
+
+def curve_of(mode: PanelMode) -> LinearCurve | FollowedCurve:
+    """The motion of a mode: in proportion where that is proved, else followed in floats."""
+    return LinearCurve(mode) if mode.is_linear else FollowedCurve(mode)
+
+
+def _length(mode: PanelMode, fold: Edge) -> arb:
+    d = mode.pattern.direction(*fold)
+    with ctx.workprec(_BITS):
+        return ball(dot(d, d), _BITS).sqrt()

@@ -1,0 +1,302 @@
+"""What a sheet of rigid panels can be followed along: elementary modes, and their components."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from fractions import Fraction
+from functools import cached_property
+from itertools import islice
+from types import MappingProxyType
+from typing import Final
+
+import networkx as nx
+
+from exactfold._support.plurals import counted
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.errors import TooManyModesError, UsageError
+from exactfold.exact.joined_fields import joined
+from exactfold.exact.surds import Number, exact, sign, simple
+from exactfold.panels.densities import Density, Roots
+from exactfold.panels.extension import Extension, extension
+from exactfold.panels.local import LocalMode
+from exactfold.panels.result import Decomposition, Part
+from exactfold.panels.stars import Star, stars
+from exactfold.panels.subspaces import Leaf
+from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
+
+MOST_COMPONENTS: Final = 100_000
+LINEAR: Final = "linear transmissions"
+_REASONS: Final = 3
+
+
+@dataclass(frozen=True, repr=False)
+class PanelMode:
+    """One elementary mode of a sheet, as it can be followed: its vertices, their stars and lines.
+
+    `number`: that of the mode in the table of `exactfold count`, from 1; modes that are not listed
+    there follow. `choice[k]` is the local mode at the vertex of `stars[k]`, which has its active
+    folds only. `letters` holds M or V of the active folds on the side that is followed.
+    """
+
+    pattern: PanelPattern
+    number: int
+    stars: tuple[Star, ...]
+    choice: tuple[LocalMode, ...]
+    letters: Mapping[Edge, str]
+    extends: Extension
+
+    @property
+    def vertices(self) -> tuple[int, ...]:
+        """The active vertices."""
+        return tuple(star.vertex for star in self.stars)
+
+    @property
+    def folds(self) -> tuple[Edge, ...]:
+        """The active folds, sorted."""
+        return tuple(sorted(self.letters))
+
+    @cached_property
+    def is_linear(self) -> bool:
+        """Whether it closes for every T if `tau_e = c_e T` on all folds; proved exactly if it does.
+
+        With `tau = tan(angle / 2) / length` a vertex closes iff the vector part of the product of
+        the quaternions `1 + tau_j d_j` vanishes (docs/panels.md, All fold angles). On the line of
+        its local mode it is a polynomial in T; it is expanded, and all its coefficients are 0.
+        """
+        pairs = zip(self.stars, self.choice, strict=True)
+        return all(closes_always(star.directions, mode.values) for star, mode in pairs)
+
+    def order_from(self, start: Edge) -> tuple[tuple[int, Edge], ...]:
+        """A way through all vertices: positions in `stars`, and a fold of each known by then.
+
+        Breadth first from the ends of a fold.
+        """
+        at: dict[Edge, list[int]] = {}
+        for k, star in enumerate(self.stars):
+            for fold in star.folds:
+                at.setdefault(fold, []).append(k)
+        found: list[tuple[int, Edge]] = []
+        seen: set[int] = set()
+        waiting = [start]
+        for fold in waiting:
+            for k in at[fold]:
+                if k not in seen:
+                    seen.add(k)
+                    found.append((k, fold))
+                    waiting += [other for other in self.stars[k].folds if other != fold]
+        return tuple(found)
+
+    @cached_property
+    def densities(self) -> Mapping[Edge, Density]:
+        """Fold angle / length at first order, up to a common factor; the signs are `letters`."""
+        roots = Roots(self.pattern.field)
+        first = self.folds[0]
+        known = {first: roots.density(Fraction(1 if self.letters[first] == "V" else -1))}
+        for k, fold in self.order_from(first):
+            for other in self.stars[k].folds:
+                if other not in known:
+                    gain = roots.density(self.choice[k].gain(fold, other))
+                    known[other] = known[fold].times(gain)
+        return MappingProxyType(dict(sorted(known.items())))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # What is cached stays behind.
+        return PanelMode, tuple(getattr(self, field.name) for field in fields(self))
+
+    def __repr__(self) -> str:
+        return (
+            f"<PanelMode: {self.number}, {counted(len(self.stars), 'vertex')}, "
+            f"{counted(len(self.letters), 'fold')}, {self.extends.verdict} by {self.extends.by}>"
+        )
+
+
+@dataclass(frozen=True)
+class PanelComponent:
+    """Modes that share no vertex, each of which truly folds, and the folds that are free.
+
+    The true configurations near the flat state that belong to it are the products of one curve for
+    each mode and an interval for each free fold (docs/panels.md, Which modes truly fold). `modes`
+    are numbers.
+    """
+
+    modes: tuple[int, ...]
+    free: tuple[Edge, ...]
+    folds: int
+
+    @property
+    def dimension(self) -> int:
+        """The number of folds that can be chosen independently."""
+        return len(self.modes) + len(self.free)
+
+
+def panel_modes(result: Decomposition) -> tuple[PanelMode, ...]:
+    """The modes of a decomposition: first those it lists, in its order, then others it holds.
+
+    Of a set of vertices whose modes are too many to be listed it is the one example that is known.
+    Of parts with more than four folds at a vertex they are the components of dimension one that
+    close for all fold angles (`PanelMode.is_linear`).
+
+    >>> from exactfold.panels.decomposition import decompose
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> panel_modes(decompose(panels(single_vertex(4))))[0]
+    <PanelMode: 1, 1 vertex, 4 folds, proved by forest>
+    """
+    moving = stars(result.pattern, result.held)
+    found: list[PanelMode] = []
+
+    def add(
+        choice: Sequence[LocalMode], letters: Mapping[Edge, str], extends: Extension
+    ) -> PanelMode:
+        around = tuple(moving[mode.vertex].only(mode.folds) for mode in choice)
+        number = len(found) + 1
+        return PanelMode(result.pattern, number, around, tuple(choice), dict(letters), extends)
+
+    for mode in result.modes:
+        found.append(add(mode.choice, mode.assignment, mode.extends))
+    for part in result.parts:
+        for choice in _examples(part):
+            extends = extension(result.pattern, moving, choice)
+            found.append(add(choice, _letters(choice), extends))
+        for leaf in _lines(part):
+            choice = _on_line(leaf, moving)
+            line = add(choice, _letters(choice), Extension(PROVED, LINEAR))
+            if line.is_linear:
+                found.append(line)
+    return tuple(found)
+
+
+def panel_components(
+    result: Decomposition, modes: Sequence[PanelMode] | None = None
+) -> tuple[PanelComponent, ...]:
+    """The components that can be followed, those with most active folds first.
+
+    Maximal sets of modes that truly fold and share no vertex, together with all free folds. Modes
+    whose extension is refuted or undecided are in none. `modes`: those of `panel_modes`.
+
+    Raises `TooManyModesError` beyond 100,000; then the modes have to be named.
+
+    >>> from exactfold.panels.decomposition import decompose
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> panel_components(decompose(panels(single_vertex(4))))[1]
+    PanelComponent(modes=(2,), free=(), folds=4)
+    """
+    folding = [
+        mode
+        for mode in (panel_modes(result) if modes is None else modes)
+        if mode.extends.verdict is PROVED
+    ]
+    graph = nx.Graph()
+    graph.add_nodes_from(range(len(folding)))
+    places = [set(mode.vertices) for mode in folding]
+    for i in range(len(folding)):
+        graph.add_edges_from((i, j) for j in range(i) if places[i].isdisjoint(places[j]))
+    found = [
+        PanelComponent(
+            tuple(sorted(folding[k].number for k in clique)),
+            result.free,
+            sum(len(folding[k].letters) for k in clique) + len(result.free),
+        )
+        for clique in islice(nx.find_cliques(graph), MOST_COMPONENTS + 1)
+    ]
+    if len(found) > MOST_COMPONENTS:
+        raise TooManyModesError(
+            f"more than {MOST_COMPONENTS} components: name the modes that are to fold"
+        )
+    if not found and result.free:
+        found = [PanelComponent((), result.free, len(result.free))]
+    return tuple(sorted(found, key=lambda one: (-one.folds, one.modes)))
+
+
+def closes_always(directions: Sequence[Point], values: Sequence[Number]) -> bool:
+    """Whether a vertex closes with `tau_j = T values[j]` for every T, exactly.
+
+    The vector part of `prod_j (1 + T values[j] d_j)`, a quaternion of polynomials in T, is 0.
+
+    >>> closes_always(((1, 0), (0, 1), (-1, 0), (0, -1)), (1, 0, 1, 0))
+    True
+    >>> closes_always(((1, 0), (0, 1), (-1, 0), (0, -1)), (1, 1, 1, 1))
+    False
+    """
+    [*coordinates, weights] = joined([*zip(*directions, strict=True), values])
+    product: list[list[Number]] = [[1, 0, 0, 0]]
+    for x, y, weight in zip(*coordinates, weights, strict=True):
+        p, q = weight * x, weight * y
+        turned = [
+            [-a * p - b * q, s * p - c * q, s * q + c * p, a * q - b * p] for s, a, b, c in product
+        ]
+        zero: list[Number] = [0, 0, 0, 0]
+        product = [
+            [u + v for u, v in zip(one, other, strict=True)]
+            for one, other in zip([*product, zero], [zero, *turned], strict=True)
+        ]
+    return all(part == 0 for quaternion in product for part in quaternion[1:])
+
+
+def _examples(part: Part) -> Iterable[tuple[LocalMode, ...]]:
+    """One mode of each set of vertices whose modes are not listed."""
+    listed = {mode.active for mode in part.modes}
+    return (s.example for s in part.supports if s.vertices not in listed and s.example)
+
+
+def _lines(part: Part) -> list[Leaf]:
+    """The components of dimension one of a part with more than four folds at a vertex."""
+    found: list[Leaf] = []
+    for leaf in (*part.spaces, *(one.leaf for one in part.found)):
+        if leaf.size == 1 and not leaf.vertices and leaf not in found:
+            found.append(leaf)
+    return found
+
+
+def _letters(choice: Sequence[LocalMode]) -> dict[Edge, str]:
+    """M or V of each fold, with a valley for the first fold of the first vertex."""
+    signs = {choice[0].folds[0]: 1}
+    waiting = list(choice)
+    while waiting:
+        ready = [mode for mode in waiting if signs.keys() & set(mode.folds)]
+        if not ready:
+            raise UsageError("the local modes are not connected by active folds")
+        for mode in ready:
+            known = next(fold for fold in mode.folds if fold in signs)
+            for fold in mode.folds:
+                signs.setdefault(fold, signs[known] * sign(mode.gain(known, fold)))
+        waiting = [mode for mode in waiting if mode not in ready]
+    return {fold: "V" if s > 0 else "M" for fold, s in sorted(signs.items())}
+
+
+def _on_line(leaf: Leaf, moving: Mapping[int, Star]) -> tuple[LocalMode, ...]:
+    """The motions of all active vertices on a space with one parameter."""
+    found = []
+    for v, star in sorted(moving.items()):
+        folds = tuple(fold for fold in star.folds if fold in leaf.rows)
+        if folds:
+            scale = exact(leaf.rows[folds[0]][0])
+            values = tuple(simple(leaf.rows[fold][0] / scale) for fold in folds)
+            found.append(LocalMode(v, 0, folds, values))
+    return tuple(found)
+
+
+def open_reason(mode: PanelMode) -> str:
+    """Why a mode that is not proved to fold truly is not followed."""
+    if mode.extends.verdict is UNDECIDED:
+        return f"whether mode {mode.number} truly folds is undecided: {mode.extends.by}"
+    return f"mode {mode.number} does not truly fold: {mode.extends.by}"
+
+
+def why_nothing_follows(result: Decomposition, known: Sequence[PanelMode]) -> str:
+    """Why a sheet without a component (`panel_components`) is not followed."""
+    if known:
+        more = f"; and so on for {len(known) - _REASONS} more" if len(known) > _REASONS else ""
+        return "; ".join(open_reason(mode) for mode in known[:_REASONS]) + more
+    families = any(d > 1 for d in {**(result.found_true or {}), **(result.true or {})})
+    what = (
+        "the sheet folds in families of several dimensions only"
+        if families
+        else "no motion is known that is one mode"
+    )
+    return (
+        f"{what}; where vertices have more than four folds, only motions with one parameter that "
+        "are linear in the half-angle tangents are followed"
+    )

@@ -1,0 +1,252 @@
+"""`follow_panels`: a sheet of rigid panels folds along a component of its true motions."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping, Sequence
+from functools import partial
+from math import isfinite, pi, radians
+
+import numpy as np
+
+from exactfold._support.arrays import BoolArray, FloatArray
+from exactfold._support.verdict import PROVED
+from exactfold.errors import NotFollowedError, UsageError
+from exactfold.exact.numbers import approx_number
+from exactfold.motion.curves.drive import not_a_fold
+from exactfold.motion.curves.events import ANGLE, CONTACT, FLAT_FOLD, TURNING, Event
+from exactfold.motion.curves.zeros import zero_of
+from exactfold.motion.panels.contacts import PanelContacts
+from exactfold.motion.panels.curves import FollowedCurve, LinearCurve, curve_of
+from exactfold.motion.panels.followable import (
+    PanelMode,
+    open_reason,
+    panel_components,
+    panel_modes,
+    why_nothing_follows,
+)
+from exactfold.motion.panels.motion import AnglesAt, PanelMotion, all_angles, sampled_times
+from exactfold.motion.panels.places import Placing
+from exactfold.panels.decomposition import decompose
+from exactfold.panels.result import Decomposition
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+_LEAST_SAMPLES = 180
+_AT_180 = 1e-9
+
+
+def follow_panels(
+    sheet: Decomposition | PanelPattern,
+    *,
+    component: int | None = None,
+    modes: Sequence[int] | None = None,
+    amounts: Mapping[int | Edge, float] | None = None,
+    until: str = CONTACT,
+    frames: int = 60,
+    by: Edge | None = None,
+    held: int = 0,
+) -> PanelMotion:
+    """The motion of a sheet of rigid panels along a component, from the flat sheet until an event.
+
+    A component is a set of elementary modes that truly fold and share no vertex, with the folds
+    that go from border to border (docs/panels.md, Which modes truly fold). A mode all of whose
+    vertices are linear in the half-angle tangents folds in proportion to the flat-folded sheet,
+    which is proved (`PanelMotion.closes`); others are followed in floats by the transmissions of
+    their vertices, up to the first fold at 180 degrees (docs/panel_motion.md).
+
+    `sheet`: a decomposition, or a pattern to decompose. `component`: its number in
+    `panel_components`, from 1, by default the first, with most active folds; or `modes`, the
+    numbers of modes as in the table of `exactfold count`. `amounts`: the rate of each mode, by its
+    number, and of each free fold, by its ends; negative on the other side of the sheet. By default
+    1 for all modes, while free folds stay flat; or 1 for all free folds if there is no mode.
+    `until`: "contact", the first contact of two panels or fold that closes; or "90deg", the first
+    fold angle of that size, up to "180deg". `frames`: their number, at equal steps of time, or of
+    the angle of the fold `by`. `held`: the number of the panel that does not move.
+
+    Raises `NotFollowedError` for a sheet that is rigid or has no mode that can be followed, which
+    does not mean that it cannot fold; `UsageError` for what does not exist or does not fit.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> follow_panels(panels(single_vertex(4)), until="90deg", frames=5)
+    <PanelMotion: mode 1, proved, 5 frames to angle at 1.5708>
+    """
+    began = clock.perf_counter()
+    result = sheet if isinstance(sheet, Decomposition) else decompose(sheet)
+    pattern = result.pattern
+    goal = _goal(until)
+    if frames < 2:
+        raise UsageError(f"{frames} frames: a motion has at least 2")
+    number, chosen = _chosen(result, component, modes)
+    rates, free_rates = _rates(result, chosen, amounts)
+    kept = [(mode, rate) for mode, rate in zip(chosen, rates, strict=True) if rate]
+    curves = tuple(curve_of(mode) for mode, _ in kept)
+    speeds = tuple(rate for _, rate in kept)
+    placing = Placing(pattern, held)
+
+    def angles_at(times: FloatArray) -> FloatArray:
+        return all_angles(pattern, curves, speeds, free_rates, times)
+
+    def places(times: FloatArray) -> FloatArray:
+        return placing.positions(angles_at(times))[0]
+
+    duration, events = pi, _closing(pattern, angles_at, curves, speeds)
+    end = FLAT_FOLD
+    if goal < pi:
+        low, high = _when(angles_at, goal)
+        at_end = np.abs(angles_at(np.array([high])))[0]
+        folds = _named(pattern, at_end > goal - _AT_180)
+        duration, end, events = high, ANGLE, [Event(ANGLE, (low, high), folds=folds)]
+    samples = sampled_times(angles_at, duration, _LEAST_SAMPLES)
+    contact = PanelContacts(pattern).first(samples.tolist(), places)
+    if contact is not None:
+        faces = tuple(pattern.faces[panel] for panel in contact.panels)
+        event = Event(CONTACT, (contact.low, contact.high), faces=faces, detail=contact.kind)
+        if until == CONTACT:
+            duration, end, events = contact.high, CONTACT, []
+        events.insert(0, event)
+    times = np.linspace(0.0, duration, frames)
+    if by is not None:
+        times = _at_equal_angles(pattern, angles_at, by, times)
+    angles = angles_at(times)
+    coords, gap = placing.positions(angles)
+    return PanelMotion(
+        pattern,
+        number,
+        curves,
+        speeds,
+        free_rates,
+        held,
+        times,
+        coords,
+        angles,
+        tuple(events),
+        end,
+        gap,
+        clock.perf_counter() - began,
+    )
+
+
+def _goal(until: str) -> float:
+    """The angle of a fold at which a motion stops, in radians."""
+    if until == CONTACT:
+        return pi
+    try:
+        number = approx_number(until.removesuffix("deg")) if until.endswith("deg") else -1.0
+    except (ValueError, AttributeError):
+        number = -1.0
+    if not (isfinite(number) and 0 < number <= 180):
+        raise UsageError(f"until {until!r}: give contact, or an angle such as 90deg, up to 180deg")
+    return radians(number) if number < 180 else pi
+
+
+def _chosen(
+    result: Decomposition, component: int | None, numbers: Sequence[int] | None
+) -> tuple[int | None, tuple[PanelMode, ...]]:
+    """The modes that are to fold, and the number of their component if one was chosen."""
+    if component is not None and numbers is not None:
+        raise UsageError("give a component or modes, not both")
+    known = panel_modes(result)
+    if numbers is not None:
+        return None, _named_modes(known, numbers)
+    if result.rigid is PROVED:
+        raise NotFollowedError("the sheet is rigid - PROVED: there is nothing to follow")
+    components = panel_components(result, known)
+    if not components:
+        raise NotFollowedError(f"there is nothing to follow: {why_nothing_follows(result, known)}")
+    at = 1 if component is None else component
+    if not 1 <= at <= len(components):
+        raise UsageError(f"there is no component {at}: they are 1 to {len(components)}")
+    inside = set(components[at - 1].modes)
+    return at, tuple(mode for mode in known if mode.number in inside)
+
+
+def _named_modes(known: Sequence[PanelMode], numbers: Sequence[int]) -> tuple[PanelMode, ...]:
+    chosen: list[PanelMode] = []
+    for number in dict.fromkeys(numbers):
+        if not 1 <= number <= len(known):
+            what = f"they are 1 to {len(known)}" if known else "the sheet has none"
+            raise UsageError(f"there is no mode {number}: {what}")
+        mode = known[number - 1]
+        if mode.extends.verdict is not PROVED:
+            raise NotFollowedError(open_reason(mode))
+        for other in chosen:
+            shared = sorted(set(mode.vertices) & set(other.vertices))
+            if shared:
+                raise UsageError(
+                    f"modes {other.number} and {number} cannot fold together: both use vertex "
+                    f"{shared[0]}"
+                )
+        chosen.append(mode)
+    return tuple(chosen)
+
+
+def _rates(
+    result: Decomposition, modes: Sequence[PanelMode], amounts: Mapping[int | Edge, float] | None
+) -> tuple[tuple[float, ...], dict[Edge, float]]:
+    """How fast the driver of each mode, and each free fold, turns; the largest is 1 in size."""
+    if amounts is None:
+        amounts = dict.fromkeys((mode.number for mode in modes), 1.0)
+        amounts = amounts or dict.fromkeys(result.free, 1.0)
+    numbers = {mode.number for mode in modes}
+    for key, value in amounts.items():
+        if isinstance(key, int) and key not in numbers:
+            raise UsageError(f"amount of mode {key}: it is not among the modes that are to fold")
+        if not isinstance(key, int) and key not in result.free:
+            raise UsageError(f"amount of {key}: not a fold from border to border")
+        if not isfinite(value):
+            raise UsageError(f"amount {value}: give a number")
+    largest = max((abs(value) for value in amounts.values()), default=0.0)
+    if not largest:
+        raise UsageError("all amounts are 0: nothing is to fold")
+    scaled = {key: float(value) / largest for key, value in amounts.items() if value}
+    free = {key: rate for key, rate in scaled.items() if not isinstance(key, int)}
+    return tuple(scaled.get(mode.number, 0.0) for mode in modes), free
+
+
+def _closing(
+    pattern: PanelPattern,
+    angles_at: AnglesAt,
+    curves: Sequence[LinearCurve | FollowedCurve],
+    rates: Sequence[float],
+) -> list[Event]:
+    """What happens at time pi: folds that close, and those that would turn back."""
+    closed = np.abs(angles_at(np.array([pi]))[0]) > pi - _AT_180
+    events = [Event(FLAT_FOLD, (pi, pi), folds=_named(pattern, closed))]
+    for curve, rate in zip(curves, rates, strict=True):
+        if abs(rate) == 1.0 and curve.turning:
+            events.append(Event(TURNING, (pi, pi), folds=curve.turning))
+    return events
+
+
+def _named(pattern: PanelPattern, some: BoolArray) -> tuple[Edge, ...]:
+    return tuple(fold for fold, yes in zip(pattern.folds, some, strict=True) if yes)
+
+
+def _when(angles_at: AnglesAt, goal: float) -> tuple[float, float]:
+    """Two close times round that at which the largest fold angle is the goal."""
+
+    def excess(time: float) -> float:
+        return float(np.abs(angles_at(np.array([time]))).max()) - goal
+
+    time = zero_of(excess, 0.0, pi)
+    return max(time - 1e-13, 0.0), min(time + 1e-13, pi)
+
+
+def _at_equal_angles(
+    pattern: PanelPattern, angles_at: AnglesAt, by: Edge, times: FloatArray
+) -> FloatArray:
+    """Times at which the angle of a fold has equal steps: fold angles are strictly monotone."""
+    if by not in pattern.folds:
+        raise UsageError(not_a_fold(pattern.edges, by, "to make equal steps of"))
+    at = pattern.folds.index(by)
+    last = float(angles_at(times[-1:])[0, at])
+    if not last:
+        raise UsageError(f"fold {by[0]}-{by[1]} stays flat: its angle does not name the frames")
+
+    def excess(time: float, goal: float) -> float:
+        return abs(float(angles_at(np.array([time]))[0, at])) - goal
+
+    goals = np.linspace(0.0, abs(last), len(times))[1:-1]
+    found = [zero_of(partial(excess, goal=goal), 0.0, times[-1]) for goal in goals]
+    return np.array([0.0, *found, times[-1]])

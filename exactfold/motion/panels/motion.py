@@ -1,0 +1,393 @@
+"""A motion of a sheet of rigid panels: frames, fold angles, events, and exact positions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from math import inf, pi, radians
+from types import MappingProxyType
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold._support.notebook import Picture
+from exactfold._support.plurals import counted
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.errors import NotApplicableError, UsageError
+from exactfold.exact.surds import Number, exact
+from exactfold.motion.curves import in_motion
+from exactfold.motion.curves.events import Event
+from exactfold.motion.panels.curves import FollowedCurve, LinearCurve
+from exactfold.motion.panels.places import Placing, Spot, Turn
+from exactfold.pattern.described import described_panels
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+Parameter: TypeAlias = "Number | float"
+AnglesAt: TypeAlias = "Callable[[FloatArray], FloatArray]"
+"""All fold angles, shape (times, folds), at times."""
+
+_DEGREES = 2.0
+_MOST_SAMPLES = 4000
+_LEADING: Final = 30.0
+_NAMED: Final = 8
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class PanelMotion(Picture):
+    """A sheet of rigid panels as it folds along a component of its true motions.
+
+    Each of the `curves`, one elementary mode each, has a driver, a fold that closes first. The
+    angle of a driver at time t is t times its rate, and so is that of a free fold in `free_rates`;
+    the largest rate is 1 in size. So time is an angle in radians, from 0 to pi at most: that of the
+    drivers and free folds of rate 1. `closes` is PROVED if all modes are linear in the half-angle
+    tangents: then every vertex closes exactly, at all fold angles. Otherwise the modes truly fold,
+    by the decomposition, and were followed in floats.
+
+    `times`, shape (frames,); `coords`, shape (frames, V, 3), the flat sheet first, the panel `held`
+    in its place in the plane z = 0; `angles`, radians, shape (frames, folds) in the order of
+    `pattern.folds`, positive for a valley. `events`: in the order of time. `end`: the kind of event
+    at which the motion stops. `gap`: how far the panels are from closing in any frame, in the unit
+    of the pattern.
+    """
+
+    pattern: PanelPattern
+    component: int | None
+    curves: tuple[LinearCurve | FollowedCurve, ...]
+    rates: tuple[float, ...]
+    free_rates: Mapping[Edge, float]
+    held: int
+    times: FloatArray
+    coords: FloatArray
+    angles: FloatArray
+    events: tuple[Event, ...]
+    end: str
+    gap: float
+    seconds: float = field(default=0.0, compare=False)
+
+    def __post_init__(self) -> None:
+        in_motion.fixed(self, "times", "coords", "angles")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, PanelMotion):
+            return NotImplemented
+        same = ("pattern", "curves", "rates", "free_rates", "held", "events", "end")
+        arrays = ("times", "coords", "angles")
+        return all(getattr(self, name) == getattr(other, name) for name in same) and all(
+            np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # arrays have none
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # What is cached stays behind.
+        return PanelMotion, tuple(getattr(self, field.name) for field in fields(self))
+
+    @property
+    def modes(self) -> tuple[int, ...]:
+        """The numbers of the modes that fold, as in the table of `exactfold count`."""
+        return tuple(curve.mode.number for curve in self.curves)
+
+    @property
+    def drivers(self) -> tuple[Edge, ...]:
+        """The fold of each mode whose angle is its rate times the time."""
+        return tuple(curve.driver for curve in self.curves)
+
+    @property
+    def closes(self) -> Verdict:
+        """PROVED if every vertex closes at all fold angles, exactly; else UNDECIDED."""
+        linear = all(isinstance(curve, LinearCurve) for curve in self.curves)
+        return PROVED if linear else UNDECIDED
+
+    @property
+    def exists(self) -> Verdict:
+        """PROVED if the sheet is proved to fold so until a fold is at 180 degrees; else UNDECIDED.
+
+        Modes that close exactly do, and those that truly fold and have at most four active folds
+        at each vertex (docs/panel_motion.md, 1 and 2); modes that share no vertex move
+        independently. That no panels touch on the way is not part of it.
+        """
+        known = all(isinstance(curve, LinearCurve) or _continues(curve) for curve in self.curves)
+        return PROVED if known else UNDECIDED
+
+    @property
+    def status(self) -> str:
+        """ "proved" where `closes` is; else "followed": in floats, along modes that truly fold."""
+        return "proved" if self.closes is PROVED else "followed"
+
+    @property
+    def bounds(self) -> None:
+        """Frames of panels are not enclosed; `exactly` has exact positions."""
+        return None
+
+    @property
+    def duration(self) -> float:
+        """The time of the last frame."""
+        return float(self.times[-1])
+
+    @property
+    def pinned(self) -> tuple[int, ...]:
+        """The corners of the panel that is held."""
+        return self.pattern.faces[self.held]
+
+    @property
+    def assignment(self) -> Mapping[Edge, str]:
+        """M or V of each fold that folds, F of the others, on the side that is followed."""
+        signs = np.sign(self.angles[-1]).astype(int)
+        letters = {1: "V", -1: "M", 0: "F"}
+        found = {f: letters[s] for f, s in zip(self.pattern.folds, signs.tolist(), strict=True)}
+        return MappingProxyType(found)
+
+    @property
+    def name(self) -> str:
+        """The modes and free folds that fold, in a few words."""
+        what = []
+        if self.modes:
+            numbers = ", ".join(map(str, self.modes[:_NAMED]))
+            numbers += ", ..." if len(self.modes) > _NAMED else ""
+            what = [f"mode {numbers}" if len(self.modes) == 1 else f"modes {numbers}"]
+        if self.free_rates:
+            what.append(counted(len(self.free_rates), "free fold"))
+        return " and ".join(what)
+
+    @property
+    def time_name(self) -> str:
+        """What time is."""
+        return "the angle of the folds that drive it, in radians"
+
+    @property
+    def leading_angles(self) -> Mapping[Edge, float]:
+        """The fold angles in degrees when the driving folds have 30 degrees, or at the end."""
+        [angles] = self.angles_at(np.array([min(radians(_LEADING), self.duration)]))
+        return dict(zip(self.pattern.folds, np.degrees(angles).tolist(), strict=True))
+
+    @property
+    def leading_angles_are(self) -> str:
+        """What these are, in words."""
+        return f"the fold angles at time {min(radians(_LEADING), self.duration):.3g}"
+
+    @property
+    def reason(self) -> str:
+        """What is proved of the motion."""
+        if self.closes is PROVED:
+            return (
+                "all vertices close exactly at all fold angles"
+                if self.curves
+                else "folds from border to border are free"
+            )
+        if self.exists is PROVED:
+            return (
+                "each mode folds until a fold is at 180 degrees; its angles were followed in floats"
+            )
+        return "each mode truly folds; its angles were followed in floats"
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What files say of the motion, as JSON."""
+        return {
+            "modes": list(self.modes),
+            "component": self.component,
+            "free_folds": [f"{i}-{j}" for i, j in self.free_rates],
+            **in_motion.facts_of_frames(self),
+        }
+
+    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+        """The object printed by `exactfold fold --json`: `schema("motion")`.
+
+        `name`: of the pattern; `written`: the files that hold the motion. What belongs to branches
+        of triangulated sheets is null.
+        """
+        return {
+            **headed("motion"),
+            "pattern": described_panels(self.pattern, name),
+            "theory": "modes",
+            "reason": self.reason,
+            "vertex_signs": None,
+            "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
+            "side": None,
+            "rim": None,
+            "drive": None,
+            "modes": list(self.modes),
+            "component": self.component,
+            **in_motion.frames_reported(self, written),
+            "warnings": [],
+            "seconds": round(self.seconds, 3),
+        }
+
+    @cached_property
+    def _placing(self) -> Placing:
+        return Placing(self.pattern, self.held)
+
+    def at(self, time: float) -> FloatArray:
+        """The positions of all vertices at a time, shape (V, 3).
+
+        Raises `UsageError` for a time before the first or after the last frame.
+
+        >>> from exactfold.motion.panels.following import follow_panels
+        >>> from exactfold.pattern.families import single_vertex
+        >>> from exactfold.pattern.opening import panels
+        >>> motion = follow_panels(panels(single_vertex(4)), frames=3)
+        >>> bool(abs(motion.at(motion.duration) - motion.coords[-1]).max() < 1e-12)
+        True
+        """
+        if not 0 <= time <= self.duration * (1 + 1e-12):
+            raise UsageError(f"time {time}: this motion has the times 0 to {self.duration:.6g}")
+        return np.asarray(self._placing.positions(self.angles_at(np.array([time])))[0][0])
+
+    def angles_at(self, times: FloatArray) -> FloatArray:
+        """All fold angles in radians at times, shape (times, folds)."""
+        return all_angles(self.pattern, self.curves, self.rates, self.free_rates, times)
+
+    @cached_property
+    def ratios(self) -> Mapping[Edge, Number] | None:
+        """c_e for each active fold, `tau_e = c_e T` with the T of its mode, exactly.
+
+        `tau = tan(angle / 2) / length`; c is 1 or -1 at the drivers. None if a mode is not linear,
+        or needs more than three square roots beside those of the coordinates.
+        """
+        found: dict[Edge, Number] = {}
+        for curve in self.curves:
+            if not isinstance(curve, LinearCurve) or curve.ratios is None:
+                return None
+            found.update(curve.ratios)
+        return MappingProxyType(found)
+
+    def exactly(self, parameter: Parameter | Mapping[int, Parameter]) -> tuple[Spot, ...]:
+        """The exact positions of all vertices at a parameter T: `tau_e = c_e T`.
+
+        Numbers of a field of square roots, (x, y, z) for each vertex; rational if T, c_e and the
+        coordinates are. `math.inf` is the flat-folded sheet. For several modes T is the same for
+        all, or given for each by its number. Free folds stay flat. The panels close exactly, which
+        is checked at every corner.
+
+        Raises `NotApplicableError` where `ratios` is None, `UsageError` for a float other than
+        infinity or a mode that does not fold here.
+
+        >>> from exactfold.motion.panels.following import follow_panels
+        >>> from exactfold.pattern.panel_pattern import PanelPattern
+        >>> book = PanelPattern([(0, 0), (2, 0), (4, 0), (4, 2), (2, 2), (0, 2), (2, 1)],
+        ...     [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (5, 0), (1, 6), (6, 4)])
+        >>> follow_panels(book).exactly(1)[3] == (2, 2, 2)
+        True
+        """
+        if self.ratios is None:
+            raise NotApplicableError(
+                "exact positions need modes that are linear in the half-angle tangents, with few "
+                "square roots; this motion has floats only"
+            )
+        given = (
+            parameter if isinstance(parameter, Mapping) else dict.fromkeys(self.modes, parameter)
+        )
+        unknown = sorted(set(given) - set(self.modes))
+        if unknown:
+            raise UsageError(f"mode {unknown[0]} does not fold here; these do: {self.modes}")
+        turns: dict[Edge, Turn] = {}
+        for curve in self.curves:
+            value = given.get(curve.mode.number, 0)
+            if isinstance(value, float) and value != inf:
+                raise UsageError(f"{value} is a float: give a whole number, a fraction or infinity")
+            for fold in curve.folds:
+                c = self.ratios[fold]
+                turns[fold] = (0, c) if isinstance(value, float) else (1, c * exact(value))
+        return self._placing.exactly(turns)
+
+    @property
+    def length_error(self) -> float:
+        """The largest relative change of the length of an edge in any frame."""
+        return in_motion.length_error(self)
+
+    @property
+    def residual(self) -> float:
+        """The largest failure of an interior vertex to close in any frame.
+
+        The vector part of the product of the unit quaternions of its folds, which are
+        `cos(angle / 2) + sin(angle / 2) d / |d|`, counter-clockwise.
+        """
+        return closing_residual(self.pattern, self.angles)
+
+    def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
+        """Times and all fold angles in radians at `least` points or more, for plots.
+
+        Shapes (times,) and (times, folds); between two points no angle changes by more than about
+        two degrees.
+        """
+        times = sampled_times(self.angles_at, self.duration, least)
+        return times, self.angles_at(times)
+
+    def table(self) -> tuple[tuple[str, ...], FloatArray]:
+        """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
+        return in_motion.table(self)
+
+    @property
+    def largest_angles(self) -> FloatArray:
+        """For each fold its largest angle in any frame in degrees, with its sign."""
+        return in_motion.largest_angles(self)
+
+    def __repr__(self) -> str:
+        return (
+            f"<PanelMotion: {self.name}, {self.status}, {len(self.times)} frames to "
+            f"{self.end} at {self.duration:.6g}>"
+        )
+
+
+def _continues(curve: FollowedCurve) -> bool:
+    """Whether the theorem of docs/panel_motion.md, 2, holds of a mode."""
+    mode = curve.mode
+    return mode.extends.verdict is PROVED and all(len(star.folds) <= 4 for star in mode.stars)
+
+
+def all_angles(
+    pattern: PanelPattern,
+    curves: tuple[LinearCurve | FollowedCurve, ...],
+    rates: tuple[float, ...],
+    free_rates: Mapping[Edge, float],
+    times: FloatArray,
+) -> FloatArray:
+    """The fold angles of a sheet at times, shape (times, folds)."""
+    columns = {fold: k for k, fold in enumerate(pattern.folds)}
+    angles = np.zeros((len(times), len(columns)))
+    for curve, rate in zip(curves, rates, strict=True):
+        angles[:, [columns[fold] for fold in curve.folds]] = curve.angles(
+            np.clip(rate * times, -pi, pi)
+        )
+    for fold, rate in free_rates.items():
+        angles[:, columns[fold]] = rate * times
+    return angles
+
+
+def closing_residual(pattern: PanelPattern, angles: FloatArray) -> float:
+    """The largest vector part of the quaternion product round a vertex, of unit quaternions."""
+    columns = {fold: k for k, fold in enumerate(pattern.folds)}
+    worst = 0.0
+    for v, around in pattern.stars.items():
+        s = np.ones(len(angles))
+        a, b, c = np.zeros((3, len(angles)))
+        for u in around:
+            x, y = (float(t) for t in pattern.direction(v, u))
+            half = angles[:, columns[min(u, v), max(u, v)]] / 2
+            cosine, sine = np.cos(half), np.sin(half) / np.hypot(x, y)
+            p, q = sine * x, sine * y
+            s, a, b, c = (
+                cosine * s - a * p - b * q,
+                cosine * a + s * p - c * q,
+                cosine * b + s * q + c * p,
+                cosine * c + a * q - b * p,
+            )
+        worst = max(worst, float(np.max(np.abs([a, b, c]))))
+    return worst
+
+
+def sampled_times(
+    angles_at: AnglesAt, duration: float, least: int, largest: float = np.radians(_DEGREES)
+) -> FloatArray:
+    """Times from 0 to the end between which no fold angle changes much."""
+    times = np.linspace(0.0, duration, max(least, 2))
+    while len(times) < _MOST_SAMPLES:
+        steps = np.abs(np.diff(angles_at(times), axis=0)).max(axis=1, initial=0.0)
+        wide = np.flatnonzero(steps > largest)
+        if not len(wide):
+            break
+        times = np.insert(times, wide + 1, 0.5 * (times[wide] + times[wide + 1]))
+    return np.asarray(times)

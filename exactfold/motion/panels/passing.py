@@ -1,0 +1,91 @@
+"""Fold angles of a mode that is not linear, enclosed: each from another one at a vertex."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from flint import arb, arb_series, ctx
+
+from exactfold.exact.surds import ball
+from exactfold.motion.panels.followable import PanelMode
+from exactfold.panels.stars import dot
+from exactfold.panels.transmission import Transmission
+from exactfold.pattern.panel_pattern import Edge
+
+Tangent = tuple[arb_series, arb_series]
+"""(c, s), of which s / c is the tangent of half a fold angle; c > 0 until the fold is closed."""
+
+
+class Passed(NamedTuple):
+    """One transmission: from the tangent of the fold `start` to that of `end`.
+
+    `quadratic`: (p, q, b, a) with (p + q tau^2) u^2 + b u + a = 0 and tau_end = u tau, where tau is
+    tan(angle / 2) / length; None where u is the constant `gain`. `lengths`: of both folds.
+    """
+
+    start: Edge
+    end: Edge
+    gain: arb
+    quadratic: tuple[arb, arb, arb, arb] | None
+    lengths: tuple[arb, arb]
+
+    def __call__(self, tangent: Tangent) -> Tangent:
+        """With tau = n / c the other is n z / c c = n z, where (p c^2 + q n^2) z^2 + b c z + a = 0.
+
+        Of the roots z that which is the gain where the fold is flat; not finite where it may be
+        double. Raises `ValueError` where the two are not told apart.
+        """
+        c, s = tangent
+        n = s / self.lengths[0]
+        if self.quadratic is None:
+            return c, n * self.gain * self.lengths[1]
+        p, q, b, a = self.quadratic
+        leading, middle = c * c * p + n * n * q, c * b
+        first = 2 * p * self.gain + b
+        if not (first > 0 or first < 0):
+            raise ValueError("two roots that are not told apart")
+        side = 1 if first > 0 else -1
+        root = (middle * middle - 4 * leading * a).sqrt() * side
+        if b == 0 or bool(b > 0) == (side > 0):
+            return side * (middle + root), (-2 * side) * n * a * self.lengths[1]
+        turn = 1 if p > 0 else -1
+        return (2 * turn) * leading, turn * n * (root - middle) * self.lengths[1]
+
+
+def passes_of(mode: PanelMode, driver: Edge, bits: int) -> list[Passed]:
+    """The transmissions from the driver to all other folds, in the order of their use."""
+    found: list[Passed] = []
+    known = {driver}
+    with ctx.workprec(bits):
+        lengths = {
+            fold: ball(dot(d, d), bits).sqrt()
+            for fold in mode.folds
+            for d in [mode.pattern.direction(*fold)]
+        }
+        for k, fold in mode.order_from(driver):
+            star, local = mode.stars[k], mode.choice[k]
+            for other in star.folds:
+                if other in known:
+                    continue
+                known.add(other)
+                step = Transmission(star, local, fold, other)
+                quadratic = None
+                if step.quadratic is not None and not step.is_linear:
+                    p, q, b, a = (ball(value, bits) for value in step.quadratic)
+                    quadratic = p, q, b, a
+                ends = lengths[fold], lengths[other]
+                found.append(Passed(fold, other, ball(step.gain, bits), quadratic, ends))
+    return found
+
+
+def spread(passes: list[Passed], driver: Edge, tangent: Tangent) -> dict[Edge, Tangent]:
+    """The tangents of all folds of a mode, from that of its driver.
+
+    Raises `ValueError` where a fold may be closed: the mode may end there.
+    """
+    found = {driver: tangent}
+    for passed in passes:
+        found[passed.end] = passed(found[passed.start])
+    if not all(c[0] > 0 for c, _ in found.values()):
+        raise ValueError("a fold may be closed")
+    return found

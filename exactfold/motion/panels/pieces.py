@@ -1,0 +1,284 @@
+"""A motion of panels as polynomials of its time, each with a proved error.
+
+At time t the half angle of a driver is t / 2 times its rate, and `tan(angle_e / 2) = g_e tan(...)`
+for every fold e of its mode, with the exact gain g_e. With S and C the sine and the cosine of the
+driver's half angle the rotation at e has
+
+    cos angle_e = (C^2 - g_e^2 S^2) / (C^2 + g_e^2 S^2),
+    sin angle_e = 2 g_e S C / (C^2 + g_e^2 S^2),
+
+which are analytic for all t, also where the folds are closed. In modes that are not linear the
+tangents follow from each other by the transmissions at the vertices (`panel_passing`). Arb
+computes the power series of all positions at the middle m of a stretch, and with a ball of all
+times of the stretch in the place of m the next coefficient, which by Taylor's theorem bounds what
+is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from math import frexp
+from threading import RLock
+
+import numpy as np
+from flint import arb, arb_series, ctx
+
+from exactfold._support.arrays import FloatArray
+from exactfold.exact.surds import ball
+from exactfold.motion.panels.chain import Turned, hinged, moved, product, spun, still
+from exactfold.motion.panels.curves import LinearCurve
+from exactfold.motion.panels.motion import PanelMotion
+from exactfold.motion.panels.passing import Passed, Tangent, passes_of, spread
+from exactfold.motion.panels.places import Placing
+from exactfold.panels.stars import dot
+from exactfold.pattern.panel_pattern import Edge
+
+ORDER = 12
+_BITS = 128
+_THIN = 1e-9
+"""The error that a piece may have, in units of twice the sheet."""
+_WIDEST, _NARROWEST = 1 / 8, 2.0**-20
+_CAP = ORDER + 2
+_PARTS = 8
+
+
+@dataclass(frozen=True, repr=False)
+class PanelPiece:
+    """Positions of all vertices for |t - middle| <= half: p(t - middle) + e, |e| <= `radius`.
+
+    `coefficients`: shape (ORDER + 1, V, 3); `radius`: shape (V, 3), proved; in units of `unit`, a
+    power of two, from the first corner of the panel that is held.
+    """
+
+    middle: float
+    half: float
+    coefficients: FloatArray
+    radius: FloatArray
+    unit: float
+
+    def __repr__(self) -> str:
+        return f"<PanelPiece: {self.middle:.6g} +- {self.half:.1e}, {self.radius.max():.1e}>"
+
+
+@dataclass(frozen=True)
+class PanelPieces:
+    """The pieces of a motion of panels that exists, by `PanelMotion.exists`.
+
+    `held`: the panel that stays where it is, by default one in the middle of the sheet.
+    """
+
+    motion: PanelMotion
+    held: int | None = None
+
+    @cached_property
+    def unit(self) -> float:
+        """A power of two, more than twice the size of the sheet."""
+        points = np.array([(float(x), float(y)) for x, y in self.motion.pattern.vertices])
+        return float(2.0 ** (frexp(float(np.ptp(points, axis=0).max()))[1] + 1))
+
+    @cached_property
+    def _placing(self) -> Placing:
+        pattern = self.motion.pattern
+        held = Placing(pattern, self.motion.held).middle if self.held is None else self.held
+        return Placing(pattern, held)
+
+    @cached_property
+    def _flat(self) -> list[tuple[FloatArray, float]]:
+        """The flat vertices in floats, and how far these are off at most."""
+        pattern = self.motion.pattern
+        x, y = pattern.vertices[pattern.faces[self._placing.held][0]]
+        with ctx.workprec(_BITS):
+            unit = arb(self.unit)
+            return [
+                _vector(ball(a - x, _BITS) / unit, ball(b - y, _BITS) / unit)
+                for a, b in pattern.vertices
+            ]
+
+    @cached_property
+    def _axes(self) -> dict[Edge, tuple[FloatArray, float]]:
+        """The directions of the folds between the panels, and how far these are off at most."""
+        found = {}
+        for _, _, _, i, j in self._placing.steps:
+            d = self.motion.pattern.direction(i, j)
+            with ctx.workprec(_BITS):
+                length = ball(dot(d, d), _BITS).sqrt()
+                x, y = (ball(c, _BITS) / length for c in d)
+                found[i, j] = _vector(x, y)
+        return found
+
+    @cached_property
+    def _numbers(self) -> dict[Edge, int]:
+        return {fold: k for k, fold in enumerate(self.motion.pattern.folds)}
+
+    @cached_property
+    def _gains(self) -> list[dict[int, arb]]:
+        """Of each mode that is linear the gains by fold, from its driver; of others nothing."""
+        found: list[dict[int, arb]] = []
+        for curve in self.motion.curves:
+            found.append({})
+            if isinstance(curve, LinearCurve):
+                tangents = curve.exact_tangents(_BITS)
+                with ctx.workprec(_BITS):
+                    unit = abs(tangents[curve.driver])
+                    found[-1] = {self._numbers[e]: t / unit for e, t in tangents.items()}
+        return found
+
+    @cached_property
+    def _passes(self) -> list[list[Passed]]:
+        """Of each mode that is not linear its transmissions, in the order of their use."""
+        return [
+            [] if isinstance(curve, LinearCurve) else passes_of(curve.mode, curve.driver, _BITS)
+            for curve in self.motion.curves
+        ]
+
+    def between(self, low: float, high: float) -> Iterator[PanelPiece]:
+        """Pieces from one time to another, of which each begins where the one before ends.
+
+        The last one may be longer. Ends early where no piece is thin enough.
+        """
+        width = _WIDEST
+        while low < high:
+            piece = self._piece(low, width)
+            if piece is None:
+                width /= 2
+                if width < _NARROWEST:
+                    return
+                continue
+            yield piece
+            low += width
+            if low / (2 * width) % 1 == 0 and width < _WIDEST:
+                width *= 2
+
+    def around(self, time: float) -> PanelPiece | None:
+        """A piece with exactly this time in its middle, that is narrow.
+
+        None where positions are not known, as beyond a fold that is closed: if there is one the
+        motion exists until then (docs/panel_motion.md, 5).
+        """
+        return self._about(time, _NARROWEST)
+
+    def _piece(self, low: float, width: float) -> PanelPiece | None:
+        """The piece of times from `low` on, if it is thin enough."""
+        return self._about(low + width / 2, width / 2)
+
+    def _about(self, middle: float, half: float) -> PanelPiece | None:
+        with _capped(), ctx.workprec(_BITS):
+            try:
+                here = self._turns(arb(middle))
+                rests = self._rests(middle, half)
+            except ValueError:  # of python-flint, for a divisor that may be 0; or a closed fold
+                return None
+            turns = {
+                fold: [_polynomial(*both, half) for both in zip(series, rests[fold], strict=True)]
+                for fold, series in here.items()
+            }
+        with np.errstate(invalid="ignore", over="ignore"):
+            coefficients, radius = self._placed(turns)
+        if not (np.isfinite(coefficients).all() and radius.max() <= _THIN):
+            return None
+        powers = half ** np.arange(ORDER + 1.0)  # half is a power of two: nothing is rounded
+        return PanelPiece(middle, half, coefficients / powers[:, None, None], radius, self.unit)
+
+    def _turns(self, time: arb) -> dict[int, tuple[arb_series, arb_series]]:
+        """Sine and 1 - cosine of the angles of folds that move, as series in the time after it."""
+        found = {}
+        for fold, (c, s) in self._tangents(time).items():
+            square = s * s
+            over = 2 / (c * c + square)
+            found[fold] = c * s * over, square * over
+        return found
+
+    def _rests(self, middle: float, half: float) -> dict[int, list[arb]]:
+        """Bounds of the first coefficients left out, of the sines and of the versines.
+
+        In modes that are not linear balls grow from vertex to vertex, so that those of parts of the
+        stretch are smaller than one of all of it.
+        """
+        count = _PARTS if any(self._passes) else 1
+        width = half / count
+        found: dict[int, list[arb]] = {}
+        for part in range(count):
+            time = arb(middle) + arb((2 * part + 1 - count) * width, width)
+            for fold, series in self._turns(time).items():
+                known = found.setdefault(fold, [arb(0), arb(0)])
+                for k, f in enumerate(series):
+                    known[k] = known[k].max(abs(f[ORDER + 1]))
+        return found
+
+    def _placed(self, turns: dict[int, list[Turned]]) -> tuple[FloatArray, FloatArray]:
+        """The polynomials of all vertices in y = (time - middle) / half, and their errors."""
+        placing, flat = self._placing, self._flat
+        placed = {placing.held: still(ORDER)}
+        for panel, before, fold, i, j in placing.steps:
+            if fold not in turns:
+                placed[panel] = placed[before]
+                continue
+            rotation, shift = placed[before]
+            sine, versine = turns[fold]
+            new = product(rotation, spun(sine, versine, *self._axes[i, j]))
+            placed[panel] = new, hinged(rotation, new, *flat[i], shift)
+        coefficients = np.empty((ORDER + 1, len(flat), 3))
+        radius = np.empty((len(flat), 3))
+        for v, point in enumerate(flat):
+            rotation, shift = placed[placing.owners[v]]
+            place = moved(rotation, *point, shift)
+            coefficients[:, v], radius[v] = place.polynomial.T, place.error
+        return coefficients, radius
+
+    def _tangents(self, time: arb) -> dict[int, Tangent]:
+        """By fold (c, s) with s / c = tan(angle / 2), as series about a time or a ball of times."""
+        motion, found = self.motion, dict[int, Tangent]()
+
+        def driven(rate: float) -> Tangent:
+            half = arb_series([time * arb(rate) / 2, arb(rate) / 2], _CAP)
+            return half.cos(), half.sin()
+
+        parts = zip(motion.curves, motion.rates, self._gains, self._passes, strict=True)
+        for curve, rate, gains, passes in parts:
+            c, s = driven(rate)
+            found.update({k: (c, s * gain) for k, gain in gains.items()})
+            if not gains:
+                s = s if curve.mode.letters[curve.driver] == "V" else -s
+                pairs = spread(passes, curve.driver, (c, s))
+                found.update({self._numbers[fold]: pair for fold, pair in pairs.items()})
+        for fold, rate in motion.free_rates.items():
+            found[self._numbers[fold]] = driven(rate)
+        return found
+
+
+_CAPPING = RLock()
+
+
+@contextmanager
+def _capped() -> Iterator[None]:
+    """Series with as many terms as are needed here.
+
+    FLINT has one number of terms for all threads, and takes terms beyond it for 0. So only one
+    thread at a time is in here.
+    """
+    with _CAPPING:
+        before, ctx.cap = ctx.cap, _CAP
+        try:
+            yield
+        finally:
+            ctx.cap = before
+
+
+def _polynomial(series: arb_series, rest: arb, half: float) -> Turned:
+    """A function of m + half y for |y| <= 1, from its series at m and a bound of the next term."""
+    reach, row, error = arb(half), np.zeros((1, ORDER + 1)), arb(0)
+    for k in range(ORDER + 1):
+        c = series[k] * reach**k
+        row[0, k] = float(c.mid())
+        error += abs(c - arb(float(row[0, k])))
+    error += rest * reach ** (ORDER + 1)
+    return Turned(row, float(error.upper()) * (1 + 1e-9))
+
+
+def _vector(x: arb, y: arb) -> tuple[FloatArray, float]:
+    found = np.array([float(x.mid()), float(y.mid())])
+    off = abs(x - arb(float(found[0]))) + abs(y - arb(float(found[1])))
+    return found, float(off.upper()) * (1 + 1e-9)

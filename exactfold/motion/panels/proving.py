@@ -1,0 +1,129 @@
+"""`prove_panels`: that panels fold as they were followed, and what touches first."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any
+
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.certificates.entries import Document, write_certificate
+from exactfold.errors import NotApplicableError
+from exactfold.motion.panels.claims import certificate_of_panel_motion
+from exactfold.motion.panels.clearance import PanelClearance, with_proved_contact
+from exactfold.motion.panels.motion import PanelMotion
+
+_NAMED = 3
+_AT_ONCE = 1e-9
+
+
+@dataclass(frozen=True, repr=False)
+class PanelProof:
+    """What is proved of a motion of panels: that they fold so, and what touches first.
+
+    `motion`: with the first contact as it is proved; as it was given where it is not. `contacts`:
+    how far no two panels touch, None where nothing is proved of the motion. `certified`: whether
+    there is a certificate.
+
+    `status` is PROVED if the whole motion is clear, or its first contact is enclosed; else `reason`
+    says what is missing.
+    """
+
+    status: Verdict
+    reason: str
+    motion: PanelMotion
+    contacts: PanelClearance | None = None
+    certified: bool = False
+
+    @property
+    def passed(self) -> bool:
+        """Whether the motion goes on after its first contact, through the panels."""
+        contacts = self.contacts
+        return (
+            contacts is not None
+            and contacts.event is not None
+            and contacts.event.time[1] < self.motion.duration - _AT_ONCE
+        )
+
+    def certificate(self) -> Document | None:
+        """The evidence for `exactfold.checker`, None if there is none."""
+        if self.contacts is None or not self.certified:
+            return None
+        return certificate_of_panel_motion(self.motion, self.contacts)
+
+    def write(self, path: str | os.PathLike[str]) -> bool:
+        """Write the evidence for `exactfold.checker`; False if there is none.
+
+        Raises `UnwritableFileError`.
+
+        >>> import os, tempfile
+        >>> from exactfold.checker import summary, verify
+        >>> from exactfold.motion.panels.following import follow_panels
+        >>> from exactfold.pattern.families import single_vertex
+        >>> from exactfold.pattern.opening import panels
+        >>> proof = prove_panels(follow_panels(panels(single_vertex(4)), until="90deg"))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "proof")
+        ...     proof.write(path), summary(verify(path))[:44]
+        (True, 'VALID: the panels fold, 4 folds move of 4, d')
+        """
+        document = self.certificate()
+        if document is None:
+            return False
+        write_certificate(document, path)
+        return True
+
+    def to_dict(self) -> dict[str, Any]:
+        """The proof as `exactfold fold --json` prints it."""
+        contacts = self.contacts
+        event = None if contacts is None else contacts.event
+        return {
+            "status": str(self.status),
+            "reason": self.reason,
+            "tubes": None,
+            "length": None,
+            "clear": None if contacts is None else contacts.clear,
+            "contact": None if event is None else event.to_dict(),
+            "through": [],
+            "node": None,
+            "reached": None,
+            "to": None,
+        }
+
+    def __repr__(self) -> str:
+        return f"<PanelProof: {self.status}, {self.contacts!r}>"
+
+
+def prove_panels(motion: PanelMotion) -> PanelProof:
+    """Prove a motion of panels as far as it was followed (docs/panel_motion.md, 5 and 6).
+
+    That the panels fold so, and for how long none touch; of a motion that meets a contact also
+    that, its time enclosed. UNDECIDED says nothing against the motion.
+
+    >>> from exactfold.motion.panels.following import follow_panels
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> prove_panels(follow_panels(panels(single_vertex(4)), until="90deg"))
+    <PanelProof: proved, <PanelClearance: proved, clear until 1.5708>>
+    """
+    try:
+        moved, contacts = with_proved_contact(motion)
+    except NotApplicableError as error:
+        return PanelProof(UNDECIDED, str(error), motion)
+    try:
+        certificate_of_panel_motion(moved, contacts)
+    except NotApplicableError as error:
+        return PanelProof(UNDECIDED, str(error), moved, contacts)
+    reason = "" if contacts.status is PROVED else _open(contacts)
+    return PanelProof(contacts.status, reason, moved, contacts, certified=True)
+
+
+def _open(contacts: PanelClearance) -> str:
+    """Which panels are not proved to stay apart, and from when on."""
+    pairs = [
+        " and ".join("-".join(map(str, panel)) for panel in pair) for pair in contacts.open_panels
+    ]
+    more = f", and {len(pairs) - _NAMED} more pairs" if len(pairs) > _NAMED else ""
+    which = f"panels {', '.join(pairs[:_NAMED])}{more}" if pairs else "where the panels are"
+    verb = "are not proved to stay apart" if pairs else "is not known well enough"
+    return f"{which} {verb} after the time {contacts.clear:.6g}"

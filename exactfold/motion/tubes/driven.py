@@ -1,0 +1,291 @@
+"""`find_driven`: the branch along which chosen folds start with angles in a given ratio."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold._support.plurals import counted
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.branches.counting.find import BranchFinder, Rim, Signs, branch_finder
+from exactfold.branches.values.branch import Branch
+from exactfold.errors import BadDriveError, NotDrivenError, NotProvedAtTheFlatStateError
+from exactfold.motion.curves.boundary_path import framework_of, problem_of
+from exactfold.motion.curves.drive import Drive, fold_text, not_a_fold
+from exactfold.motion.curves.driven_folds import DrivenFolds
+from exactfold.motion.tubes.tube_start import prove_start
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.loading import PatternLike, as_pattern
+from exactfold.rigidity.equations.boundary_heights import saddle_rims
+from exactfold.rigidity.equations.problem import Problem
+
+_TRIED = 8
+"""Vertices up to which all signs are tried where none are given."""
+_SMALL = 200
+"""Unknowns up to which several starts are tried."""
+_SAME = 1e-6
+_OFF = 1e-6
+"""How far first-order angles of a branch may be from the ratio of a drive, of the largest."""
+
+
+@dataclass(frozen=True, repr=False)
+class Driven:
+    """A branch on which driven folds start in their ratio, and the side on which they do.
+
+    `branch` is proved. With more than four corners its border has the heights of the way the driven
+    motion starts, rounded to nine places: it shows this start, nearly. `others`: how many
+    more with the same signs were found, on which folds bend more.
+    """
+
+    branch: Branch
+    side: int
+    drive: Drive
+    others: int = 0
+
+    @cached_property
+    def status(self) -> Verdict:
+        """Whether a solution with exactly this ratio is proved, with these vertex signs.
+
+        It is the one that `branch` shows, as far as floats see.
+        """
+        branch = self.branch
+        if branch.status is not PROVED or len(self.drive.folds) == 1:
+            return branch.status
+        problem, heights = problem_of(branch), branch.approx_heights
+        try:
+            start = prove_start(
+                framework_of(problem, None, self.drive),
+                problem.gauge,
+                self.side * np.array([heights[v] for v in problem.labels]),
+                ways=self.drive.ways(problem.labels),
+            )
+        except NotProvedAtTheFlatStateError:
+            return UNDECIDED
+        signs = tuple(self.side * branch.vertex_signs[v] for v in problem.foldable)
+        return PROVED if start.vertex_signs == signs else UNDECIDED
+
+    def __repr__(self) -> str:
+        return f"<Driven: branch {self.branch.sign_text}, {self.drive.text}>"
+
+
+def find_driven(
+    pattern: PatternLike,
+    angles: Mapping[Edge, float | None],
+    signs: Signs | None = None,
+    *,
+    rim: Rim | None = None,
+    side: int | None = None,
+    progress: Progress | None = None,
+) -> Driven:
+    """The branch with given vertex signs on which chosen folds start to fold in a given ratio.
+
+    `angles`: by fold the angle in degrees to which it is driven, positive for a valley; D = Ve - 3
+    folds of a sheet with Ve boundary vertices. To first order their angles are in the ratio of the
+    sines of half of these (`Drive`). None for an angle: the one that the fold has beside the others
+    on the branch with the border heights `rim`, by default those of `find_branch`. `signs`: as in
+    `find_branch`, of the branch as it is driven; if not given, the first found. With more than four
+    corners the branch is found from that with the rim, by Newton's method. There may be several
+    with these signs and this ratio, as a line meets a cone in two points: without a `rim` (and up
+    to 200 unknowns) they are looked for from eight, and that is taken on which all folds together
+    bend least, by the sum of squares. With four corners there is one fold to drive, and `side` may
+    be asked for as in `follow`.
+
+    Raises `BadDriveError` for folds or angles that cannot be driven, `NotDrivenError` where no
+    branch is found, which does not say that there is none, and the errors of `find_branch`.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> driven = find_driven(single_vertex(5), {(0, 5): 90, (2, 5): 60})
+    >>> driven, driven.branch.status
+    (<Driven: branch +, 0-5 to 90, 2-5 to 60 degrees>, <Verdict.PROVED: 'proved'>)
+    """
+    sheet = as_pattern(pattern)
+    finder = branch_finder(sheet, rim)
+    asked = None if signs is None else finder.signs(signs, None)
+    search = _Search(finder, angles, side, rim is not None, progress)
+    search.check()
+    for each in [asked] if asked is not None else _all_signs(finder):
+        found = search.found(each)
+        if found is not None:
+            return found
+    raise search.failure(asked)
+
+
+def off_the_ratio(branch: Branch, side: int, drive: Drive) -> float:
+    """How far first-order fold angles of a branch are from the ratio of a drive, of the largest.
+
+    0 if they are, 1 or more if some fold goes the other way.
+    """
+    angles = branch.fold_angles.degrees(1.0)
+    there = side * np.array([angles[fold] for fold in drive.folds])
+    wanted = np.array(drive.sines)
+    factor = float(there @ wanted) / float(wanted @ wanted)
+    if not factor > 0:
+        return 1.0
+    return float(np.abs(there / factor - wanted).max() / np.abs(wanted).max())
+
+
+def require_driven(branch: Branch, side: int, drive: Drive) -> None:
+    """Raise `BadDriveError` unless the folds of a drive start in its ratio on a half-branch."""
+    unknown = [fold for fold in drive.folds if fold not in branch.pattern.folds]
+    if unknown:
+        raise BadDriveError(not_a_fold(branch.pattern.edges, unknown[0], "to drive"), unknown)
+    number = problem_of(branch).sheet.Ve - 3
+    if len(drive.folds) != number or not off_the_ratio(branch, side, drive) < _OFF:
+        raise BadDriveError(
+            f"the folds {', '.join(map(fold_text, drive.folds))} do not start in the ratio of "
+            "their angles on this branch, or are not as many as can be driven: find one by "
+            "`find_driven`",
+            drive.folds,
+        )
+
+
+def _all_signs(finder: BranchFinder) -> Iterator[dict[int, int]]:
+    """All up first, then all down; for few vertices all others after them."""
+    names = finder.poppable
+    first = [(1,) * len(names), (-1,) * len(names)]
+    others = product((1, -1), repeat=len(names)) if len(names) <= _TRIED else iter(())
+    for values in [*first, *(v for v in others if v not in first)]:
+        yield dict(zip(names, values, strict=True))
+
+
+@dataclass
+class _Search:
+    finder: BranchFinder
+    angles: Mapping[Edge, float | None]
+    side: int | None
+    rim_given: bool
+    progress: Progress | None
+
+    @property
+    def pattern(self) -> CreasePattern:
+        return self.finder.pattern
+
+    @cached_property
+    def problem(self) -> Problem:
+        return self.finder.problem
+
+    @cached_property
+    def on(self) -> DrivenFolds:
+        return DrivenFolds(self.finder.problem, self.angles)
+
+    @property
+    def folds(self) -> tuple[Edge, ...]:
+        return tuple(self.angles)
+
+    def check(self) -> None:
+        """Raise `BadDriveError` for folds that are not there, or cannot be driven."""
+        sheet = self.problem.sheet
+        own = {tuple(sorted(self.problem.labels[v] for v in fold)) for fold in sheet.folds}
+        for fold in self.folds:
+            if fold not in self.pattern.folds:
+                raise BadDriveError(not_a_fold(self.pattern.edges, fold, "to drive"), [fold])
+            if fold not in own:
+                raise BadDriveError(
+                    f"fold {fold_text(fold)} lies in a triangulated triangle, which stays flat",
+                    [fold],
+                )
+        given = {fold: angle for fold, angle in self.angles.items() if angle is not None}
+        Drive.of(given)
+        freedom = sheet.Ve - 3
+        if len(self.folds) > freedom:
+            raise BadDriveError(
+                f"{counted(len(self.folds), 'fold')} to drive: this sheet has {sheet.Ve} border "
+                f"vertices, and {counted(freedom, 'fold')} can be driven at once",
+                self.folds[freedom:],
+            )
+
+    def found(self, signs: Mapping[int, int]) -> Driven | None:
+        """The branch with these signs, if it is found."""
+        if self.problem.sheet.Ve == 4:
+            return self._of_two_sides(signs)
+        solutions: list[FloatArray] = []
+        drive: Drive | None = None
+        dependent: list[BadDriveError] = []
+        for start in self._starts:
+            try:
+                found = self._from(start, signs, drive)
+            except BadDriveError as error:  # on one branch by chance, or on all
+                dependent.append(error)
+                continue
+            if found is None:
+                continue
+            drive, y = found
+            if all(np.abs(y - x).max() > _SAME * np.abs(x).max() for x in solutions):
+                solutions.append(y)
+            if self.on.framework.size > _SMALL:
+                break
+        if len(dependent) == len(self._starts):
+            raise dependent[0]
+        if drive is None:
+            return None
+        best = min(solutions, key=self.on.bending)
+        near = BranchFinder(self.pattern, self.on.rim_of(best)).find(signs, progress=self.progress)
+        if not near.approx_heights or off_the_ratio(near, 1, drive) > _OFF:
+            return None
+        return Driven(near, 1, drive, len(solutions) - 1)
+
+    @cached_property
+    def _starts(self) -> list[BranchFinder]:
+        """With the rim that is given; else with the default one, and others."""
+        if self.rim_given:
+            return [self.finder]
+        return [self.finder] + [
+            BranchFinder(self.pattern, rim) for rim in saddle_rims(self.pattern)[1:]
+        ]
+
+    def _from(
+        self, finder: BranchFinder, signs: Mapping[int, int], drive: Drive | None
+    ) -> tuple[Drive, FloatArray] | None:
+        """The drive, if it is not known, and a solution found from the branch of a finder."""
+        branch = finder.find(signs, progress=self.progress)
+        if not branch.approx_heights:
+            return None
+        heights = branch.approx_heights
+        start = self.on.unknowns(np.array([heights[v] for v in self.problem.labels]))
+        self.on.require_independent(start)
+        drive = drive or self.on.completed(start)
+        if drive is None:
+            return None
+        reached = self.on.reached(start, np.array(drive.sines))
+        if reached is None or self.on.signs_at(reached) != self.on.signs_of(signs):
+            return None
+        return drive, reached
+
+    def failure(self, signs: Mapping[int, int] | None) -> NotDrivenError:
+        """Why nothing was found, with what the branch of the rim does."""
+        names = ", ".join(map(fold_text, self.folds))
+        which = "any signs that were tried" if signs is None else "these signs"
+        text = f"no branch with {which} was found on which the folds {names} start in this ratio"
+        if signs is not None and self.on.farthest is not None:
+            largest = np.abs(self.on.farthest).max()
+            there = ", ".join(f"{x:.4g}" for x in (self.on.farthest / largest).tolist())
+            text += f"; the nearest that was met is {there}"
+        elif signs is not None and self.problem.sheet.Ve == 4:
+            text += ": the fold goes the other way, or stays flat"
+        return NotDrivenError(text, self.folds)
+
+    # --- four corners ----------------------------------------------------------------------------
+
+    def _of_two_sides(self, signs: Mapping[int, int]) -> Driven | None:
+        """The half-branch with these signs on which the one fold goes the right way.
+
+        There are two: that of the branch with these signs, and the mirror image of the opposite.
+        """
+        if not self.folds:
+            raise BadDriveError("name a fold to drive")
+        [(fold, angle)] = self.angles.items()
+        for side in (1, -1) if self.side is None else (self.side,):
+            branch = self.finder.find({v: side * s for v, s in signs.items()})
+            letter = branch.assignment[fold]
+            if letter not in "MV" or not branch.approx_heights:
+                continue
+            way = side if letter == "V" else -side
+            if angle is None or way * angle > 0:
+                return Driven(branch, side, Drive.of({fold: angle or 180 * way}))
+        return None

@@ -1,0 +1,180 @@
+"""Polynomial curves put into the length equations, in integers over a power of two."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from exactfold._support.arrays import BigArray, FloatArray
+from exactfold.motion.curves.framework import Framework
+from exactfold.motion.tubes.contraction import WEIGHT_BITS, Places
+
+Row = tuple[int, ...]
+_LEAST = (1 << WEIGHT_BITS) // 100
+Curve = tuple[Row, ...]
+"""sum_k a_k s^k: row k is a_k, integers over a power of two, one for each unknown."""
+
+
+@dataclass(frozen=True, repr=False)
+class LengthEquations:
+    """The equations of a framework for curves whose coefficients are integers over 2^`bits`."""
+
+    framework: Framework
+    bits: int
+
+    @classmethod
+    def of(cls, framework: Framework, bits: int = 64) -> LengthEquations:
+        """With `bits` or more, as many as the flat coordinates and the ties need.
+
+        >>> from exactfold.pattern.families import two_vertex
+        >>> LengthEquations.of(Framework.of(two_vertex()))
+        <LengthEquations: 8 edges, 64 bits>
+        """
+        return cls(framework, max(bits, framework.bits, framework.tie_bits))
+
+    @cached_property
+    def flat_edges(self) -> BigArray:
+        """U_e of all bars over 2^bits, shape (bars, 3)."""
+        shift, points = self.bits - self.framework.bits, self.framework.points
+        rows = [
+            [(a - b) << shift for a, b in zip(points[i], points[j], strict=True)] + [0]
+            for i, j in self.framework.bars
+        ]
+        return np.array(rows, dtype=object).reshape(-1, 3)
+
+    @cached_property
+    def ties(self) -> tuple[Row, ...]:
+        """The ties as rows on the unknowns, over 2^bits."""
+        framework, shift = self.framework, self.bits - self.framework.tie_bits
+        place = {int(v): 3 * k + 2 for k, v in enumerate(framework.free)}
+        found = []
+        for tie in framework.ties:
+            row = [0] * framework.size
+            for v, c in tie:
+                if v in place:
+                    row[place[v]] = c << shift
+            found.append(tuple(row))
+        return tuple(found)
+
+    def tied(self, unknowns: Sequence[int]) -> list[int]:
+        """The left sides of the ties for unknowns over 2^bits, over 2^(2 bits)."""
+        return [sum(c * x for c, x in zip(row, unknowns, strict=True) if c) for row in self.ties]
+
+    def stacked(self, bars: Sequence[int], linear: Sequence[int]) -> list[int]:
+        """Values of bars, and of linear equations, as values of all equations times 2^`more`."""
+        return self.framework.coupling.stacked(bars, linear)
+
+    @property
+    def more(self) -> int:
+        """So many more bits have the values of the equations: those of the coupling."""
+        return self.framework.coupling.bits
+
+    def matrix(self, rows: FloatArray, last: FloatArray) -> FloatArray:
+        """The square matrix of edge vectors, then the ties and one more row, in floats."""
+        coupled = self.framework.coupling.combined(self.places.dense(rows))
+        return np.vstack([coupled, self.framework.tie_rows, last])
+
+    def inverse(self, rows: FloatArray, last: FloatArray) -> FloatArray:
+        """The inverse of `matrix`; raises `numpy.linalg.LinAlgError`."""
+        return np.asarray(np.linalg.inv(self.matrix(rows, last)), dtype=np.float64)
+
+    def along(self, curve: Sequence[Sequence[int]]) -> BigArray:
+        """a_k,e for all coefficients of a curve, shape (coefficients, bars, 3)."""
+        framework = self.framework
+        d = np.zeros((len(curve), len(framework.points), 3), dtype=object)
+        d[:, framework.free, :] = np.array(curve, dtype=object).reshape(len(curve), -1, 3)
+        return np.asarray(d[:, framework.bars[:, 0], :] - d[:, framework.bars[:, 1], :])
+
+    @cached_property
+    def places(self) -> Places:
+        """Where the bars meet the unknowns."""
+        framework = self.framework
+        place = {int(v): k for k, v in enumerate(framework.free)}
+        ends = sorted(
+            (place[v], e, sign)
+            for e, pair in enumerate(framework.bars.tolist())
+            for v, sign in zip(pair, (1, -1), strict=True)
+            if v in place
+        )
+        vertex, edge, signs = (np.array(x, dtype=np.intp) for x in zip(*ends, strict=True))
+        return Places(framework.size, vertex, edge, signs)
+
+    def weight_sums(self, weights: Sequence[int]) -> BigArray:
+        """w_i + w_j in the three places of every bar, shape (bars, 3)."""
+        framework = self.framework
+        w = np.zeros((len(framework.points), 3), dtype=object)
+        w[framework.free] = np.array(weights, dtype=object).reshape(-1, 3)
+        return np.asarray(w[framework.bars[:, 0]] + w[framework.bars[:, 1]])
+
+    def nearest(self, vector: FloatArray) -> Row:
+        """Floats as integers over 2^bits."""
+        shift = self.bits - 60
+        return tuple(int(x) << shift for x in np.rint(vector * 2.0**60))
+
+    def floats(self, row: Sequence[int]) -> FloatArray:
+        """Integers over 2^bits as floats."""
+        one = 1 << self.bits
+        return np.array([x / one for x in row])
+
+    def __repr__(self) -> str:
+        return f"<LengthEquations: {len(self.framework.edges)} edges, {self.bits} bits>"
+
+
+def squared(e: BigArray) -> list[BigArray]:
+    """The coefficients of |e|^2, e = sum_k e_k s^k of shape (coefficients, edges, axes).
+
+    By Kronecker's substitution: for s a power of two so large that coefficients of the square do
+    not overlap, each square of a polynomial is one of an integer.
+
+    >>> [int(x[0]) for x in squared(np.array([[[1, 2]], [[-3, 0]], [[0, 1]]], dtype=object))]
+    [5, -6, 13, 0, 1]
+    """
+    longest = max(map(int.bit_length, e.ravel().tolist()), default=0)
+    bits = 2 * longest + (len(e) * e.shape[2]).bit_length() + 2
+    packed = e[-1]
+    for row in e[-2::-1]:
+        packed = (packed << bits) + row
+    whole = (packed * packed).sum(axis=1)
+    half, mask = 1 << (bits - 1), (1 << bits) - 1
+    found = []
+    for _ in range(2 * len(e) - 1):
+        part = ((whole + half) & mask) - half
+        found.append(part)
+        whole = (whole - part) >> bits
+    return found
+
+
+def corrected(
+    inverse: FloatArray,
+    curve: Sequence[Sequence[int]],
+    residuals: Sequence[Sequence[int]],
+    extra: int,
+) -> Curve:
+    """a_k - P H_k, rounded: one step of Newton's method with the same P for all coefficients.
+
+    The residuals are integers over 2^(bits + extra), the curve over 2^bits.
+    """
+    found = []
+    for row, g in zip(curve, residuals, strict=False):
+        shift = max(0, max(map(int.bit_length, g)) - 60)
+        step = np.rint(inverse @ np.array([float(x >> shift) for x in g]) * 2.0**30)
+        found.append(
+            tuple(a - ((int(x) << shift) >> (30 + extra)) for a, x in zip(row, step, strict=True))
+        )
+    return tuple(found)
+
+
+def weights_of(matrix: FloatArray) -> Row:
+    """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a matrix with entries >= 0.
+
+    None is below 1/100: where the motion leaves an unknown at rest, its room must not vanish.
+    """
+    vector = np.ones(len(matrix))
+    for _ in range(30):
+        image = matrix @ vector
+        vector = vector + image / max(float(image.max()), 1e-300)
+        vector = vector / vector.max()
+    return tuple(max(_LEAST, int(x)) for x in vector * 2.0**WEIGHT_BITS)

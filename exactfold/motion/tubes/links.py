@@ -1,0 +1,136 @@
+"""Links: tubes that follow a curve of configurations one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold.motion.tubes.arclength import Interval
+from exactfold.motion.tubes.length_equations import LengthEquations
+from exactfold.motion.tubes.piece import Ball, evaluated
+from exactfold.motion.tubes.tube import Tube, prove_tube
+
+_LEAST = 1e-7  # of a step, in the unit of the framework
+_EXIT = 3, 4  # the part of the reach at which the next tube is entered
+_AHEAD = 0.7  # of the reach: about how far beyond the exit the next tube has its centre
+_GROWTH = 0.5, 1.2  # of the reach from tube to tube, as far as it is relied on
+_THICKNESS, _OF_STEP, _THINNEST, _SHORT = 1e-8, 1e-7, 1e-10, 1e-5
+"""The most radius of a tube, also of its length, by which the ends of tubes are known; but not of
+short ones: where curves nearly cross, thin tubes would become shorter and shorter."""
+_FAR = 64.0  # unknowns beyond it, in the unit of the framework, are not those of the sheet
+
+
+@dataclass(frozen=True, repr=False)
+class Link:
+    """A tube of a track, with the part of it that belongs to the track.
+
+    The motion enters at some parameter in `entry` = (low, high) and leaves at `exit`, exactly, at
+    a time between `left` of the track before and itself: `entered` and `left` bound the time, the
+    length of the motion from the flat state, in the unit of the framework. Parameters are over
+    2^PARAMETER_BITS.
+    """
+
+    tube: Tube
+    entry: tuple[int, int]
+    exit: int
+    entered: Interval
+    left: Interval
+
+    def time(self, parameter: int) -> Interval:
+        """Bounds of the time at a parameter between the entry and the end of the tube."""
+        low, high = self.tube.length(self.entry, parameter)
+        return self.entered[0] + low, self.entered[1] + high
+
+    def __repr__(self) -> str:
+        return (
+            f"<Link: time {float(self.entered[0]):.4g} to {float(self.left[0]):.4g}, {self.tube!r}>"
+        )
+
+
+def onwards(
+    equations: LengthEquations, ball: Ball, velocity: Ball, time: Interval, step: float
+) -> Iterator[Link | str]:
+    """The links from a configuration in a box on, which is passed with a velocity in a box.
+
+    The first tube is about `step` long. Ends with the reason if there is no next link.
+    """
+    place: _Place | None = None
+    while True:
+        tube, entry = _next(equations, ball, velocity, step, place)
+        if tube is None or entry is None:
+            yield (
+                "no tube longer than 1e-7 of the sheet was proved here: the configuration is "
+                "singular or nearly so, or several curves meet"
+            )
+            return
+        at = tube.longest * _EXIT[0] // _EXIT[1]
+        shortest, longest = tube.length(entry, at)
+        left = time[0] + shortest, time[1] + longest
+        yield Link(tube, entry, at, time, left)
+        ball, velocity, time = tube.enclosure(at), tube.velocity(at), left
+        reach = float(shortest + longest) / 2 * tube.longest / (at - entry[1])
+        growth, step = min(max(reach / step, _GROWTH[0]), _GROWTH[1]), reach
+        place = _place(equations, tube, at + int(_AHEAD * growth * tube.longest))
+
+
+_Place = tuple[FloatArray, FloatArray]
+"""The centre of a tube that is to be proved, and the direction of the motion there, in floats."""
+
+
+def _place(equations: LengthEquations, tube: Tube, parameter: int) -> _Place | None:
+    """A point of the curve beyond the end of a tube: by its series, and a step of Newton's method.
+
+    The tube about a point ahead holds the curve on both sides of it, where that about the end of
+    the last tube would hold half of it anew.
+    """
+    framework = equations.framework
+    x, along = (
+        equations.floats(evaluated(curve, parameter)) for curve in (tube.coefficients, tube.slope)
+    )
+    matrix = equations.matrix(framework.flat_edges + framework.along(x), along)
+    try:
+        x = x - np.linalg.solve(matrix, np.append(framework.residual(x), 0.0))
+    except np.linalg.LinAlgError:
+        return None
+    return (x, along) if np.abs(x).max() < _FAR else None
+
+
+def _next(
+    equations: LengthEquations, ball: Ball, velocity: Ball, step: float, place: _Place | None
+) -> tuple[Tube | None, tuple[int, int] | None]:
+    """A tube on which the configuration in a box lies, which the motion passes forwards.
+
+    About a place ahead, or if that does not reach back to the box, about the middle of the box.
+    """
+    if place is not None and step > _LEAST:
+        tube = prove_tube(equations, *place, step, thickness=_thickness(step))
+        entry = None if tube is None else _entered(tube, ball, velocity)
+        if entry is not None:
+            return tube, entry
+    centre, along = ball.finer(equations.bits).centre, velocity.floats[0]
+    while step > _LEAST:
+        tube = prove_tube(equations, centre, along, step, thickness=_thickness(step))
+        entry = None if tube is None else _entered(tube, ball, velocity)
+        if entry is not None:
+            return tube, entry
+        step /= 4
+    return None, None
+
+
+def _thickness(step: float) -> float:
+    """The most radius of a tube that is about `step` long."""
+    return _THICKNESS if step < _SHORT else min(_THICKNESS, max(_OF_STEP * step, _THINNEST))
+
+
+def _entered(tube: Tube, ball: Ball, velocity: Ball) -> tuple[int, int] | None:
+    """The parameters at which the motion enters a tube, if it is proved to do so before the exit.
+
+    It is at a configuration in a box, with a velocity in a box.
+    """
+    entry = tube.located(ball)
+    if entry is None or tube.goes_along(velocity) != 1:
+        return None
+    return entry if entry[1] < tube.longest * _EXIT[0] // _EXIT[1] else None

@@ -1,0 +1,177 @@
+"""Passages of nodes: where a chain of tubes leads to a node, and an arc leads through it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold.motion.curves.crossing_curves import crossing_ahead, flat_vertices
+from exactfold.motion.tubes.arclength import Interval
+from exactfold.motion.tubes.branch_point_tube import ROW_BITS, NodeTube, prove_node_tube
+from exactfold.motion.tubes.flat_patches import FlatPatch
+from exactfold.motion.tubes.length_equations import LengthEquations
+from exactfold.motion.tubes.links import Link
+from exactfold.motion.tubes.piece import PARAMETER_BITS, Ball
+from exactfold.motion.tubes.tube import prove_tube, sharpened
+from exactfold.motion.tubes.visits import Visit
+
+_NEAREST, _FARTHEST = 1e-4, 0.2
+"""How long before the end of the last link a node ahead is looked for, in the framework's unit."""
+_PART = 1 / 8
+"""Of the way to the node: about how far a tube reaches beside it."""
+_LEAST = 1e-7
+
+
+@dataclass(frozen=True, repr=False)
+class Passage:
+    """How a motion passes a node: on an arc `tube` through it, from one parameter to another.
+
+    The configuration at `entry` lies on the link `before`, between its parameters `met`; both go
+    the same way there. The next link begins at `exit`; of a motion that ends at the node `exit` is
+    0. `entered` and `left` bound the time as in `Link`. `vertices` are flat at the node, by the
+    numbers of the pattern.
+    """
+
+    tube: NodeTube
+    vertices: tuple[int, ...]
+    before: Link
+    met: tuple[int, int]
+    entry: int
+    exit: int
+    entered: Interval
+    left: Interval
+
+    @property
+    def to_the_node(self) -> Passage:
+        """The part of it that ends at the node."""
+        return replace(self, exit=0, left=self.time(0))
+
+    @property
+    def what(self) -> str:
+        """What the node is, in words.
+
+        With one flat vertex the directions of the curves are the zeros of a quadratic form in two
+        variables. One of them is real and simple, so that there are two, and another curve crosses.
+        """
+        if len(self.vertices) == 1:
+            return f"vertex {self.vertices[0]} is flat and another curve crosses"
+        names = " and ".join(map(str, self.vertices))
+        return f"the vertices {names} are flat and other curves may cross"
+
+    def visit(self, unit: Fraction) -> Visit:
+        """Where and when the node is passed, with times in the unit of the sheet."""
+        low, high = self.time(0)
+        return Visit.of(self.tube, (low * unit, high * unit))
+
+    def near(self, time: Fraction) -> tuple[Interval, Ball]:
+        """Bounds of the time of a point of the arc near a given time, and a box that holds it.
+
+        In the unit of the framework. Close to the node it has the width of the box of the node. Of
+        an arc that ends at its node a time as near to that of the node as this is known is its.
+        """
+        at = self.exit
+        last = self.left[0] if at else 2 * self.left[0] - self.left[1]
+        if time < last:
+            at = self.tube.near(float(time - self.entered[0]), self.entry, self.exit)
+        return _refined(self.tube, at, self.time(at))
+
+    def time(self, parameter: int) -> Interval:
+        """Bounds of the time at a parameter of the arc after the entry."""
+        shortest, longest = self.tube.length(self.entry, parameter)
+        return self.entered[0] + shortest, self.entered[1] + longest
+
+    def __repr__(self) -> str:
+        return f"<Passage: flat at {self.vertices}, time {float(self.entered[0]):.4g}>"
+
+
+def passage_ahead(
+    labels: Sequence[int], steps: Sequence[Link | Passage]
+) -> tuple[int, Passage] | None:
+    """The passage of a node shortly ahead of the last link, and how many steps lead up to it.
+
+    `labels[v]`: the vertex of the pattern that vertex v of the framework is. None proves nothing.
+    """
+    if steps and steps[-1].tube.framework.coupling.rows:
+        return None  # the equations of a node have no driven folds
+    for link in _far_enough(steps):
+        point, velocity = link.tube.enclosure(link.exit), link.tube.velocity(link.exit)
+        crossing = crossing_ahead(link.tube.framework, point.floats[0], velocity.floats[0])
+        if crossing is not None:
+            return _passage_at(labels, steps, *crossing)
+    return None
+
+
+def _far_enough(steps: Sequence[Link | Passage]) -> Iterator[Link]:
+    """The last links, those near the end first; those next to a node are too close for floats."""
+    end = steps[-1].left[0]
+    for step in reversed(steps):
+        away = float(end - step.left[0])
+        if isinstance(step, Passage) or away > _FARTHEST:
+            return
+        if away >= _NEAREST or step is steps[-1]:
+            yield step
+
+
+def _passage_at(
+    labels: Sequence[int],
+    steps: Sequence[Link | Passage],
+    point: FloatArray,
+    tangent: FloatArray,
+) -> tuple[int, Passage] | None:
+    """The passage of the node near the unknowns `point`, from one of the last links."""
+    framework, bits = steps[-1].tube.framework, steps[-1].tube.bits
+    flat = flat_vertices(framework, point)
+    patch = FlatPatch.of(framework, flat)
+    tube = None if patch is None else prove_node_tube(framework, patch, point, tangent, bits=bits)
+    if tube is None:
+        return None
+    # The first link that reaches into the tube, so that the short ones before the node go.
+    first = len(steps)
+    while first and isinstance(steps[first - 1], Link):
+        first -= 1
+    node, row = tube.node.floats[0], np.array(tube.row) * 2.0**-ROW_BITS
+    for k in range(first, len(steps)):
+        link = steps[k]
+        if not isinstance(link, Link):
+            continue
+        s = float(row @ (link.tube.enclosure(link.exit).floats[0] - node))
+        entry = round(s * (1 << PARAMETER_BITS))
+        if not -tube.longest * 7 // 8 <= entry < 0:
+            continue
+        met = link.tube.located(tube.ball(entry))
+        if met is None or met[0] < link.entry[1]:
+            continue
+        if link.tube.goes_along(tube.ball_velocity(entry)) != 1:
+            continue
+        at = tube.longest * 3 // 4
+        entered = link.time(met[0])[0], link.time(met[1])[1]
+        shortest, longest = tube.length(entry, at)
+        left = entered[0] + shortest, entered[1] + longest
+        vertices = tuple(labels[v] for v in flat)
+        return k + 1, Passage(tube, vertices, link, met, entry, at, entered, left)
+    return None
+
+
+def _refined(arc: NodeTube, at: int, bounds: Interval) -> tuple[Interval, Ball]:
+    """A point of a tube of its own, next to one of an arc, in a smaller box.
+
+    The configuration in the box of the arc lies on the tube between two parameters; that in their
+    middle is on the same curve, at a time that is no more than the length between them off. Near
+    the node no tube is found, and the answer is the box of the arc.
+    """
+    ball, velocity = arc.ball(at), arc.ball_velocity(at)
+    equations = LengthEquations.of(arc.framework, arc.bits)
+    step = _PART * float(np.linalg.norm(ball.floats[0] - arc.node.floats[0]))
+    if not step > _LEAST:
+        return bounds, ball
+    tube = prove_tube(equations, ball.finer(equations.bits).centre, velocity.floats[0], step)
+    found = None if tube is None else tube.located(ball)
+    if tube is None or found is None:
+        return bounds, ball
+    slack = tube.length((found[0], found[0]), found[1])[1]
+    finer = sharpened(tube, (found[0] + found[1]) // 2)
+    return (bounds[0] - slack, bounds[1] + slack), finer

@@ -1,0 +1,206 @@
+"""Parts of a sheet whose vertices have more than four folds: spaces of motions, and which fold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from exactfold._support.plurals import counted
+from exactfold.errors import TooManyModesError
+from exactfold.panels.cones import cone_motion, is_one_family
+from exactfold.panels.folding_modes import folding_mode, folding_modes
+from exactfold.panels.found import FoundComponent, found_components
+from exactfold.panels.kernel import Rows, entry, first_order
+from exactfold.panels.regular import (
+    Forms,
+    in_balls,
+    is_component,
+    point,
+    truly_folds,
+)
+from exactfold.panels.result import Part
+from exactfold.panels.stars import Star
+from exactfold.panels.subspaces import Leaf, independent_parts, leaves, reduced
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+MOST_DIMENSION = 16
+MOST_STEPS = 600_000
+MOST_STEPS_BEYOND = 30_000
+MOST_REDUCTION = 3_000_000
+MOST_FOUND = 20_000_000
+
+
+def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
+    """The motions of a part with vertices of any degree: linear spaces, and which of them fold.
+
+    The dimension of the first-order motions is exact. Where the part is not decomposed, because
+    several forms are left that are not shown to be one component, the spaces are too many or that
+    dimension is too large, the result has the components that were found and the folds that stay
+    flat to second order.
+    """
+    rows, size = first_order(moving)
+    small, left = reduced(moving, rows, size, MOST_REDUCTION)
+    if left == 0:
+        still = tuple(sorted({edge for star in moving.values() for edge in star.folds}))
+        return Part(tuple(moving), "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
+    found: list[FoundComponent] | None = None
+    if size > MOST_DIMENSION:
+        reason = (
+            f"the first-order motions of {counted(len(moving), 'vertex')} round vertex "
+            f"{next(iter(moving))} have dimension {size}; they are decomposed up to "
+            f"{MOST_DIMENSION}"
+        )
+        found, ended = _found(pattern, moving, small, left)
+        if not ended:
+            return _partial(pattern, moving, size, (small, left), found, reason)
+    try:
+        most = MOST_STEPS if found is None else MOST_STEPS_BEYOND
+        return _complete(pattern, moving, (rows, size), (small, left), most, found)
+    except TooManyModesError as error:
+        if found is None:
+            where = f"the part of {counted(len(moving), 'vertex')} with vertex"
+            reason = f"{where} {next(iter(moving))}: {error}"
+            found, _ = _found(pattern, moving, small, left)
+        return _partial(pattern, moving, size, (small, left), found, reason)
+
+
+def _complete(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    first: tuple[Rows, int],
+    smaller: tuple[Rows, int],
+    most: int,
+    found: list[FoundComponent] | None,
+) -> Part:
+    """All components; raises `TooManyModesError` where that is too much, or forms are left.
+
+    `first` are the first-order motions, `smaller` those that semidefinite forms leave.
+    """
+    vertices = tuple(moving)
+    (rows, size), (small, left) = first, smaller
+    spaces = leaves(moving, small, left, most)
+    counts: dict[int, int] = {}
+    for leaf in spaces:
+        _check_component(moving, leaf)
+        counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
+    still = _still(moving, (edge for leaf in spaces for edge in leaf.rows))
+    if not counts:
+        return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
+    ordered = dict(sorted(counts.items()))
+    folding = [_extends(pattern, moving, leaf) for leaf in spaces]
+    alone = len(moving) == 1 or all(_is_regular(moving, rows, size, leaf) for leaf in spaces)
+    if len(spaces) == 1:
+        alone = alone or is_one_family(moving, size, spaces[0].size, spaces[0].vertices)
+    known = all(folding) and alone
+    if all(folding):
+        found = []
+    elif found is None:
+        found, _ = _found(pattern, moving, small, left)
+    return Part(
+        vertices,
+        "subspaces",
+        ordered,
+        ordered if known else None,
+        spaces=tuple(spaces),
+        spaces_fold=tuple(folding),
+        dimension=size,
+        found=tuple(found),
+        still=still,
+        reason=_open(known, all(folding)),
+    )
+
+
+def _check_component(moving: Mapping[int, Star], leaf: Leaf) -> None:
+    """Raise `TooManyModesError` unless the motions of a leaf are shown to be one component."""
+    for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
+        cones = [v for v in leaf.vertices if set(moving[v].folds) & set(rows)]
+        if len(cones) > 1 and cone_motion(moving, rows, size, cones) is None:
+            raise TooManyModesError(
+                f"in a space of dimension {size} the conditions of vertices "
+                f"{', '.join(map(str, cones))} are left, and are not solved yet"
+            )
+
+
+def _open(known: bool, fold: bool) -> str:
+    """What is not decided of a part whose motions are known to second order."""
+    if known:
+        return ""
+    if fold:
+        return "that there are no other true motions is proved to second order only"
+    return "whether motions of vertices with more than four folds truly fold is not decided"
+
+
+def _found(
+    pattern: PanelPattern, moving: Mapping[int, Star], rows: Rows, size: int
+) -> tuple[list[FoundComponent], bool]:
+    return found_components(
+        moving, rows, size, MOST_FOUND, lambda leaf: _extends(pattern, moving, leaf)
+    )
+
+
+def _partial(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    size: int,
+    smaller: tuple[Rows, int],
+    found: list[FoundComponent],
+    reason: str,
+) -> Part:
+    """What is proved of a part that is not decomposed: components, or else modes that fold."""
+    folds = any(one.folds for one in found)
+    modes = [] if folds else folding_modes(pattern, moving, *smaller, MOST_FOUND)
+    return Part(
+        tuple(moving),
+        "subspaces",
+        None,
+        None,
+        dimension=size,
+        found=tuple(found),
+        modes=tuple(modes),
+        still=_still(moving, smaller[0]),
+        reason=reason,
+    )
+
+
+def _still(moving: Mapping[int, Star], active: Iterable[Edge]) -> tuple[Edge, ...]:
+    """The folds that are flat in all motions to second order."""
+    return tuple(sorted({e for star in moving.values() for e in star.folds} - set(active)))
+
+
+def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> bool:
+    """Whether a space of motions is tangent to true ones: modes that fold apart from each other.
+
+    One vertex alone has true motions near the flat state as its motions to second order, by Morse's
+    lemma. A part extends if all its conditions are independent at one of its points (`truly_folds`;
+    for cones at a point where their forms vanish), or if it is a mode that does. Other folds are
+    held flat, so this can prove that a space extends and never that it does not: a motion might use
+    them at a higher order.
+    """
+    for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
+        active = [star.vertex for star in moving.values() if set(star.folds) & set(rows)]
+        if len(active) == 1 and size == len(rows) - 2:
+            continue
+        cones = [v for v in active if v in leaf.vertices]
+        w = cone_motion(moving, rows, size, cones) if cones else point(rows, size)
+        if w is not None and truly_folds(moving, w):
+            continue
+        if cones:
+            return False
+        if size != 1 or folding_mode(pattern, moving, rows) is None:
+            return False
+    return True
+
+
+def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -> bool:
+    """Whether a leaf is a line at which the conditions have full rank.
+
+    At w on the line the derivatives `dK_v(w)` of all vertices leave in the space of first-order
+    motions that line alone, shown by balls; then one curve of true motions at most is tangent to it
+    (docs/panels.md, Vertices with more folds).
+    """
+    if leaf.size != 1 or leaf.vertices:
+        return False
+    return is_component(Forms(moving), in_balls(rows), size, point(leaf.rows, 1), 1)
+
+
+def _entries(leaf: Leaf) -> Rows:
+    return {edge: [entry(x) for x in row] for edge, row in leaf.rows.items()}

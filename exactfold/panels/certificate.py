@@ -1,0 +1,203 @@
+"""The certificate of a decomposition: the exact pattern and every claim, from a proved result."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.certificates.entries import Document
+from exactfold.checker.core.formats import LISTING, PANELS, PANELS_VERSION
+from exactfold.errors import NotApplicableError, TooManyModesError
+from exactfold.exact.numbers import format_rational
+from exactfold.exact.surds import Number, SurdField
+from exactfold.panels.decomposition import MOST_LISTED
+from exactfold.panels.elementary import ModeSearch, Support
+from exactfold.panels.extension import Loops, extension
+from exactfold.panels.local import LocalMode, local_modes
+from exactfold.panels.result import Counts, Decomposition, Mode, Part
+from exactfold.panels.stars import Star, stars
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+
+def certificate_of_panels(result: Decomposition) -> Document:
+    """The certificate of a complete decomposition, as a JSON object for `exactfold.checker`.
+
+    It holds the pattern and the claims (docs/certificate.md, Panels); the checker finds all of them
+    again. Raises `NotApplicableError` if the decomposition is not proved.
+
+    >>> from exactfold.panels.decomposition import decompose
+    >>> from exactfold.pattern.panel_pattern import PanelPattern
+    >>> square = PanelPattern([(0, 0), (1, 0), (1, 1), (0, 1)],
+    ...                       [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)])
+    >>> certificate_of_panels(decompose(square))["claims"]["second_order"]
+    {'1': 1}
+    """
+    if result.status is not PROVED or result.second_order is None:
+        raise NotApplicableError(f"the decomposition is {result.status} ({result.reason})")
+    pattern = result.pattern
+    moving = stars(pattern, result.held)
+    listed: dict[tuple[Edge, ...], list[Mode]] = {}
+    for mode in result.modes:
+        listed.setdefault(tuple(sorted(mode.assignment)), []).append(mode)
+    supports = [
+        _support(pattern, moving, together, listed.get(together.folds))
+        for part in result.parts
+        if part.theory == "modes"
+        for together in _by_folds(pattern, {v: moving[v] for v in part.vertices}, part.supports)
+    ]
+    spaces = [_spaces(part) for part in result.parts if part.theory == "subspaces"]
+    return {
+        "format": LISTING,
+        "version": PANELS_VERSION,
+        "kind": PANELS,
+        "pattern": panels_document(pattern),
+        "claims": {
+            "interior": len(pattern.interior),
+            "border": len(pattern.border),
+            "folds": len(pattern.folds),
+            "sha256": pattern.sha256,
+            "held": _pairs(result.held),
+            "flat": _pairs(result.flat),
+            "free": _pairs(result.free),
+            "second_order": _counts(result.second_order),
+            "true": None if result.true is None else _counts(result.true),
+            "rigid": str(result.rigid),
+            "modes": result.modes_count,
+            "supports": supports,
+            **({"spaces": spaces} if spaces else {}),
+        },
+        "provenance": {"method": result.theory, "python": platform.python_version()},
+    }
+
+
+def panels_document(pattern: PanelPattern) -> Document:
+    """Vertices in their field, and edges, exactly."""
+    field = pattern.field
+    return {
+        "radicands": [[format_rational(c) for c in r] for r in field.radicands],
+        "vertices": [[number_document(x, field) for x in point] for point in pattern.vertices],
+        "edges": _pairs(pattern.edges),
+    }
+
+
+def number_document(value: Number, field: SurdField) -> list[str]:
+    """The coefficients of a number in a field.
+
+    >>> number_document(2, SurdField(()).adjoined(3))
+    ['2', '0']
+    """
+    return [format_rational(c) for c in field.number(value).coefficients]
+
+
+def _spaces(part: Part) -> Document:
+    """The leaves of a part by their folds, dimension and cones, and how many of each kind fold."""
+    kinds: dict[tuple[tuple[Edge, ...], int, tuple[int, ...]], list[bool]] = {}
+    for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True):
+        kinds.setdefault((leaf.folds, leaf.dimension, leaf.vertices), []).append(folds)
+    leaves = [
+        {
+            "folds": _pairs(folds),
+            "dimension": dimension,
+            "cones": list(cones),
+            "number": len(each),
+            "extending": sum(each),
+        }
+        for (folds, dimension, cones), each in kinds.items()
+    ]
+    complete = part.true is not None
+    return {"vertices": list(part.vertices), "complete": complete, "leaves": leaves}
+
+
+@dataclass(frozen=True)
+class _Together:
+    """Folds that move together, and in how many ways, which make up a part of a `Support`."""
+
+    vertices: tuple[int, ...]
+    folds: tuple[Edge, ...]
+    count: int
+    choices: tuple[tuple[LocalMode, ...], ...]  # all of them, or one if they are too many
+
+
+def _by_folds(
+    pattern: PanelPattern, moving: Mapping[int, Star], supports: Iterable[Support]
+) -> Iterator[_Together]:
+    """The supports by their active folds: one for most, more where straight creases cross."""
+    search = ModeSearch(moving, pattern.field)
+    for support in supports:
+        kinds = [{mode.folds for mode in search.modes[v]} for v in support.vertices]
+        if support.count > MOST_LISTED:
+            if any(len(kind) > 1 for kind in kinds):
+                raise NotApplicableError(
+                    f"{support.count} modes of different folds are too many for a certificate"
+                )
+            folds = {edge for [found] in kinds for edge in found}
+            yield _Together(
+                support.vertices, tuple(sorted(folds)), support.count, (support.example,)
+            )
+            continue
+        groups: dict[tuple[Edge, ...], list[tuple[LocalMode, ...]]] = {}
+        try:
+            modes = search.listed(support)
+        except TooManyModesError as error:
+            raise NotApplicableError(f"a certificate lists the modes: {error}") from None
+        for mode in modes:
+            groups.setdefault(tuple(mode.densities), []).append(mode.choice)
+        for edges, choices in sorted(groups.items()):
+            yield _Together(support.vertices, edges, len(choices), tuple(choices))
+
+
+def _support(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    together: _Together,
+    listed: list[Mode] | None,
+) -> Document:
+    """A support with the number of its modes that truly fold, and the modes if they are listed."""
+    first = extension(pattern, moving, together.choices[0])
+    by, extending = "loops", None
+    if first.verdict is PROVED and not first.order:
+        by = "forest" if first.by == "forest" else "linear"
+        extending = together.count
+    elif len(together.choices) == together.count:
+        loops: Loops = {}
+        found = [extension(pattern, moving, c, loops).verdict for c in together.choices]
+        extending = None if UNDECIDED in found else found.count(PROVED)
+    return {
+        "vertices": list(together.vertices),
+        "folds": _pairs(together.folds),
+        "count": together.count,
+        "extending": extending,
+        "by": by,
+        "modes": None if listed is None else [_mode(mode, together, moving) for mode in listed],
+    }
+
+
+def _mode(mode: Mode, together: _Together, moving: Mapping[int, Star]) -> Document:
+    verdict = mode.extends.verdict
+    refuted = verdict is REFUTED
+    return {
+        "choice": "".join(_line(local, moving[local.vertex]) for local in mode.choice),
+        "assignment": "".join(mode.assignment[edge] for edge in together.folds),
+        "extends": str(verdict),
+        "loop": list(mode.extends.cycle) if refuted else None,
+        "order": mode.extends.order if refuted else None,
+    }
+
+
+def _line(local: LocalMode, star: Star) -> str:
+    """Which of the local modes with the same active folds it is: by the gain of the first two."""
+    first, second = sorted(local.folds, key=lambda edge: sum(edge) - local.vertex)[:2]
+    gains = [mode.gain(first, second) for mode in local_modes(star) if mode.folds == local.folds]
+    if len(gains) == 1:
+        return "0"
+    return "-" if local.gain(first, second) == min(gains) else "+"
+
+
+def _counts(counts: Counts) -> dict[str, int]:
+    return {str(dimension): number for dimension, number in sorted(counts.items())}
+
+
+def _pairs(edges: Iterable[Edge]) -> list[list[int]]:
+    return [[i, j] for i, j in edges]

@@ -1,0 +1,187 @@
+"""All motions of a sheet of rigid panels: the complete decomposition, and what truly folds."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import networkx as nx
+
+from exactfold._support.plurals import counted
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.errors import TooManyModesError
+from exactfold.panels.by_spaces import by_spaces
+from exactfold.panels.components import components
+from exactfold.panels.densities import UndecidedDensityError
+from exactfold.panels.elementary import ElementaryMode, ModeSearch, Support
+from exactfold.panels.extension import Extension, Loops, extend_together, extension
+from exactfold.panels.result import Decomposition, Mode, Part, product
+from exactfold.panels.stars import Star, stars
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+MOST_SUPPORTS = 20_000
+MOST_LISTED = 1_000
+MOST_LISTED_VERTICES = 60_000
+
+
+def decompose(
+    pattern: PanelPattern,
+    *,
+    flat: Iterable[Edge] = (),
+    listed: int = MOST_LISTED,
+    progress: Progress | None = None,
+) -> Decomposition:
+    """Every component of the motions of a sheet of rigid panels, to second order and truly.
+
+    First the folds that cannot fold in any real motion are found (`stars`), at any size. What is
+    left falls into independent parts. Where all vertices have at most four folds the structure
+    theorem gives all components (docs/panels.md, Structure theorem); elsewhere linear spaces are
+    split vertex by vertex (`leaves`), if the first-order motions have dimension 16 or less or the
+    spaces turn out to be few; else components are found one by one (`found_components`), or, where
+    none is known to fold, modes that do (`folding_modes`). A motion
+    of true configurations has its lowest order in the second-order motions, so a sheet without
+    these is rigid. `flat` holds folds flat that are in the drawing but are not to fold; up to
+    `listed` modes are listed one by one.
+
+    UNDECIDED means that a part is too large or needs too many square roots; `reason` says which.
+
+    >>> from exactfold.pattern.panel_pattern import PanelPattern
+    >>> cross = PanelPattern([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0), (0, -1), (1, 0),
+    ...                       (0, 1), (-1, 0)],
+    ...                      [(0, 5), (5, 1), (1, 6), (6, 2), (2, 7), (7, 3), (3, 8), (8, 0),
+    ...                       (4, 5), (4, 6), (4, 7), (4, 8)])
+    >>> result = decompose(cross)
+    >>> dict(result.second_order), dict(result.true)
+    ({1: 2}, {1: 2})
+    """
+    start = time.perf_counter()
+    held = frozenset(flat)
+    moving = stars(pattern, held)
+    interior = set(pattern.interior)
+    free = tuple(e for e in pattern.folds if not interior.intersection(e) and e not in held)
+    active = {edge for star in moving.values() for edge in star.folds}
+    rest = tuple(e for e in pattern.folds if e not in active and e not in free)
+    groups = groups_of(moving)
+    found: list[Part] = []
+    for number, group in enumerate(groups):
+        if progress is not None:
+            progress("decomposing", number, len(groups))
+        found.append(_part(pattern, {v: moving[v] for v in group}, listed))
+    result = Decomposition(
+        pattern,
+        "subspaces" if any(part.theory == "subspaces" for part in found) else "modes",
+        PROVED,
+        UNDECIDED,
+        product((part.second_order for part in found), len(free)),
+        product((part.true for part in found), len(free)),
+        rest,
+        free,
+        modes=tuple(mode for part in found for mode in part.modes),
+        modes_count=_modes_count(found),
+        parts=tuple(found),
+        near_misses=tuple(miss for part in found for miss in part.near_misses),
+        held=tuple(sorted(held)),
+        still=tuple(sorted(edge for part in found for edge in part.still)),
+        seconds=time.perf_counter() - start,
+    )
+    if result.second_order is None:
+        reasons = [part.reason for part in found if part.second_order is None]
+        result = replace(
+            result,
+            status=UNDECIDED,
+            reason="; ".join(dict.fromkeys(reasons)),
+            found=product((part.at_least for part in found), len(free)),
+        )
+    if result.true is None and any(part.spaces or part.found for part in found):
+        result = replace(result, found_true=product((part.folding for part in found), len(free)))
+    return replace(result, rigid=_rigidity(result))
+
+
+def _rigidity(result: Decomposition) -> Verdict:
+    """Rigid if nothing moves to second order; not rigid if something truly folds."""
+    if result.second_order is not None and set(result.second_order) == {0}:
+        return PROVED
+    if result.free or any(mode.extends.verdict is PROVED for mode in result.modes):
+        return REFUTED
+    if any(part.folds or set(part.true or {0: 1}) - {0} for part in result.parts):
+        return REFUTED
+    known = all(part.true is not None and set(part.true) == {0} for part in result.parts)
+    return PROVED if known else UNDECIDED
+
+
+def _modes_count(found: Iterable[Part]) -> int | None:
+    total = 0
+    for part in found:
+        if part.theory != "modes" or part.second_order is None:
+            return None
+        total += sum(support.count for support in part.supports)
+    return total
+
+
+def groups_of(moving: Mapping[int, Star]) -> list[tuple[int, ...]]:
+    """Vertices joined by folds that may fold, smallest first."""
+    graph = nx.Graph()
+    graph.add_nodes_from(moving)
+    for v, star in moving.items():
+        graph.add_edges_from((v, u) for edge in star.folds for u in edge if u != v and u in moving)
+    return sorted(tuple(sorted(group)) for group in nx.connected_components(graph))
+
+
+def _part(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) -> Part:
+    vertices = tuple(moving)
+    few = all(len(star.folds) <= 4 for star in moving.values())
+    try:
+        if few:
+            return _by_modes(pattern, moving, listed)
+        return by_spaces(pattern, moving)
+    except (TooManyModesError, UndecidedDensityError) as error:
+        where = f"the part of {counted(len(vertices), 'vertex')} with vertex {vertices[0]}"
+        theory = "modes" if few else "subspaces"
+        return Part(vertices, theory, None, None, reason=f"{where}: {error}")
+
+
+def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) -> Part:
+    """The structure theorem: elementary modes, and which of them extend."""
+    search = ModeSearch(moving, pattern.field)
+    supports = search.supports(MOST_SUPPORTS)
+    modes: list[Mode] = []
+    extending: list[Support] = []
+    decided = True
+    loops: Loops = {}
+    for support in supports:
+        verdict = extend_together(moving, search.modes, support.vertices)
+        room = listed - len(modes)
+        each: list[ElementaryMode] = []
+        most = min(MOST_LISTED, MOST_LISTED_VERTICES // len(support.vertices))
+        if support.count <= (min(room, most) if verdict is not None else most):
+            each = search.listed(support)
+        results = [verdict or extension(pattern, moving, mode.choice, loops) for mode in each]
+        if verdict is not None:
+            extending.append(support)
+        elif each:
+            good = sum(result.verdict is PROVED for result in results)
+            decided = decided and all(result.verdict is not UNDECIDED for result in results)
+            if good:
+                extending.append(replace(support, count=good))
+        else:
+            decided = False
+        if each and support.count <= room:
+            pairs = zip(each, results, strict=True)
+            modes += [_mode(support, mode, result) for mode, result in pairs]
+    return Part(
+        tuple(moving),
+        "modes",
+        components(supports, 0),
+        components(extending, 0) if decided else None,
+        supports=tuple(supports),
+        modes=tuple(modes),
+        near_misses=tuple(search.near_misses.values()),
+        reason="" if decided else "for some modes it is not known whether they truly fold",
+    )
+
+
+def _mode(support: Support, mode: ElementaryMode, result: Extension) -> Mode:
+    letters = {edge: "V" if s > 0 else "M" for edge, s in mode.signs.items()}
+    return Mode(support.vertices, letters, result, mode.choice)

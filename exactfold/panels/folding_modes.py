@@ -1,0 +1,79 @@
+"""Modes of a large part that are known to truly fold, where not all components are known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from exactfold._support.verdict import PROVED
+from exactfold.exact.surds import exact, sign, simple
+from exactfold.panels.extension import extension
+from exactfold.panels.found import exact_leaf
+from exactfold.panels.kernel import Rows, entry, number
+from exactfold.panels.local import LocalMode
+from exactfold.panels.proposals import Proposals
+from exactfold.panels.result import Mode
+from exactfold.panels.stars import Star
+from exactfold.panels.subspaces import independent_parts
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+MOST_MODES: Final = 12
+_TRIES: Final = 5
+"""Proposals that are computed exactly before one of them has to give a mode."""
+_MOST_ROOTS: Final = 3
+
+
+def folding_modes(
+    pattern: PanelPattern, moving: Mapping[int, Star], rows: Rows, size: int, most: int
+) -> list[Mode]:
+    """Modes that are proved to truly fold: of those found the twelve with most folds.
+
+    `rows` is a space that holds all real motions of the part. `Proposals` suggests linear spaces on
+    which all forms vanish. Each is computed again exactly; where it falls into lines, and on a line
+    no vertex has more than four active folds, the line is a mode, and the extension theorem says
+    whether it truly folds (docs/panels.md, Which modes truly fold). The motions of a mode need not
+    be a component: they may lie in a larger family, and there may be many more. The work is limited
+    to `most` steps, as in `found_components`. That no mode is found means nothing.
+    """
+    found: dict[tuple[tuple[Edge, str], ...], Mode] = {}
+    work = 0
+    for tried, proposal in enumerate(Proposals(moving, rows, size, regular=False)):
+        work += (len(proposal.steps) + 1) * len(rows) * size
+        if work > most or (tried == _TRIES and not found):
+            break
+        leaf = exact_leaf(moving, rows, size, proposal, _MOST_ROOTS)
+        if leaf is None or leaf.vertices:
+            continue
+        lines: Rows = {edge: [entry(x) for x in row] for edge, row in leaf.rows.items()}
+        for line, dimension in independent_parts(lines, leaf.size, moving):
+            mode = folding_mode(pattern, moving, line) if dimension == 1 else None
+            if mode is not None:
+                found.setdefault(tuple(sorted(mode.assignment.items())), mode)
+    return sorted(found.values(), key=lambda mode: -len(mode.assignment))[:MOST_MODES]
+
+
+def folding_mode(pattern: PanelPattern, moving: Mapping[int, Star], line: Rows) -> Mode | None:
+    """The mode on a line of motions, if it is known to truly fold; None if it is not known.
+
+    All other folds are held flat. None says nothing against it: a motion might use them at a higher
+    order.
+    """
+    choice = [_local(star, line) for star in moving.values() if set(star.folds) & set(line)]
+    if any(len(mode.folds) > 4 for mode in choice):
+        return None
+    stars = {mode.vertex: moving[mode.vertex].only(mode.folds) for mode in choice}
+    extends = extension(pattern, stars, choice)
+    if extends.verdict is not PROVED:
+        return None
+    first = min(line)
+    up = sign(number(line[first][0]))
+    letters = {e: "V" if sign(number(line[e][0])) == up else "M" for e in sorted(line)}
+    return Mode(tuple(sorted(stars)), letters, extends, tuple(choice))
+
+
+def _local(star: Star, line: Rows) -> LocalMode:
+    """The motion of one vertex on a space with one parameter."""
+    folds = tuple(edge for edge in star.folds if edge in line)
+    scale = exact(number(line[folds[0]][0]))
+    values = tuple(simple(number(line[edge][0]) / scale) for edge in folds)
+    return LocalMode(star.vertex, 0, folds, values)

@@ -1,0 +1,155 @@
+"""Loops of folds that nearly close: the drawing may be rounded, and a snap may close them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any, Final
+
+import networkx as nx
+from flint import ctx
+
+from exactfold.errors import ExactfoldError
+from exactfold.panels.densities import Density, Roots, UndecidedDensityError
+from exactfold.panels.local import LocalMode, local_modes
+from exactfold.panels.stars import edge_of, stars
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+NEAR: Final = 1e-6
+"""A product that is so near to 1, and is not 1, is a near miss."""
+SNAPS: Final = ("auto", 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 15, 16, 20, 24, 30, 32, 48, 60, 64, 100)
+"""What is tried, in this order: as `--snap` takes it."""
+_BITS: Final = 256
+_FARTHEST: Final = 1e-4
+_MOST_VERTICES: Final = 400
+_MOST_MISSES: Final = 16
+
+Reopened = Callable[[Any], tuple[PanelPattern, float]]
+"""The sheet read with another snap, and the largest move of a coordinate, by the size."""
+
+
+@dataclass(frozen=True)
+class NearMiss:
+    """A loop whose product of gains is within 1e-6 of 1 and is not 1.
+
+    `loop` are its vertices, of which the first two are the ends of `fold`; `modes` their local
+    modes; `quotient` is the product and `off` its distance from 1. `snap` is the first of the snaps
+    in `tried` that closes the loop exactly, and `largest_move` how far it moves a coordinate, by
+    the size of the sheet; None if none does, or none was tried.
+    """
+
+    fold: Edge
+    quotient: float
+    off: float
+    loop: tuple[int, ...]
+    modes: tuple[LocalMode, ...]
+    snap: str | int | None = None
+    largest_move: float | None = None
+    tried: tuple[str | int, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The near miss as it stands in JSON."""
+        return {
+            "fold": f"{self.fold[0]}-{self.fold[1]}",
+            "quotient": self.quotient,
+            "loop": list(self.loop),
+            "off": self.off,
+            "snap": None if self.snap is None else str(self.snap),
+            "largest_move": self.largest_move,
+            "tried": [str(snap) for snap in self.tried],
+        }
+
+    @property
+    def text(self) -> str:
+        """What to know of it, in words."""
+        shown = "-".join(map(str, (*self.loop, self.loop[0])))
+        start = f"the loop of folds {shown} nearly closes, off by {self.off:.1e}: "
+        if self.snap is not None:
+            return (
+                f"{start}--snap {self.snap} closes it (largest move {self.largest_move:.1g} of "
+                "the size)"
+            )
+        if self.tried:
+            return start + "no snap that was tried closes it"
+        return start + "the drawing may be rounded (try --snap auto)"
+
+
+def near_miss(
+    chosen: Iterable[LocalMode], mode: LocalMode, start: Edge, end: Edge, quotient: Density
+) -> NearMiss:
+    """The loop that a local mode would close: from its fold `end` back to its fold `start`.
+
+    `chosen` are the local modes so far, joined by active folds.
+    """
+    known = {other.vertex: other for other in chosen}
+    graph = nx.Graph()
+    for v, other in known.items():
+        graph.add_edges_from(fold for fold in other.folds if set(fold) <= known.keys())
+        graph.add_node(v)
+    first, last = (sum(fold) - mode.vertex for fold in (end, start))
+    around = nx.shortest_path(graph, first, last)
+    modes = (mode, *(known[v] for v in around))
+    before = ctx.prec
+    ctx.prec = _BITS
+    try:
+        off = float(abs(quotient.ball(_BITS) - 1))
+    finally:
+        ctx.prec = before
+    return NearMiss(end, quotient.approx, off, (mode.vertex, *around), modes)
+
+
+def snapped_misses(
+    misses: Sequence[NearMiss], pattern: PanelPattern, reopened: Reopened
+) -> tuple[NearMiss, ...]:
+    """The near misses, each with the first snap of `SNAPS` that closes it, if one does.
+
+    `reopened` reads the sheet again. Denominators are tried for sheets of up to 400 vertices, and
+    count if nothing moves by more than 1e-4 of the size; a snap that gives a sheet with other edges
+    closes nothing. Of more than 16 near misses the others are left as they are.
+    """
+    open_ones = dict(enumerate(misses[:_MOST_MISSES]))
+    found = list(misses)
+    tried: tuple[str | int, ...] = ()
+    for snap in SNAPS if len(pattern.vertices) <= _MOST_VERTICES else SNAPS[:1]:
+        if not open_ones:
+            break
+        tried += (snap,)
+        try:
+            sheet, move = reopened(snap)
+        except ExactfoldError:
+            continue
+        if move > _FARTHEST or sheet.edges != pattern.edges:
+            continue
+        for k, miss in list(open_ones.items()):
+            if closes(sheet, miss):
+                found[k] = replace(miss, snap=snap, largest_move=move, tried=tried)
+                del open_ones[k]
+    for k, miss in open_ones.items():
+        found[k] = replace(miss, tried=tried)
+    return tuple(found)
+
+
+def closes(sheet: PanelPattern, miss: NearMiss) -> bool:
+    """Whether the product round the loop is exactly 1 on a sheet with the same edges.
+
+    At each vertex that local mode is taken which has the same active folds and the nearest gain.
+    """
+    moving = stars(sheet)
+    roots = Roots(sheet.field)
+    total = roots.density(Fraction(1))
+    for k, (v, old) in enumerate(zip(miss.loop, miss.modes, strict=True)):
+        before = edge_of(v, miss.loop[k - 1])
+        after = edge_of(v, miss.loop[(k + 1) % len(miss.loop)])
+        star = moving.get(v)
+        if star is None or len(star.folds) > 4:
+            return False
+        gains = [mode.gain(before, after) for mode in local_modes(star) if mode.folds == old.folds]
+        if not gains:
+            return False
+        wanted = float(old.gain(before, after))
+        total = total.times(roots.density(min(gains, key=lambda g: abs(float(g) - wanted))))
+    try:
+        return total.is_one()
+    except UndecidedDensityError:
+        return False

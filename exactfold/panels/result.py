@@ -1,0 +1,215 @@
+"""What is known of the motions of a sheet of rigid panels."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from exactfold._support.notebook import Page
+from exactfold._support.schemas import headed
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.panels.elementary import Support
+from exactfold.panels.extension import Extension
+from exactfold.panels.found import FoundComponent
+from exactfold.panels.local import LocalMode
+from exactfold.panels.near_misses import NearMiss
+from exactfold.panels.subspaces import Leaf
+from exactfold.pattern.described import described_panels
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+Counts = Mapping[int, int]
+"""{dimension: number of components}."""
+
+_COUNTS: Final = ("second_order", "true", "found", "found_true")
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One elementary mode: a one-parameter motion, and whether it truly folds.
+
+    `assignment` holds M or V for each active fold, on one side of the sheet; on the other all
+    letters are exchanged. `choice` are the local modes it is made of.
+    """
+
+    active: tuple[int, ...]
+    assignment: Mapping[Edge, str]
+    extends: Extension
+    choice: tuple[LocalMode, ...] = field(default=(), repr=False)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The mode as it stands in JSON."""
+        return {
+            "active": list(self.active),
+            "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
+            "extends": str(self.extends.verdict),
+            "by": self.extends.by,
+        }
+
+
+@dataclass(frozen=True)
+class Decomposition(Page):
+    """The ways in which a sheet of rigid panels starts to fold, and which of them truly fold.
+
+    `true` is {dimension: number} of the components of the true configurations near the flat state,
+    None if it is not known. `second_order` is the same for all motions to second order, of which
+    some may not fold; `status` is PROVED if it is known. `rigid` says whether the sheet cannot move
+    at all. `flat` are folds that stay flat in every real motion, `free` those with both ends on the
+    border; `held` are those that were not to fold. `theory` is "modes" if all vertices have at most
+    four folds, else "subspaces". Where `second_order` is None, `found` is {dimension: number} of
+    components that were found and proved, so that there are at least so many. `found_true` is the
+    same for those that are known to fold truly, where `true` is None. `modes` are then modes that
+    truly fold, if no such component is known; there may be others. `still` are folds that are
+    flat in every motion to second order, beside those in `flat`. `near_misses` are loops that
+    nearly close.
+    """
+
+    pattern: PanelPattern
+    theory: str
+    status: Verdict
+    rigid: Verdict
+    second_order: Counts | None
+    true: Counts | None
+    flat: tuple[Edge, ...]
+    free: tuple[Edge, ...]
+    modes: tuple[Mode, ...] = ()
+    modes_count: int | None = None
+    reason: str = ""
+    parts: tuple[Part, ...] = ()
+    near_misses: tuple[NearMiss, ...] = ()
+    held: tuple[Edge, ...] = ()
+    read: Mapping[str, Any] | None = None
+    found: Counts | None = None
+    found_true: Counts | None = None
+    still: tuple[Edge, ...] = ()
+    seconds: float = field(default=0.0, compare=False)
+
+    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
+        """The object printed by `exactfold count --json`: `schema("count")`.
+
+        What belongs to branches of triangulated sheets is null.
+        """
+        counts = (self.second_order, self.true, self.found, self.found_true)
+        rigid = {PROVED: True, REFUTED: False}.get(self.rigid)
+        return {
+            **headed("count"),
+            "pattern": described_panels(self.pattern, name),
+            "status": str(self.status),
+            "reason": self.reason,
+            "by": "enumeration" if self.status is PROVED else None,
+            "method": self.theory,
+            "why": "",
+            **dict.fromkeys(("distinct", "with_multiplicity", "real", "nonreal")),
+            "true_branches": str(UNDECIDED if self.true is None else PROVED),
+            **dict.fromkeys(("true_bounds", "dimension", "degree", "pieces")),
+            "certificate": certificate,
+            "warnings": [],
+            "seconds": round(self.seconds, 3),
+            "open_questions": [part.reason for part in self.parts if part.reason],
+            "settings": {},
+            "branches": [],
+            "theory": self.theory,
+            "letters": None,
+            "rigid": rigid,
+            "exceptional_vertices": [],
+            "components": {
+                key: None if value is None else {str(k): n for k, n in value.items()}
+                for key, value in zip(_COUNTS, counts, strict=True)
+            },
+            "modes_count": self.modes_count,
+            "modes": [mode.to_dict() for mode in self.modes],
+            "flat_folds": [f"{i}-{j}" for i, j in self.flat],
+            "still_folds": [f"{i}-{j}" for i, j in self.still],
+            "free_folds": [f"{i}-{j}" for i, j in self.free],
+            "near_misses": [miss.to_dict() for miss in self.near_misses],
+            "read": None if self.read is None else dict(self.read),
+        }
+
+    @property
+    def ways(self) -> int | None:
+        """The number of components that truly fold, 0 for a rigid sheet; None if not known."""
+        if self.true is None:
+            return None
+        return sum(number for dimension, number in self.true.items() if dimension)
+
+    @property
+    def warning(self) -> str | None:
+        """What to know of the drawing before the result is read: a loop that nearly closes."""
+        if not self.near_misses:
+            return None
+        more = len(self.near_misses) - 1
+        return self.near_misses[0].text + (f"; {more} more with --json" if more else "")
+
+    def __repr__(self) -> str:
+        counts = "" if self.second_order is None else f", {dict(self.second_order)}"
+        return f"<Decomposition: {self.status}{counts}, {self.pattern!r}>"
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the sheet that moves independently: vertices joined by folds that may fold.
+
+    `spaces` are the leaves where vertices have more than four folds, `spaces_fold` says of each
+    whether it is shown to fold; `dimension` is the number of first-order motions, None where it was
+    not needed. `found` are components that were found where not all are known, or not all are known
+    to fold; `still` are the folds that are flat in every motion to second order.
+    """
+
+    vertices: tuple[int, ...]
+    theory: str
+    second_order: Counts | None
+    true: Counts | None
+    supports: tuple[Support, ...] = ()
+    spaces: tuple[Leaf, ...] = ()
+    spaces_fold: tuple[bool, ...] = ()
+    modes: tuple[Mode, ...] = ()
+    dimension: int | None = None
+    near_misses: tuple[NearMiss, ...] = ()
+    reason: str = ""
+    found: tuple[FoundComponent, ...] = ()
+    still: tuple[Edge, ...] = ()
+
+    @property
+    def at_least(self) -> Counts | None:
+        """{dimension: number} of components that are known, all of them if they are; or None."""
+        if self.second_order is not None:
+            return self.second_order
+        return _by_dimension(self.found) or None
+
+    @property
+    def folding(self) -> Counts | None:
+        """The same of components to second order that are known to fold truly."""
+        if self.true is not None:
+            return self.true
+        shown = zip(self.spaces, self.spaces_fold, strict=True)
+        known = _counted(leaf.dimension for leaf, folds in shown if folds)
+        found = _by_dimension(one for one in self.found if one.folds)
+        return {d: max(known.get(d, 0), found.get(d, 0)) for d in {**known, **found}} or None
+
+    @property
+    def folds(self) -> bool:
+        """Whether something in it is known to fold truly."""
+        return bool(self.folding and set(self.folding) != {0})
+
+
+def _by_dimension(found: Iterable[FoundComponent]) -> dict[int, int]:
+    return _counted(one.dimension for one in found)
+
+
+def _counted(dimensions: Iterable[int]) -> dict[int, int]:
+    return dict(sorted(Counter(dimensions).items()))
+
+
+def product(counts: Iterable[Counts | None], free: int) -> Counts | None:
+    """The components of independent parts: dimensions add, numbers multiply; None if one is."""
+    total: dict[int, int] = {free: 1}
+    for part in counts:
+        if part is None:
+            return None
+        joined: dict[int, int] = {}
+        for a, m in total.items():
+            for b, n in part.items():
+                joined[a + b] = joined.get(a + b, 0) + m * n
+        total = joined
+    return dict(sorted(total.items()))

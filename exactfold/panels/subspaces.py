@@ -1,0 +1,302 @@
+"""Motions of sheets with vertices of any degree: linear spaces, and cones where forms are left."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final, TypeAlias
+
+import networkx as nx
+from flint import fmpq
+
+from exactfold._support.plurals import counted
+from exactfold.errors import TooManyModesError
+from exactfold.exact.joined_fields import joined
+from exactfold.exact.surds import Number, common_field, real_root, sign
+from exactfold.panels.kernel import Entry, Rows, entry, imposed, number
+from exactfold.panels.stars import Star
+from exactfold.pattern.panel_pattern import Edge
+
+Vector: TypeAlias = list[Entry]
+Squares: TypeAlias = list[tuple[Entry, Vector]]
+MOST_ROOTS: Final = 5
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A part of the motions: a linear space, or its points where the remaining forms vanish.
+
+    `rows` gives each active fold's density as a linear function of `size` parameters. `vertices`
+    are those whose form does not vanish on the space; all of these forms have one sign once and the
+    other at least twice. `dimension` is that of the real solutions, if they are one component: with
+    two forms or more that is to be shown (docs/panels.md, Double covers).
+    """
+
+    rows: Mapping[Edge, tuple[Number, ...]]
+    size: int
+    vertices: tuple[int, ...]
+
+    def __repr__(self) -> str:
+        left = f", {counted(len(self.vertices), 'form')} left" if self.vertices else ""
+        return f"<Leaf: {counted(len(self.rows), 'fold')}, dimension {self.size}{left}>"
+
+    @property
+    def dimension(self) -> int:
+        """One less than that of the space for each form."""
+        return self.size - len(self.vertices)
+
+    @property
+    def folds(self) -> tuple[Edge, ...]:
+        """The folds that are not flat on all of it."""
+        return tuple(sorted(self.rows))
+
+
+def leaves(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> list[Leaf]:
+    """The real motions to second order, as a union of leaves none of which lies in another.
+
+    `rows` is the space of first-order motions. On a linear space a form that is semidefinite leaves
+    its kernel; a form of inertia (1, 1) is a product of two linear forms, over the field with the
+    root of its discriminant, and splits the space; other forms stay. Parts of the sheet that share
+    no active fold are independent, as every condition is one at a vertex.
+
+    Raises `TooManyModesError` if this takes more than `most` steps; one is a fold of a vertex times
+    a dimension, and times the square of the degree of the field.
+    """
+    search = _Search(stars, most)
+    found = search.solved(dict(rows), size)
+    return [leaf for leaf in found if leaf.size]
+
+
+class _Search:
+    def __init__(self, stars: Mapping[int, Star], most: int) -> None:
+        self.stars = stars
+        self.most = most
+        self.work = 0
+
+    def solved(self, rows: Rows, size: int) -> list[Leaf]:
+        """The leaves of one space; the product of those of its independent parts."""
+        total: list[Leaf] = [Leaf({}, 0, ())]
+        for part, part_size in independent_parts(rows, size, self.stars):
+            part_leaves = _maximal(self._split(part, part_size))
+            total = [_sum(a, b) for a in total for b in part_leaves]
+            self._count(len(total))
+        return total
+
+    def _count(self, steps: int) -> None:
+        """Add to the work done, so that a search ends the same way on every machine."""
+        self.work += steps
+        if self.work > self.most:
+            raise TooManyModesError("its spaces of motions are too many to be split one by one")
+
+    def _split(self, rows: Rows, size: int) -> list[Leaf]:
+        rows, size, products, left = self.reduced(rows, size)
+        if not products:
+            return [made_leaf(rows, size, left)]
+        found: list[Leaf] = []
+        for functional in factors(products, rows):
+            child, child_size = imposed(rows, size, functional)
+            found += self.solved(child, child_size)
+        return found
+
+    def reduced(self, rows: Rows, size: int) -> tuple[Rows, int, list[Squares], list[int]]:
+        """The space after all semidefinite forms; forms that split; vertices with other forms."""
+        while True:
+            products: list[Squares] = []
+            left: list[int] = []
+            before = size
+            weight = common_field(x for row in rows.values() for x in row).dimension ** 2
+            for v in sorted({v for edge in rows for v in edge if v in self.stars}):
+                self._count(len(self.stars[v].folds) * size * weight)
+                squares = squares_of(self.stars[v], rows, size)
+                if is_semidefinite(squares):
+                    rows, size = imposed(rows, size, *(functional for _, functional in squares))
+                elif len(squares) == 2:
+                    products.append(squares)
+                elif squares:
+                    left.append(v)
+            if size == before:
+                return rows, size, products, left
+
+
+def reduced(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> tuple[Rows, int]:
+    """The space without what semidefinite forms forbid; as it is if that takes `most` steps."""
+    with suppress(TooManyModesError):
+        rows, size, _, _ = _Search(stars, most).reduced(rows, size)
+    return rows, size
+
+
+def is_semidefinite(squares: Squares) -> bool:
+    """Whether a form that is not zero has one sign only."""
+    signs = {sign(d) for d, _ in squares}
+    return len(signs) == 1
+
+
+def factors(
+    products: Sequence[Squares], rows: Rows, most_roots: int = MOST_ROOTS
+) -> tuple[Vector, Vector]:
+    """d1 l1^2 + d2 l2^2, signs apart, is d1 (l1 - r l2)(l1 + r l2) with r^2 = -d2 / d1.
+
+    Of several forms one that needs no new root is taken. Raises `TooManyModesError` if there are
+    `most_roots` roots already.
+    """
+    field = common_field(x for row in rows.values() for x in row)
+    for squares in products:
+        square = -squares[1][0] / squares[0][0]
+        if field.square_root(field.number(square)) is not None:
+            break
+    else:
+        if len(field.radicands) >= most_roots:
+            raise TooManyModesError(
+                f"the spaces of motions need more than {most_roots} square roots"
+            )
+    root = entry(real_root(square, field))
+    pairs = list(zip(squares[0][1], squares[1][1], strict=True))
+    return [x - root * y for x, y in pairs], [x + root * y for x, y in pairs]
+
+
+def made_leaf(rows: Rows, size: int, left: Iterable[int]) -> Leaf:
+    """A leaf of these rows, with the vertices whose forms are left."""
+    numbers = {edge: tuple(number(x) for x in row) for edge, row in rows.items()}
+    return Leaf(numbers, size, tuple(left))
+
+
+def squares_of(star: Star, rows: Rows, size: int) -> Squares:
+    """The form of a vertex on the space as sum d_i l_i^2, with independent l_i."""
+    local = [(d, rows[e]) for e, d in zip(star.folds, star.directions, strict=True) if e in rows]
+    directions = [(entry(x), entry(y)) for (x, y), _ in local]
+    basis, coordinates = _row_space([row for _, row in local], size)
+    count = len(basis)
+    # The density of fold k is sum_a coordinates[k][a] basis[a].
+    form: list[Vector] = [[fmpq(0)] * count for _ in range(count)]
+    for j, dj in enumerate(directions):
+        for k, dk in enumerate(directions[:j]):
+            c = dk[0] * dj[1] - dk[1] * dj[0]
+            if not c:
+                continue
+            for a in range(count):
+                if not (left := coordinates[k][a]):
+                    continue
+                for b in range(count):
+                    if coordinates[j][b]:
+                        term = c * left * coordinates[j][b]
+                        form[a][b] = form[a][b] + term
+                        form[b][a] = form[b][a] + term
+    return [(d, _combined(functional, basis, size)) for d, functional in _diagonalised(form)]
+
+
+def _row_space(rows: Sequence[Sequence[Entry]], size: int) -> tuple[list[Vector], list[Vector]]:
+    """A basis of the span of the rows taken from them, and every row in that basis."""
+    basis: list[Vector] = []
+    reduced: list[tuple[int, Vector, Vector]] = []  # pivot, reduced row, in terms of the basis
+    coordinates: list[Vector] = []
+    for row in rows:
+        work: Vector = list(row)
+        terms: Vector = [fmpq(0)] * len(rows)
+        for pivot, other, expressed in reduced:
+            if factor := work[pivot]:
+                pairs = zip(work, other, strict=True)
+                work = [x - factor * y if y else x for x, y in pairs]
+                terms = [x + factor * y for x, y in zip(terms, expressed, strict=True)]
+        first = next((k for k, x in enumerate(work) if x), None)
+        if first is not None:
+            here = len(basis)
+            basis.append(list(row))
+            scale = work[first]
+            expressed = [-x / scale for x in terms]
+            expressed[here] = expressed[here] + 1 / scale
+            reduced.append((first, [x / scale for x in work], expressed))
+            terms = [fmpq(k == here) for k in range(len(rows))]
+        coordinates.append(terms)
+    return basis, [terms[: len(basis)] for terms in coordinates]
+
+
+def _diagonalised(form: Sequence[Sequence[Entry]]) -> list[tuple[Entry, Vector]]:
+    """sum d_i l_i^2 of a symmetric matrix, d_i not 0, by completing squares."""
+    size = len(form)
+    work = [list(row) for row in form]
+    found: list[tuple[Entry, Vector]] = []
+    while True:
+        pivot = next((k for k in range(size) if work[k][k]), None)
+        if pivot is None:
+            pair = next(((i, j) for i in range(size) for j in range(i) if work[i][j]), None)
+            if pair is None:
+                return found
+            i, j = pair  # 2 m x y = m ((x + y)^2 - (x - y)^2) / 2, other terms included
+            functional = [work[i][k] + work[j][k] for k in range(size)]
+            value = 2 * work[i][j]
+        else:
+            functional, value = list(work[pivot]), work[pivot][pivot]
+        weight = 1 / value
+        found.append((weight, functional))
+        for a in range(size):
+            for b in range(size):
+                if functional[a] and functional[b]:
+                    work[a][b] = work[a][b] - weight * functional[a] * functional[b]
+
+
+def _combined(weights: Sequence[Entry], vectors: Sequence[Vector], size: int) -> Vector:
+    total: Vector = [fmpq(0)] * size
+    for weight, vector in zip(weights, vectors, strict=True):
+        if weight:
+            pairs = zip(total, vector, strict=True)
+            total = [x + weight * y if y else x for x, y in pairs]
+    return total
+
+
+def independent_parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[tuple[Rows, int]]:
+    """The space as a direct sum over the parts of the sheet that are connected by active folds."""
+    graph = nx.Graph()
+    for edge, row in rows.items():
+        if any(row):
+            ends = [v for v in edge if v in stars]
+            graph.add_edges_from((edge, ("vertex", v)) for v in ends)
+            graph.add_node(edge)
+    groups = [
+        sorted(node for node in group if node[0] != "vertex")
+        for group in nx.connected_components(graph)
+    ]
+    if len(groups) == 1 and len(groups[0]) == len(rows):
+        return [(rows, size)]
+    found = []
+    for group in groups:
+        basis, coordinates = _row_space([rows[edge] for edge in group], size)
+        found.append((dict(zip(group, coordinates, strict=True)), len(basis)))
+    return found
+
+
+def _sum(a: Leaf, b: Leaf) -> Leaf:
+    """The direct sum of leaves on different parts of the sheet."""
+    zeros_a, zeros_b = (Fraction(0),) * a.size, (Fraction(0),) * b.size
+    rows = {edge: row + zeros_b for edge, row in a.rows.items()}
+    rows.update({edge: zeros_a + row for edge, row in b.rows.items()})
+    return Leaf(rows, a.size + b.size, tuple(sorted(a.vertices + b.vertices)))
+
+
+def _maximal(found: Iterable[Leaf]) -> list[Leaf]:
+    """The leaves that lie in no other; of equal ones the first."""
+    kept: list[Leaf] = []
+    for leaf in sorted(found, key=lambda leaf: (-leaf.size, len(leaf.vertices))):
+        if not any(_inside(leaf, other) for other in kept):
+            kept.append(leaf)
+    return kept
+
+
+def _inside(leaf: Leaf, other: Leaf) -> bool:
+    """Whether the motions of one leaf lie in the space of another, and with it in the other leaf.
+
+    A leaf holds all motions in its space: on a motion, the forms that are left vanish as well.
+    """
+    if not set(leaf.rows) <= set(other.rows):
+        return False
+    folds = list(other.rows)
+    zero = (Fraction(0),) * leaf.size
+    columns = [[*other.rows[edge], *leaf.rows.get(edge, zero)] for edge in folds]
+    entries = [[entry(x) for x in row] for row in joined(columns)]
+    both, _ = _row_space(_transposed(entries), len(folds))
+    return len(both) == other.size
+
+
+def _transposed(rows: Sequence[Sequence[Entry]]) -> list[Vector]:
+    return [list(column) for column in zip(*rows, strict=True)]

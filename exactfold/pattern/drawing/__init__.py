@@ -1,0 +1,1 @@
+"""Drawings of crease patterns as people have them: formats, repair, exact coordinates."""

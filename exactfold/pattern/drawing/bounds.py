@@ -1,0 +1,149 @@
+"""Whether a file stays within the limits of `checker.core.limits`, and how it is refused."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from math import isqrt, lcm, log2
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Final
+
+from exactfold.checker.core.limits import (
+    LARGEST,
+    LONG_COORDINATE,
+    MOST_BYTES,
+    MOST_COMMON,
+    MOST_COMPARED,
+    MOST_COORDINATE,
+    MOST_LINES,
+    MOST_PRODUCTS,
+    SMALLEST,
+)
+from exactfold.errors import TooLargeError, UnreadableFileError
+
+if TYPE_CHECKING:
+    from exactfold.exact.surds import Number
+    from exactfold.pattern.drawing.drawing import Drawing
+
+_DIGITS_A_BIT: Final = 0.30103
+_WORD: Final = 64
+_FARTHEST: Final = int(LARGEST * log2(10))
+_ROUND: Final = "round the coordinates"
+
+
+def read_bytes(path: str | PathLike[str]) -> bytes:
+    """All of a file; raises `UnreadableFileError`, and `TooLargeError` for more than 1 GiB."""
+    try:
+        with open(path, "rb") as stream:
+            content = stream.read(MOST_BYTES + 1)
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        reason = getattr(error, "strerror", None) or str(error)
+        raise UnreadableFileError(f"cannot read {path}: {reason}") from None
+    if len(content) > MOST_BYTES:
+        raise TooLargeError(f"{path} has more than {MOST_BYTES} bytes, the most that are read")
+    return content
+
+
+def read_text(path: str | PathLike[str]) -> str:
+    """All of a UTF-8 text; raises the errors of `read_bytes`."""
+    try:
+        return read_bytes(path).decode("utf-8")
+    except UnicodeDecodeError:
+        raise UnreadableFileError(f"cannot read {path}: it is not UTF-8 text") from None
+
+
+def check_coordinates(points: Iterable[Sequence[Number]]) -> None:
+    """Raise `TooLargeError` for coordinates that take too long to compute with.
+
+    A coordinate has at most 10,000 digits; a few may be as long as that, and many may be short.
+
+    >>> check_coordinates([(Fraction(1, 3), Fraction(10**12000))])
+    Traceback (most recent call last):
+    exactfold.errors.TooLargeError: vertex 0 has a coordinate of 12001 digits, and 10000 are the
+    most that are read: round the coordinates
+    """
+    products = 0
+    for vertex, point in enumerate(points):
+        for part in (part for number in point for part in _parts(number)):
+            above, below = _digits(part.numerator), _digits(part.denominator)
+            longest = max(above, below)
+            if longest > MOST_COORDINATE:
+                raise TooLargeError(
+                    f"vertex {vertex} has a coordinate of {longest} digits, and {MOST_COORDINATE} "
+                    f"are the most that are read: {_ROUND}"
+                )
+            if longest > LONG_COORDINATE:
+                products += above * below
+    if products > MOST_PRODUCTS:
+        raise TooLargeError(
+            f"the coordinates of more than {LONG_COORDINATE} digits are too many: the digits of "
+            f"their numerators times those of their denominators are {products}, and "
+            f"{MOST_PRODUCTS} are the most that are read: {_ROUND}"
+        )
+
+
+def check_common_denominator(points: Iterable[Sequence[Fraction]]) -> None:
+    """Raise `TooLargeError` for coordinates that are too long as multiples of one fraction."""
+    common, largest = 1, 0
+    for number, part in enumerate((part for point in points for part in point), 1):
+        largest = max(largest, part.numerator.bit_length() - part.denominator.bit_length() + 1)
+        if common % part.denominator:
+            common = lcm(common, part.denominator)
+        bits = common.bit_length() + largest
+        if number * (bits // _WORD + 1) ** 2 > MOST_COMMON:
+            raise TooLargeError(
+                f"the first {number} coordinates have {_digits(common)} digits each over their "
+                f"common denominator, and {isqrt(MOST_COMMON // number) * 19} are the most that "
+                f"are read of so many: {_ROUND}"
+            )
+
+
+def check_drawing(drawing: Drawing) -> None:
+    """Raise `TooLargeError` for a drawing that floats cannot hold, or with too many lines.
+
+    What meets in a drawing is found in floats: its size is from 1e-50 to 1e50.
+    """
+    if len(drawing.lines) > MOST_LINES:
+        raise TooLargeError(
+            f"the drawing has {len(drawing.lines)} lines, and {MOST_LINES} are the most that are "
+            "read: leave out what is no crease, or give a part of it"
+        )
+    check_coordinates(drawing.points)
+    for vertex, point in enumerate(drawing.points):
+        if any(
+            part.numerator.bit_length() - part.denominator.bit_length() > _FARTHEST
+            for number in point
+            for part in _parts(number)
+        ):
+            raise TooLargeError(
+                f"point {vertex} is farther than 1e{LARGEST} from the origin, the largest size of "
+                "a drawing that is read: scale it down"
+            )
+    spots = {(float(x), float(y)) for x, y in drawing.points}
+    size = max((max(column) - min(column) for column in zip(*spots, strict=True)), default=0.0)
+    if size < 10.0**-SMALLEST and len(set(drawing.points)) > 1:
+        raise TooLargeError(
+            f"the drawing is smaller than 1e-{SMALLEST}, the smallest size that is read: scale it "
+            "up"
+        )
+
+
+def check_compared(boxes: Sequence[Sequence[Any]]) -> None:
+    """Raise `TooLargeError` if too many intervals (low, high, ...), sorted, share a number."""
+    lows = [box[0] for box in boxes]
+    pairs = sum(bisect_right(lows, box[1], k + 1) - k - 1 for k, box in enumerate(boxes))
+    if pairs > MOST_COMPARED:
+        raise TooLargeError(
+            f"{pairs} pairs of edges lie above one another, and {MOST_COMPARED} are the most that "
+            "are compared: give the pattern in parts"
+        )
+
+
+def _parts(number: Number) -> Sequence[Fraction]:
+    return getattr(number, "coefficients", None) or (Fraction(number),)  # type: ignore[arg-type]
+
+
+def _digits(number: int) -> int:
+    """Decimal digits, to within one."""
+    return int(number.bit_length() * _DIGITS_A_BIT) + 1

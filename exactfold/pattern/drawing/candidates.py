@@ -1,0 +1,141 @@
+"""Small numbers near a decimal: which (a + b sqrt d)/q was meant, and how likely that is chance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from math import isqrt, log, log2, prod, sqrt
+from typing import Final
+
+import numpy as np
+from flint import arb, fmpz_mat
+
+from exactfold._support.arrays import FloatArray, IntArray
+from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField, simple
+
+RADICANDS: Final = (1, 2, 3, 5)
+"""The fields that are tried: Q, Q(sqrt 2), Q(sqrt 3), Q(sqrt 5)."""
+_LARGEST: Final = {1: 360_000, 2: 100_000, 3: 100_000, 5: 100_000}
+"""The bound on q^2 (2|b| + 1)."""
+_CHANCE: Final = 2.0**-6
+"""A match is believed only if a random number would have one as small with this probability."""
+_BITS: Final = 10.0
+"""The same for numbers beyond the table, of which there are more."""
+
+
+def field_of(radicand: int) -> SurdField:
+    """Q for 1, else Q(sqrt radicand)."""
+    return RATIONALS if radicand == 1 else RATIONALS.adjoined(radicand)
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """The numbers (a + b sqrt d)/q modulo 1, sorted by value; `rank` counts those no larger.
+
+    The size of a candidate is q^2 (2|b| + 1): so many numbers, up to a constant, are as small.
+    """
+
+    values: FloatArray
+    numerators: IntArray
+    roots: IntArray
+    denominators: IntArray
+    rank: IntArray
+
+
+@dataclass(frozen=True)
+class Match:
+    """An exact number that was matched, and the bits by which it beats chance."""
+
+    value: Number
+    bits: float
+
+
+@lru_cache(maxsize=8)
+def candidates(radicand: int) -> Candidates:
+    """All candidates of one field up to the bound on their size."""
+    bound, root = _LARGEST[radicand], sqrt(radicand)
+    found: list[tuple[IntArray, IntArray, int]] = []
+    for den in range(1, isqrt(bound) + 1):
+        most = min((bound // (den * den) - 1) // 2, 256) if radicand > 1 else 0
+        a, b = np.meshgrid(np.arange(den), np.arange(-most, most + 1), indexing="ij")
+        lowest = np.gcd(np.gcd(a, b), den) == 1
+        found.append((a[lowest], b[lowest], den))
+    a, b = (np.concatenate([row[k] for row in found]) for k in (0, 1))
+    q = np.repeat([row[2] for row in found], [len(row[0]) for row in found])
+    size = q * q * (2 * np.abs(b) + 1)
+    rank = np.searchsorted(np.sort(size), size, side="right")
+    values = (a + b * root) / q
+    whole = np.floor(values).astype(np.int64)
+    order = np.argsort(values - whole, kind="stable")
+    a = a - whole * q
+    return Candidates(
+        (values - whole)[order], a[order], b[order], q[order], rank[order].astype(np.int64)
+    )
+
+
+def matches(values: FloatArray, within: float, radicand: int) -> list[Match | None]:
+    """The smallest candidate within a distance of each value, None where chance would do as well.
+
+    The probability that a random number lies within `within` of one of the `rank` smallest
+    candidates modulo 1 is at most 2 * within * rank; `bits` is minus its logarithm.
+    """
+    table = candidates(radicand)
+    small = table.rank <= _CHANCE / (2 * within)
+    if not small.any():
+        return [None] * len(values)
+    index = np.flatnonzero(small)
+    near = table.values[index]
+    # Modulo 1, values just below 1 are near 0.
+    index = np.concatenate([index, index, index])
+    near = np.concatenate([near - 1, near, near + 1])
+    parts = values - np.floor(values)
+    low = np.searchsorted(near, parts - within, side="left")
+    high = np.searchsorted(near, parts + within, side="right")
+    field = field_of(radicand)
+    found: list[Match | None] = []
+    for value, start, end in zip(values, low, high, strict=True):
+        if start == end:
+            found.append(None)
+            continue
+        k = min(index[start:end], key=lambda k: int(table.rank[k]))
+        q, whole = int(table.denominators[k]), round(float(value - table.values[k]))
+        rational = Fraction(int(table.numerators[k]) + whole * q, q)
+        root = Fraction(int(table.roots[k]), q)
+        number = Surd(field, (rational, root)) if root else rational
+        found.append(Match(number, -log2(2 * within * float(table.rank[k]))))
+    return found
+
+
+def reduced_match(
+    value: Fraction, within: Fraction, field: SurdField, least: float = _BITS
+) -> Match | None:
+    """A number of a field, of any size, within a small distance; None if chance would do as well.
+
+    Numbers are (a + b_1 w_1 + ... + b_m w_m)/q with the products w_i of roots. LLL finds a short
+    vector of the lattice of (q, a, b_1, ..., b_m, (q value + a + b_1 w_1 + ...) / within). Those of
+    size q^2 (2|b_1| + 1) ... (2|b_m| + 1) at most S are fewer than S (1 + log S)^max(m, 1) in a
+    unit interval. `least` is how many bits a match must beat chance by.
+
+    >>> reduced_match(Fraction("0.10236012565087"), Fraction(1, 10**13), field_of(2)).value
+    17/97 + -5/97*r1
+    """
+    scale = 1 / within
+    roots = field.products(int(scale).bit_length() + 64)
+    basis = [round(value * scale), *(_floor(root, scale) for root in roots)]
+    rows = [[*(int(i == k) for k in range(len(basis))), basis[i]] for i in range(len(basis))]
+    shortest = fmpz_mat(rows).lll()
+    q, *parts = (int(shortest[0, k]) for k in range(len(basis)))
+    if not q:
+        return None
+    number = simple(Surd(field, tuple(Fraction(-part, q) for part in parts)))
+    size = q * q * prod(2 * abs(b) + 1 for b in parts[1:])
+    crowd = size * (1 + log(size)) ** max(len(parts) - 1, 1)
+    bits = -log2(2 * float(within) * crowd)
+    if bits < least or abs(float(number - value)) > within:
+        return None
+    return Match(number, bits)
+
+
+def _floor(root: arb, scale: Fraction) -> int:
+    return int((root * scale.numerator / scale.denominator).mid().floor().unique_fmpz())

@@ -1,0 +1,48 @@
+"""A crease pattern as it was drawn: points and lines, before anything is believed of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple, TypeAlias
+
+if TYPE_CHECKING:
+    from exactfold.exact.surds import Number
+from exactfold._support.notebook import Picture
+from exactfold._support.plurals import counted
+
+Point: TypeAlias = "tuple[Number, Number]"
+Snap: TypeAlias = "Literal['auto', 'exact'] | int"
+"""How coordinates become exact: found, as written, or multiples of 1/Snap."""
+LETTERS: Final = "BMVFUCJ"
+"""FOLD's letters: border, mountain, valley, flat, unassigned, cut, join."""
+
+
+class Line(NamedTuple):
+    """A straight line of the drawing between two of its points, with a letter of FOLD."""
+
+    start: int
+    end: int
+    letter: str
+
+
+@dataclass(frozen=True)
+class Drawing(Picture):
+    """Points in the plane, y upwards, exactly as the file states them, and lines between them.
+
+    A reader gives fractions; `exact_coordinates` may turn them into numbers with square roots.
+    `source` says in a few words what was read ("SVG of 1200 x 800, colours of Origami Simulator");
+    `remarks` is what the reader left out or took for something, one sentence each. Points may
+    coincide nearly, lines may cross or repeat: `repaired` mends that. `exact` says that the file
+    states exact coordinates beside its decimals, which then nothing has to find.
+    """
+
+    points: tuple[Point, ...]
+    lines: tuple[Line, ...]
+    source: str
+    remarks: tuple[str, ...] = ()
+    exact: bool = False
+
+    def __repr__(self) -> str:
+        return (
+            f"<Drawing: {counted(len(self.points), 'point')}, {counted(len(self.lines), 'line')}>"
+        )

@@ -1,0 +1,183 @@
+"""A frame and a field for a drawing: what each coordinate is in it, and against what odds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Final, TypeAlias
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold.exact.surds import Number
+from exactfold.pattern.drawing.candidates import Match, field_of, matches, reduced_match
+
+Written: TypeAlias = Sequence[tuple[Fraction, Fraction]]
+"""Points as the file states them."""
+
+_EXTENSIONS: Final = {
+    1: [field_of(2), field_of(3), field_of(5)],
+    2: [
+        field_of(2).adjoined(2 + field_of(2).root),
+        field_of(2).adjoined(3),
+        field_of(2).adjoined(5),
+    ],
+    3: [field_of(3).adjoined(2)],
+    5: [field_of(5).adjoined(10 + 2 * field_of(5).root), field_of(5).adjoined(2)],
+}
+"""Fields with one more root, by the radicand of the field: 22.5, 15 and 18 degrees among them."""
+_SURE: Final = 12.0
+"""Bits by which a number with one more root must beat chance."""
+_SAMPLE: Final = 24
+_NOISE: Final = Fraction(1, 2**46)
+"""The least noise that is expected in coordinates computed in floats."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The points of a drawing from an origin, in a unit of length: exactly, and in floats."""
+
+    origin: tuple[Fraction, Fraction]
+    unit: Fraction
+    points: Written
+    places: FloatArray
+
+
+@dataclass(frozen=True)
+class Model:
+    """A frame, a field and what each coordinate is there.
+
+    `known` are the coordinates of the points in the field, None where nothing fits; `groups`, for
+    x and for y, the points of which the decimals agree; `within` the tolerance in the frame, `bits`
+    minus the logarithm of the probability of such a fit by chance.
+    """
+
+    frame: Frame
+    radicand: int
+    known: list[tuple[Number | None, Number | None]]
+    groups: tuple[list[list[int]], list[list[int]]]
+    within: Fraction
+    bits: float
+
+    @property
+    def open(self) -> int:
+        """How many points lack a coordinate."""
+        return sum(x is None or y is None for x, y in self.known)
+
+    @cached_property
+    def representatives(self) -> list[tuple[Fraction, Fraction]]:
+        """For each coordinate the shortest of the decimals that agree."""
+        columns = []
+        for axis, groups in enumerate(self.groups):
+            column = [point[axis] for point in self.frame.points]
+            for group in groups:
+                shortest = min((column[v] for v in group), key=lambda c: (c.denominator, c))
+                for v in group:
+                    column[v] = shortest
+            columns.append(column)
+        return list(zip(*columns, strict=True))
+
+
+def refined(model: Model) -> Model:
+    """Larger numbers for what fits none, within four times the noise of those that fit."""
+    within, field = _noise(model), field_of(model.radicand)
+    tried = {r: reduced_match(r, within, field) for r in _left(model)}
+    return _with(model, {r: match for r, match in tried.items() if match is not None})
+
+
+def extended(model: Model, made: Mapping[int, tuple[Number, Number]]) -> Model:
+    """With the points that were `made`, and one more root if half of what is left fits with it.
+
+    So are 22.5-degree designs drawn with lengths along slanted lines: most coordinates lie in
+    Q(sqrt 2), others in Q(sqrt 2, sqrt (2 + sqrt 2)).
+    """
+    within = _noise(model)
+    model = replace(model, known=[made.get(v, pair) for v, pair in enumerate(model.known)])
+    left = _left(model)
+    best: dict[Fraction, Match] = {}
+    for field in _EXTENSIONS[model.radicand] if left else ():
+        found: dict[Fraction, Match] = {}
+        for done, r in enumerate(left, 1):
+            if (match := reduced_match(r, within, field, _SURE)) is not None:
+                found[r] = match
+            if done >= _SAMPLE and 2 * len(found) < done:
+                break
+        if 2 * len(found) >= len(left) and len(found) > len(best):
+            best = found
+    return _with(model, best)
+
+
+def _noise(model: Model) -> Fraction:
+    """Four times the largest distance of a coordinate that fits from its decimals."""
+    noise = [abs(float(c - r)) for c, r in _paired(model) if c is not None]
+    return min(model.within, max(_NOISE, 4 * Fraction(max(noise, default=1.0))))
+
+
+def _left(model: Model) -> list[Fraction]:
+    """The decimals that fit no number."""
+    return list(dict.fromkeys(r for c, r in _paired(model) if c is None))
+
+
+def _with(model: Model, found: Mapping[Fraction, Match]) -> Model:
+    flat = [found[r].value if c is None and r in found else c for c, r in _paired(model)]
+    bits = model.bits + sum(match.bits for match in found.values())
+    return replace(model, known=list(zip(flat[::2], flat[1::2], strict=True)), bits=bits)
+
+
+def _paired(model: Model) -> Iterator[tuple[Number | None, Fraction]]:
+    """Each coordinate, x before y, with its decimals."""
+    for known, decimals in zip(model.known, model.representatives, strict=True):
+        yield from zip(known, decimals, strict=True)
+
+
+def fitted_model(frame: Frame, radicand: int, within: Fraction) -> Model:
+    """Match the coordinates with small numbers; decimals that agree are matched together."""
+    columns: list[list[Number | None]] = []
+    groups = (
+        _groups(frame.places[:, 0], float(within)),
+        _groups(frame.places[:, 1], float(within)),
+    )
+    total = 0.0
+    for axis, alike in enumerate(groups):
+        middle = np.array([frame.places[group[len(group) // 2], axis] for group in alike])
+        found: list[Match | None] = matches(middle, float(within), radicand)
+        column: list[Number | None] = [None] * len(frame.points)
+        for group, match in zip(alike, found, strict=True):
+            for v in group:
+                column[v] = None if match is None else match.value
+            total += 0.0 if match is None else match.bits
+        columns.append(column)
+    return Model(frame, radicand, list(zip(*columns, strict=True)), groups, within, total)
+
+
+def _groups(values: FloatArray, within: float) -> list[list[int]]:
+    """Indices of values that agree to within the tolerance, none further apart."""
+    floats = values.tolist()
+    groups: list[list[int]] = []
+    for v in np.argsort(values, kind="stable").tolist():
+        last = groups[-1] if groups else None
+        if last is not None and floats[v] - floats[last[0]] <= within:
+            last.append(v)
+        else:
+            groups.append([v])
+    return groups
+
+
+def frames(written: Written) -> list[Frame]:
+    """As written; from the lower left corner in units of the width; and of the height."""
+    xs, ys = zip(*written, strict=True)
+    corner = (min(xs), min(ys))
+    zero = (Fraction(0), Fraction(0))
+    frames = [(zero, Fraction(1))]
+    for unit in (max(xs) - min(xs), max(ys) - min(ys)):
+        if unit and (corner, unit) not in frames:
+            frames.append((corner, unit))
+    return [_frame(written, origin, unit) for origin, unit in frames]
+
+
+def _frame(written: Written, origin: tuple[Fraction, Fraction], unit: Fraction) -> Frame:
+    (x0, y0), scale = origin, 1 / unit
+    points = [((x - x0) * scale, (y - y0) * scale) for x, y in written]
+    return Frame(origin, unit, points, np.array([[float(x), float(y)] for x, y in points]))

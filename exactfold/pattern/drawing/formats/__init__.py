@@ -1,0 +1,1 @@
+"""Readers of drawings, one for each format of files."""

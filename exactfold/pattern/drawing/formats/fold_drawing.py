@@ -1,0 +1,267 @@
+"""Reading FOLD files as other programs write them: frames, planes, letters, and what is missing."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any, Final
+
+from exactfold._support.plurals import counted
+from exactfold.checker.core.limits import MOST_FRAMES, MOST_INHERITED
+from exactfold.errors import (
+    EmptyDrawingError,
+    FoldedStateError,
+    MissingCoordinatesError,
+    NotFoldError,
+    TooLargeError,
+)
+from exactfold.exact.numbers import shown
+from exactfold.pattern.drawing.drawing import LETTERS, Drawing, Line
+from exactfold.pattern.drawing.formats.fold_json import (
+    components,
+    exact_points,
+    fold_document,
+    index_lists,
+    list_at,
+)
+from exactfold.pattern.drawing.formats.fold_surds import surd_points
+
+_HINT: Final = "give the crease pattern, a frame with flat coordinates"
+_FLAT: Final = Fraction(1, 10**9)
+_SHOWN: Final = 5
+_AXES: Final = {"z": (0, 1), "y": (2, 0), "x": (1, 2)}
+"""The two coordinates that remain in a plane, anticlockwise seen from where the normal points."""
+
+
+def read_fold_drawing(text: str) -> Drawing:
+    """The drawing in a FOLD file, whatever program wrote it; numbers exactly through their text.
+
+    The top level is read if it has flat coordinates, otherwise the first flat frame of
+    `file_frames`, with what it inherits. Coordinates have two components, or three in a plane
+    z, y or x = constant (to within 1e-9 of the size), which is seen from where its normal points;
+    `vertices_exactfold:surds` and `vertices_exactfold:coords` go before `vertices_coords`, and make
+    the drawing `exact`. Edges without a letter are U; sides of faces that are not listed as edges
+    become lines, B if they belong to one face, else U. Repeated edges are kept, and are named in
+    the remarks if their letters differ.
+
+    Raises `NotJSONError`, `NotANumberError`, a subclass of `FoldError`, `EmptyDrawingError`, or
+    `FoldedStateError` if all coordinates are those of a folded state.
+
+    >>> drawing = read_fold_drawing('{"vertices_coords": [[0, 0, 5], [0.1, 0, 5]],'
+    ...                             ' "edges_vertices": [[0, 1]], "edges_assignment": ["m"]}')
+    >>> drawing.points[1], drawing.lines, drawing.remarks
+    ((Fraction(1, 10), Fraction(0, 1)), (Line(start=0, end=1, letter='M'),),
+    ('read 1 lower-case letter as upper case',))
+    """
+    document = fold_document(text)
+    refusals: list[Exception] = []
+    stated = _frames(document)
+    for k, chain in enumerate([_chain(stated, k) for k in range(len(stated))]):
+        if k >= MOST_FRAMES:
+            raise TooLargeError(
+                f"none of the first {MOST_FRAMES} frames of {len(stated)} is flat, and no more are "
+                "looked at: leave out the folded ones"
+            )
+        frame = _inherited(stated, chain)
+        try:
+            return _drawing(frame, _source(document, frame, k))
+        except (MissingCoordinatesError, FoldedStateError) as error:
+            refusals.append(error)
+    folded = [error for error in refusals if isinstance(error, FoldedStateError)]
+    raise (folded or refusals)[0]
+
+
+def _source(document: Mapping[str, Any], frame: Mapping[str, Any], k: int) -> str:
+    spec = document.get("file_spec")
+    source = "FOLD" if spec is None else f"FOLD {shown(spec).strip(chr(39))}"
+    if not k:
+        return source
+    title = frame.get("frame_title")
+    return f"{source}, frame {k}" + (f" ({shown(title)})" if isinstance(title, str) else "")
+
+
+# --- frames --------------------------------------------------------------------------------------
+
+
+def _frames(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """The top level and the frames, as they are stated."""
+    stated: list[Mapping[str, Any]] = [document]
+    for k, frame in enumerate(list_at(document, "file_frames"), 1):
+        if not isinstance(frame, dict):
+            raise NotFoldError(f"frame {k} in `file_frames` is {shown(frame)}, not an object")
+        stated.append(frame)
+    return stated
+
+
+def _chain(stated: Sequence[Mapping[str, Any]], k: int) -> list[int]:
+    """A frame, the one it inherits from, the one which that inherits from, and so on."""
+    chain = [k]
+    while chain[-1] and stated[chain[-1]].get("frame_inherit") is True:
+        parent = stated[chain[-1]].get("frame_parent", 0)
+        if isinstance(parent, bool) or not isinstance(parent, int) or parent in chain:
+            raise NotFoldError(f"frame {chain[-1]} cannot inherit from frame {shown(parent)}")
+        if not 0 <= parent < len(stated):
+            raise NotFoldError(
+                f"frame {chain[-1]} inherits from frame {parent}, but there are {len(stated)}"
+            )
+        if len(chain) > MOST_INHERITED:
+            raise TooLargeError(
+                f"frame {k} inherits through more than {MOST_INHERITED} frames, the most that are "
+                "followed: state in it what it needs"
+            )
+        chain.append(parent)
+    return chain
+
+
+def _inherited(stated: Sequence[Mapping[str, Any]], chain: Sequence[int]) -> Mapping[str, Any]:
+    """The first frame of a chain with what it inherits from the others."""
+    merged: dict[str, Any] = {}
+    for index in reversed(chain):
+        merged.update(stated[index])
+    merged["frame_title"] = stated[chain[0]].get("frame_title")
+    merged["frame_classes"] = stated[chain[0]].get("frame_classes")
+    return merged
+
+
+# --- one frame -----------------------------------------------------------------------------------
+
+
+def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
+    rows = list_at(frame, "vertices_coords")
+    if not rows:
+        raise MissingCoordinatesError("`vertices_coords` is missing or empty")
+    points, plane, remarks = _flattened([components(v, row) for v, row in enumerate(rows)])
+    exact = surd_points(frame, points) or [*exact_points(frame, points)]
+    edges = index_lists(frame, "edges_vertices", "edge", len(points))
+    faces = index_lists(frame, "faces_vertices", "face", len(points))
+    for k, edge in enumerate(edges):
+        if len(edge) != 2:
+            raise NotFoldError(f"edge {k} has {len(edge)} ends: {shown(edge)}")
+    _check_unfolded(frame, points, faces)
+    letters, notes = _letters(frame, len(edges))
+    remarks += notes
+    lines = [Line(i, j, letter) for (i, j), letter in zip(edges, letters, strict=True)]
+    remarks += _repeated(lines)
+    missing = _missing(lines, faces)
+    if missing and lines:
+        remarks.append(f"added {counted(len(missing), 'line')} for sides of faces without an edge")
+    elif missing:
+        remarks.append("there are no edges: the lines are the sides of the faces")
+    empty = sum(line.start == line.end for line in lines)
+    if empty:
+        remarks.append(f"left out {counted(empty, 'edge')} from a vertex to itself")
+    lines = [line for line in lines if line.start != line.end] + missing
+    if not lines:
+        raise EmptyDrawingError("neither `edges_vertices` nor `faces_vertices` is given")
+    return Drawing(
+        tuple(exact or points), tuple(lines), source + plane, tuple(remarks), bool(exact)
+    )
+
+
+def _flattened(
+    places: Sequence[tuple[Fraction, Fraction, Fraction]],
+) -> tuple[list[tuple[Fraction, Fraction]], str, list[str]]:
+    """The points in their plane z, y or x = constant, words for it unless it is z, and remarks."""
+    bounds = [(min(column), max(column)) for column in zip(*places, strict=True)]
+    size = max(high - low for low, high in bounds)
+    for name, (i, j) in _AXES.items():
+        low, high = bounds["xyz".index(name)]
+        if high - low <= _FLAT * size:
+            points = [(place[i], place[j]) for place in places]
+            plane = "" if name == "z" else f" in a plane {name} = constant"
+            noise = f"{name} varies by {float(high - low):.2g} and is read as constant"
+            return points, plane, [noise] if high > low else []
+    extent = " x ".join(f"{float(high - low):.3g}" for low, high in bounds)
+    low, high = (places.index(find(places, key=lambda p: p[2])) for find in (min, max))
+    raise FoldedStateError(
+        f"the vertices fill a box of {extent} (vertex {low} has the least z, vertex {high} the "
+        f"largest): this is a folded state; {_HINT}"
+    )
+
+
+def _check_unfolded(
+    frame: Mapping[str, Any],
+    points: Sequence[tuple[Fraction, Fraction]],
+    faces: Sequence[tuple[int, ...]],
+) -> None:
+    """A frame that says it is folded is believed unless all its faces lie the same way up."""
+    if "foldedForm" not in list_at(frame, "frame_classes"):
+        return
+    areas = [_area([points[v] for v in face]) for face in faces]
+    if not areas or (min(areas) < 0 < max(areas)):
+        raise FoldedStateError(
+            f"the frame is a `foldedForm` whose faces do not all lie the same way up; {_HINT}"
+            if areas
+            else f"the frame is a `foldedForm` and has no faces; {_HINT}"
+        )
+
+
+def _area(corners: Sequence[tuple[Fraction, Fraction]]) -> Fraction:
+    """Twice the signed area."""
+    following = [*corners[1:], *corners[:1]]
+    products = (a[0] * b[1] - a[1] * b[0] for a, b in zip(corners, following, strict=True))
+    return sum(products, Fraction(0))
+
+
+# --- lines ---------------------------------------------------------------------------------------
+
+
+def _letters(frame: Mapping[str, Any], count: int) -> tuple[list[str], list[str]]:
+    stated = list_at(frame, "edges_assignment")
+    if not stated:
+        note = "there is no `edges_assignment`: the edges are unassigned"
+        return ["U"] * count, [note] if count else []
+    if len(stated) != count:
+        raise NotFoldError(f"`edges_assignment` has {len(stated)} letters for {count} edges")
+    letters = []
+    lower = none = 0
+    for k, letter in enumerate(stated):
+        if letter is None:
+            none += 1
+            letters.append("U")
+            continue
+        if not isinstance(letter, str) or len(letter) != 1 or letter.upper() not in LETTERS:
+            raise NotFoldError(
+                f"edge {k} has the assignment {shown(letter)}, not one of {', '.join(LETTERS)}"
+            )
+        lower += letter.islower()
+        letters.append(letter.upper())
+    remarks = [f"read {counted(lower, 'lower-case letter')} as upper case"] if lower else []
+    remarks += [f"read {counted(none, 'edge')} without a letter as unassigned"] if none else []
+    return letters, remarks
+
+
+def _repeated(lines: Sequence[Line]) -> list[str]:
+    """Remarks on edges that are given more than once; those with different letters are named."""
+    first: dict[tuple[int, int], int] = {}
+    same = 0
+    differing = []
+    for k, (i, j, letter) in enumerate(lines):
+        before = first.setdefault((min(i, j), max(i, j)), k)
+        if before == k:
+            continue
+        if lines[before].letter == letter:
+            same += 1
+        else:
+            differing.append(
+                f"edges {before} and {k} ({i}-{j}) have the letters {lines[before].letter} and "
+                f"{letter}"
+            )
+    remarks = [f"{counted(same, 'edge')} repeated with the same letter"] if same else []
+    remarks += differing[:_SHOWN]
+    if len(differing) > _SHOWN:
+        remarks.append(f"and {len(differing) - _SHOWN} more repeated edges with different letters")
+    return remarks
+
+
+def _missing(lines: Sequence[Line], faces: Sequence[tuple[int, ...]]) -> list[Line]:
+    """Lines for the sides of faces that are no edges: B on one face, otherwise U."""
+    known = {frozenset(line[:2]) for line in lines}
+    sides: Counter[tuple[int, int]] = Counter()
+    for face in faces:
+        following = [*face[1:], *face[:1]]
+        for i, j in zip(face, following, strict=True):
+            if i != j and frozenset((i, j)) not in known:
+                sides[min(i, j), max(i, j)] += 1
+    return [Line(i, j, "B" if number == 1 else "U") for (i, j), number in sides.items()]

@@ -1,0 +1,182 @@
+"""The JSON level of FOLD 1.2 files: keys, lists of indices, and numbers read through their text."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Final
+
+from exactfold._support.plurals import agreeing, counted
+from exactfold.errors import (
+    MissingCoordinatesError,
+    NotANumberError,
+    NotFoldError,
+    NotJSONError,
+    OffPlaneError,
+    StaleExactCoordinatesError,
+)
+from exactfold.exact.numbers import parse_rational, shown
+
+EXACT_KEY: Final = "vertices_exactfold:coords"
+"""The key of exact coordinates in a FOLD file, beside the floats of `vertices_coords`."""
+
+SURDS_KEY: Final = "vertices_exactfold:surds"
+"""The key of coordinates with square roots: for each vertex the coefficients of x and of y."""
+FIELD_KEY: Final = "frame_exactfold:field"
+"""The key of their field: for each root r1, r2, ... the coefficients of the number under it."""
+
+_PREFIXES: Final = ("file_", "frame_", "vertices_", "edges_", "faces_")
+AGREEMENT: Final = Fraction(1, 10**9)
+"""Exact coordinates and floats agree to within this share of the largest float."""
+
+
+@dataclass(frozen=True)
+class _Literal:
+    """The text of a JSON number with a point or exponent, or of NaN and Infinity."""
+
+    text: str
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    result = dict(pairs)
+    if len(result) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise NotJSONError(f"the key {shown(twice)} is given twice")
+    return result
+
+
+def _integer(digits: str) -> int:
+    """A JSON integer; `int` alone stops at 4300 digits."""
+    return int(digits) if len(digits) < 1000 else parse_rational(digits).numerator
+
+
+def json_object(text: str) -> dict[str, Any]:
+    """The one JSON object of a text; raises `NotJSONError`, `NotFoldError` for other values."""
+    try:
+        document = json.loads(
+            text.removeprefix("\ufeff"),
+            parse_float=_Literal,
+            parse_int=_integer,
+            parse_constant=_Literal,
+            object_pairs_hook=_unique,
+        )
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        cut = ": it ends too early" if error.pos >= len(error.doc.rstrip()) else f": {error.msg}"
+        raise NotJSONError(f"not JSON at {place}{cut}") from None
+    except RecursionError:
+        raise NotJSONError("the JSON is nested too deeply") from None
+    if not isinstance(document, dict):
+        raise NotFoldError(f"a FOLD file holds one JSON object, not {shown(document)}")
+    return document
+
+
+def fold_document(text: str) -> dict[str, Any]:
+    """The JSON object of a FOLD file; raises `NotJSONError`, `NotFoldError` without FOLD keys."""
+    document = json_object(text)
+    if not any(key.startswith(_PREFIXES) for key in document):
+        raise NotFoldError(
+            "the JSON object has no FOLD keys such as `vertices_coords` and `faces_vertices`"
+        )
+    return document
+
+
+def list_at(document: Mapping[str, Any], key: str) -> list[Any]:
+    """The list under a key, empty if there is none; raises `NotFoldError` for other values."""
+    value = document.get(key)
+    if value is None:
+        return []
+    if not isinstance(value, list):
+        raise NotFoldError(f"`{key}` is {shown(value)}, not a list")
+    return value
+
+
+def index_lists(
+    document: Mapping[str, Any], key: str, kind: str, count: int
+) -> Sequence[tuple[int, ...]]:
+    """The lists of vertex indices under a key, each index below `count`; raises `NotFoldError`."""
+    result = []
+    for k, entry in enumerate(list_at(document, key)):
+        if not isinstance(entry, list):
+            raise NotFoldError(f"{kind} {k} in `{key}` is {shown(entry)}, not a list of vertices")
+        for v in entry:
+            if isinstance(v, bool) or not isinstance(v, int):
+                raise NotFoldError(f"{kind} {k} in `{key}`: {shown(v)} is not a vertex index")
+            if not 0 <= v < count:
+                raise NotFoldError(
+                    f"{kind} {k} in `{key}` uses vertex {shown(v)}, but there "
+                    f"{agreeing(count, 'is')} {counted(count, 'vertex')}"
+                )
+        result.append(tuple(entry))
+    return result
+
+
+def components(vertex: int, row: object) -> tuple[Fraction, Fraction, Fraction]:
+    """The coordinates of a vertex through their text, z = 0 if there are two.
+
+    Raises `MissingCoordinatesError`, `NotANumberError`, or `OffPlaneError` for more than three.
+    """
+    if not isinstance(row, list):
+        raise MissingCoordinatesError(f"vertex {vertex} has {shown(row)} for coordinates")
+    values = []
+    for name, value in zip("xyz", row, strict=False):
+        try:
+            values.append(_number(value))
+        except NotANumberError as error:
+            raise NotANumberError(f"vertex {vertex}: {name}: {error}") from None
+    if len(row) < 2:
+        raise MissingCoordinatesError(f"vertex {vertex} has only {len(row)} coordinates")
+    if len(row) > 3:
+        raise OffPlaneError(f"vertex {vertex} has {len(row)} coordinates, more than three")
+    x, y, z = values if len(values) == 3 else (*values, Fraction(0))
+    return x, y, z
+
+
+def _number(value: object) -> Fraction:
+    if isinstance(value, _Literal):
+        return parse_rational(value.text)
+    if isinstance(value, int) and not isinstance(value, bool):
+        return Fraction(value)
+    raise NotANumberError(f"{shown(value)} is not a JSON number")
+
+
+def exact_points(
+    document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ...]]
+) -> list[tuple[Fraction, Fraction]]:
+    """The pairs of `vertices_exactfold:coords`, empty if there are none.
+
+    They must agree with the first two components of `stated` to within 1e-9 of the largest of them;
+    raises `StaleExactCoordinatesError`, `NotANumberError`.
+    """
+    rows = list_at(document, EXACT_KEY)
+    if not rows:
+        return []
+    if len(rows) != len(stated):
+        raise StaleExactCoordinatesError(
+            f"`{EXACT_KEY}` has {len(rows)} vertices and `vertices_coords` has {len(stated)}: "
+            f"delete `{EXACT_KEY}` if another program changed the pattern"
+        )
+    tolerance = AGREEMENT * max(abs(c) for point in stated for c in point[:2])
+    result = []
+    for v, row in enumerate(rows):
+        if not isinstance(row, list) or len(row) != 2 or not all(isinstance(c, str) for c in row):
+            raise NotANumberError(
+                f'vertex {v}: {shown(row)} in `{EXACT_KEY}` is not ["p/q", "p/q"]'
+            )
+        try:
+            x, y = parse_rational(row[0]), parse_rational(row[1])
+        except NotANumberError as error:
+            raise NotANumberError(f"vertex {v} in `{EXACT_KEY}`: {error}") from None
+        if max(abs(x - stated[v][0]), abs(y - stated[v][1])) > tolerance:
+            raise StaleExactCoordinatesError(
+                f"vertex {v}: `{EXACT_KEY}` and `vertices_coords` disagree; delete `{EXACT_KEY}` "
+                "if another program moved the vertex"
+            )
+        result.append((x, y))
+    return result

@@ -1,0 +1,99 @@
+"""One way in for drawings: the format is known by the content, else by the ending."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from os import PathLike
+from pathlib import PurePath
+from typing import Final
+
+from exactfold.errors import UnknownFormatError
+from exactfold.pattern.drawing.bounds import check_drawing, read_bytes
+from exactfold.pattern.drawing.drawing import Drawing
+from exactfold.pattern.drawing.formats.cp import read_cp
+from exactfold.pattern.drawing.formats.fold_drawing import read_fold_drawing
+from exactfold.pattern.drawing.formats.opx import read_opx
+from exactfold.pattern.drawing.formats.ori import LINES, read_orh, read_ori
+from exactfold.pattern.drawing.formats.svg import read_svg
+from exactfold.pattern.drawing.segments import summary
+
+READERS: Final[dict[str, Callable[[str], Drawing]]] = {
+    "fold": read_fold_drawing,
+    "svg": read_svg,
+    "cp": read_cp,
+    "opx": read_opx,
+    "ori": read_ori,
+    "orh": read_orh,
+}
+"""The reader of the text of each format, by the ending of its files."""
+
+_CP: Final = re.compile(r"\s*[0-9](\s+[-+.0-9eE]+){4}[ \t\r]*(\n|\Z)")
+_ORI: Final = re.compile(r'"lineSegments"\s*:')
+_FOLD: Final = re.compile(r'"(file|frame|vertices|edges|faces)_\w+"\s*:')
+_SVG: Final = re.compile(r"<(\w+:)?svg[\s>/]")
+_ENCODING: Final = re.compile(rb"""<\?xml[^>]*encoding=["']([A-Za-z0-9._-]+)["']""")
+_NONE: Final = "the formats that are read are FOLD, SVG, CP, OPX, ORI and ORH"
+
+
+def read_drawing(path: str | PathLike[str]) -> Drawing:
+    """The drawing in a file of any known format; its `source` is one line on what was read.
+
+    Raises `UnreadableFileError`, and what `parse_drawing` raises.
+
+    >>> from exactfold.pattern.data import example_path
+    >>> read_drawing(example_path("two-vertex")).source
+    'read two-vertex.fold: FOLD 1.2, 11 lines (4 border, 7 unassigned)'
+    """
+    return parse_drawing(read_bytes(path), PurePath(path).name)
+
+
+def parse_drawing(content: str | bytes, name: str) -> Drawing:
+    """The drawing in the content of a file; the ending of `name` counts where the content is mute.
+
+    Bytes are UTF-8, UTF-16 with a mark, or what an XML declaration says. Raises
+    `UnknownFormatError`, which lists the formats, what the reader of the format raises, and
+    `TooLargeError`.
+
+    >>> parse_drawing("1 0 0 1 0", "edge").source
+    'read edge: CP, 1 line (1 border)'
+    >>> parse_drawing("%PDF-1.4", "crane.pdf")
+    Traceback (most recent call last):
+    exactfold.errors.UnknownFormatError: crane.pdf is no drawing of a known format; the formats
+    that are read are FOLD, SVG, CP, OPX, ORI and ORH
+    """
+    text = content if isinstance(content, str) else _decoded(content, name)
+    text = text.removeprefix("\ufeff")
+    drawing = READERS[_format(text, name)](text)
+    check_drawing(drawing)
+    return replace(drawing, source=f"read {name}: {drawing.source}, {summary(drawing)}")
+
+
+def _decoded(content: bytes, name: str) -> str:
+    declared = _ENCODING.match(content.lstrip())
+    encoding = declared[1].decode() if declared else "utf-8-sig"
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        encoding = "utf-16"
+    try:
+        return content.decode(encoding)
+    except (UnicodeDecodeError, LookupError):
+        raise UnknownFormatError(f"{name} is not a text in {encoding}; {_NONE}") from None
+
+
+def _format(text: str, name: str) -> str:
+    """The format of a text, as an ending in `READERS`."""
+    ending = PurePath(name).suffix.lower().removeprefix(".")
+    start = text.lstrip()
+    if start.startswith("{"):
+        found = "ori" if _ORI.search(text) else "fold" if _FOLD.search(text) else ""
+    elif start.startswith("<"):
+        found = "orh" if LINES in text else "opx" if "OriLineProxy" in text else ""
+        found = found or ("svg" if _SVG.search(text) else "")
+    else:
+        found = "cp" if _CP.match(text) else ""
+    if found:
+        return found
+    if ending in READERS:
+        return ending
+    raise UnknownFormatError(f"{name} is no drawing of a known format; {_NONE}")

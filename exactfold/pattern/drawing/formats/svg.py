@@ -1,0 +1,220 @@
+"""Reading SVG drawings of crease patterns in the colours of Origami Simulator."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from colorsys import rgb_to_hsv
+from fractions import Fraction
+from typing import Any, Final
+from xml.etree import ElementTree
+
+from exactfold._support.plurals import counted
+from exactfold.errors import CurvedCreaseError, MalformedDrawingError, NotANumberError
+from exactfold.exact.numbers import parse_rational, shown
+from exactfold.pattern.drawing.drawing import Drawing
+from exactfold.pattern.drawing.formats.markup import xml_root
+from exactfold.pattern.drawing.formats.svg_path import NUMBER as NUMERAL
+from exactfold.pattern.drawing.formats.svg_path import STRAIGHT, path_lines
+from exactfold.pattern.drawing.formats.svg_tree import NAMESPACE, NUMBER, plain_tree
+from exactfold.pattern.drawing.segments import Place, Segment, drawing_of
+
+_COLOURS: Final = {
+    (0, 0, 0): "B",
+    (255, 0, 0): "M",
+    (0, 0, 255): "V",
+    (0, 255, 0): "C",
+    (0, 128, 0): "C",  # the colour that SVG calls green
+    (255, 255, 0): "F",
+    (255, 0, 255): "U",
+}
+_HUES: Final = {0: "M", 60: "F", 120: "C", 240: "V", 300: "U", 360: "M"}
+_NEAR: Final = 20  # degrees of hue
+_LENGTH: Final = re.compile(rf"({NUMERAL})\s*([a-z]*)\Z")
+_UNITS: Final = {
+    "": Fraction(1),
+    "px": Fraction(1),
+    "in": Fraction(96),
+    "cm": Fraction(4800, 127),
+    "mm": Fraction(480, 127),
+    "pt": Fraction(4, 3),
+    "pc": Fraction(16),
+}
+_POINTS: Final = re.compile(rf"[\s,]*({NUMERAL})")
+_VIEW: Final = ("width", "height", "viewBox", "x", "y")
+_FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+
+
+def read_svg(text: str) -> Drawing:
+    """The drawing in an SVG file: straight lines with stroke colours; y upwards.
+
+    Black is the border B, red M, blue V, green a cut C, yellow F and magenta U, as in Origami
+    Simulator (its opacity, a fold angle, is not read); colours near these are taken for them, with
+    a remark, and others are left out. Styles come from attributes, `style` and CSS classes; groups
+    and transforms apply; `line`, `polyline`, `polygon`, `rect` and `path` are read. The size of the
+    picture (`width`, `height`, `viewBox`) is not applied. Numbers are read through their text; only
+    transforms are products of floats.
+
+    Raises `MalformedDrawingError`, `EmptyDrawingError`, and `CurvedCreaseError` for curves, which
+    names the element.
+
+    >>> drawing = read_svg('<svg><g stroke="red"><line x2="0.1" y2="3"/></g></svg>')
+    >>> drawing.points[1], drawing.lines[0].letter
+    ((Fraction(1, 10), Fraction(-3, 1)), 'M')
+    """
+    segments: list[Segment] = []
+    omitted: Counter[str] = Counter()
+    taken: Counter[tuple[str, str]] = Counter()
+    seen: Counter[str] = Counter()
+    unbent = faint = 0
+    shapes, given = _shapes(text)
+    for shape in shapes:
+        values, tag = shape.values, shape.values["attributes"]["tag"]
+        own = given[int(values["attributes"][NUMBER])]
+        seen[tag] += 1
+        stroke = str(values.get("stroke", "none")).partition("!")[0].strip().lower()
+        if values.get("visibility") in ("hidden", "collapse"):
+            omitted["with hidden visibility"] += 1
+            continue
+        if stroke in ("none", "transparent"):
+            omitted["without stroke"] += 1
+            continue
+        letter, exactly = _letter(stroke)
+        if not letter:
+            omitted[f"of colour {shown(stroke)}"] += 1
+            continue
+        if not exactly:
+            taken[stroke, letter] += 1
+        name = f"{tag} {seen[tag]}" + (f" (id {shown(own['id'])})" if "id" in own else "")
+        lines, curves = _lines(tag, own, name)
+        if lines is None:
+            omitted[f"of the kind {tag}"] += 1
+            continue
+        unbent += curves
+        faint += letter in "MV" and any(
+            str(values.get(key, "1")) not in ("1", "1.0") for key in ("opacity", "stroke-opacity")
+        )
+        move = _mover(shape.transform)
+        segments += [(move(start), move(end), letter) for start, end in lines]
+    remarks = [f"left out {counted(omitted[why], 'element')} {why}" for why in sorted(omitted)]
+    remarks += [
+        f"took {counted(number, 'element')} of colour {shown(stroke)} for {letter}"
+        for (stroke, letter), number in sorted(taken.items())
+    ]
+    if unbent:
+        remarks.append(f"read {counted(unbent, 'curve')} as straight, within 1/1000 of the length")
+    if faint:
+        remarks.append(f"did not read the opacity of {counted(faint, 'element')} as fold angles")
+    return drawing_of(segments, "SVG", remarks)
+
+
+def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
+    """The shapes that are drawn, with styles and transforms resolved, in the file's own units.
+
+    Also the attributes of all elements as they are written, by the numbers that the shapes have.
+    """
+    from svgelements import SVG, Shape  # here, as loading it takes longer than reading a pattern
+
+    root = xml_root(text)
+    if root.tag not in ("svg", f"{{{NAMESPACE}}}svg"):
+        raise MalformedDrawingError(f"the XML is {shown(root.tag)}, not an svg of {NAMESPACE}")
+    for key in _VIEW:
+        root.attrib.pop(key, None)
+    root, given = plain_tree(root)
+    try:
+        picture = SVG.parse(io.StringIO(ElementTree.tostring(root, "unicode")), reify=False)
+    except _FAULTS as error:
+        raise MalformedDrawingError(f"the SVG is not understood: {error}") from None
+    return (element for element in picture.elements() if isinstance(element, Shape)), given
+
+
+def _letter(stroke: str) -> tuple[str, bool]:
+    """The letter of a colour, empty if it has none, and whether it is exactly that colour."""
+    from svgelements import Color
+
+    try:
+        colour = Color(stroke)
+    except _FAULTS:
+        return "", False
+    rgb = (colour.red, colour.green, colour.blue)
+    if rgb == (0, 0, 0) and stroke != "black" and not re.match(r"#|rgb|hsl", stroke):
+        return "", False  # the library takes what it does not know for black
+    if rgb in _COLOURS:
+        return _COLOURS[rgb], True
+    hue, saturation, value = rgb_to_hsv(*(component / 255 for component in rgb))
+    if value < 0.25:
+        return "B", False
+    near = min(_HUES, key=lambda pure: abs(360 * hue - pure))
+    if saturation < 0.5 or abs(360 * hue - near) > _NEAR:
+        return "", False
+    return _HUES[near], False
+
+
+def _lines(
+    tag: str, own: Mapping[str, str], name: str
+) -> tuple[list[tuple[Place, Place]] | None, int]:
+    """The lines of an element, None for what is no line, and how many were written as curves."""
+    try:
+        if tag == "path":
+            return path_lines(own.get("d", ""))
+        if tag == "line":
+            x1, y1, x2, y2 = (_length(own, key) for key in ("x1", "y1", "x2", "y2"))
+            return [((x1, y1), (x2, y2))], 0
+        if tag == "rect":
+            return _sides(_corners(own)), 0
+        if tag == "polygon":
+            return _sides(_points(own.get("points", ""))), 0
+        if tag == "polyline":
+            return _sides(_points(own.get("points", "")))[:-1], 0
+    except (CurvedCreaseError, MalformedDrawingError, NotANumberError) as error:
+        raise type(error)(f"{name}: {error}") from None
+    return None, 0
+
+
+def _sides(places: list[Place]) -> list[tuple[Place, Place]]:
+    closed = [*places[1:], *places[:1]]
+    return [(a, b) for a, b in zip(places, closed, strict=True)]
+
+
+def _corners(own: Mapping[str, str]) -> list[Place]:
+    x, y, width, height, rx, ry = (
+        _length(own, key) for key in ("x", "y", "width", "height", "rx", "ry")
+    )
+    if rx or ry:
+        raise CurvedCreaseError(f"the corners are rounded; {STRAIGHT}")
+    return [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+
+
+def _points(text: str) -> list[Place]:
+    words, position, end = [], 0, len(text.rstrip(" ,\t\r\n\f"))
+    while position < end and (match := _POINTS.match(text, position)):
+        words.append(match[1])
+        position = match.end()
+    if position < end or len(words) % 2:
+        raise MalformedDrawingError(f"`points` is not pairs of numbers: {shown(text)}")
+    numbers = [parse_rational(word) for word in words]
+    return list(zip(numbers[::2], numbers[1::2], strict=True))
+
+
+def _length(own: Mapping[str, str], key: str) -> Fraction:
+    text = own.get(key, "0")
+    match = _LENGTH.match(text.strip().lower())
+    if match is None or match[2] not in _UNITS:
+        raise MalformedDrawingError(f"{key} is {shown(text)}, not a length")
+    return parse_rational(match[1]) * _UNITS[match[2]]
+
+
+def _mover(matrix: Any) -> Callable[[Place], Place]:
+    """The transform, with the y axis turned upwards."""
+    try:
+        a, b, c, d, e, f = (Fraction(repr(float(getattr(matrix, key)))) for key in "abcdef")
+    except _FAULTS:
+        raise MalformedDrawingError("the numbers of a transform are too large") from None
+
+    def move(place: Place) -> Place:
+        x, y = place
+        return a * x + c * y + e, -(b * x + d * y + f)
+
+    return move

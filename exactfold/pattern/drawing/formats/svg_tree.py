@@ -1,0 +1,191 @@
+"""What a drawing takes of an SVG file: few elements and attributes, within limits, styles applied.
+
+The library that resolves groups, transforms and `use` takes long, or for ever, on text that nobody
+draws: it gets nothing else than this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, NoReturn
+from xml.etree.ElementTree import Element
+
+from exactfold.checker.core.limits import MOST_DEPTH, MOST_TEXT, MOST_TRANSFORMS, MOST_USED
+from exactfold.errors import MalformedDrawingError, TooLargeError
+from exactfold.exact.numbers import shown
+
+NAMESPACE: Final = "http://www.w3.org/2000/svg"
+NUMBER: Final = "exactfold"
+"""The attribute that numbers the elements."""
+_DROPPED: Final = ("style", "text", "tspan", "title", "desc", "image", "metadata", "script")
+_LINK: Final = "{http://www.w3.org/1999/xlink}href"
+_STYLED: Final = (
+    "stroke",
+    "color",
+    "display",
+    "visibility",
+    "opacity",
+    "stroke-opacity",
+    "transform",
+)
+_KEPT: Final = ("id", *_STYLED)
+_PLACED: Final = ("x", "y", "width", "height")
+_OF_TAG: Final = {
+    "svg": (*_PLACED, "viewBox", "preserveAspectRatio"),
+    "use": (*_PLACED, "href", _LINK),
+    "rect": _PLACED,
+    "circle": ("cx", "cy", "r"),
+    "ellipse": ("cx", "cy", "rx", "ry"),
+}
+"""What else the library needs of an element: it is not to read the lines of a shape."""
+_MOVE: Final = 32
+"""Characters, at most, around the numbers by which `use` moves."""
+
+
+@dataclass(frozen=True)
+class _Cost:
+    """What an element holds, with all that `use` brings in."""
+
+    elements: int = 1
+    depth: int = 1
+    transforms: int = 0  # characters, once for each element that they apply to
+    longest: int = 0  # characters of all transforms that apply to one element
+
+
+def plain_tree(root: Element) -> tuple[Element, list[Mapping[str, str]]]:
+    """The tree without what is not read, and the attributes of its elements as they are written.
+
+    An element has the number of its attributes; styles have become attributes.
+
+    Raises `TooLargeError` for nesting, repetition by `use` or text beyond the limits, and
+    `MalformedDrawingError` for a `use` that refers to itself.
+    """
+    styles = _styles("".join(e.text or "" for e in root.iter() if _tag(e) == "style"))
+    given: list[Mapping[str, str]] = []
+    plain = _alone(root, styles, given)
+    waiting = [(root, plain, 1)]
+    while waiting:
+        element, copy, depth = waiting.pop()
+        if depth > MOST_DEPTH:
+            _too_deep()
+        inside = [child for child in element if _tag(child) not in _DROPPED]
+        copy.extend([_alone(child, styles, given) for child in inside])
+        waiting += [(a, b, depth + 1) for a, b in zip(inside, copy, strict=True)]
+    _check_cost(plain)
+    return plain, given
+
+
+def _tag(element: Element) -> str:
+    return element.tag.removeprefix(f"{{{NAMESPACE}}}")
+
+
+def _alone(
+    element: Element, styles: Mapping[str, Mapping[str, str]], given: list[Mapping[str, str]]
+) -> Element:
+    """A copy of an element without what is in it; its attributes are appended to those given."""
+    tag, own = _tag(element), dict(element.attrib)
+    classes = own.get("class", "").split(" ")
+    selectors = ["*", tag, f"#{own.get('id')}"]
+    selectors += [name for c in classes for name in (f".{c}", f"{tag}.{c}")]
+    for selector in selectors:
+        own |= styles.get(selector, {})
+    own |= _declarations(own.get("style", ""))
+    kept = {key: own[key] for key in (*_KEPT, *_OF_TAG.get(tag, ())) if key in own}
+    for key, text in kept.items():
+        if len(text) > MOST_TEXT:
+            raise TooLargeError(
+                f"an attribute ({key.rpartition('}')[2]}) of an SVG element {shown(tag)} has "
+                f"{len(text)} characters, and {MOST_TEXT} are the most that are read: shorten it"
+            )
+    if tag in ("polyline", "polygon") and own.get("points", "").strip():
+        kept["points"] = "0 0 1 0"  # the library leaves out what has no points
+    elif tag == "path":
+        kept["d"] = ""
+    given.append(own)
+    return Element(element.tag, kept | {NUMBER: str(len(given) - 1)})
+
+
+def _styles(text: str) -> dict[str, dict[str, str]]:
+    """The declarations of a style sheet by selector."""
+    first, *others = text.split("/*")
+    text = first + "".join(part.partition("*/")[2] for part in others)
+    text = "\n".join(line.partition("//")[0] for line in text.split("\n"))
+    found: dict[str, dict[str, str]] = {}
+    for rule in text.split("}"):
+        selectors, _, body = rule.partition("{")
+        if declared := _declarations(body):
+            for selector in selectors.split(","):
+                found.setdefault(selector.strip(), {}).update(declared)
+    return found
+
+
+def _declarations(text: str) -> dict[str, str]:
+    """What a style says of the attributes that are read."""
+    pairs = (part.split(":") for part in text.split(";"))
+    stated = {pair[0].strip(): pair[1].strip() for pair in pairs if len(pair) == 2}
+    return {key: stated[key] for key in _STYLED if key in stated}
+
+
+# --- what `use` brings in ------------------------------------------------------------------------
+
+
+def _check_cost(root: Element) -> None:
+    """Raise for nesting, repetition or transforms beyond the limits, or a circle of `use`."""
+    named = {e.get("id"): e for e in root.iter() if e.get("id")}
+    costs: dict[Element, _Cost | None] = {}
+    waiting = [root]
+    while waiting:
+        element = waiting[-1]
+        inside = list(element)
+        link = element.get("href", element.get(_LINK, "")) if _tag(element) == "use" else ""
+        if link and link[1:] in named:
+            inside.append(named[link[1:]])
+        if element not in costs:
+            costs[element] = None  # under way
+            for child in inside:
+                if child not in costs:
+                    waiting.append(child)
+                elif costs[child] is None:
+                    raise MalformedDrawingError(
+                        f"the `use` of {shown(link)} is inside what it refers to: remove it"
+                    )
+            continue
+        waiting.pop()
+        if costs[element] is None:
+            costs[element] = _cost(element, [cost for c in inside if (cost := costs[c])])
+    total = costs[root] or _Cost()
+    repeated = total.elements - len(costs)
+    if total.depth > MOST_DEPTH:
+        _too_deep()
+    if repeated > MOST_USED:
+        raise TooLargeError(
+            f"`use` repeats {repeated} elements of the SVG file, and {MOST_USED} are the most that "
+            "are read: draw the lines themselves"
+        )
+    if total.longest > MOST_TEXT or total.transforms > MOST_TRANSFORMS:
+        raise TooLargeError(
+            f"the transforms of the SVG file are too long: {total.longest} characters for one "
+            f"element and {total.transforms} for all, and {MOST_TEXT} and {MOST_TRANSFORMS} are "
+            "the most that are read: apply them to the coordinates"
+        )
+
+
+def _cost(element: Element, inside: list[_Cost]) -> _Cost:
+    own = len(element.get("transform", ""))
+    if _tag(element) == "use":
+        own += len(element.get("x", "")) + len(element.get("y", "")) + _MOVE
+    elements = 1 + sum(cost.elements for cost in inside)
+    return _Cost(
+        elements,
+        1 + max((cost.depth for cost in inside), default=0),
+        own * elements + sum(cost.transforms for cost in inside),
+        own + max((cost.longest for cost in inside), default=0),
+    )
+
+
+def _too_deep() -> NoReturn:
+    raise TooLargeError(
+        f"elements of the SVG file are nested more than {MOST_DEPTH} deep, the most that is read: "
+        "ungroup them"
+    )

@@ -1,0 +1,274 @@
+"""What a repair is, and the small steps: merge, drop, dissolve; nothing here moves a vertex."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Final, NamedTuple
+
+import networkx as nx
+import numpy as np
+from scipy.spatial import cKDTree
+
+from exactfold._support.arrays import FloatArray, IntArray
+from exactfold._support.plurals import agreeing, counted
+from exactfold.checker.core.limits import MOST_NEAR
+from exactfold.errors import TooLargeError
+from exactfold.pattern.drawing.drawing import Drawing, Line, Point
+
+_SHOWN: Final = 5
+
+
+class Place(NamedTuple):
+    """A point of the drawing by its index, and roughly where it is."""
+
+    point: int
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Repair:
+    """One thing that was mended: the step, how often, the first few places, and a sentence.
+
+    Indices are those of the drawing that was given; points that were added follow them.
+    """
+
+    step: str
+    count: int
+    places: tuple[Place, ...]
+    sentence: str
+
+    def __repr__(self) -> str:
+        return f"<Repair: {self.step}, {self.count}>"
+
+    def __str__(self) -> str:
+        where = ", ".join(f"{p.point} ({p.x:.6g}, {p.y:.6g})" for p in self.places)
+        more = ", ..." if self.count > len(self.places) else ""
+        return f"{self.sentence}: at {where}{more}" if where else self.sentence
+
+
+def floats(points: Sequence[Point]) -> FloatArray:
+    """The points as floating-point numbers, of shape (n, 2)."""
+    return np.array([[float(x), float(y)] for x, y in points], dtype=float).reshape(-1, 2)
+
+
+def repair(
+    step: str, count: int, at: Iterable[int], points: Sequence[Point], sentence: str
+) -> list[Repair]:
+    """The repair as a list, empty if there was none."""
+    if not count:
+        return []
+    first = list(dict.fromkeys(at))[:_SHOWN]
+    places = tuple(Place(v, float(points[v][0]), float(points[v][1])) for v in first)
+    return [Repair(step, count, places, sentence)]
+
+
+def with_lines(drawing: Drawing, lines: Iterable[Line]) -> Drawing:
+    """The same points with other lines."""
+    return replace(drawing, lines=tuple(lines))
+
+
+def used(lines: Iterable[Line]) -> list[int]:
+    """The points that are on a line, in increasing order."""
+    return sorted({v for line in lines for v in line[:2]})
+
+
+def groups_within(places: FloatArray, members: Sequence[int], within: float) -> list[list[int]]:
+    """Sets of two or more of the members that hang together by distances up to `within`."""
+    if len(members) < 2:
+        return []
+    tree = cKDTree(places[list(members)])
+    graph = nx.Graph()
+    graph.add_edges_from(near_pairs(tree, within).tolist())
+    found = [sorted(members[k] for k in group) for group in nx.connected_components(graph)]
+    return sorted(found)
+
+
+def near_pairs(tree: cKDTree, within: float) -> IntArray:
+    """The pairs of points of a tree at distances up to `within`, of shape (n, 2).
+
+    Raises `TooLargeError` for too many of them.
+    """
+    count = (tree.count_neighbors(tree, within) - tree.n) // 2
+    if count > MOST_NEAR:
+        raise TooLargeError(
+            f"{count} pairs of points of the drawing nearly coincide, and {MOST_NEAR} are the most "
+            "that are looked at: leave out what is no crease, or give a part of the drawing"
+        )
+    pairs: IntArray = tree.query_pairs(within, output_type="ndarray")
+    return pairs
+
+
+def merged(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
+    """Points closer than `within` become one: the one with most lines, then the first."""
+    places = floats(drawing.points)
+    weight = [0] * len(drawing.points)
+    for line in drawing.lines:
+        weight[line.start] += 1
+        weight[line.end] += 1
+    stands_for: dict[int, int] = {}
+    farthest = 0.0
+    for group in groups_within(places, used(drawing.lines), within):
+        chosen = max(group, key=lambda v: (weight[v], -v))
+        for v in group:
+            if v != chosen:
+                stands_for[v] = chosen
+                farthest = max(farthest, float(np.hypot(*(places[v] - places[chosen]))))
+    if not stands_for:
+        return drawing, []
+    lines = [
+        Line(stands_for.get(a, a), stands_for.get(b, b), letter) for a, b, letter in drawing.lines
+    ]
+    count = len(stands_for)
+    distance = f"at most {farthest:.2g} away" if farthest else "at the same place"
+    sentence = (
+        f"{counted(count, 'point')} {agreeing(count, 'is')} merged with another {distance} "
+        f"(tolerance {within:.2g})"
+    )
+    return with_lines(drawing, lines), repair("merge", count, stands_for, drawing.points, sentence)
+
+
+def coinciding(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
+    """Points at exactly the same place become the first of them."""
+    first: dict[Point, int] = {}
+    members = used(drawing.lines)
+    stands_for = {v: first.setdefault(drawing.points[v], v) for v in members}
+    again = [v for v in members if stands_for[v] != v]
+    if not again:
+        return drawing, []
+    lines = [Line(stands_for[a], stands_for[b], letter) for a, b, letter in drawing.lines]
+    sentence = f"{counted(len(again), 'point')} {agreeing(len(again), 'is')} at the place of others"
+    return with_lines(drawing, lines), repair("merge", len(again), again, drawing.points, sentence)
+
+
+def without_duplicates(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
+    """Lines without length and lines drawn more than once are dropped.
+
+    Among different letters the border wins over all, a cut over creases, a mountain or a valley
+    over a line without direction, U over F and F over J. A line that is both mountain and valley
+    becomes U: neither drawing can be preferred, and U claims nothing.
+    """
+    letters: dict[tuple[int, int], list[str]] = {}
+    short = []
+    for a, b, letter in drawing.lines:
+        if a == b:
+            short.append(a)
+        else:
+            letters.setdefault((min(a, b), max(a, b)), []).append(letter)
+    again = [pair for pair, all_of in letters.items() if len(all_of) > 1]
+    unlike = [pair for pair in again if len(set(letters[pair])) > 1]
+    torn = [pair for pair in unlike if _winner(letters[pair]) == "U" and "M" in letters[pair]]
+    if not short and not again:
+        return drawing, []
+    count = sum(len(letters[pair]) - 1 for pair in again)
+    repairs = repair(
+        "duplicates",
+        len(short),
+        short,
+        drawing.points,
+        f"{counted(len(short), 'line')} without length dropped",
+    )
+    sentence = f"{counted(count, 'line')} drawn again dropped"
+    if unlike:
+        sentence += (
+            f"; {len(unlike)} with different letters, of which the border wins over creases, "
+            "and creases over flat lines"
+        )
+    repairs += repair("duplicates", count, (a for a, _ in again), drawing.points, sentence)
+    repairs += repair(
+        "duplicates",
+        len(torn),
+        (a for a, _ in torn),
+        drawing.points,
+        f"{counted(len(torn), 'line')} drawn as mountain and as valley "
+        f"{agreeing(len(torn), 'is')} now without direction (U)",
+    )
+    lines = [Line(a, b, _winner(all_of)) for (a, b), all_of in letters.items()]
+    return with_lines(drawing, lines), repairs
+
+
+def _winner(letters: Sequence[str]) -> str:
+    for letter in "BC":
+        if letter in letters:
+            return letter
+    if "M" in letters and "V" in letters:
+        return "U"
+    return next(letter for letter in "MVUFJ" if letter in letters)
+
+
+def without_flat_lines(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
+    """Lines F (flat) and J (join) are no folds: the panels on both sides become one."""
+    flat = [line for line in drawing.lines if line.letter in "FJ"]
+    sentence = (
+        f"{counted(len(flat), 'flat line')} (F or J) dropped, so that panels are joined across "
+        f"{'it' if len(flat) == 1 else 'them'}"
+    )
+    rest = [line for line in drawing.lines if line.letter not in "FJ"]
+    at = (line.start for line in flat)
+    return with_lines(drawing, rest), repair("join", len(flat), at, drawing.points, sentence)
+
+
+def without_dangling(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
+    """Lines with the same panel on both sides are dropped: bridges, such as lines that end inside.
+
+    No such line can fold, as one rigid panel lies on both its sides.
+    """
+    graph = nx.Graph((line.start, line.end) for line in drawing.lines if line.start != line.end)
+    dropped = {frozenset(pair) for pair in nx.bridges(graph)}
+    degree = dict(graph.degree())
+    ends = sorted(v for pair in dropped for v in pair if degree[v] == 1)
+    at = [*ends, *sorted(min(pair) for pair in dropped)]
+    sentence = (
+        f"{counted(len(dropped), 'line')} dropped that {agreeing(len(dropped), 'has')} the same "
+        f"panel on both sides ({counted(len(ends), 'loose end')})"
+    )
+    rest = [line for line in drawing.lines if frozenset(line[:2]) not in dropped]
+    return with_lines(drawing, rest), repair("dangling", len(dropped), at, drawing.points, sentence)
+
+
+def dissolved(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
+    """Vertices on exactly two lines of one letter that continue each other straight disappear.
+
+    Straight means that the vertex, and all that disappeared before on the two lines, is within
+    `within` of the new line. So corners of a polygon that stands for a curve stay.
+    """
+    places = floats(drawing.points)
+    around: dict[int, dict[int, str]] = {}
+    for a, b, letter in drawing.lines:
+        around.setdefault(a, {})[b] = letter
+        around.setdefault(b, {})[a] = letter
+    passed: dict[frozenset[int], list[int]] = {}
+    gone = []
+    for v in sorted(around):
+        if len(around[v]) != 2:
+            continue
+        (a, first), (b, second) = around[v].items()
+        if first != second or b in around[a]:
+            continue
+        between = [v, *passed.get(frozenset((a, v)), ()), *passed.get(frozenset((b, v)), ())]
+        if not _along(places, a, b, between, within):
+            continue
+        del around[a][v], around[b][v], around[v]
+        around[a][b] = around[b][a] = first
+        passed[frozenset((a, b))] = between
+        gone.append(v)
+    lines = [Line(a, b, letter) for a in sorted(around) for b, letter in around[a].items() if a < b]
+    sentence = (
+        f"{counted(len(gone), 'vertex')} on a straight line without other lines "
+        f"{agreeing(len(gone), 'is')} no vertex"
+    )
+    if not gone:
+        return drawing, []
+    return with_lines(drawing, lines), repair("dissolve", len(gone), gone, drawing.points, sentence)
+
+
+def _along(places: FloatArray, a: int, b: int, between: Sequence[int], within: float) -> bool:
+    chord = places[b] - places[a]
+    length = float(np.hypot(*chord))
+    if not length:
+        return False
+    offset = places[list(between)] - places[a]
+    across = np.abs(offset[:, 0] * chord[1] - offset[:, 1] * chord[0]) / length
+    along = offset @ chord / length
+    return bool((across <= within).all() and (along > 0).all() and (along < length).all())

@@ -1,0 +1,240 @@
+"""Repair of drawings: each step can be left out, and says what it did and where."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Final
+
+from exactfold._support.plurals import counted
+from exactfold.errors import FoldError, MalformedPatternError, PatternError, UsageError
+from exactfold.pattern.drawing.coordinates import Exact, exact_coordinates, resolution
+from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.drawing.inexactness import GAP, clear_distances
+from exactfold.pattern.drawing.mending import (
+    Repair,
+    coinciding,
+    dissolved,
+    floats,
+    merged,
+    used,
+    without_dangling,
+    without_duplicates,
+    without_flat_lines,
+)
+from exactfold.pattern.drawing.sheets import bordered, sheets
+from exactfold.pattern.drawing.splitting import split
+
+STEPS: Final = ("merge", "duplicates", "split", "join", "dangling", "dissolve", "border")
+"""The steps in their order."""
+_NEAR: Final = Fraction(1, 10**6)
+_COARSEST: Final = Fraction(1, 300)
+"""No automatic merging beyond this share of the size."""
+_ADVISED: Final = Fraction(1, 100)
+"""No merging beyond this share of the size is advised."""
+_TRIALS: Final = 3
+
+
+def repaired(
+    drawing: Drawing, *, merge: Fraction | None = None, steps: Collection[str] = STEPS
+) -> tuple[Drawing, tuple[Repair, ...]]:
+    """The drawing after the given steps, and what they did.
+
+    `merge` merges near-duplicate points, `duplicates` drops lines without length and lines drawn
+    twice, `split` cuts lines at T-junctions and crossings, `join` drops lines F and J, `dangling`
+    drops lines that end inside a panel, `dissolve` removes vertices on straight lines without
+    other lines, `border` gives the letter B to the lines round the sheet. `merge` is the distance,
+    in units of the larger side, at which points coincide and a point lies on a line; without it,
+    1e-6 or two units of the last decimal of the file, whichever is larger. Coordinates stay exact:
+    crossings are solved in the field of the points, so `exact_sheets` snaps them before `split`.
+
+    Points keep their indices; those on no line are not removed. Raises `UsageError` for a step
+    that does not exist or a distance that is not positive, and `MalformedPatternError` for a
+    drawing without lines.
+
+    >>> from exactfold.pattern.drawing.drawing import Line
+    >>> cross = Drawing(((0, 0), (2, 0), (2, 2), (0, 2)),
+    ...     (Line(0, 1, "B"), Line(1, 2, "B"), Line(2, 3, "B"), Line(3, 0, "B"),
+    ...      Line(0, 2, "M"), Line(1, 3, "V")), "two diagonals")
+    >>> mended, repairs = repaired(cross)
+    >>> mended.points[4], len(mended.lines), str(repairs[0])
+    ((Fraction(1, 1), Fraction(1, 1)), 8, '1 crossing of lines is a vertex: at 4 (1, 1)')
+    """
+    unknown = sorted(set(steps) - set(STEPS))
+    if unknown:
+        raise UsageError(f"there is no step {unknown[0]!r}: the steps are {', '.join(STEPS)}")
+    near = _distance(drawing, merge)
+    repairs: list[Repair] = []
+    for step in STEPS:
+        if step not in steps:
+            continue
+        drawing, found = _step(drawing, step, near)
+        repairs += found
+        if step == "split" and found and "merge" in steps:
+            drawing, found = coinciding(drawing)  # crossings can meet in one point
+            repairs += found
+        if step == "split" and "duplicates" in steps:
+            drawing, found = without_duplicates(drawing)
+            repairs += found
+    return drawing, tuple(repairs)
+
+
+@dataclass(frozen=True)
+class Sheets:
+    """The sheets of a drawing with exact coordinates, and how they came about."""
+
+    sheets: tuple[Drawing, ...]
+    coordinates: Exact
+    repairs: tuple[Repair, ...]
+
+    def __repr__(self) -> str:
+        sheets, repairs = counted(len(self.sheets), "sheet"), counted(len(self.repairs), "repair")
+        return f"<Sheets: {sheets} after {repairs}>"
+
+
+def exact_sheets(
+    drawing: Drawing,
+    *,
+    snap: Snap = "auto",
+    tolerance: Fraction | None = None,
+    merge: Fraction | None = None,
+    steps: Collection[str] = STEPS,
+) -> Sheets:
+    """From a drawing to its sheets: merge, exact coordinates, the other steps, sheet by sheet.
+
+    The order matters. Points that nearly coincide are one number; coordinates are recognised as
+    they were drawn; crossings and T-junctions are then computed in the field that was found, so
+    that three creases through a point of the design meet there exactly.
+
+    Without `merge` the distance is the finest that is clear (`clear_distances`), up to 1/300 of the
+    size; where the sheet then has holes or loose ends, the next two are tried. A distance larger
+    than that of `repaired` is said first among the repairs. Where nothing is read, coarser ones are
+    tried, up to 1/100, only to name in the refusal the first that would do.
+
+    Raises what `repaired`, `exact_coordinates` and `sheets` raise.
+
+    >>> from exactfold.pattern.drawing.drawing import Line
+    >>> third = Fraction("0.333333333333")
+    >>> made = exact_sheets(Drawing(((0, 0), (1, 0), (1, 1), (0, 1), (third, 0), (third, 1)),
+    ...     (Line(0, 1, "B"), Line(1, 2, "B"), Line(2, 3, "B"), Line(3, 0, "B"),
+    ...      Line(4, 5, "M")), "one crease"))
+    >>> made.sheets[0].points[4], len(made.sheets[0].lines), made.coordinates.denominator
+    ((Fraction(1, 3), Fraction(0, 1)), 7, 3)
+    """
+    near = _distance(drawing, merge)
+    inexact = merge is None and "merge" in steps and not drawing.exact
+    clear = _clear(drawing, near, _COARSEST, GAP) if inexact else []
+    distances = clear[:_TRIALS] or [near]
+    first = [step for step in STEPS[:2] if step in steps]
+    before, begun = repaired(drawing, merge=distances[0], steps=first)
+    found = exact_coordinates(_used_only(before), snap, tolerance=tolerance)
+    # Snapping can bring points together that were further apart than the merging distance.
+    least = 2 * found.tolerance if merge is None else Fraction(0)
+
+    def made(distance: Fraction) -> Sheets:
+        after, ended = repaired(found.drawing, merge=max(distance, least), steps=steps)
+        try:
+            return Sheets(sheets(after), found, (*_noted(distance, near), *begun, *ended))
+        except (FoldError, PatternError) as error:
+            dropped = sum(repair.count for repair in ended if repair.step == "dangling")
+            if after.lines and 2 * dropped > (whole := dropped + len(after.lines)):
+                error.args = (
+                    f"{error}; {dropped} of {whole} lines had been dropped, as one panel lies on "
+                    "both their sides: do the lines meet?",
+                    *error.args[1:],
+                )
+            raise
+
+    done, refusals = _until_whole(made, distances)
+    if done:
+        return min(done.values(), key=_loose)
+    if inexact and all(line.letter != "C" for line in drawing.lines):
+        coarser = _clear(drawing, distances[-1] * 2, _ADVISED, GAP / 2)[-_TRIALS:]
+        round_ones = [Fraction(f"{1.05 * float(distance):.2g}") for distance in coarser]
+        for distance in list(_until_whole(made, round_ones)[0])[:1]:
+            refusals[0].args = (
+                f"{refusals[0]}; `exactfold convert --merge {float(distance):g}` would read it, "
+                "taking what misses by up to that share of the size to meet",
+                *refusals[0].args[1:],
+            )
+    raise refusals[0]
+
+
+def _clear(drawing: Drawing, near: Fraction, most: Fraction, gap: float) -> list[Fraction]:
+    """Distances to merge at, as shares of the size, the finest first."""
+    clean, _ = repaired(drawing, merge=near, steps=STEPS[:2])
+    if not (size := _extent(clean)):
+        return []
+    clear = clear_distances(clean, float(near) * size, float(most) * size, gap)
+    return [Fraction(distance / size * (1 + 1e-9)) for distance in clear]
+
+
+def _until_whole(
+    made: Callable[[Fraction], Sheets], distances: Iterable[Fraction]
+) -> tuple[dict[Fraction, Sheets], list[FoldError | PatternError]]:
+    """The sheets by distance, up to the first that has no loose ends; and the refusals."""
+    done: dict[Fraction, Sheets] = {}
+    refusals: list[FoldError | PatternError] = []
+    for distance in distances:
+        try:
+            done[distance] = made(distance)
+        except (FoldError, PatternError) as error:
+            refusals.append(error)
+            continue
+        if not _loose(done[distance]):
+            break
+    return done, refusals
+
+
+def _loose(sheets: Sheets) -> int:
+    """How many lines were dropped because one panel lies on both their sides."""
+    return sum(repair.count for repair in sheets.repairs if repair.step == "dangling")
+
+
+def _noted(distance: Fraction, near: Fraction) -> list[Repair]:
+    if distance <= near * Fraction(101, 100):
+        return []
+    sentence = (
+        f"the drawing is inexact: what misses by up to {float(distance):.1e} of the size is "
+        f"taken to meet, as nothing misses by more, up to {GAP:g} times that"
+    )
+    return [Repair("merge", 1, (), sentence)]
+
+
+def _step(drawing: Drawing, step: str, near: Fraction) -> tuple[Drawing, list[Repair]]:
+    if step == "duplicates":
+        return without_duplicates(drawing)
+    if step == "join":
+        return without_flat_lines(drawing)
+    if step == "dangling":
+        return without_dangling(drawing)
+    if step == "border":
+        return bordered(drawing)
+    within = float(near) * _extent(drawing)
+    return {"merge": merged, "split": split, "dissolve": dissolved}[step](drawing, within)
+
+
+def _distance(drawing: Drawing, merge: Fraction | None) -> Fraction:
+    if merge is None:
+        return max(_NEAR, 2 * resolution(drawing))
+    if merge <= 0:
+        raise UsageError(f"points are merged at a positive distance, not {merge}")
+    return Fraction(merge)
+
+
+def _extent(drawing: Drawing) -> float:
+    if not drawing.lines:
+        return 0.0
+    places = floats(drawing.points)[used(drawing.lines)]
+    return float((places.max(axis=0) - places.min(axis=0)).max())
+
+
+def _used_only(drawing: Drawing) -> Drawing:
+    """Points on no line do not decide which numbers fit: they move to the first point."""
+    members = set(used(drawing.lines))
+    if not members:
+        raise MalformedPatternError("the drawing has no lines")
+    stand_in = drawing.points[min(members)]
+    points = tuple(p if v in members else stand_in for v, p in enumerate(drawing.points))
+    return replace(drawing, points=points)

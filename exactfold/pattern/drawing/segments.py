@@ -1,0 +1,71 @@
+"""From loose straight lines to a drawing, and a drawing in one line of words."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from typing import Final, TypeAlias
+
+from exactfold._support.plurals import counted
+from exactfold.errors import EmptyDrawingError
+from exactfold.pattern.drawing.drawing import Drawing, Line
+
+Place: TypeAlias = tuple[Fraction, Fraction]
+Segment: TypeAlias = tuple[Place, Place, str]
+
+_WORDS: Final = {
+    "M": "mountain",
+    "V": "valley",
+    "B": "border",
+    "F": "flat",
+    "U": "unassigned",
+    "C": "cut",
+    "J": "join",
+}
+
+
+def drawing_of(segments: Iterable[Segment], source: str, remarks: Sequence[str] = ()) -> Drawing:
+    """The drawing of straight lines between places; equal places are one point.
+
+    Lines of length zero are left out with a remark. Raises `EmptyDrawingError` if none is left.
+
+    >>> zero, one = Fraction(0), Fraction(1)
+    >>> drawing_of([((zero, zero), (one, zero), "B"), ((one, zero), (one, one), "M")], "CP").lines
+    (Line(start=0, end=1, letter='B'), Line(start=1, end=2, letter='M'))
+    """
+    numbers: dict[Place, int] = {}
+    lines = []
+    empty = 0
+    for start, end, letter in segments:
+        if start == end:
+            empty += 1
+            continue
+        i, j = (numbers.setdefault(place, len(numbers)) for place in (start, end))
+        lines.append(Line(i, j, letter))
+    notes = [*remarks, *left_out(empty, "empty line")]
+    if not lines:
+        why = f" ({'; '.join(notes)})" if notes else ""
+        raise EmptyDrawingError(f"the {source} file has no lines of a crease pattern{why}")
+    return Drawing(tuple(numbers), tuple(lines), source, tuple(notes))
+
+
+def left_out(number: int, noun: str) -> list[str]:
+    """The remark that things were left out, if any were.
+
+    >>> left_out(2, "auxiliary line"), left_out(0, "auxiliary line")
+    (['left out 2 auxiliary lines'], [])
+    """
+    return [f"left out {counted(number, noun)}"] if number else []
+
+
+def summary(drawing: Drawing) -> str:
+    """How many lines of which kinds a drawing has.
+
+    >>> zero, one = Fraction(0), Fraction(1)
+    >>> summary(Drawing(((zero, zero), (one, one)), (Line(0, 1, "M"), Line(0, 1, "B")), ""))
+    '2 lines (1 mountain, 1 border)'
+    """
+    numbers = Counter(line.letter for line in drawing.lines)
+    kinds = ", ".join(f"{numbers[letter]} {_WORDS[letter]}" for letter in _WORDS if numbers[letter])
+    return f"{counted(len(drawing.lines), 'line')} ({kinds})"

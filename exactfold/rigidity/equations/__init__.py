@@ -1,0 +1,1 @@
+"""The exact equations of a sheet, with its gauge written down."""

@@ -1,0 +1,116 @@
+"""The gauge: which heights are given, so that every branch is a point and not a ray."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+
+from exactfold.errors import NotCountedError
+from exactfold.exact.numbers import RationalLike
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.equations.boundary_heights import given_deficits, given_rim
+from exactfold.rigidity.functionals import saddle_functional
+
+SADDLE, CORNER, RIM = "saddle", "corner", "rim"
+
+
+@dataclass(frozen=True, repr=False)
+class Gauge:
+    """Given heights of the rim of `sheet`, and the one vertex, if any, with a given curvature.
+
+    `kind` is one of three (docs/conventions.md, Heights):
+
+    - "saddle": a convex quadrilateral. One boundary vertex has height 1, the others 0, so that the
+      boundary saddle (`saddle_functional`) is +1.
+    - "corner": a quadrilateral with a reflex corner. In `sheet` its notch is closed by a triangle,
+      the other three corners have height 0, and the corner, now an interior vertex, pops up with
+      K = `corner_curvature`.
+    - "rim": a convex boundary of any length, with heights that were given. `curvature` holds the
+      angle deficits K_v of interior vertices that are not 0; then the heights of the rim are 0 if
+      none are given.
+
+    In all three there is exactly one solution in the closed nappes of each sign vector
+    (docs/theorem.md, Four boundary vertices; docs/branch.md, Angle deficits). `sheet` has the
+    vertices of the sheet that was given, and no others.
+    """
+
+    kind: str
+    sheet: CreasePattern
+    rim: Mapping[int, Fraction]
+    corner: int | None = None
+    curvature: Mapping[int, Fraction] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls,
+        sheet: CreasePattern,
+        rim: Mapping[int, RationalLike] | None = None,
+        curvature: Mapping[int, RationalLike] | None = None,
+    ) -> Gauge:
+        """The gauge of a sheet with four boundary vertices, or with given rim heights or deficits.
+
+        Raises `NotCountedError` for another number of boundary vertices without `rim`, and the
+        errors of `given_rim` and `given_deficits`.
+
+        >>> from exactfold.pattern.families import single_vertex
+        >>> gauge = Gauge.of(single_vertex(4))
+        >>> gauge.kind, {v: str(height) for v, height in gauge.rim.items()}
+        ('saddle', {0: '1', 1: '0', 2: '0', 3: '0'})
+        """
+        if curvature is not None:
+            deficits = given_deficits(sheet, curvature)
+            level = dict.fromkeys(sheet.boundary, 0) if rim is None else rim
+            heights = given_rim(sheet, level, may_be_flat=bool(deficits))
+            return cls(RIM, sheet, heights, None, deficits)
+        if rim is not None:
+            return cls(RIM, sheet, given_rim(sheet, rim))
+        if sheet.Ve != 4:
+            raise NotCountedError(
+                "the sheet has three boundary vertices: it is rigid and has no branches"
+                if sheet.Ve == 3
+                else f"vertex signs name a branch of a sheet with four boundary vertices; this one "
+                f"has {sheet.Ve}, so its ways to fold form continuous families, with one way for "
+                "each choice of the heights of the border (`exactfold branch` with --rim; in "
+                "Python find_branch with rim=)"
+            )
+        corner = sheet.reflex_corner
+        if corner is not None:
+            closed = sheet.with_notch_closed()
+            return cls(CORNER, closed, dict.fromkeys(closed.boundary, Fraction(0)), corner)
+        saddle = saddle_functional(sheet)
+        raised = next(v for v in sheet.boundary if saddle[v])
+        return cls(SADDLE, sheet, {v: Fraction(v == raised) for v in sheet.boundary})
+
+    @cached_property
+    def unknowns(self) -> tuple[int, ...]:
+        """The vertices whose heights are unknown: those that a sign vector names, then the corner.
+
+        One equation each: K_v = 0, and K = `corner_curvature` at the corner.
+        """
+        named = tuple(v for v in self.sheet.interior if v != self.corner)
+        return named if self.corner is None else (*named, self.corner)
+
+    def __repr__(self) -> str:
+        where = "" if self.corner is None else f" {self.corner}"
+        return f"<Gauge: {self.kind}{where}, {len(self.rim)} vertices on the rim>"
+
+    @cached_property
+    def corner_curvature(self) -> Fraction:
+        """1 / size^2, with the larger side of the bounding box as the size of the sheet."""
+        return 1 / pattern_size(self.sheet) ** 2
+
+    @cached_property
+    def targets(self) -> Mapping[int, Fraction]:
+        """K_v of the vertices of `sheet` at which it is not 0."""
+        if self.corner is not None:
+            return {self.corner: self.corner_curvature}
+        return self.curvature
+
+
+def pattern_size(pattern: CreasePattern) -> Fraction:
+    """The larger side of the bounding box: the unit of length that keeps floats in range."""
+    points, denominator = pattern.integer_vertices
+    sides = (max(p[axis] for p in points) - min(p[axis] for p in points) for axis in (0, 1))
+    return Fraction(max(sides), denominator)

@@ -1,0 +1,165 @@
+"""The problem that all solvers and certifiers work on: a sheet, its gauge, its exact equations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from exactfold.errors import NoInteriorVertexError, NotCountedError
+from exactfold.exact.numbers import RationalLike
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.equations.boundary_heights import given_deficits, given_rim
+from exactfold.rigidity.equations.branch_system import BranchSystem, Chart, chamber_chart
+from exactfold.rigidity.equations.gauge import Gauge
+
+if TYPE_CHECKING:
+    from exactfold.rigidity.rigid_triangles import RigidTriangle
+from exactfold.rigidity.equations.sign_rows import Functionals
+
+
+@dataclass(frozen=True, repr=False)
+class Problem:
+    """The equations K_v(h) = 0 of a pattern, reduced to what can fold, in one gauge.
+
+    `sheet` is the pattern with every triangulated triangle made a single face: what lies inside
+    stays flat. `labels[k]` is the vertex of `pattern` that vertex k of `sheet` is. Everything that
+    follows works on `sheet`; `labels`, `all_heights` and `heights_by_vertex` lead back.
+
+    >>> from exactfold.pattern.families import two_vertex
+    >>> problem = Problem.of(two_vertex())
+    >>> problem.size, problem.gauge.kind, problem.foldable
+    (2, 'saddle', (4, 5))
+    """
+
+    pattern: CreasePattern
+    sheet: CreasePattern
+    labels: tuple[int, ...]
+    gauge: Gauge
+
+    @classmethod
+    def of(
+        cls,
+        pattern: CreasePattern,
+        *,
+        rim: Mapping[int, RationalLike] | None = None,
+        curvature: Mapping[int, RationalLike] | None = None,
+    ) -> Problem:
+        """The problem of a pattern with four boundary vertices, or with given rim heights.
+
+        `curvature`: angle deficits by interior vertex, 0 where none is given; a triangulated
+        triangle with a deficit inside does not stay flat. Raises as `Gauge.of`.
+        """
+        deficits = None if curvature is None else given_deficits(pattern, curvature)
+        if rim is not None:  # named here by the vertices of the pattern
+            rim = given_rim(pattern, rim, may_be_flat=bool(deficits))
+        sheet, labels = pattern.without_rigid_parts(deficits or ())
+        place = {v: k for k, v in enumerate(labels)}
+        heights = None if rim is None else {place[v]: height for v, height in rim.items()}
+        curved = None if deficits is None else {place[v]: k for v, k in deficits.items()}
+        return cls(pattern, sheet, labels, Gauge.of(sheet, heights, curved))
+
+    @cached_property
+    def rigid(self) -> frozenset[int]:
+        """The vertices of the pattern that are not in the sheet, as they stay flat."""
+        return frozenset(range(len(self.pattern.vertices))) - set(self.labels)
+
+    @property
+    def size(self) -> int:
+        """n, the number of foldable vertices, which a sign vector names."""
+        return self.sheet.Vi
+
+    def require_foldable(self) -> None:
+        """Raise `NotCountedError` if all interior vertices stay flat, or there are none."""
+        if not self.pattern.interior:
+            raise NoInteriorVertexError("no vertex can pop: the pattern has no interior vertex")
+        if not self.sheet.interior:
+            raise NotCountedError(
+                "no vertex can pop: all interior vertices lie in triangulated triangles and stay "
+                "flat, so signs name no branch; `exactfold count` lists what there is"
+            )
+
+    @cached_property
+    def foldable(self) -> tuple[int, ...]:
+        """The foldable vertices of the pattern in the order of a sign vector."""
+        return tuple(self.labels[v] for v in self.sheet.interior)
+
+    @cached_property
+    def triangles(self) -> tuple[RigidTriangle, ...] | None:
+        """The triangulated triangles with the proof that they stay flat, None if one is missing."""
+        from exactfold.rigidity.rigid_triangles import certify_rigid_triangles  # loads FLINT
+
+        return certify_rigid_triangles(self.pattern)
+
+    @cached_property
+    def chart(self) -> Chart:
+        """The chart in which each of the 2^n branches is named by its vertex signs alone."""
+        return chamber_chart(self.sheet)
+
+    @cached_property
+    def functionals(self) -> Functionals:
+        """The functionals on `chart` whose signs are vertex signs and letters."""
+        return Functionals(self.chart)
+
+    def all_heights(self, known: Mapping[int, Fraction]) -> dict[int, Fraction]:
+        """Heights of all vertices of the pattern, from those of the vertices of the sheet."""
+        heights = {self.labels[v]: height for v, height in known.items()}
+        for vertex, cycle, weights in self.flat_inside:
+            heights[vertex] = sum(
+                (w * heights[c] for w, c in zip(weights, cycle, strict=True)), Fraction(0)
+            )
+        return dict(sorted(heights.items()))
+
+    def height_rows(self, chart: Chart) -> dict[int, tuple[Fraction, ...]]:
+        """The height of every vertex of the pattern as a row on (x, 1), x in a chart of `sheet`.
+
+        The sheet is tilted so that the boundary vertices pinned in the chart `saddle = 1` are at 0.
+        """
+        pinned = BranchSystem(self.sheet).pinned
+        rows = {self.labels[v]: row for v, row in Functionals(chart).heights.items()}
+        if chart.branch_system.pinned != pinned:
+            corners = tuple(self.labels[v] for v in pinned)
+            rows = {v: self._above(corners, v, rows) for v in rows}
+        for vertex, cycle, weights in self.flat_inside:
+            rows[vertex] = tuple(
+                sum((w * x for w, x in zip(weights, column, strict=True)), Fraction(0))
+                for column in zip(*(rows[c] for c in cycle), strict=True)
+            )
+        return dict(sorted(rows.items()))
+
+    def __repr__(self) -> str:
+        return f"<Problem: {self.size} foldable vertices, {self.gauge!r}>"
+
+    def _above(
+        self, corners: tuple[int, ...], vertex: int, rows: Mapping[int, tuple[Fraction, ...]]
+    ) -> tuple[Fraction, ...]:
+        """The height of a vertex above the plane through three others, as a row."""
+        weights = barycentric(self.pattern, corners, vertex)
+        return tuple(
+            own - sum((w * x for w, x in zip(weights, column, strict=True)), Fraction(0))
+            for own, *column in zip(rows[vertex], *(rows[c] for c in corners), strict=True)
+        )
+
+    @cached_property
+    def flat_inside(self) -> list[tuple[int, tuple[int, ...], tuple[Fraction, ...]]]:
+        """Rigid vertices with their 3-cycle and their barycentric coordinates in it."""
+        return [
+            (v, cycle, barycentric(self.pattern, cycle, v))
+            for cycle, inside in self.pattern.triangulated_triangles
+            for v in inside
+            if v in self.rigid
+        ]
+
+
+def barycentric(
+    pattern: CreasePattern, cycle: Sequence[int], vertex: int
+) -> tuple[Fraction, Fraction, Fraction]:
+    """Barycentric coordinates of a vertex by three others, exactly."""
+    (ax, ay), (bx, by), (cx, cy) = (pattern.vertices[v] for v in cycle)
+    x, y = pattern.vertices[vertex]
+    whole = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    beta = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / whole
+    gamma = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / whole
+    return 1 - beta - gamma, beta, gamma

@@ -1,0 +1,166 @@
+"""A problem in integers: exact fold data, the rim, and the targets of the curvatures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from exactfold._support.arrays import BigArray, IndexArray
+from exactfold.exact.numbers import over_common_denominator
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.equations.gauge import pattern_size
+from exactfold.rigidity.equations.problem import Problem
+
+"""Python integers of any size, as an object array."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A problem in integers, fold by fold: what the sparse solver and the enclosure work on.
+
+    `pattern` is the sheet that the equations live on, for a reflex quadrilateral with the notch
+    closed. Lengths are integers: the coordinates are `pattern.integer_vertices`. Heights of the rim
+    are integers over `rim_denominator`, in multiples of `height_unit`, a power of two.
+    """
+
+    problem: Problem
+
+    @property
+    def pattern(self) -> CreasePattern:
+        """The convex sheet of the gauge."""
+        return self.problem.gauge.sheet
+
+    @property
+    def labels(self) -> tuple[int, ...]:
+        """`labels[v]` is the vertex of the given pattern that vertex v of `pattern` is."""
+        return self.problem.labels
+
+    @property
+    def corner(self) -> int | None:
+        """The reflex corner, whose target is k_v = 1 / size^2."""
+        return self.problem.gauge.corner
+
+    @cached_property
+    def targets(self) -> Mapping[int, Fraction]:
+        """k_v > 0, where K_v is not to be 0, for integer lengths and heights in `height_unit`."""
+        scale = (self.height_unit * self.pattern.integer_vertices[1]) ** 2
+        return {v: k / scale for v, k in self.problem.gauge.targets.items()}
+
+    @property
+    def unclosed(self) -> CreasePattern:
+        """`pattern` without the triangle that closes a notch; the same vertices."""
+        return self.problem.sheet
+
+    @property
+    def unknowns(self) -> tuple[int, ...]:
+        """The interior vertices of `pattern`, one equation each."""
+        return self.pattern.interior
+
+    @property
+    def poppable(self) -> tuple[int, ...]:
+        """The vertices of `pattern` that a sign vector names: all unknowns but the corner."""
+        return self.problem.sheet.interior
+
+    @cached_property
+    def height_unit(self) -> Fraction:
+        """A power of two near the largest height of the rim, or that deficits ask for, or 1."""
+        gauge = self.problem.gauge
+        largest = max(map(abs, gauge.rim.values()))
+        if gauge.curvature:  # a deficit k lifts its vertex by about the size times the root of k
+            square = max(gauge.curvature.values()) * pattern_size(gauge.sheet) ** 2
+            largest = max(largest, _root_of_power(power_of_two(square)))
+        return power_of_two(largest) if largest else Fraction(1)
+
+    @cached_property
+    def _scaled(self) -> tuple[dict[int, int], int]:
+        rim = self.problem.gauge.rim
+        integers, denominator = over_common_denominator(h / self.height_unit for h in rim.values())
+        return dict(zip(rim, integers, strict=True)), denominator
+
+    @property
+    def rim(self) -> Mapping[int, int]:
+        """Heights of the boundary vertices, times `rim_denominator` / `height_unit`."""
+        return self._scaled[0]
+
+    @property
+    def rim_denominator(self) -> int:
+        """The common denominator of the heights of the rim."""
+        return self._scaled[1]
+
+    @cached_property
+    def size(self) -> int:
+        """The larger side of the bounding box, in integer lengths."""
+        points = self.pattern.integer_vertices[0]
+        return max(max(p[a] for p in points) - min(p[a] for p in points) for a in (0, 1))
+
+    @cached_property
+    def folds(self) -> Folds:
+        """The folds of `pattern` in its order."""
+        return Folds.of(self.pattern)
+
+
+def _root_of_power(power: Fraction) -> Fraction:
+    """The root of a power of two, rounded to one."""
+    exponent = power.numerator.bit_length() - power.denominator.bit_length()
+    half = exponent // 2
+    return Fraction(1 << half) if half >= 0 else Fraction(1, 1 << -half)
+
+
+def power_of_two(value: Fraction) -> Fraction:
+    """A power of two within a factor of two of value > 0.
+
+    >>> power_of_two(Fraction(1)), power_of_two(Fraction(3, 1000))
+    (Fraction(1, 1), Fraction(1, 256))
+    """
+    exponent = value.numerator.bit_length() - value.denominator.bit_length()
+    return Fraction(1 << exponent) if exponent >= 0 else Fraction(1, 1 << -exponent)
+
+
+@dataclass(frozen=True)
+class Folds:
+    """Exact data of all folds: fold e = (i, j) with the faces (i, j, left) and (j, i, right).
+
+    With c, c' twice the areas of these faces, the fold functional (`fold_functional`) is
+    f_e(h) = w . (h_i, h_j, h_left, h_right), and omega_e = f_e / (c c') is the jump of the slope
+    across the fold divided by its length. Then, for all interior v and w,
+
+        2 K_v(h) = sum_w omega_vw(h) (h_w - h_v),      dK_v/dh_w = omega_vw(h).
+
+    Shapes: `corners` and `weights` (E, 4), the others (E,). All are integers.
+    """
+
+    corners: IndexArray
+    weights: BigArray
+    left: BigArray
+    right: BigArray
+    squared_length: BigArray
+
+    @classmethod
+    def of(cls, pattern: CreasePattern) -> Folds:
+        """Fold data in the integer coordinates of a pattern."""
+        rows = [(i, j, *pattern.opposite((i, j))) for i, j in pattern.folds]
+        corners = np.array(rows, dtype=np.intp).reshape(-1, 4)
+        points = np.array(pattern.integer_vertices[0], dtype=object)
+        i, j, a, b = (points[corners[:, k]] for k in range(4))
+        left, right = _twice_area(i, j, a), _twice_area(j, i, b)
+        # Cramer: sum_k (-1)^k det(the other three) h_k vanishes on affine functions.
+        weights = np.stack([-_twice_area(j, a, b), _twice_area(i, a, b), right, left], axis=1)
+        d = j - i
+        return cls(corners, weights, left, right, d[:, 0] * d[:, 0] + d[:, 1] * d[:, 1])
+
+    def bends(self, heights: BigArray) -> BigArray:
+        """f_e of integer heights, shape (E,): positive for a valley."""
+        total: Any = self.weights[:, 0] * heights[self.corners[:, 0]]
+        for k in range(1, 4):
+            total = total + self.weights[:, k] * heights[self.corners[:, k]]
+        return np.asarray(total)
+
+
+def _twice_area(a: BigArray, b: BigArray, c: BigArray) -> BigArray:
+    u, v = b - a, c - a
+    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

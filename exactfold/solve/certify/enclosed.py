@@ -1,0 +1,53 @@
+"""From proposed heights of a sheet to the enclosure of the branch with given signs."""
+
+from __future__ import annotations
+
+from exactfold._support.arrays import FloatArray
+from exactfold._support.progress import Progress
+from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.solve.certify.enclosed_flat import deduced, rational
+from exactfold.solve.certify.enclosure import Enclosure, enclose
+from exactfold.solve.certify.refinement import exact, refine
+from exactfold.solve.numeric.sparse_sheet import FloatSheet
+
+_LEVELS = (80, 160, 320)
+"""Excess curvatures 2^-level tried one after the other until every fold is decided."""
+
+
+def enclosed(
+    sheet: Sheet,
+    floats: FloatSheet,
+    signs: FloatArray,
+    x: FloatArray,
+    progress: Progress | None = None,
+) -> tuple[Enclosure | None, tuple[int, ...]]:
+    """The enclosure near the heights `x` of the unknowns, of exactly these signs (`enclose`).
+
+    `signs` are those of the unknowns of the sheet, 1.0 or -1.0. The heights are refined in exact
+    arithmetic to as much precision as is needed to decide all folds, or as is reached. None where
+    the test fails, with the vertices at which it does, as far as they are known; that says nothing
+    against the branch.
+    """
+    wanted = dict(zip(sheet.unknowns, signs.astype(int).tolist(), strict=True))
+    heights = exact(sheet, floats, x)
+    best, failed = None, tuple[int, ...]()
+    for k, level in enumerate(_LEVELS):
+        if progress is not None:
+            progress("proof", k, len(_LEVELS))
+        refined = refine(sheet, floats, signs, heights, level)
+        if refined is None:
+            break
+        heights = refined
+        found = enclose(sheet, heights.values, heights.denominator, heights.bits)
+        if isinstance(found, tuple) or found.signs != wanted:
+            failed = found if isinstance(found, tuple) else ()
+            break
+        best = deduced(sheet, found)
+        if best.complete:
+            break
+    if best is not None and not best.complete:
+        best = rational(sheet, best, wanted) or best
+    if best is None and not failed:
+        rough = enclose(sheet, heights.values, heights.denominator, heights.bits)
+        failed = rough if isinstance(rough, tuple) else ()
+    return best, failed

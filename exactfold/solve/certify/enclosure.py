@@ -1,0 +1,236 @@
+"""Exact proof that a branch lies near given heights (docs/branch.md); nothing here is float."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isqrt
+
+import numpy as np
+
+from exactfold._support.arrays import BigArray, FloatArray, IndexArray
+from exactfold.rigidity.equations.sheet import Sheet
+
+_LENGTH_BITS = 64
+_LEAST_COST = 2.0**-500
+"""The square of a smaller cost may be below the range of normal floats, where errors are larger."""
+
+
+@dataclass(frozen=True)
+class Enclosure:
+    """What follows from heights `heights[v] / denominator` that pass the test of `enclose`.
+
+    `signs[v]`: in which nappe of K_v the heights lie. `squared_distance` bounds the integral of
+    |grad(h - heights)|^2 for the only solution h in these closed nappes. `letters[e]`: +1 valley,
+    -1 mountain on h, 0 undecided, in the order of the folds of the sheet. `loose`: vertices at
+    which no fold is decided. `flat_folds` (indices of folds with letter 0) and `flat_vertices` are
+    proved flat (`exactfold.solve.certify.enclosed_flat`).
+    """
+
+    heights: BigArray
+    denominator: int
+    signs: dict[int, int]
+    squared_distance: Fraction
+    letters: tuple[int, ...]
+    loose: tuple[int, ...]
+    flat_folds: frozenset[int] = frozenset()
+    flat_vertices: tuple[int, ...] = ()
+
+    @property
+    def complete(self) -> bool:
+        """Whether every fold is a mountain, a valley or flat."""
+        return self.letters.count(0) == len(self.flat_folds)
+
+
+@dataclass(frozen=True)
+class Curvatures:
+    """Integers low_v <= 2^`bits` * 2 * denominator^2 * K_v <= high_v of heights over a denominator.
+
+    `bends` are the fold functionals f_e of the integer heights.
+    """
+
+    bits: int
+    bends: BigArray
+    low: BigArray
+    high: BigArray
+
+
+def curvatures(sheet: Sheet, heights: BigArray, bits: int) -> Curvatures:
+    """Bounds of all curvature forms: 2 K_v = sum_w omega_vw (h_w - h_v), each term rounded down."""
+    folds = sheet.folds
+    i, j = folds.corners[:, 0], folds.corners[:, 1]
+    bends = folds.bends(heights)
+    terms = (bends * (heights[j] - heights[i]) << bits) // (folds.left * folds.right)
+    count = len(sheet.pattern.vertices)
+    low = np.array([0] * count, dtype=object)
+    degree = np.array([0] * count, dtype=object)
+    np.add.at(low, i, terms)
+    np.add.at(low, j, -terms - 1)  # -x >= -(floor(x) + 1)
+    np.add.at(degree, i, 1)
+    np.add.at(degree, j, 1)
+    return Curvatures(bits, bends, low, low + degree)
+
+
+def enclose(
+    sheet: Sheet, heights: BigArray, denominator: int, bits: int
+) -> Enclosure | tuple[int, ...]:
+    """The branches near rational heights, or the vertices at which the test fails.
+
+    *Theorem 5* (docs/branch.md, How far heights are from a branch). Let the boundary be convex, let
+    h' have the given rim heights and K_v(h') > 0 for all interior v, and let e_v be the nappe of h'
+    at v. Then K_v(h) = k_v has exactly one solution in the closed nappes e, and it satisfies
+
+        int |grad(h - h')|^2 <= sum_v m_v (sqrt K_v(h') - sqrt k_v)^2,  m_v = R^2 - |U_v - c|^2,
+
+    for every disk (c, R) that holds the sheet. A fold whose bend in h' is larger than gradients of
+    that size can undo is decided; a vertex with a decided fold is not flat, and if there is one at
+    every vertex, the solution is simple and its signs are e.
+
+    `heights` are integers over `denominator`, which must reproduce the rim exactly; `bits` is the
+    extra precision of the rounded divisions. Arithmetic is exact, or rounded in the safe direction.
+    A vertex is returned if K_v(h') > 0 or the side of h' could not be proved there.
+
+    Raises `ValueError` if the rim is not the one of the sheet or the boundary is not convex.
+    """
+    check_hypotheses(sheet, heights, denominator)
+    found = curvatures(sheet, heights, bits)
+    signs = nappes(sheet, found.bends)
+    failed = tuple(v for v in sheet.unknowns if found.low[v] <= 0 or not signs[v])
+    if failed:
+        return failed
+    distance = _squared_distance(sheet, found, denominator)
+    letters = _letters(sheet, found.bends, distance * denominator**2)
+    ends = sheet.folds.corners[np.array(letters, dtype=bool), :2]
+    decided = set(ends.ravel().tolist())
+    loose = tuple(v for v in sheet.poppable if v not in decided and v not in sheet.targets)
+    return Enclosure(heights, denominator, signs, distance, letters, loose)
+
+
+def check_hypotheses(sheet: Sheet, heights: BigArray, denominator: int) -> None:
+    """Raise `ValueError` unless the boundary is convex and the heights continue the rim."""
+    if not sheet.pattern.is_convex:
+        raise ValueError("the theorem needs a convex boundary")
+    if set(sheet.rim) != set(sheet.pattern.boundary) or any(
+        heights[v] * sheet.rim_denominator != height * denominator
+        for v, height in sheet.rim.items()
+    ):
+        raise ValueError("the heights do not continue the rim")
+
+
+def nappes(sheet: Sheet, bends: BigArray) -> dict[int, int]:
+    """The side of each vertex, 0 if not proved: the sign of -sum_j L_j omega_vj.
+
+    This is 2 K_v(t, h) for the round cone t, t_j - t_v = -L_j, which is timelike and points up. The
+    lengths are rounded to `_LENGTH_BITS` binary places and omega to as many below the largest.
+    """
+    folds = sheet.folds
+    lengths = np.array([isqrt(s << 2 * _LENGTH_BITS) for s in folds.squared_length], dtype=object)
+    areas = folds.left * folds.right
+    # omega is of the order of bends / areas: keep _LENGTH_BITS binary places of the smallest.
+    shift = max((int(c).bit_length() for c in areas), default=0) + _LENGTH_BITS
+    omega = (bends << shift) // areas
+    # |L omega - lengths omega| <= (lengths + 1) + |omega| + 1 in units of the last place.
+    terms, slack = lengths * omega, lengths + abs(omega) + 2
+    count = len(sheet.pattern.vertices)
+    total, error = (np.array([0] * count, dtype=object) for _ in range(2))
+    for end in (0, 1):
+        np.add.at(total, folds.corners[:, end], terms)
+        np.add.at(error, folds.corners[:, end], slack)
+    return {
+        v: 0 if abs(total[v]) <= error[v] else -1 if total[v] > 0 else 1 for v in sheet.unknowns
+    }
+
+
+def _squared_distance(sheet: Sheet, found: Curvatures, denominator: int) -> Fraction:
+    """sum_v m_v (sqrt K_v - sqrt k_v)^2 from above, by `off_target` where k_v is not 0."""
+    points = sheet.pattern.integer_vertices[0]
+    x, y = (min(p[a] for p in points) + max(p[a] for p in points) for a in (0, 1))
+
+    def squared(v: int) -> int:  # four times the squared distance from the middle (x / 2, y / 2)
+        return (2 * points[v][0] - x) ** 2 + (2 * points[v][1] - y) ** 2
+
+    radius = max(squared(b) for b in sheet.pattern.boundary)
+    unit = 2 * denominator**2 << found.bits
+    targets = sheet.targets
+    total = sum((radius - squared(v)) * found.high[v] for v in sheet.unknowns if v not in targets)
+    distance = Fraction(total, 4 * unit)
+    for v, target in targets.items():
+        bounds = (Fraction(bound[v], unit) for bound in (found.low, found.high))
+        distance += Fraction(radius - squared(v), 4) * off_target(bounds, target)
+    return distance
+
+
+def off_target(bounds: Iterable[Fraction], target: Fraction) -> Fraction:
+    """(sqrt K - sqrt k)^2 from above, for bounds of K and a target k > 0.
+
+    It is at most |K - k|, and at most (K - k)^2 / k.
+    """
+    off = max(abs(bound - target) for bound in bounds)
+    return min(off, off**2 / target)
+
+
+def _letters(sheet: Sheet, bends: BigArray, squared: Fraction) -> tuple[int, ...]:
+    """Signs of the bends that no change w with int |grad w|^2 <= squared can undo.
+
+    |omega_e(w)| L_e <= |g| + |g'| <= sqrt(squared (2/c + 2/c')) for the gradients g, g' of w on the
+    two faces, as c/2 |g|^2 + c'/2 |g'|^2 <= squared. With omega_e = f_e / (c c') the bend is safe
+    if f_e^2 L_e^2 > squared * 2 (c + c') c c'.
+    """
+    folds = sheet.folds
+    top, bottom = squared.numerator, squared.denominator
+    most = 2 * top * (folds.left + folds.right) * folds.left * folds.right
+    safe = bends * bends * folds.squared_length * bottom > most
+    return tuple((f > 0) - (f < 0) if ok else 0 for f, ok in zip(bends, safe, strict=True))
+
+
+def height_radius(sheet: Sheet, squared: Fraction) -> Fraction:
+    """A bound of |w| for every w with flat rim and int |grad w|^2 <= squared, with few digits.
+
+    Along a side of length L of a face of area c/2, w changes by at most L |grad w| <=
+    sqrt(2 L^2 / c) sqrt(squared), so that |w_v| is bounded by the shortest path from the rim. The
+    sums are floats: each has a relative error below (V + 3) 2^-52, which 2^-20 covers.
+    """
+    if not squared:
+        return Fraction(0)
+    folds = sheet.folds
+    widest = np.maximum(folds.left, folds.right)
+    costs = (2 * folds.squared_length / widest).astype(np.float64) ** 0.5
+    costs = np.maximum(costs, _LEAST_COST)
+    far = _distances(
+        len(sheet.pattern.vertices), folds.corners[:, :2], costs, sheet.pattern.boundary
+    )
+    reached = float(far[list(sheet.pattern.interior)].max(initial=0.0))
+    longest = Fraction(reached) * (1 + Fraction(1, 1 << 20))
+    return round_up(longest * root_above(squared))
+
+
+def _distances(
+    count: int, ends: IndexArray, costs: FloatArray, sources: Sequence[int]
+) -> FloatArray:
+    """The length of a shortest path to each vertex, by Bellman and Ford.
+
+    Not by SciPy, which takes longer to load than a small proof.
+    """
+    begin, end = np.concatenate([ends, ends[:, ::-1]]).T
+    far, nearer = np.full(count, np.inf), np.full(count, np.inf)
+    nearer[list(sources)] = 0.0
+    while not np.array_equal(far, nearer):
+        far = nearer.copy()
+        np.minimum.at(nearer, end, far[begin] + np.tile(costs, 2))
+    return far
+
+
+def root_above(value: Fraction) -> Fraction:
+    """A rational at least sqrt(value), relative error below 2^-30, for value >= 0."""
+    product = value.numerator * value.denominator
+    shift = max(0, 32 - product.bit_length() // 2)
+    return Fraction(isqrt(product << 2 * shift) + 1, value.denominator << shift)
+
+
+def round_up(value: Fraction) -> Fraction:
+    """The least multiple of a power of two with 24 binary digits that is at least value > 0."""
+    shift = 24 - value.numerator.bit_length() + value.denominator.bit_length()
+    if shift >= 0:
+        return Fraction(-((-value.numerator << shift) // value.denominator), 1 << shift)
+    return Fraction(-(-value.numerator // (value.denominator << -shift)) << -shift)

@@ -1,0 +1,100 @@
+"""Heights in high precision with every curvature slightly above its target; proposes only.
+
+The equations are those of `solve.numeric.sparse_newton`. Its float steps take exact bends and
+residuals here, so that each gains the digits of a float.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, log2
+
+import numpy as np
+
+from exactfold._support.arrays import BigArray, FloatArray
+from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.solve.certify.enclosure import curvatures
+from exactfold.solve.numeric.sparse_newton import Point, equations
+from exactfold.solve.numeric.sparse_sheet import FloatSheet, SingularError, ratio
+
+_ITERATIONS = 40
+_SPARE = 16
+
+
+@dataclass(frozen=True)
+class Heights:
+    """Integer heights of all vertices over `denominator`, a multiple of that of the rim.
+
+    `bits` is the extra precision of divisions with which `enclose` sees their curvature.
+    """
+
+    values: BigArray
+    denominator: int
+    bits: int = 0
+
+
+def exact(sheet: Sheet, floats: FloatSheet, x: FloatArray, places: int = 64) -> Heights:
+    """Float heights of the unknowns, and the rim, to 2^-places."""
+    result = _with_rim(sheet, places)
+    result.values[floats.unknowns] = _integers(x, places) * sheet.rim_denominator
+    return result
+
+
+def refine(
+    sheet: Sheet, floats: FloatSheet, signs: FloatArray, start: Heights, level: int
+) -> Heights | None:
+    """Newton on the nappes towards K_v = k_v + 2^-level, in units of the size of the sheet.
+
+    Residuals are exact; a step is the float solution of a linear system whose entries are floats of
+    exact bends, so that each gains the digits of a float. In the result K_v - k_v is between a half
+    and three halves of 2^-level; None if that was not reached.
+    """
+    inner, areas = floats.unknowns, sheet.folds.left * sheet.folds.right
+    square = sheet.size**2
+    omega = ratio(sheet.folds.bends(start.values) * square, areas * start.denominator)
+    # A rounding by 2^-places moves no K_v by more than a sixteenth of 2^-level.
+    places = level + 5 + max(0, ceil(log2(max(floats.row_sums(omega).max(), 1.0))))
+    at = _with_rim(sheet, places)
+    q = at.denominator
+    at.values[inner] = start.values[inner] * q // start.denominator
+    # The unit of `curvatures` is at most 2^-level-_SPARE.
+    bits = max(0, level + _SPARE + (square // q**2).bit_length() - (q**2 // square).bit_length())
+    unit = 2 * q**2 << bits
+    excess = unit // (square << level)
+    wanted = np.array([excess] * len(inner), dtype=object)
+    for k, v in enumerate(inner.tolist()):
+        if v in sheet.targets:
+            wanted[k] += int(unit * sheet.targets[v])
+    for _ in range(_ITERATIONS):
+        found = curvatures(sheet, at.values, bits)
+        rest = found.low[inner] - wanted
+        if (2 * abs(rest) <= excess).all():
+            return Heights(at.values, q, bits)
+        omega = ratio(found.bends * square, areas * q)
+        point = Point(
+            np.zeros(0), omega, floats.lines(omega), floats.scale * ratio(rest * square, unit)
+        )
+        value, of_lines, of_forms = equations(floats, point, signs)
+        try:
+            step = floats.solve(omega, of_lines, of_forms, value)
+        except SingularError:
+            return None
+        if not np.isfinite(step).all():
+            return None
+        at.values[inner] -= _integers(step, places) * sheet.rim_denominator
+    return None
+
+
+def _with_rim(sheet: Sheet, places: int) -> Heights:
+    values = np.array([0] * len(sheet.pattern.vertices), dtype=object)
+    for v, height in sheet.rim.items():
+        values[v] = height << places
+    return Heights(values, sheet.rim_denominator << places)
+
+
+def _integers(x: FloatArray, places: int) -> BigArray:
+    """The floats times 2^places, rounded down, for any places."""
+    pairs = (value.as_integer_ratio() for value in x.tolist())
+    if places >= 0:
+        return np.array([(p << places) // q for p, q in pairs], dtype=object)
+    return np.array([p // (q << -places) for p, q in pairs], dtype=object)

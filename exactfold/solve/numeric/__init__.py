@@ -1,0 +1,1 @@
+"""Candidates for the branches, in floating point; nothing here is proved."""

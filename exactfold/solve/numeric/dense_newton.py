@@ -1,0 +1,348 @@
+r"""Newton's method on the nappes: one equation system for each vector of vertex signs.
+
+With l_v and the positive semidefinite N_v = l_v^2 - K_v = |A_v h|^2 of the popping homotopy,
+K_v = 0 with vertex sign e_v says l_v = e_v |A_v h|. For given boundary heights and signs e put
+
+    g_v(h) = l_v(h) - e_v |A_v h|    for every interior vertex v.
+
+*g is a homeomorphism of R^n with Lipschitz inverse* (docs/mathematics.md, Nappes), so that there is
+one zero for each e, and Newton's steps are defined wherever g is differentiable. A zero where a
+star is flat, a multiple root of K = 0, is no worse conditioned than others. Floating point: nothing
+here is proved.
+
+A block of sign vectors is solved at once by dense arrays, which takes a fraction of the time of one
+after the other; `sparse_newton` is for one sign vector of a sheet of any size, and `refined_newton`
+for ends that doubles do not tell apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from operator import mul
+
+import numpy as np
+
+from exactfold._support.arrays import BoolArray, FloatArray
+from exactfold.exact.linalg import integer_squares
+from exactfold.exact.numbers import over_common_denominator
+from exactfold.rigidity.curvature import curvature_form
+from exactfold.rigidity.equations.branch_system import Chart
+from exactfold.rigidity.equations.gauge import Gauge
+from exactfold.rigidity.timelike import round_cone
+from exactfold.solve.numeric.linear_start import start_size
+
+Row = tuple[Fraction, ...]
+
+_ITERATIONS = 100
+_HALVINGS = 40
+_DECREASE = 0.1
+_CONVERGED = 1e-13
+_NOISE, _RESIDUAL = 1e-14, 1e-15
+_FLAT = 1e-10
+_COLD = 64
+_CHUNK = 256
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Approximate ends, one row a sign vector: `points` in the chart and which ones `converged`.
+
+    `steps` counts the Newton steps of all rows together.
+    """
+
+    points: FloatArray
+    converged: BoolArray
+    steps: int
+
+
+@dataclass(frozen=True)
+class Nappe:
+    """l_v and A_v of one vertex as exact rows on (x, 1): N_v = sum of weight * (row . (x, 1))^2.
+
+    A row is a tuple of integers and their common denominator, a weight a pair of integers whose
+    quotient it is: these are long, and hardly ever needed in lowest terms.
+    """
+
+    over_line: tuple[tuple[int, ...], int]
+    over_squares: tuple[tuple[tuple[int, int], tuple[tuple[int, ...], int]], ...]
+
+    @cached_property
+    def line(self) -> Row:
+        """l_v as a row of fractions."""
+        row, below = self.over_line
+        return tuple(Fraction(c, below) for c in row)
+
+    @cached_property
+    def squares(self) -> tuple[tuple[Fraction, Row], ...]:
+        """Weights and rows as fractions."""
+        return tuple(
+            (Fraction(*weight), tuple(Fraction(c, below) for c in row))
+            for weight, (row, below) in self.over_squares
+        )
+
+    @property
+    def float_line(self) -> list[float]:
+        """l_v, each entry rounded once."""
+        row, below = self.over_line
+        return [c / below for c in row]
+
+    @property
+    def float_root(self) -> list[list[float]]:
+        """A_v: the rows times the roots of their weights."""
+        return [
+            [(over / under) ** 0.5 * (c / below) for c in row]
+            for (over, under), (row, below) in self.over_squares
+        ]
+
+    @property
+    def form(self) -> FloatArray:
+        """l_v^2 - N_v as a matrix on (x, 1), each entry rounded once: K_v, scaled, minus k_v."""
+        terms = [(Fraction(1), self.line), *((-weight, row) for weight, row in self.squares)]
+        places = sorted({k for _, row in terms for k, c in enumerate(row) if c})
+        matrix = np.zeros((len(self.line), len(self.line)))
+        for i in places:
+            for j in places:
+                matrix[i, j] = float(sum((w * row[i] * row[j] for w, row in terms), Fraction(0)))
+        return matrix
+
+
+def sign_vectors(first: int, count: int, size: int) -> FloatArray:
+    """Sign vectors number `first`, ...: bit k of the number is set where sign k is -1.
+
+    >>> sign_vectors(1, 2, 2).tolist()
+    [[-1.0, 1.0], [1.0, -1.0]]
+    """
+    bits = (np.arange(first, first + count)[:, None] >> np.arange(size)) & 1
+    return np.where(bits == 0, 1.0, -1.0)
+
+
+@dataclass(frozen=True)
+class NappeSystem:
+    """The equations g = 0 of a pattern with four boundary vertices, for all sign vectors.
+
+    Unknowns are the heights of `gauge.unknowns`, the rim having those of the gauge; ends are given
+    as points of `chart`. A reflex corner is the last unknown, with the equation
+    l_r = (N_r + k)^(1/2), k its given curvature, that is K_r = k in the closed sheet.
+    """
+
+    chart: Chart
+
+    @cached_property
+    def gauge(self) -> Gauge:
+        """The gauge of the sheet."""
+        return Gauge.of(self.chart.branch_system.pattern)
+
+    @cached_property
+    def nappes(self) -> tuple[Nappe, ...]:
+        """Exact data of every unknown's vertex, scaled so that l_v has coefficient 1 at the hub.
+
+        With K_v = M / d, a cone t and p = M t in integers, l_v is p . h over its coefficient p_v at
+        the hub, and p_v^2 N_v = (p . h)^2 - (t . p) h^T M h.
+        """
+        gauge = self.gauge
+        size = len(gauge.unknowns) + 1
+        heights, unit = over_common_denominator(gauge.rim.values())
+        lift = {v: (k, unit) for k, v in enumerate(gauge.unknowns)}
+        lift |= {v: (size - 1, h) for v, h in zip(gauge.rim, heights, strict=True) if h}
+        found = []
+        for v in gauge.unknowns:
+            form, cone = curvature_form(gauge.sheet, v), round_cone(gauge.sheet, v)
+            t, _ = over_common_denominator(cone[u] for u in form.labels)
+            p = [sum(map(mul, row, t)) for row in form.integers]
+            top, hub = sum(map(mul, t, p)), p[form.labels.index(v)]
+            rest = [
+                [a * b - top * k for b, k in zip(p, row, strict=True)]
+                for a, row in zip(p, form.integers, strict=True)
+            ]
+            places = [lift.get(u) for u in form.labels]
+            squares = [
+                ((lead, before * hub * hub), (_lifted(row, places, size), lead * unit))
+                for lead, before, row in integer_squares(rest)
+            ]
+            if v == gauge.corner:
+                level = gauge.corner_curvature * top * form.denominator / (hub * hub)
+                last = tuple(int(k == size - 1) for k in range(size))
+                squares.append((level.as_integer_ratio(), (last, 1)))
+            found.append(Nappe((_lifted(p, places, size), hub * unit), tuple(squares)))
+        return tuple(found)
+
+    @cached_property
+    def lines(self) -> FloatArray:
+        """All l_v on (x, 1), one row each."""
+        return np.array([nappe.float_line for nappe in self.nappes])
+
+    @cached_property
+    def _roots(self) -> list[FloatArray]:
+        """A_v for every v, one row a square."""
+        return [np.array(nappe.float_root) for nappe in self.nappes]
+
+    @cached_property
+    def _stacked(self) -> FloatArray:
+        """All A_v below each other."""
+        return np.vstack(self._roots)
+
+    @cached_property
+    def _owners(self) -> FloatArray:
+        """One column for every v: 1 at the squares of v."""
+        return np.repeat(np.eye(len(self.nappes)), [len(a) for a in self._roots], axis=0)
+
+    def full_signs(self, signs: FloatArray) -> FloatArray:
+        """The signs of all unknowns: a reflex corner pops up."""
+        missing = len(self.gauge.unknowns) - signs.shape[1]
+        return np.hstack([signs, np.ones((len(signs), missing))])
+
+    def ends(self, signs: FloatArray) -> Ends:
+        """The zero of g for every row of `signs` (in the order of the interior vertices).
+
+        Damped Newton from the linear system l_v = e_v c. Rows that have not converged are not known
+        to have no zero (each has one if the boundary is convex or its notch closed); their last
+        point is returned.
+
+        >>> from exactfold.pattern.families import single_vertex
+        >>> from exactfold.rigidity.equations.branch_system import chamber_chart
+        >>> system = NappeSystem(chamber_chart(single_vertex(4)))
+        >>> found = system.ends(sign_vectors(0, 2, 1))
+        >>> found.points.shape, bool(found.converged.all())
+        ((2, 1), True)
+        """
+        return self._ends(*self.unknowns(self.full_signs(signs)))
+
+    def ends_of_block(self, first: int, count: int) -> Ends:
+        """The same for the sign vectors number `first` to `first + count - 1`, in fewer steps.
+
+        `count` is a power of two and divides `first`. Ends for the first few are found from the
+        linear start. An end with one more bit starts from that without it, x(r), moved as that bit
+        moved the end of an earlier row: x(r) + x(q + bit) - x(q), with q = r without its top bit.
+        """
+        e = self.full_signs(sign_vectors(first, count, self.chart.system.size))
+        x, converged = np.empty_like(e), np.zeros(count, dtype=bool)
+        bit = min(_COLD, count)
+        x[:bit], converged[:bit], steps = self.unknowns(e[:bit])
+        while bit < count:
+            low = 0
+            while low < bit:
+                high = min(low + _CHUNK, max(2 * low, _COLD), bit)
+                start = x[low:high].copy()
+                if low:
+                    top = 1 << (low.bit_length() - 1)
+                    start += x[bit + low - top : bit + high - top] - x[low - top : high - top]
+                rows = slice(bit + low, bit + high)
+                x[rows], converged[rows], more = self._newton(start, e[rows])
+                steps, low = steps + more, high
+            bit *= 2
+        return self._ends(x, converged, steps)
+
+    def _ends(self, x: FloatArray, converged: BoolArray, steps: int) -> Ends:
+        with np.errstate(all="ignore"):
+            points = self.in_chart(x)
+        return Ends(points, converged & np.isfinite(points).all(axis=1), steps)
+
+    def flat_at_end(self, signs: Sequence[int]) -> tuple[int, ...]:
+        """The places of `signs` whose vertices look flat in doubles at the end for these signs."""
+        e = self.full_signs(np.array([signs], dtype=np.float64))
+        x, _, _ = self.unknowns(e)
+        small = self._values(x, e)[2][0] < _FLAT * (1.0 + np.abs(x).max())
+        return tuple(np.flatnonzero(small).tolist())
+
+    @cached_property
+    def rest(self) -> FloatArray:
+        """The heights at which all l_v are 0, for a linear start."""
+        n = len(self.lines)
+        return np.asarray(np.linalg.solve(self.lines[:, :n], -self.lines[:, n]))
+
+    def unknowns(self, e: FloatArray) -> tuple[FloatArray, BoolArray, int]:
+        """The same before scaling to the chart, for signs of all unknowns."""
+        n = e.shape[1]
+        lines = self.lines
+        right = e * start_size(self.rest) - lines[:, n]
+        start = np.linalg.solve(lines[:, :n], right.T).T
+        return self._newton(np.array(start, dtype=np.float64), e)
+
+    def _newton(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, BoolArray, int]:
+        """Damped Newton from given points, which are overwritten."""
+        converged, steps = np.zeros(len(x), dtype=bool), 0
+        live = np.arange(len(x))
+        with np.errstate(all="ignore"):
+            for _ in range(_ITERATIONS):
+                steps += live.size
+                x[live], done, stuck = self._step(x[live], e[live])
+                converged[live[done]] = True
+                live = live[~done & ~stuck]
+                if not live.size:
+                    break
+        return x, converged, steps
+
+    def _values(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """g, the products A h and the norms |A_v h|."""
+        z = np.hstack([x, np.ones((len(x), 1))])
+        products = z @ self._stacked.T
+        norms = np.sqrt((products * products) @ self._owners)
+        return z @ self.lines.T - e * norms, products, norms
+
+    def _step(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, BoolArray, BoolArray]:
+        """One damped step of every row: the new points, which converged and which are stuck."""
+        n = x.shape[1]
+        g, products, norms = self._values(x, e)
+        weights = products * ((-e / np.maximum(norms, 1e-300)) @ self._owners.T)
+        jacobian = np.empty((n, len(x), n))  # vertex first: each is written in one stroke
+        column = 0
+        for v, root in enumerate(self._roots):
+            np.matmul(weights[:, column : column + len(root)], root[:, :n], out=jacobian[v])
+            jacobian[v] += self.lines[v, :n]
+            column += len(root)
+        change = solve_each(jacobian.transpose(1, 0, 2), g)
+        before = np.abs(g).max(axis=1)
+        length = np.ones(len(x))
+        moved = x - change
+        after = np.abs(self._values(moved, e)[0]).max(axis=1)
+        size = 1.0 + np.abs(x).max(axis=1)
+        noise = _NOISE * size
+        bad = np.flatnonzero(~(after <= (1 - _DECREASE) * before) & ~(after <= noise))
+        for _ in range(_HALVINGS):
+            if not bad.size:
+                break
+            length[bad] /= 2
+            moved[bad] = x[bad] - length[bad, None] * change[bad]
+            after[bad] = np.abs(self._values(moved[bad], e[bad])[0]).max(axis=1)
+            enough = after[bad] <= (1 - _DECREASE * length[bad]) * before[bad]
+            bad = bad[~enough & ~(after[bad] <= noise[bad])]
+        stuck = np.zeros(len(x), dtype=bool)
+        stuck[bad] = True
+        moved[bad] = x[bad]
+        small = np.abs(change).max(axis=1) <= _CONVERGED * size
+        return moved, (length == 1.0) & (small | (after <= _RESIDUAL * size)) & ~stuck, stuck
+
+    def in_chart(self, x: FloatArray) -> FloatArray:
+        """Points of the chart: with a reflex corner, heights scaled to its functional."""
+        if self.gauge.corner is None:
+            return x
+        weights = np.array([float(self.chart.functional.get(v, 0)) for v in self.gauge.unknowns])
+        return np.asarray((x / (x @ weights)[:, None])[:, :-1])
+
+
+def solve_each(matrices: FloatArray, right: FloatArray) -> FloatArray:
+    """Solutions of m systems of shape (m, n, n), (m, n); not finite where singular."""
+    try:
+        return np.asarray(np.linalg.solve(matrices, right[:, :, None])[:, :, 0])
+    except np.linalg.LinAlgError:
+        if len(matrices) == 1:
+            return np.full_like(right, np.nan)
+        half = len(matrices) // 2
+        return np.concatenate(
+            [solve_each(matrices[:half], right[:half]), solve_each(matrices[half:], right[half:])]
+        )
+
+
+def _lifted(
+    row: Sequence[int], places: Sequence[tuple[int, int] | None], size: int
+) -> tuple[int, ...]:
+    """A row over a star as a row on (x, 1), with heights in units; others have height 0."""
+    full = [0] * size
+    for value, found in zip(row, places, strict=True):
+        if found is not None:
+            place, height = found
+            full[place] += height * value
+    return tuple(full)

@@ -1,0 +1,1 @@
+"""Angles between the branches of random squares, and what the paper says of them."""

@@ -1,0 +1,186 @@
+"""Angles between lines, counted in bins with proof that each pair is in its bin.
+
+Most pairs are counted by a table: |cos| falls into one of many cells of equal width, and nearly all
+cells are certainly within one bin. Pairs in other cells are compared with the edges of the bins one
+by one, and those too near an edge for their error bounds are computed anew from sharper roots.
+Products are made tile by tile: memory is bounded whatever the number of pairs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from exactfold._support.arrays import BoolArray, FloatArray, IntArray
+from exactfold.studies.running.lines import Lines
+
+BINS = 64
+"""Bins of width pi / 128 from 0, parallel, to pi / 2, orthogonal."""
+
+_CELLS = 1 << 14
+"""Cells of |cos| from 0 to 1, a power of two: telling the cell of a number rounds nothing."""
+_ROWS, _COLUMNS = 128, 2048
+_PENDING = 1 << 14
+_U = 2.0**-53
+_UP = 1.0 + 2.0**-20
+_EDGES: FloatArray = np.cos(np.arange(BINS - 1, 0, -1) * (np.pi / 2 / BINS))
+"""Where bins meet, rising, each within 5 u: |cos| above k of these is in bin BINS - 1 - k."""
+
+
+@dataclass(frozen=True)
+class PairAngles:
+    """How many pairs of different branches have an angle in each bin.
+
+    `unclear` of these may be in other bins, as bounds did not tell. `mean_square` approximates
+    the mean of cos^2 of the angle, 0 if there are no pairs.
+    """
+
+    bins: tuple[int, ...]
+    unclear: int
+    mean_square: float
+
+
+def pair_angles(lines: Lines) -> PairAngles:
+    """The angles between all pairs of branches, as lines in the space of fold angles.
+
+    Let u and v be computed directions of F numbers, off by at most e_u and e_v, and of length 1 but
+    for (F + 4) u. Then |u . v| as computed is within t = e_u + e_v + (F + 16) u of the true cosine:
+    F u and a little is the error of a dot product in any order of summation (Higham, Accuracy and
+    Stability of Numerical Algorithms, section 3.1). A pair is in its bin if no edge is within t of
+    it; where one is, u and v are computed anew from sharper roots.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> found = pair_angles(Lines.of(single_vertex(4)))
+    >>> sum(found.bins), found.bins.index(1), found.unclear
+    (1, 63, 0)
+    """
+    directions = lines.directions
+    count = len(directions)
+    if count < 2:
+        return PairAngles((0,) * BINS, 0, 0.0)
+    tally = _Tally(lines)
+    for tile in _tiles(directions):
+        tally.add(tile)
+    bins, unclear = tally.closed()
+    gram = directions.T @ directions
+    square = (float((gram**2).sum()) - count) / (count * (count - 1))
+    return PairAngles(tuple(bins.tolist()), unclear, square)
+
+
+@dataclass(frozen=True)
+class _Tile:
+    """Some pairs (row, column), as numbers row * width + column from a corner, and their |cos|.
+
+    `scaled` is |cos| times `_CELLS`; `numbers` is None if all pairs of the tile are there.
+    """
+
+    corner: tuple[int, int]
+    width: int
+    scaled: FloatArray
+    numbers: IntArray | None
+
+    def pairs(self, places: IntArray) -> tuple[IntArray, IntArray]:
+        """The rows and columns at some places of `scaled`."""
+        numbers = places if self.numbers is None else self.numbers[places]
+        rows, columns = np.divmod(numbers, self.width)
+        return rows + self.corner[0], columns + self.corner[1]
+
+
+def _tiles(directions: FloatArray) -> Iterator[_Tile]:
+    """All pairs of different rows, each once; a tile is overwritten by the next."""
+    count = len(directions)
+    larger = directions * _CELLS  # a power of two: products are those of `directions`, scaled
+    space = np.empty(_ROWS * _COLUMNS)
+    for top in range(0, count, _ROWS):
+        rows = larger[top : top + _ROWS]
+        bottom = top + len(rows)
+        edges = [top, *range(bottom, count, _COLUMNS), count]
+        for left, right in pairwise(edges):
+            width = right - left
+            products = space[: len(rows) * width].reshape(len(rows), width)
+            np.matmul(rows, directions[left:right].T, out=products)
+            flat = np.abs(products, out=products).ravel()
+            if left == top:
+                later = np.flatnonzero(np.triu(np.ones_like(products, dtype=bool), 1))
+                yield _Tile((top, left), width, flat[later], later)
+            else:
+                yield _Tile((top, left), width, flat, None)
+
+
+class _Tally:
+    """Pairs by cell and by bin, and those that sharper roots have to decide."""
+
+    def __init__(self, lines: Lines) -> None:
+        self.lines = lines
+        self.cells: IntArray = np.zeros(_CELLS + 1, dtype=np.int64)
+        self.bins: IntArray = np.zeros(BINS, dtype=np.int64)
+        self.unclear = 0
+        self._pending: list[IntArray] = []
+        self._places = np.empty(_ROWS * _COLUMNS, dtype=np.int64)
+        self._unsure = _unsure(_reach(lines.directions, *[lines.errors.max(keepdims=True)] * 2))
+
+    def add(self, tile: _Tile) -> None:
+        """Count the pairs of a tile, but for those that are put off."""
+        places = self._places[: tile.scaled.size]
+        np.copyto(places, tile.scaled, casting="unsafe")
+        self.cells += np.bincount(places, minlength=_CELLS + 1)
+        near = np.flatnonzero(self._unsure[places])
+        rows, columns = tile.pairs(near)
+        errors = self.lines.errors
+        reach = _reach(self.lines.directions, errors[rows], errors[columns])
+        bins, clear = _bins(tile.scaled[near] / _CELLS, reach)
+        self.bins += np.bincount(bins[clear], minlength=BINS)
+        if not clear.all():
+            self._pending.append(np.array([rows[~clear], columns[~clear]]))
+            if sum(pairs.shape[1] for pairs in self._pending) > _PENDING:
+                self._settle()
+
+    def closed(self) -> tuple[IntArray, int]:
+        """All pairs by bin, and how many of them are unclear."""
+        self._settle()
+        lower = np.arange(_CELLS + 1) / _CELLS
+        sure = ~self._unsure
+        np.add.at(self.bins, _bins(lower, np.zeros(1))[0][sure], self.cells[sure])
+        return self.bins, self.unclear
+
+    def _settle(self) -> None:
+        """Decide what was put off, from sharper roots."""
+        if not self._pending:
+            return
+        pairs = np.concatenate(self._pending, axis=1)
+        self._pending.clear()
+        which, places = np.unique(pairs, return_inverse=True)
+        directions, errors = self.lines.sharper(which.tolist())
+        i, j = places.reshape(pairs.shape)
+        cosines = np.abs((directions[i] * directions[j]).sum(axis=1))
+        bins, clear = _bins(cosines, _reach(directions, errors[i], errors[j]))
+        self.bins += np.bincount(bins, minlength=BINS)
+        self.unclear += int((~clear).sum())
+
+
+def _reach(directions: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:
+    """t of `pair_angles` for directions with these errors."""
+    return np.asarray((first + second) * _UP + (directions.shape[1] + 16) * _U)
+
+
+def _unsure(reach: FloatArray) -> BoolArray:
+    """The cells with numbers that may be in two bins, if they are off by up to `reach`."""
+    first, last = (
+        np.clip(np.floor((_EDGES + side * reach) * _CELLS), 0, _CELLS).astype(np.int64)
+        for side in (-1, 1)
+    )
+    steps = np.zeros(_CELLS + 2, dtype=np.int64)
+    np.add.at(steps, first, 1)
+    np.add.at(steps, last + 1, -1)
+    return np.asarray(np.cumsum(steps)[:-1] > 0)
+
+
+def _bins(cosines: FloatArray, reach: FloatArray) -> tuple[IntArray, BoolArray]:
+    """The bins of numbers, and which of them no edge is within `reach` of."""
+    above = np.searchsorted(_EDGES, cosines)
+    padded = np.concatenate([[-np.inf], _EDGES, [np.inf]])
+    gaps = np.minimum(cosines - padded[above], padded[above + 1] - cosines)
+    return BINS - 1 - above, np.asarray(gaps > reach)

@@ -1,0 +1,327 @@
+"""True motions of random squares: loops through the flat state, and what ends each motion first.
+
+A row is one random square. All its half-branches are followed, with proof, until they come back to
+the flat state (docs/motions.md), and all its branches until two faces touch (docs/contacts.md).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.counting.find import BranchFinder
+from exactfold.branches.values.branch import Branch
+from exactfold.errors import NotFollowedError
+from exactfold.motion.following import follow
+from exactfold.motion.loops.matching import find_loops
+from exactfold.motion.loops.proofs import Loop
+from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.proving import MotionProof, prove
+from exactfold.motion.tubes.arclength import in_floats
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.solve.numeric.dense_newton import sign_vectors
+from exactfold.studies.fans import fan
+from exactfold.studies.running.squares import square_of, square_recipes
+from exactfold.studies.running.statistics import percent
+from exactfold.studies.running.study import Recipe, Row, Study, StudyFigure, StudyTable
+from exactfold.studies.running.tallies import draw_distributions, interior_of, tallied
+from exactfold.studies.triangulations import reverse_moves, triangulation
+
+ENDS: Final = ("flat-fold", "contact", "node", "open")
+"""What ends a motion: a fold that closes, faces that touch, a node before that, or not proved."""
+
+
+def row(recipe: Recipe) -> dict[str, Any]:
+    """The loops and first contacts of one random square.
+
+    `rule`: the place of the sign that flips on all loops by Theorem 2 of docs/matching.md, the
+    number of vertices for the boundary saddle, where the square is a fan and there is no tie; `h1`:
+    whether it is H1. `loops`: for each loop of a pair of mirror images the places of the signs that
+    `flipped`, how many `nodes` it passes and how many `stars` are flat at them, bounds of its
+    `length` in sides of the square, how many folds wind (`winding`), and how many of these are at
+    the vertex that flipped, if it is one vertex (`winding_there`); None if that is not proved.
+    `contacts`: for each branch, named by its `signs`, what ends its motion (`ENDS`), bounds of its
+    length until then (`time`), and how many corners the two faces share that meet (`shared`).
+    """
+    pattern = square_of(recipe)
+    found = find_loops(pattern)
+    foldable = pattern.foldable_vertices
+    contacts = _contacts(pattern)
+    proved = found.status is PROVED and all(contact["end"] != "open" for contact in contacts)
+    known = fan(pattern)
+    return {
+        "status": str(PROVED if proved else UNDECIDED),
+        "half_branches": 2 ** (len(foldable) + 1),
+        "rigid": pattern.Vt,
+        "h1": reverse_moves(triangulation(pattern.triangles)) == pattern.Vi,
+        "rule": None if known is None else known.flipped(),
+        "loops": [_described(loop, loop.target, foldable) for loop in found.loops if loop.target],
+        "contacts": contacts,
+    }
+
+
+def _described(loop: Loop, target: HalfBranch, foldable: Sequence[int]) -> dict[str, Any]:
+    """What the row says of a loop."""
+    ends = [(*half.vertex_signs, half.saddle) for half in (loop.source, target)]
+    flipped = [k for k, (a, b) in enumerate(zip(*ends, strict=True)) if a != b]
+    winding = [fold.fold for fold in loop.folds if fold.turns]
+    there = None
+    if loop.folds and len(flipped) == 1 and flipped[0] < len(foldable):
+        there = sum(foldable[flipped[0]] in fold for fold in winding)
+    low, high = in_floats(loop.length)
+    return {
+        "flipped": flipped,
+        "nodes": len(loop.through),
+        "stars": sum(map(len, loop.through)),
+        "length": [low, high],
+        "winding": len(winding) if loop.folds else None,
+        "winding_there": there,
+    }
+
+
+def _contacts(pattern: CreasePattern) -> list[dict[str, Any]]:
+    """What ends the motion of each branch first, proved."""
+    finder = BranchFinder(pattern)
+    size = len(pattern.foldable_vertices)
+    found = []
+    for signs in sign_vectors(0, 1 << size, size).tolist():
+        branch = finder.find(dict(zip(finder.poppable, signs, strict=True)))
+        proof = _proof_of(branch) if branch.status is PROVED else None
+        end, time, shared = "open", None, None
+        if proof is not None and proof.status is PROVED and proof.contact is not None:
+            event = proof.contact.event
+            if event is not None:
+                end, time = event.kind, list(event.time)
+                shared = len(set.intersection(*map(set, event.faces)))
+            elif proof.node is not None:
+                end, time = "node", list(in_floats(proof.length))
+        found.append({"signs": branch.sign_text, "end": end, "time": time, "shared": shared})
+    return found
+
+
+def _proof_of(branch: Branch) -> MotionProof | None:
+    """The proof of the motion along a branch until its end; None if it is not followed."""
+    try:
+        return prove(follow(branch, frames=2))
+    except NotFollowedError:  # a vertex is flat on it
+        return None
+
+
+@dataclass
+class _Tally:
+    """What the rows of one size add up to."""
+
+    squares: int = 0
+    proved: int = 0
+    half_branches: int = 0
+    alike: int = 0
+    loops: list[Row] = field(default_factory=list)
+    h1: list[Row] = field(default_factory=list)
+    as_the_rule: list[bool] = field(default_factory=list)
+    ends: Counter[str] = field(default_factory=Counter)
+    shared: Counter[int] = field(default_factory=Counter)
+    times: list[tuple[float, float]] = field(default_factory=list)
+
+    def add(self, row: Row) -> None:
+        """One more row."""
+        self.squares += 1
+        self.proved += row["status"] == str(PROVED)
+        self.half_branches += row["half_branches"]
+        loops = row["loops"]
+        self.loops += loops
+        if row["h1"]:
+            self.h1 += loops
+        if row["rule"] is not None:
+            self.as_the_rule += [loop["flipped"] == [row["rule"]] for loop in loops]
+        self.alike += len({tuple(loop["flipped"]) for loop in loops}) == 1
+        for contact in row["contacts"]:
+            self.ends[contact["end"]] += 1
+            if contact["end"] == "contact":
+                self.shared[contact["shared"]] += 1
+            if contact["end"] in ("contact", "flat-fold"):
+                self.times.append(tuple(contact["time"]))
+
+    @property
+    def plain(self) -> list[Row]:
+        """The loops without nodes."""
+        return [loop for loop in self.loops if not loop["nodes"]]
+
+    @property
+    def lengths(self) -> list[tuple[float, float]]:
+        """Bounds of the lengths of the loops."""
+        return [(loop["length"][0], loop["length"][1]) for loop in self.loops]
+
+
+def _flips(loops: Iterable[Row], number: int) -> int:
+    """How many loops flip so many signs."""
+    return sum(len(loop["flipped"]) == number for loop in loops)
+
+
+def tables(rows: Iterable[Row]) -> list[StudyTable]:
+    """Loops by the signs that flip, the rules of the matching, lengths, and first contacts."""
+    tallies = tallied(rows, _Tally, interior_of)
+    return [_loops(tallies), _rules(tallies), _spans(tallies), _ends(tallies)]
+
+
+def _loops(tallies: dict[int, _Tally]) -> StudyTable:
+    lines = tuple(
+        (
+            n,
+            t.squares,
+            t.proved,
+            t.half_branches // 4,
+            len(t.loops),
+            len(t.loops) - len(t.plain),
+            *(_flips(t.loops, number) for number in (1, 2, 3)),
+            sum(len(loop["flipped"]) > 3 for loop in t.loops),
+        )
+        for n, t in tallies.items()
+    )
+    return StudyTable(
+        "loops",
+        "Loops through the flat state, by how many signs their ends differ in",
+        ("Vi", "squares", "proved", "loops", "followed", "with nodes", "1", "2", "3", "4+"),
+        lines,
+        (
+            "One loop of each pair of mirror images; the signs are those of the vertices and of "
+            "the boundary saddle. A square is proved if all its loops and first contacts are.",
+        ),
+    )
+
+
+def _rules(tallies: dict[int, _Tally]) -> StudyTable:
+    """How many loops follow each rule, of those it is about."""
+
+    def share(kept: Iterable[bool]) -> str | None:
+        every = list(kept)
+        return f"{sum(every)}/{len(every)}" if every else None
+
+    lines = tuple(
+        (
+            n,
+            share((len(loop["flipped"]) + loop["stars"]) % 2 == 1 for loop in t.loops),
+            share(t.as_the_rule),
+            share(len(loop["flipped"]) == 1 and not loop["nodes"] for loop in t.h1),
+            share(len(loop["flipped"]) == 1 for loop in t.plain),
+            share(loop["flipped"] == [n] for loop in t.loops if len(loop["flipped"]) == 1),
+            share(
+                loop["winding_there"] == 2 for loop in t.loops if loop["winding_there"] is not None
+            ),
+            f"{t.alike}/{t.squares}",
+        )
+        for n, t in tallies.items()
+    )
+    return StudyTable(
+        "rules",
+        "Which half-branches are joined: how many loops follow each rule",
+        ("Vi", "parity", "fans", "H1", "plain", "saddle", "two wind", "all alike"),
+        lines,
+        (
+            "Theorems of docs/matching.md: parity, the number of signs that flip is odd with that "
+            "of the flat stars passed added (Theorem 1a); fans, the one sign of Theorem 2 flips; "
+            "H1, one sign flips and there are no nodes (Theorem 3).",
+            "No theorems: plain, one sign flips on a loop without nodes; saddle, if one sign "
+            "flips, it is that of the saddle; two wind, if one vertex sign and no other flips, "
+            "two folds at this vertex wind; all alike, the same signs flip on all loops of a "
+            "square.",
+        ),
+    )
+
+
+def _spans(tallies: dict[int, _Tally]) -> StudyTable:
+    def span(bounds: Sequence[tuple[float, float]]) -> tuple[str | None, ...]:
+        if not bounds:
+            return None, None, None
+        middle = sorted(low for low, _ in bounds)[(len(bounds) - 1) // 2]
+        least, most = min(low for low, _ in bounds), max(high for _, high in bounds)
+        return f"{least:.4f}", f"{middle:.4f}", f"{most:.4f}"
+
+    return StudyTable(
+        "lengths",
+        "Lengths of loops, and of motions until the first contact",
+        ("Vi", "shortest", "median", "longest", "first contact", "median", "last"),
+        tuple((n, *span(t.lengths), *span(t.times)) for n, t in tallies.items()),
+        (
+            "In the space of all vertices, in sides of the square, rounded. A first contact is a "
+            "fold that closes or two faces that touch, before a node.",
+        ),
+    )
+
+
+def _ends(tallies: dict[int, _Tally]) -> StudyTable:
+    lines = tuple(
+        (
+            n,
+            sum(t.ends.values()),
+            t.ends["flat-fold"],
+            percent(t.ends["flat-fold"] / sum(t.ends.values())),
+            t.shared[1],
+            t.shared[0],
+            t.ends["node"],
+            t.ends["open"],
+        )
+        for n, t in tallies.items()
+    )
+    return StudyTable(
+        "ends",
+        "What ends the motions of branches first",
+        ("Vi", "branches", "a fold closes", "%", "one corner", "apart", "node", "not proved"),
+        lines,
+        (
+            "Faces are without thickness. one corner, apart: two faces touch that share one "
+            "corner, or none; node: the motion comes to a node before anything touches.",
+        ),
+    )
+
+
+def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
+    """The distributions of the lengths of loops, and of motions until the first contact."""
+    tallies = tallied(rows, _Tally, interior_of)
+    spans = {n: [low for low, _ in t.lengths] for n, t in tallies.items() if t.lengths}
+    times = {n: [low for low, _ in t.times] for n, t in tallies.items() if t.times}
+
+    def lengths(axes: Any) -> None:
+        draw_distributions(axes, spans)
+        axes.set_xlabel("length of a loop, in sides of the square")
+        axes.set_ylabel("loops that are shorter (%)")
+
+    def contacts(axes: Any) -> None:
+        draw_distributions(axes, times)
+        axes.set_xlabel("length until the first contact, in sides of the square")
+        axes.set_ylabel("branches in contact (%)")
+
+    loops = [
+        StudyFigure(
+            "lengths",
+            "Lengths of loops",
+            "The figure shows the distribution of the lengths of loops of true motions through the "
+            "flat state of random squares, in the space of all vertices.",
+            lengths,
+        ),
+    ]
+    ends = [
+        StudyFigure(
+            "contacts",
+            "First contacts",
+            "The figure shows how far branches of random squares fold until a fold closes or two "
+            "faces touch: the share that has come to a contact, of those that meet no node before.",
+            contacts,
+        ),
+    ]
+    return (loops if spans else []) + (ends if times else [])
+
+
+STUDY: Final = Study(
+    "motions",
+    "True motions: loops through the flat state, and what ends a motion first",
+    2,
+    {1: 200, 2: 200, 3: 100, 4: 50},
+    {5: 50, 6: 20},
+    square_recipes,
+    row,
+    tables,
+    figures,
+)

@@ -1,0 +1,38 @@
+"""The studies by name; each is a module of this room with a `STUDY`."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from exactfold.errors import UnknownStudyError
+from exactfold.studies.running.study import Study
+
+MODULES = {
+    "table1": "exactfold.studies.table1",
+    "h1": "exactfold.studies.h1",
+    "angles": "exactfold.studies.angles.study",
+    "mv": "exactfold.studies.mv",
+    "perturbed": "exactfold.studies.perturbed",
+    "selffold": "exactfold.studies.selffold",
+    "flat": "exactfold.studies.flat",
+    "motions": "exactfold.studies.loops",
+    "figures": "exactfold.studies.figures",
+}
+"""The module of each study, in the order in which they are listed."""
+
+
+def study_named(name: str) -> Study:
+    """The study with a name; raises `UnknownStudyError`, which lists the names.
+
+    >>> study_named("table1").numbers[5]
+    1000
+    """
+    if name not in MODULES:
+        raise UnknownStudyError(f"no study {name!r}; there are: {', '.join(MODULES)}")
+    found: Study = import_module(MODULES[name]).STUDY
+    return found
+
+
+def all_studies() -> dict[str, Study]:
+    """All studies by name."""
+    return {name: study_named(name) for name in MODULES}

@@ -1,0 +1,228 @@
+"""Rows of a study in an SQLite file: the journal that an interrupted run goes on with."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import sqlite3
+from collections.abc import Iterable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from exactfold.certificates.durable import locked, unwritable
+from exactfold.errors import BrokenRowsError, ForeignRowsError, UnknownRowError
+from exactfold.studies.running.study import Recipe, Row, Study, canonical, digest
+
+FORMAT = "exactfold study rows"
+VERSION = 1
+
+_MAGIC = b"SQLite format 3\0"
+_FULL = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_READONLY)
+_TABLES = """
+CREATE TABLE about (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE rows (
+    id TEXT PRIMARY KEY, recipe TEXT NOT NULL, row TEXT NOT NULL, sha256 TEXT NOT NULL
+) WITHOUT ROWID;
+"""
+
+
+@dataclass(frozen=True, repr=False)
+class StoredRow:
+    """A row of a journal: its name, what made it, and what was found."""
+
+    id: str
+    recipe: Recipe
+    row: Row
+
+    def __repr__(self) -> str:
+        return f"<StoredRow: {self.id}, {self.row['status']}>"
+
+    @property
+    def sha256(self) -> str:
+        """The SHA-256 of recipe and row as JSON, which the journal has beside them."""
+        return digest([self.recipe, self.row])
+
+    @property
+    def whole(self) -> dict[str, Any]:
+        """Name, recipe, row and digest in one mapping, for tables, figures and files."""
+        return {"row": self.id, **self.recipe, **self.row, "sha256": self.sha256}
+
+
+class RowStore:
+    """The journal of a study, open for more rows; one process at a time writes it.
+
+    Each row is committed by itself (SQLite, write-ahead log): a run that is killed loses the rows
+    under way and no other, and none is there twice. Raises `JournalInUseError`,
+    `UnwritableFileError`, `ForeignRowsError` for the journal of another study or version, and
+    `BrokenRowsError` for what is no journal; such files are left as they are.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], study: Study) -> None:
+        self.path, self.study = os.fspath(path), study
+        new = _check_kind(self.path)
+        self._lock: io.FileIO = locked(self.path)
+        try:
+            with _told(self.path):
+                self._rows = sqlite3.connect(self.path, isolation_level=None)
+                if new:
+                    self._rows.execute("PRAGMA journal_mode=WAL")
+                    about = _about(study)
+                    inserted = "".join(
+                        f"INSERT INTO about VALUES ('{name}', '{value}');"
+                        for name, value in about.items()
+                    )
+                    self._rows.executescript(f"BEGIN;{_TABLES}{inserted}COMMIT;")
+                _check_about(self._rows, self.path, study)
+                self._rows.execute("PRAGMA synchronous=NORMAL")
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> RowStore:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __contains__(self, row: str) -> bool:
+        with _told(self.path):
+            found = self._rows.execute("SELECT 1 FROM rows WHERE id = ?", (row,)).fetchone()
+        return found is not None
+
+    def __len__(self) -> int:
+        with _told(self.path):
+            return int(self._rows.execute("SELECT count(*) FROM rows").fetchone()[0])
+
+    def add(self, recipe: Recipe, row: Row) -> None:
+        """Write one row, whole; raises `UnwritableFileError`."""
+        stored = StoredRow(self.study.id_of(recipe), recipe, row)
+        values = (stored.id, canonical(recipe), canonical(row), stored.sha256)
+        with _told(self.path):
+            self._rows.execute("INSERT INTO rows VALUES (?, ?, ?, ?)", values)
+
+    def close(self) -> None:
+        """Fold the write-ahead log into the file and let others have it."""
+        if hasattr(self, "_rows"):
+            self._rows.close()
+        self._lock.close()
+
+
+@dataclass(frozen=True)
+class StoredRows:
+    """The rows of some recipes in a journal, read each time they are gone through, in that order.
+
+    Recipes without a row are left out. Raises `BrokenRowsError` for a row that is not what was
+    written.
+    """
+
+    path: str
+    study: Study
+    recipes: Iterable[Recipe]
+
+    def __iter__(self) -> Iterator[Row]:
+        with _reading(self.path, self.study) as rows:
+            for recipe in self.recipes:
+                found = _row(rows, self.path, self.study, self.study.id_of(recipe))
+                if found is not None:
+                    yield found.whole
+
+
+def read_row(path: str | os.PathLike[str], study: Study, name: str) -> StoredRow:
+    """The row whose name begins with a text.
+
+    Raises `UnknownRowError` if there is none or are several, and as `RowStore`.
+    """
+    path = os.fspath(path)
+    if not os.path.exists(path):
+        raise UnknownRowError(f"there is no journal {path}: run the study first")
+    with _reading(path, study) as rows, _told(path):
+        found = rows.execute(
+            "SELECT id FROM rows WHERE substr(id, 1, ?) = ? LIMIT 2", (len(name), name)
+        ).fetchall()
+        if len(found) != 1:
+            what = "no row" if not found else "more than one row"
+            raise UnknownRowError(f"{path} has {what} whose name begins with {name!r}")
+        row = _row(rows, path, study, found[0][0])
+    if row is None:  # the name was read a moment ago
+        raise BrokenRowsError(f"{path} lost the row {name}")
+    return row
+
+
+@contextmanager
+def _reading(path: str, study: Study) -> Iterator[sqlite3.Connection]:
+    if _check_kind(path):
+        raise BrokenRowsError(f"{path} is empty: it is not the journal of a study")
+    with _told(path):
+        rows = sqlite3.connect(path, isolation_level=None)
+    with closing(rows):
+        with _told(path):
+            _check_about(rows, path, study)
+        yield rows
+
+
+def _row(rows: sqlite3.Connection, path: str, study: Study, name: str) -> StoredRow | None:
+    with _told(path):
+        found = rows.execute("SELECT recipe, row, sha256 FROM rows WHERE id = ?", (name,))
+        texts = found.fetchone()
+    if texts is None:
+        return None
+    try:
+        stored = StoredRow(name, json.loads(texts[0]), json.loads(texts[1]))
+        good = (study.id_of(stored.recipe), stored.sha256) == (name, texts[2])
+    except (ValueError, TypeError):
+        good = False
+    if not good:
+        raise BrokenRowsError(f"{path}: the row {name} is not what was written")
+    return stored
+
+
+def _about(study: Study) -> dict[str, str]:
+    return {
+        "format": FORMAT,
+        "version": str(VERSION),
+        "study": study.name,
+        "study version": str(study.version),
+    }
+
+
+def _check_about(rows: sqlite3.Connection, path: str, study: Study) -> None:
+    tables = {name for (name,) in rows.execute("SELECT name FROM sqlite_master")}
+    if not {"about", "rows"} <= tables:
+        raise BrokenRowsError(f"{path} is not the journal of a study")
+    found = dict(rows.execute("SELECT name, value FROM about"))
+    if (found.get("format"), found.get("version")) != (FORMAT, str(VERSION)):
+        raise BrokenRowsError(f"{path} is not the journal of a study")
+    if found != _about(study):
+        other = f"{found.get('study')}, version {found.get('study version')}"
+        raise ForeignRowsError(
+            f"{path} holds rows of the study {other}, not of {study.name}, version "
+            f"{study.version}: name another file"
+        )
+
+
+def _check_kind(path: str) -> bool:
+    """Whether a journal is to be begun; raises for a file of another kind, which is not touched."""
+    try:
+        with open(path, "rb") as file:
+            begin = file.read(len(_MAGIC))
+    except FileNotFoundError:
+        return True
+    except OSError as error:
+        raise unwritable(path, error) from None
+    if begin and begin != _MAGIC:
+        raise BrokenRowsError(f"{path} is not the journal of a study")
+    return not begin
+
+
+@contextmanager
+def _told(path: str) -> Iterator[None]:
+    """Say what SQLite says of a file in errors of this package."""
+    try:
+        yield
+    except sqlite3.DatabaseError as error:
+        code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+        if code in _FULL or code == sqlite3.SQLITE_CANTOPEN:
+            raise unwritable(path, OSError(str(error))) from None
+        raise BrokenRowsError(f"{path} is damaged: {error}") from None

@@ -1,0 +1,90 @@
+"""What several studies do with their rows: adding them up by size, and kinds of curves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import nan
+from typing import Any, Protocol, TypeVar
+
+from exactfold.studies.running.statistics import interval
+from exactfold.studies.running.study import Row, of_size
+
+
+class _Tally(Protocol):
+    def add(self, row: Row) -> None:
+        """One more row."""
+
+
+T = TypeVar("T", bound=_Tally)
+K = TypeVar("K", int, tuple[int, int])
+
+
+def tallied(rows: Iterable[Row], empty: Callable[[], T], key: Callable[[Row], K]) -> dict[K, T]:
+    """The rows of each key added to a tally of their own, in the order of the keys."""
+    found: dict[K, T] = {}
+    for row in rows:
+        found.setdefault(key(row), empty()).add(row)
+    return dict(sorted(found.items()))
+
+
+def interior_of(row: Row) -> int:
+    """The key of studies whose sizes are numbers of interior vertices."""
+    return int(row["interior"])
+
+
+def draw_distribution(axes: Any, values: Sequence[float], **style: Any) -> None:
+    """The share of values, in per cent, that are no larger, as a curve of steps from 0 to 100."""
+    ordered = sorted(values)
+    shares = [100 * k / len(ordered) for k in range(len(ordered) + 1)]
+    ordered = [*ordered[:1], *ordered]
+    axes.plot(ordered, shares, drawstyle="steps-post", **style)
+
+
+def draw_distributions(axes: Any, values: Mapping[int, Sequence[float]]) -> None:
+    """The distribution of each size, all curves from the least value of all to the largest."""
+    every = [value for some in values.values() for value in some]
+    for size, some in values.items():
+        ordered = [min(every), *sorted(some), max(every)]
+        shares = [100 * k / len(some) for k in range(len(some) + 1)]
+        shares.append(100.0)
+        label = f"$V_i = {size}$"
+        axes.plot(ordered, shares, drawstyle="steps-post", label=label, **of_size(size))
+    axes.set_ylim(-3, 103)
+
+
+def draw_rare(
+    axes: Any, places: Sequence[float], counts: Sequence[tuple[int, int]], **style: Any
+) -> None:
+    """Shares (found, number) in per cent on a logarithmic axis, with exact 95 % intervals.
+
+    Where none was found, an open triangle is the upper end of the interval.
+    """
+    style = {"marker": "o", **style}
+    label = style.pop("label")
+    some = [place for place, (found, _) in zip(places, counts, strict=True) if found]
+    if some:
+        kept = [(found, number) if found else (1, 0) for found, number in counts]
+        middle = [100 * found / number if number else nan for found, number in kept]
+        bounds = [interval(found, number) if number else (nan, nan) for found, number in kept]
+        below = [m - 100 * low for m, (low, _) in zip(middle, bounds, strict=True)]
+        above = [100 * high - m for m, (_, high) in zip(middle, bounds, strict=True)]
+        axes.errorbar(places, middle, [below, above], label=label, **style)
+    none = [
+        (place, 100 * interval(0, number)[1])
+        for place, (found, number) in zip(places, counts, strict=True)
+        if not found
+    ]
+    if none:
+        style |= {"marker": "v", "markerfacecolor": "none", "linestyle": "none"}
+        axes.plot(*zip(*none, strict=True), label=None if some else label, **style)
+
+
+def draw_shares(
+    axes: Any, places: Sequence[float], counts: Sequence[tuple[int, int]], unit: float, **style: Any
+) -> None:
+    """Shares (found, number) with exact 95 % intervals; `unit` is 100 for per cent."""
+    middle = [unit * found / number for found, number in counts]
+    bounds = [interval(found, number) for found, number in counts]
+    below = [m - unit * low for m, (low, _) in zip(middle, bounds, strict=True)]
+    above = [unit * high - m for m, (_, high) in zip(middle, bounds, strict=True)]
+    axes.errorbar(places, middle, [below, above], marker="o", **style)

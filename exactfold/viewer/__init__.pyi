@@ -1,4 +1,0 @@
-from exactfold.viewer.document import view_document as view_document
-from exactfold.viewer.page import view_page as view_page
-from exactfold.viewer.page import write_view as write_view
-from exactfold.viewer.server import view_server as view_server
