@@ -13,7 +13,8 @@ from exactfold.exact.surds import float_bounds
 from exactfold.motion.curves.angles import fold_angles_of, hinges_of
 from exactfold.motion.curves.boundary_path import problem_of
 from exactfold.motion.curves.framework import Framework
-from exactfold.motion.curves.motion import FrameBounds, Motion
+from exactfold.motion.curves.in_motion import FrameBounds
+from exactfold.motion.curves.motion import Motion
 from exactfold.motion.tubes.arclength import in_floats
 from exactfold.motion.tubes.tracks import Frame
 from exactfold.rigidity.equations.problem import Problem

@@ -5,11 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import lru_cache
 
-from exactfold.branches.values.roots import sharper
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.algebraic.exact_solution import RootClass
 from exactfold.solve.algebraic.groebner_bases import groebner
 from exactfold.solve.certify.box import IsolatingBox
+from exactfold.solve.certify.exact_krawczyk import krawczyk_at
 
 FEW = 4
 """The number n of unknowns up to which all zeros are computed to know one.
@@ -56,7 +56,8 @@ def zero_in(system: QuadraticSystem, box: IsolatingBox) -> tuple[RootClass, int]
 
 def _rational(system: QuadraticSystem, box: IsolatingBox) -> RootClass | None:
     """The zero as a class of its own if its coordinates are rational with short denominators."""
-    fine = sharper(system, box, _BITS) or box
+    found = krawczyk_at(system, box, _BITS) if box.bits < _BITS else box
+    fine = found if isinstance(found, IsolatingBox) else box
     # By chance a fraction with a denominator q is as near to a number as 1/q^2.
     most = 1 << fine.bits // 3
     point = [Fraction(m, 1 << fine.bits).limit_denominator(most) for m in fine.real]

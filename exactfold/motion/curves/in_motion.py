@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -11,9 +12,23 @@ from exactfold._support.arrays import FloatArray
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.events import Event
-    from exactfold.motion.curves.motion import FrameBounds
     from exactfold.pattern.crease_pattern import CreasePattern, Edge
     from exactfold.pattern.panel_pattern import PanelPattern
+
+
+@dataclass(frozen=True, repr=False)
+class FrameBounds:
+    """What is proved of the frames of a motion, one after the other.
+
+    Every coordinate of frame k is within `radii[k]` of that of one true configuration of the
+    branch's motion, which has a time between the two `times[k]`. Both in the unit of the pattern.
+    """
+
+    radii: tuple[float, ...]
+    times: tuple[tuple[float, float], ...]
+
+    def __repr__(self) -> str:
+        return f"<FrameBounds: {len(self.radii)} frames, radius {max(self.radii):.1e}>"
 
 
 def fixed(motion: SheetInMotion, *names: str) -> None:

@@ -25,6 +25,7 @@ from exactfold.motion.curves.boundary_path import problem_of
 from exactfold.motion.curves.curve import Curve
 from exactfold.motion.curves.drive import Drive
 from exactfold.motion.curves.events import Event
+from exactfold.motion.curves.in_motion import FrameBounds
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
@@ -36,21 +37,6 @@ FOLLOWED: Final = "followed"
 _SAMPLES = 4
 _LONGEST: Final = 40
 """Characters of signs in a name."""
-
-
-@dataclass(frozen=True, repr=False)
-class FrameBounds:
-    """What is proved of the frames of a motion, one after the other.
-
-    Every coordinate of frame k is within `radii[k]` of that of one true configuration of the
-    branch's motion, which has a time between the two `times[k]`. Both in the unit of the pattern.
-    """
-
-    radii: tuple[float, ...]
-    times: tuple[tuple[float, float], ...]
-
-    def __repr__(self) -> str:
-        return f"<FrameBounds: {len(self.radii)} frames, radius {max(self.radii):.1e}>"
 
 
 @dataclass(frozen=True, repr=False, eq=False)

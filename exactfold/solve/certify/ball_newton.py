@@ -53,8 +53,8 @@ def interval_newton(
     context of its own, intervals with exactly given dyadic ends (`mpmath.ldexp`, which does not
     round), their sums, differences and products, quotients by intervals without zero and by 2,
     comparisons, and end points as integers. Each of these is tested against Fractions, for
-    enclosure and for width, in tests/certify/test_interval_newton.py. FLINT's Newton steps and
-    inverses only choose m, r and Y.
+    enclosure and for width, in tests/solve/certify/test_interval_newton.py. FLINT's Newton steps
+    and inverses only choose m, r and Y.
 
     `points` has shape (m, n); coordinates as in `exact_candidates`. Where imaginary parts are
     negligible the real system is tried first, which proves the zero real; otherwise, and if that

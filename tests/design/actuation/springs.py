@@ -3,7 +3,7 @@
 The energy is the sum of (c/L) (stretch)^2 / 2 over the bars, plus that of (theta_e - a tau_e)^2 / 2
 over the folds (radians, a sheet of radius 1). It shares no formula with exactfold. Run as a
 program, it prints how often the sheet ends on the branch that was meant:
-`python tests/actuation/springs.py 20 2 3 4 6`.
+`python tests/design/actuation/springs.py 20 2 3 4 6`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 if __name__ == "__main__":
-    sys.path += [str(Path(__file__).parent), str(Path(__file__).parents[1] / "bridges")]
+    sys.path += [str(Path(__file__).parent), str(Path(__file__).parents[2] / "interop")]
 
 from driving import hinges, model_of
 

@@ -144,7 +144,7 @@ def test_interrupted_runs_continue_to_the_same_file(tmp_path: Path) -> None:
 
 def test_a_file_of_an_earlier_version_is_continued(tmp_path: Path) -> None:
     """Its header calls the method by its earlier name; new files do not."""
-    folder, path = Path(__file__).parents[1] / "fixtures" / "certificates", tmp_path / "c.txt"
+    folder, path = Path(__file__).parents[2] / "fixtures" / "certificates", tmp_path / "c.txt"
     old = folder / "compact-reflex.txt"
     data = old.read_bytes()
     header = json.loads(data.split(b"\t")[0])

@@ -21,7 +21,7 @@ from exactfold.pattern.data import example_path
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="limits and signals of POSIX")
 
 NO_MEMORY = 71
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def shell(command: str, folder: Path, **more: str) -> subprocess.CompletedProcess[str]:
