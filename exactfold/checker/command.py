@@ -162,7 +162,7 @@ def _stranger(text: str) -> str | None:
     kind = _PRINTED.fullmatch(str(data.get("format")))
     if kind is None:
         return None
-    return f"this is {_printed(kind[1], several)}, which is no evidence; {_ADVICE[kind[1]]}"
+    return f"this is {_printed(kind[1], several)}, and not a certificate; {_ADVICE[kind[1]]}"
 
 
 def _printed(kind: str, several: bool) -> str:

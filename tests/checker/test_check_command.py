@@ -40,15 +40,15 @@ def test_a_fold_file_is_no_certificate() -> None:
 @pytest.mark.parametrize(
     ("command", "advice"),
     [
-        (["count", TWO], "count --json, which is no evidence; write a certificate with --cert"),
+        (["count", TWO], "count --json, and not a certificate; write a certificate with --cert"),
         (
             ["branch", TWO, "--signs", "+-"],
-            "branch --json, which is no evidence; write a certificate with --certificate\n",
+            "branch --json, and not a certificate; write a certificate with --certificate\n",
         ),
         *(
             (
                 command,
-                f"{command[0]} --json, which is no evidence; give a certificate: count and branch "
+                f"{command[0]} --json, and not a certificate; give a certificate: count and branch "
                 "write one with --certificate\n",
             )
             for command in (["info", TWO], ["examples"], ["check", str(BRANCH)])
@@ -101,6 +101,6 @@ def test_lines_of_results_are_no_evidence(tmp_path: Path) -> None:
         CliRunner().invoke(app, ["count", *names, "--jsonl", str(path)])
         assert said(str(path)) == (
             3,
-            f"exactfold: {path}: this is a file of results, as count --jsonl writes it, which is "
-            "no evidence; count one pattern with --certificate or --stream\n",
+            f"exactfold: {path}: this is a file of results, as count --jsonl writes it, and "
+            "not a certificate; count one pattern with --certificate or --stream\n",
         )

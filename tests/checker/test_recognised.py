@@ -16,15 +16,15 @@ from exactfold.checker import command
 
 FOLD = "this is a FOLD file, a crease pattern and no certificate"
 COUNT = (
-    "this is the result printed by count --json, which is no evidence; write a certificate with "
+    "this is the result printed by count --json, and not a certificate; write a certificate with "
     "--certificate or --stream"
 )
 STREAM = (
-    "this is the result printed by count --json, which is no evidence; check the file that "
+    "this is the result printed by count --json, and not a certificate; check the file that "
     "--stream wrote"
 )
 BRANCH = (
-    "this is the result printed by branch --json, which is no evidence; write a certificate with "
+    "this is the result printed by branch --json, and not a certificate; write a certificate with "
     "--certificate"
 )
 
@@ -54,7 +54,7 @@ def test_strangers(data: Any, message: str) -> None:
 def test_several_results() -> None:
     """As `count --jsonl` writes them, be it only one."""
     several = (
-        "this is a file of results, as count --jsonl writes it, which is no evidence; "
+        "this is a file of results, as count --jsonl writes it, and not a certificate; "
         "count one pattern with --certificate or --stream"
     )
     line = json.dumps({"format": "exactfold batch-line result"})
