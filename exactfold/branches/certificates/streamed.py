@@ -14,6 +14,7 @@ from exactfold.branches.values.blocks import ProvedBlock
 from exactfold.certificates.entries import chart_evidence, pattern_document, triangle_evidence
 from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.branches.compact_blocks import UNPROVED
+from exactfold.checker.branches.listing import CountClaims
 from exactfold.exact.numbers import format_integer
 from exactfold.rigidity.equations.problem import Problem
 
@@ -70,22 +71,19 @@ def block_line(block: ProvedBlock) -> str:
 def claims_line(problem: Problem) -> str:
     """The last line of a file without open roots."""
     pattern = problem.pattern
-    return _text(
-        {
-            "claims": {
-                "interior": pattern.Vi,
-                "boundary": pattern.Ve,
-                "folds": len(pattern.folds),
-                "degrees_of_freedom": pattern.degrees_of_freedom,
-                "sha256": pattern.sha256,
-                "distinct": 1 << problem.size,
-                "with_multiplicity": 1 << pattern.Vi,
-                "real": 1 << problem.size,
-                "nonreal": 0,
-                "true_branches": "proved",
-            }
-        }
-    )
+    claims: CountClaims = {
+        "interior": pattern.Vi,
+        "boundary": pattern.Ve,
+        "folds": len(pattern.folds),
+        "degrees_of_freedom": pattern.degrees_of_freedom,
+        "sha256": pattern.sha256,
+        "distinct": 1 << problem.size,
+        "with_multiplicity": 1 << pattern.Vi,
+        "real": 1 << problem.size,
+        "nonreal": 0,
+        "true_branches": "proved",
+    }
+    return _text({"claims": claims})
 
 
 def _text(data: dict[str, Any]) -> str:

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing
-from typing import Any
 
 from ..core.kinds import LineKind
 from ..core.lines import lines, read_object
 from ..core.parts import Engine, here, on_processes
 from ..core.reading import CertificateError, FormatError, UnfinishedError, keys, refusing, require
 from .compact_blocks import CompactSheet
-from .listing import summary
+from .listing import CountClaims, summary
 
 
 class IntegerVerifier:
@@ -37,7 +36,7 @@ INTEGERS = Engine(IntegerVerifier, 1, on_processes)
 """All in integers, by the standard library alone."""
 
 
-def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> dict[str, Any]:
+def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> CountClaims:
     """Verify every claim of a compact certificate; returns the claims.
 
     Raises `CertificateError` if one is not supported, `FormatError` if the file is no compact
@@ -47,9 +46,7 @@ def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> dict[str, A
         return check_lines(lines(stream), workers, engine)
 
 
-def check_lines(
-    found: Iterator[str], workers: int = 1, engine: Engine = INTEGERS
-) -> dict[str, Any]:
+def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = INTEGERS) -> CountClaims:
     """Verify every claim, given the lines of a file; returns the claims.
 
     With several workers, blocks are checked in that many processes.
@@ -108,6 +105,7 @@ COMPACT = LineKind(
     format="exactfold compact certificate",
     versions=(1,),
     names="format version pattern evidence provenance",
+    claims=CountClaims,
     check=check_lines,
     summary=summary,
     engine=INTEGERS,
