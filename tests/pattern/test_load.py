@@ -134,7 +134,6 @@ TAKES_PATTERN = {
     "rigidity.pattern_facts": (),
     "rigidity.rigidity_matrix": (),
     "rigidity.self_stresses": (),
-    "solve.split_form": (4,),
     "motion.find_driven": ({(3, 5): 40},),
     "pattern.near_degenerate": (),
     "rigidity.BranchSystem": (),
