@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.certificates.entries import Document
-from exactfold.checker.panels.certificate import (
-    PANELS,
+from exactfold.checker.panels.certificate import PANELS
+from exactfold.checker.panels.claims import (
+    LeafClaim,
     ModeClaim,
     PanelsClaims,
     PartClaim,
     SupportClaim,
 )
-from exactfold.checker.panels.leaves import LeafClaim
 from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, SurdField

@@ -10,7 +10,7 @@ sheet where more than four folds of a vertex may fold are split into spaces (`pa
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, TypedDict
+from typing import Any
 
 from ..core import limits
 from ..core.kinds import DocumentKind
@@ -25,70 +25,14 @@ from ..core.reading import (
     same,
 )
 from ..sheets.panels import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
+from .claims import ModeClaim, ModesClaims, PanelFacts, PanelsClaims, PartClaim, SupportClaim
 from .components import components, times
-from .leaves import LeafClaim, PartComponents, verified_part
+from .leaves import PartComponents, verified_part
 from .loops import MOST_ORDER, Loops
 from .modes import Modes, Support, corners_of, name, named
 
 MOST_LISTED = limits.MOST_LISTED
 MOST_SUPPORTS = limits.MOST_SUPPORTS
-
-
-class ModeClaim(TypedDict):
-    """A mode of a support, by which line of motions it has at each vertex."""
-
-    choice: str
-    assignment: str
-    extends: str
-    loop: list[int] | None
-    order: int | None
-
-
-class SupportClaim(TypedDict):
-    """Folds that move together, in how many modes, and how many of these extend by what."""
-
-    vertices: list[int]
-    folds: list[list[int]]
-    count: int
-    extending: int | None
-    by: str
-    modes: list[ModeClaim] | None
-
-
-class PartClaim(TypedDict):
-    """A part of the sheet with vertices of more than four folds."""
-
-    vertices: list[int]
-    complete: bool
-    leaves: list[LeafClaim]
-
-
-class PanelFacts(TypedDict):
-    """What the checker finds again: the sheet, its components and the number of its modes."""
-
-    interior: int
-    border: int
-    folds: int
-    sha256: str
-    held: list[list[int]]
-    flat: list[list[int]]
-    free: list[list[int]]
-    second_order: dict[str, int]
-    true: dict[str, int] | None
-    rigid: str
-    modes: int | None
-
-
-class ModesClaims(PanelFacts):
-    """What a file claims, with each support."""
-
-    supports: list[SupportClaim]
-
-
-class PanelsClaims(ModesClaims, total=False):
-    """The same, with the parts that are split into spaces, if there are any."""
-
-    spaces: list[PartClaim]
 
 
 @refusing()

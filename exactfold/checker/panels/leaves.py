@@ -5,27 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, TypedDict
+from typing import Any
 
 from ..core.intervals import Interval
 from ..core.reading import integer, items, keys, keys_of, natural, require
 from ..sheets.panels import Edge, PanelSheet, pair
+from .claims import LeafClaim
 from .cones import Place, cone_motion
 from .loops import Loops
 from .modes import Modes, Support
 from .reduction import BITS, enclosed, reduced
 from .spaces import Leaf, Motion, Spaces, folds_of
-
-
-class LeafClaim(TypedDict):
-    """Spaces with the same folds, dimension and cones: how many, and how many of them extend."""
-
-    folds: list[list[int]]
-    dimension: int
-    cones: list[int]
-    number: int
-    extending: int
-
 
 LeafKind = tuple[tuple[Edge, ...], int, tuple[int, ...]]
 
