@@ -77,11 +77,13 @@ def load(text: str) -> dict[str, Any]:
         raise FormatError(_stranger(text) or error) from None
 
 
-def check(data: dict[str, Any]) -> dict[str, Any]:
-    """Verify every claim of a JSON object, a certificate of any kind but the compact.
+def check(data: dict[str, Any] | tuple[str, ...]) -> dict[str, Any]:
+    """Verify every claim of a certificate: a JSON object, or the lines of a compact certificate.
 
     Returns the claims; raises `CertificateError` at the first that is not supported.
     """
+    if isinstance(data, tuple):
+        return compact.check_lines(iter(data))
     claims: dict[str, Any] = _reader(data).check(data)
     return claims
 

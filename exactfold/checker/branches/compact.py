@@ -12,9 +12,11 @@ from contextlib import ExitStack, closing
 from multiprocessing import get_context, parent_process
 from typing import Any, NamedTuple, Protocol
 
+from ..core.formats import ROOTS_VERSION
 from ..core.lines import lines, read_header, read_object
 from ..core.reading import CertificateError, FormatError, UnfinishedError, keys, refusing, require
 from .compact_blocks import CompactSheet
+from .compact_roots import check_roots
 
 Said = Generator[str | None, None, None]
 """What is wrong with each part of a file, or None."""
@@ -129,21 +131,29 @@ def check_lines(
     if first is None:
         raise FormatError("the file is empty")
     header = read_header(first)
-    with refusing("in the first line"):
-        sheet = CompactSheet(header)
-    _check_blocks(found, first, sheet.blocks, workers, engine)
+    if header["version"] == ROOTS_VERSION:
+        facts, blocks = check_roots(header, found)
+    else:
+        with refusing("in the first line"):
+            sheet = CompactSheet(header)
+        _check_blocks(found, first, sheet.blocks, workers, engine)
+        facts, blocks = sheet.claims(), sheet.blocks
+    _check_claims(found, facts, blocks)
+    return facts
+
+
+def _check_claims(found: Iterator[str], facts: dict[str, Any], blocks: int) -> None:
+    """The last line claims what was found, no more and no less."""
     last = next(found, None)
     if last is None:
-        raise UnfinishedError(f"all {sheet.blocks} blocks hold, but the claims are missing")
+        raise UnfinishedError(f"all {blocks} blocks hold, but the claims are missing")
     claims = read_object(last, "the last line")
     keys(claims, "claims", "the last line")
     require(next(found, None) is None, "something follows the claims")
-    facts = sheet.claims()
     keys(claims["claims"], " ".join(facts), "claims")
     for key, fact in facts.items():
         claim = claims["claims"][key]
         require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
-    return facts
 
 
 def _check_blocks(

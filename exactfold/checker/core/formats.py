@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-LISTING, LISTING_VERSION = "exactfold certificate", 2
-"""All branches of a sheet in one JSON object (docs/certificate.md)."""
-
 COMPACT, COMPACT_VERSION = "exactfold compact certificate", 1
-"""One root for each sign vector, line by line (docs/compact-certificate.md)."""
+"""All branches of a sheet: one root for each sign vector, in blocks (docs/certificate.md)."""
+
+ROOTS_VERSION = 2
+"""The same of roots that are multiple, exact, or named in another way than by their signs."""
+
+LISTING, LISTING_VERSION = "exactfold certificate", 2
+"""All branches of a sheet in one JSON object, as earlier versions wrote it."""
 
 BRANCH, BRANCH_VERSION = "exactfold branch", 1
 """One branch with given vertex signs (docs/branch.md)."""

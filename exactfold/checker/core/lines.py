@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import IO, Any
 
-from .formats import COMPACT, COMPACT_VERSION
+from .formats import COMPACT, COMPACT_VERSION, ROOTS_VERSION
 from .limits import MOST_LINE
 from .reading import FormatError, document, read_json
 
@@ -14,6 +14,15 @@ from .reading import FormatError, document, read_json
 def digest(previous: str, body: str) -> str:
     """The digest of a line: SHA-256 of the digest before it and its JSON text."""
     return hashlib.sha256((previous + body).encode()).hexdigest()
+
+
+def chained(texts: Iterable[str]) -> str:
+    """The file with these JSON texts as its lines, each with its digest."""
+    previous, found = "", []
+    for text in texts:
+        previous = digest(previous, text)
+        found.append(f"{text}\t{previous}\n")
+    return "".join(found)
 
 
 def lines(stream: IO[bytes], first: bytes = b"") -> Iterator[str]:
@@ -44,6 +53,8 @@ def read_object(text: str, what: str) -> dict[str, Any]:
 
 
 def read_header(text: str) -> dict[str, Any]:
-    """The first line, if it is that of a compact certificate."""
+    """The first line, if it is that of a compact certificate of either version."""
+    data = read_json(text)
+    exact = isinstance(data, dict) and data.get("version") == ROOTS_VERSION
     names = "format version pattern evidence provenance"
-    return document(read_json(text), COMPACT, COMPACT_VERSION, names)
+    return document(data, COMPACT, ROOTS_VERSION if exact else COMPACT_VERSION, names)
