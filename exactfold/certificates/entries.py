@@ -22,11 +22,11 @@ from exactfold.solve.certify.box import IsolatingBox
 Document = dict[str, Any]
 
 
-class Lines(tuple[str, ...]):
+class CertificateLines(tuple[str, ...]):
     """A certificate of several lines, each the text of a JSON object.
 
-    >>> Lines(["{}", "{}"])
-    <Lines: 2 lines>
+    >>> CertificateLines(["{}", "{}"])
+    <CertificateLines: 2 lines>
     """
 
     __slots__ = ()
@@ -37,7 +37,7 @@ class Lines(tuple[str, ...]):
         return chained(self)
 
     def __repr__(self) -> str:
-        return f"<Lines: {counted(len(self), 'line')}>"
+        return f"<CertificateLines: {counted(len(self), 'line')}>"
 
 
 def pattern_document(pattern: CreasePattern) -> Document:
@@ -123,9 +123,11 @@ def class_entry(
     return {"class": number, "interval": [format_rational(x) for x in interval]}
 
 
-def write_certificate(certificate: Document | Lines, path: str | os.PathLike[str]) -> None:
+def write_certificate(
+    certificate: Document | CertificateLines, path: str | os.PathLike[str]
+) -> None:
     """Write a certificate whole or not at all; raises `UnwritableFileError`."""
-    if isinstance(certificate, Lines):
+    if isinstance(certificate, CertificateLines):
         text = certificate.text
     else:
         text = json.dumps(certificate, separators=(",", ":")) + "\n"

@@ -13,8 +13,8 @@ from exactfold import BranchCount
 from exactfold.branches.certificates.blocks import line_text
 from exactfold.branches.certificates.listing import _root, _true_branches
 from exactfold.certificates.entries import (
+    CertificateLines,
     Document,
-    Lines,
     algebraic_evidence,
     chart_evidence,
     pattern_document,
@@ -83,7 +83,7 @@ def _evidence(result: BranchCount) -> Document:
     return {**found, "roots": [_root(proof, branch) for branch in result.branches]}
 
 
-def as_lines(old: Document, block: int = 256) -> Lines:
+def as_lines(old: Document, block: int = 256) -> CertificateLines:
     """The same claims and the same evidence as a compact certificate of version 2."""
     claims, evidence = dict(old["claims"]), dict(old["evidence"])
     branches, roots = claims.pop("branches"), evidence.pop("roots", None)
@@ -102,4 +102,4 @@ def as_lines(old: Document, block: int = 256) -> Lines:
         {"block": k, "roots": entries[start : start + block]}
         for k, start in enumerate(range(0, len(entries), block))
     ]
-    return Lines(line_text(line) for line in (header, *blocks, {"claims": claims}))
+    return CertificateLines(line_text(line) for line in (header, *blocks, {"claims": claims}))

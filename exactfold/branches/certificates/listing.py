@@ -12,8 +12,8 @@ from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount, Proof
 from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot, FlatBoxRoot
 from exactfold.certificates.entries import (
+    CertificateLines,
     Document,
-    Lines,
     algebraic_evidence,
     box_entry,
     chart_evidence,
@@ -31,7 +31,7 @@ MOST_ROOTS = 256
 """Roots in a line, fewer where their numbers are so long that the line would be."""
 
 
-def certificate(result: BranchCount) -> Document | Lines:
+def certificate(result: BranchCount) -> Document | CertificateLines:
     """The certificate of a proved count: lines for `checker.check` and `write_certificate`.
 
     With more than four corners it is that of the pieces, one JSON object (`pieces_certificate`).
@@ -43,7 +43,7 @@ def certificate(result: BranchCount) -> Document | Lines:
     >>> from exactfold.pattern.families import two_vertex
     >>> made = certificate(count_branches(two_vertex()))
     >>> made, checker.check(made)["distinct"]
-    (<Lines: 3 lines>, 4)
+    (<CertificateLines: 3 lines>, 4)
     """
     if not isinstance(result, BranchCount):
         raise UsageError(f"{shown(result)} is not a count: give what `count_branches` returns")
@@ -51,7 +51,7 @@ def certificate(result: BranchCount) -> Document | Lines:
         return pieces_certificate(result.pattern, result.pieces)
     if result.status is not PROVED or result.proof is None:
         raise NotApplicableError(f"no certificate: the count is {result.status} ({result.reason})")
-    return Lines(result.proof.lines or _root_lines(result, result.proof))
+    return CertificateLines(result.proof.lines or _root_lines(result, result.proof))
 
 
 def _root_lines(result: BranchCount, proof: Proof) -> list[str]:

@@ -10,7 +10,7 @@ from exactfold.branches.certificates.roots import Roots
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.classify import BranchMaker
 from exactfold.branches.values.roots import BoxRoot
-from exactfold.certificates.entries import Document, Lines, chart_evidence
+from exactfold.certificates.entries import CertificateLines, Document, chart_evidence
 from exactfold.checker import is_compact, load
 from exactfold.checker.branches.compact_blocks import CompactSheet
 from exactfold.checker.branches.compact_roots import gathered
@@ -56,14 +56,14 @@ def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
         raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
 
 
-def read_listing(path: str | os.PathLike[str]) -> Document | Lines:
+def read_listing(path: str | os.PathLike[str]) -> Document | CertificateLines:
     """A whole certificate of all branches: its lines, or the JSON object of an earlier version.
 
     Raises `checker.FormatError` for a file of another kind, `OSError`.
     """
     with open(path, "rb") as stream:
         if is_compact(path):
-            return Lines(lines(stream))
+            return CertificateLines(lines(stream))
         data = stream.read(MOST_BYTES + 1)
     at_most(len(data), MOST_BYTES, "the bytes of the file")
     document = load(data.decode("utf-8", "replace"))
@@ -72,7 +72,7 @@ def read_listing(path: str | os.PathLike[str]) -> Document | Lines:
     return document
 
 
-def branches_of(certificate: Document | Lines) -> Iterator[Branch]:
+def branches_of(certificate: Document | CertificateLines) -> Iterator[Branch]:
     """The branches of a certificate of all branches, in the order of the file.
 
     >>> from exactfold.branches.certificates.listing import certificate
@@ -81,7 +81,7 @@ def branches_of(certificate: Document | Lines) -> Iterator[Branch]:
     >>> sorted(branches_of(certificate(counted)), key=Branch.sort_key) == list(counted.branches)
     True
     """
-    if isinstance(certificate, Lines):
+    if isinstance(certificate, CertificateLines):
         return _of_lines(iter(certificate))
     evidence, listed = certificate["evidence"], certificate["claims"]["branches"]
     return _of_roots(certificate["pattern"], evidence, listed)

@@ -29,7 +29,7 @@ _MOST_BITS = 1 << 12
 
 @dataclass(frozen=True)
 class Roots:
-    """The roots of one certificate, in its chart; each is shown from the side of positive saddle."""
+    """The roots of one certificate, in its chart, each from the side of positive saddle."""
 
     problem: Problem
     chart: Chart

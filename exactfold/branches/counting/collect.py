@@ -218,7 +218,7 @@ def _collected(conveyor: Conveyor, attempt: Attempt, ends: Candidates) -> Branch
     branches: list[Branch] = []
     proved: list[str] = []
     for block, line in in_this_process(conveyor, range(conveyor.blocks)):
-        if block.open or any("U" in root.assignment for root in block.exact.values()):
+        if not block.is_decided:
             return None
         branches += conveyor.branches(block)
         proved.append(line)
