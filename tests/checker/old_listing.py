@@ -20,7 +20,8 @@ from exactfold.certificates.entries import (
     pattern_document,
     triangle_evidence,
 )
-from exactfold.checker.core.formats import COMPACT, LISTING, LISTING_VERSION, ROOTS_VERSION
+from exactfold.checker.branches.compact import COMPACT, ROOTS
+from exactfold.checker.branches.listing import LISTING
 from exactfold.pattern.crease_pattern import CreasePattern
 
 
@@ -54,8 +55,8 @@ def assembled(
 ) -> Document:
     """The listing as a JSON object."""
     return {
-        "format": LISTING,
-        "version": LISTING_VERSION,
+        "format": LISTING.format,
+        "version": LISTING.version,
         "pattern": pattern_document(pattern),
         "claims": {
             "interior": pattern.Vi,
@@ -92,8 +93,8 @@ def as_lines(old: Document, block: int = 256) -> CertificateLines:
         evidence |= {"roots": len(roots), "block": block}
         entries = [{"root": r, **b} for r, b in zip(roots, branches, strict=True)]
     header = {
-        "format": COMPACT,
-        "version": ROOTS_VERSION,
+        "format": COMPACT.format,
+        "version": ROOTS,
         "pattern": old["pattern"],
         "evidence": evidence,
         "provenance": old["provenance"],

@@ -16,7 +16,9 @@ import numpy.typing as npt
 
 from exactfold.branches.values.blocks import ProvedBlock
 from exactfold.certificates.entries import chart_evidence, pattern_document, triangle_evidence
-from exactfold.checker.core.formats import COMPACT, COMPACT_VERSION, COUNTS, UNPROVED
+from exactfold.checker.branches.compact import CHAMBERS, COMPACT
+from exactfold.checker.branches.compact_blocks import UNPROVED
+from exactfold.checker.branches.listing import COUNTS
 from exactfold.exact.numbers import format_integer
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.problem import Problem
@@ -29,8 +31,8 @@ def header_line(problem: Problem, block_size: int) -> str:
     """The first line: the pattern and what its roots are proved with."""
     return line_text(
         {
-            "format": COMPACT,
-            "version": COMPACT_VERSION,
+            "format": COMPACT.format,
+            "version": CHAMBERS,
             "pattern": pattern_document(problem.pattern),
             "evidence": {
                 "kind": "chambers",

@@ -22,7 +22,7 @@ from exactfold.certificates.entries import (
     pattern_document,
     triangle_evidence,
 )
-from exactfold.checker.core.formats import COMPACT, ROOTS_VERSION
+from exactfold.checker.branches.compact import COMPACT, ROOTS
 from exactfold.checker.core.limits import MOST_LINE
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.numbers import shown
@@ -67,8 +67,8 @@ def _root_lines(result: BranchCount, proof: Proof) -> list[str]:
         block = max(1, min(MOST_ROOTS, MOST_LINE // (2 * longest)))
         evidence |= {"roots": len(entries), "block": block}
     header = {
-        "format": COMPACT,
-        "version": ROOTS_VERSION,
+        "format": COMPACT.format,
+        "version": ROOTS,
         "pattern": pattern_document(result.pattern),
         "evidence": evidence,
         "provenance": {

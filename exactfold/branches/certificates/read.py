@@ -12,11 +12,12 @@ from exactfold.branches.values.classify import BranchMaker
 from exactfold.branches.values.roots import BoxRoot
 from exactfold.certificates.entries import CertificateLines, Document, chart_evidence
 from exactfold.checker import is_compact, load
-from exactfold.checker.branches.compact_blocks import CompactSheet
+from exactfold.checker.branches.compact import COMPACT, ROOTS
+from exactfold.checker.branches.compact_blocks import UNPROVED, CompactSheet
 from exactfold.checker.branches.compact_roots import gathered
-from exactfold.checker.core.formats import LISTING, ROOTS_VERSION, UNPROVED
+from exactfold.checker.branches.listing import LISTING
 from exactfold.checker.core.limits import MOST_BYTES
-from exactfold.checker.core.lines import lines, read_header
+from exactfold.checker.core.lines import lines
 from exactfold.checker.core.reading import (
     MALFORMED,
     CertificateError,
@@ -67,7 +68,7 @@ def read_listing(path: str | os.PathLike[str]) -> Document | CertificateLines:
         data = stream.read(MOST_BYTES + 1)
     at_most(len(data), MOST_BYTES, "the bytes of the file")
     document = load(data.decode("utf-8", "replace"))
-    if document["format"] != LISTING or "kind" in document:
+    if document["format"] != LISTING.format or "kind" in document:
         raise FormatError("this certificate lists no branches of a triangulated sheet")
     return document
 
@@ -88,8 +89,8 @@ def branches_of(certificate: Document | CertificateLines) -> Iterator[Branch]:
 
 
 def _of_lines(found: Iterator[str]) -> Iterator[Branch]:
-    header = read_header(next(found, "{}"))
-    if header["version"] == ROOTS_VERSION:
+    header = COMPACT.header(next(found, "{}"))
+    if header["version"] == ROOTS:
         evidence, listed, _ = gathered(header, found)
         return _of_roots(header["pattern"], evidence, listed)
     return _of_blocks(header, found)

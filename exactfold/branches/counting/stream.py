@@ -21,8 +21,8 @@ from exactfold.branches.counting.engines import Engine, processes
 from exactfold.branches.counting.open_roots import OpenRoot, Tally, by_limit
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.journal import Journal
+from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.branches.compact_blocks import CompactSheet
-from exactfold.checker.core.lines import read_header
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
 
@@ -129,7 +129,7 @@ def stream_branches(
     header = header_line(problem, conveyor.block_size)
     tally = Tally()
     if resume:
-        known = FastChecker(CompactSheet(read_header(header)))
+        known = FastChecker(CompactSheet(COMPACT.header(header)))
 
         def refusal(text: str, number: int) -> str | None:
             if progress is not None:

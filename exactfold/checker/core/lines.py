@@ -1,4 +1,4 @@
-"""The lines of a compact certificate: each chained to the one before it by a digest."""
+"""Files of lines: each is chained to the one before it by a digest."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ import hashlib
 from collections.abc import Iterable, Iterator
 from typing import IO, Any
 
-from .formats import COMPACT, COMPACT_VERSION, ROOTS_VERSION
 from .limits import MOST_LINE
-from .reading import FormatError, document, read_json
+from .reading import FormatError, read_json
 
 
 def digest(previous: str, body: str) -> str:
@@ -50,11 +49,3 @@ def read_object(text: str, what: str) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise FormatError(f"{what} is not an object")
     return data
-
-
-def read_header(text: str) -> dict[str, Any]:
-    """The first line, if it is that of a compact certificate of either version."""
-    data = read_json(text)
-    exact = isinstance(data, dict) and data.get("version") == ROOTS_VERSION
-    names = "format version pattern evidence provenance"
-    return document(data, COMPACT, ROOTS_VERSION if exact else COMPACT_VERSION, names)
