@@ -81,15 +81,19 @@ def load(text: str) -> dict[str, Any]:
         raise FormatError(_stranger(text) or error) from None
 
 
-def check(data: dict[str, Any] | tuple[str, ...]) -> Verified[Any]:
+def check(
+    data: dict[str, Any] | tuple[str, ...],
+    workers: int = 1,
+    engine_of: Callable[[LineKind[Any]], Engine] = lambda kind: kind.engine,
+) -> Verified[Any]:
     """Verify every claim of a certificate: its JSON object, or the texts of its lines.
 
-    Raises `CertificateError` at the first claim that is not supported, `FormatError` for an object
-    or a first line of no known kind.
+    `workers` and `engine_of` are for lines, as in `verify`. Raises `CertificateError` at the first
+    claim that is not supported, `FormatError` for an object or a first line of no known kind.
     """
     if isinstance(data, tuple):
         in_lines = _kind_in_lines(data[0] if data else "{}")
-        return Verified(in_lines, in_lines.check(iter(data), 1, in_lines.engine))
+        return Verified(in_lines, in_lines.check(iter(data), workers, engine_of(in_lines)))
     kind = _kind_of(data)
     return Verified(kind, kind.check(data))
 
@@ -132,14 +136,19 @@ def verify(
     return check(load(text))
 
 
-def is_compact(path: str | PathLike[str]) -> bool:
-    """Whether the first line of a file is that of a compact certificate; raises `OSError`."""
+def kind_in_lines(path: str | PathLike[str]) -> LineKind[Any] | None:
+    """The kind of a file that is written line by line, None for any other; raises `OSError`."""
     with open(path, "rb") as stream:
         first = stream.readline(MOST_LINE)
     try:
-        return _sealed(first) and _kind_of_file(first) is COMPACT
+        return _kind_of_file(first) if _sealed(first) else None
     except FormatError:
-        return False
+        return None
+
+
+def is_compact(path: str | PathLike[str]) -> bool:
+    """Whether the first line of a file is that of a compact certificate; raises `OSError`."""
+    return kind_in_lines(path) is COMPACT
 
 
 def _sealed(line: bytes) -> bool:

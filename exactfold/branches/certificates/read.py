@@ -11,11 +11,12 @@ from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.classify import BranchMaker
 from exactfold.branches.values.roots import BoxRoot
 from exactfold.certificates.entries import CertificateLines, Document, chart_evidence
-from exactfold.checker import is_compact, load
+from exactfold.checker import load
 from exactfold.checker.branches.compact import COMPACT, ROOTS
 from exactfold.checker.branches.compact_blocks import UNPROVED, CompactSheet
 from exactfold.checker.branches.compact_roots import gathered
 from exactfold.checker.branches.listing import LISTING
+from exactfold.checker.command import kind_in_lines
 from exactfold.checker.core.limits import MOST_BYTES
 from exactfold.checker.core.lines import lines
 from exactfold.checker.core.reading import (
@@ -42,7 +43,7 @@ def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
     `UnreadableFileError`; `checker.CertificateError` where a block is malformed or a root open.
     """
     try:
-        if not is_compact(path):
+        if kind_in_lines(path) is not COMPACT:
             yield from branches_of(read_listing(path))
             return
         with open(path, "rb") as stream:
@@ -60,16 +61,16 @@ def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
 def read_listing(path: str | os.PathLike[str]) -> Document | CertificateLines:
     """A whole certificate of all branches: its lines, or the JSON object of an earlier version.
 
-    Raises `checker.FormatError` for a file of another kind, `OSError`.
+    Raises `checker.FormatError` for a file of another kind, or one beyond the limits; `OSError`.
     """
+    at_most(os.path.getsize(path), MOST_BYTES, "the bytes of a file that is read as a whole")
+    kind = kind_in_lines(path)
     with open(path, "rb") as stream:
-        if is_compact(path):
+        if kind is COMPACT:
             return CertificateLines(lines(stream))
-        data = stream.read(MOST_BYTES + 1)
-    at_most(len(data), MOST_BYTES, "the bytes of the file")
-    document = load(data.decode("utf-8", "replace"))
-    if document["format"] != LISTING.format or "kind" in document:
-        raise FormatError("this certificate lists no branches of a triangulated sheet")
+        document = {} if kind else load(stream.read().decode("utf-8", "replace"))
+    if document.get("format") != LISTING.format or "kind" in document:
+        raise FormatError("this certificate does not list the branches of a triangulated sheet")
     return document
 
 
