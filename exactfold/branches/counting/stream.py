@@ -111,7 +111,7 @@ def stream_branches(
     `dask_engine`, takes the place of the `workers`.
 
     Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most,
-    `NoInteriorVertexError`, `ForeignJournalError`, `JournalInUseError` while another run writes the
+    `NotCountedError`, `ForeignJournalError`, `JournalInUseError` while another run writes the
     file, `UnwritableFileError`, `UsageError`, `WorkerDiedError`. An interruption leaves a file that
     can be resumed. UNDECIDED does not mean that the count is unusual.
 
