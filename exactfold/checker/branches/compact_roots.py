@@ -11,16 +11,15 @@ from typing import Any
 from ..core.limits import MOST_BYTES, MOST_ENTRIES
 from ..core.lines import read_object
 from ..core.reading import UnfinishedError, at_most, items, keys, natural, refusing, require
+from ..sheets.sheet import facts_of, read_sheet
 from . import listing
-
-BRANCH = "vertex_signs assignment multiplicity representative"
-
 
 @refusing()
 def check_roots(header: dict[str, Any], found: Iterator[str]) -> tuple[dict[str, Any], int]:
     """What the blocks that follow a header prove, and their number; all of them are kept."""
+    sheet, digest = read_sheet(header["pattern"])
     evidence, branches, blocks = gathered(header, found)
-    return listing.proved(header["pattern"], evidence, branches), blocks
+    return facts_of(sheet, digest) | listing.proved(sheet, evidence, branches), blocks
 
 
 def gathered(header: dict[str, Any], found: Iterator[str]) -> tuple[dict[str, Any], list[Any], int]:
@@ -28,14 +27,12 @@ def gathered(header: dict[str, Any], found: Iterator[str]) -> tuple[dict[str, An
 
     The last is the number of blocks.
     """
-    evidence, branches = header["evidence"], list[Any]()
-    require(isinstance(evidence, dict), "the evidence is not an object")
+    evidence, branches, roots = header["evidence"], list[Any](), list[Any]()
     if "roots" not in evidence:  # the sheet is rigid, or a single vertex
         return evidence, branches, 0
-    number, block = natural(evidence["roots"], "roots"), natural(evidence.get("block"), "block")
+    number, block = natural(evidence["roots"], "roots"), natural(evidence["block"], "block")
     at_most(number, MOST_ENTRIES, "the roots")
-    require(block > 0, "a block holds no root")
-    roots, total, blocks = list[Any](), 0, -(-number // block)
+    total, blocks = 0, -(-number // block)
     for k in range(blocks):
         text = next(found, None)
         if text is None:
@@ -50,7 +47,6 @@ def gathered(header: dict[str, Any], found: Iterator[str]) -> tuple[dict[str, An
             f"{what} is expected, but here is block {data['block']!a}",
         )
         for entry in items(data["roots"], f"{what}: roots", min(block, number - k * block)):
-            keys(entry, f"root {BRANCH}", f"{what}: an entry")
             roots.append(entry.pop("root"))
             branches.append(entry)
     kept = {key: value for key, value in evidence.items() if key != "block"}

@@ -46,7 +46,9 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     """
     claims = data["claims"]
     keys(claims, f"{FACTS} {COUNTS} branches", "claims")
-    facts = proved(data["pattern"], data["evidence"], items(claims["branches"], "branches"))
+    sheet, digest = read_sheet(data["pattern"])
+    branches = items(claims["branches"], "branches")
+    facts = facts_of(sheet, digest) | proved(sheet, data["evidence"], branches)
     for key, fact in facts.items():
         require(
             type(claims[key]) is type(fact) and claims[key] == fact,
@@ -55,10 +57,9 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     return dict(claims)
 
 
-def proved(pattern: Any, evidence: Any, branches: list[Any]) -> dict[str, Any]:
-    """What the evidence proves of a pattern, whose branches are those listed."""
+def proved(sheet: Sheet, evidence: Any, branches: list[Any]) -> dict[str, Any]:
+    """The counts that the evidence proves of a sheet, whose branches are those listed."""
     require(isinstance(evidence, dict), "the evidence is not an object")
-    sheet, digest = read_sheet(pattern)
     emptied = check_triangles(sheet, evidence.get("triangles"))
     kind = evidence.get("kind")
     if kind == "rigid":
@@ -69,7 +70,7 @@ def proved(pattern: Any, evidence: Any, branches: list[Any]) -> dict[str, Any]:
         counts = _lines(sheet, emptied, evidence, branches)
     else:
         raise CertificateError(f"unknown kind of evidence {kind!a}")
-    return facts_of(sheet, digest) | dict(zip(COUNTS.split(), counts, strict=True))
+    return dict(zip(COUNTS.split(), counts, strict=True))
 
 
 def _rigid(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> Counts:
