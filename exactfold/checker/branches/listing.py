@@ -72,13 +72,25 @@ def check(data: dict[str, Any]) -> ListingClaims:
 
     Returns the verified claims. Passing means that the claims hold for the pattern in the file.
     """
-    claims, evidence = data["claims"], data["evidence"]
+    claims = data["claims"]
     keys(claims, keys_of(ListingClaims), "claims")
-    require(isinstance(evidence, dict), "the evidence is not an object")
     sheet, digest = read_sheet(data["pattern"])
+    branches = items(claims["branches"], "branches")
+    counts = proved(sheet, data["evidence"], branches)
+    facts: CountClaims = {**facts_of(sheet, digest), **counts}
+    for key, fact in facts.items():
+        require(
+            type(claims[key]) is type(fact) and claims[key] == fact,
+            f"claim {key} = {claims[key]!a}, but it is {fact!a}",
+        )
+    return {**facts, "branches": branches}
+
+
+def proved(sheet: Sheet, evidence: Any, branches: list[Any]) -> Counts:
+    """The counts that the evidence proves of a sheet, whose branches are those listed."""
+    require(isinstance(evidence, dict), "the evidence is not an object")
     emptied = check_triangles(sheet, evidence.get("triangles"))
     kind = evidence.get("kind")
-    branches = items(claims["branches"], "branches")
     if kind == "rigid":
         counts = _rigid(sheet, emptied, evidence, branches)
     elif kind == "single vertex":
@@ -87,13 +99,7 @@ def check(data: dict[str, Any]) -> ListingClaims:
         counts = _lines(sheet, emptied, evidence, branches)
     else:
         raise CertificateError(f"unknown kind of evidence {kind!a}")
-    facts: CountClaims = {**facts_of(sheet, digest), **counts}
-    for key, fact in facts.items():
-        require(
-            type(claims[key]) is type(fact) and claims[key] == fact,
-            f"claim {key} = {claims[key]!a}, but it is {fact!a}",
-        )
-    return {**facts, "branches": branches}
+    return counts
 
 
 def counts_of(
