@@ -20,7 +20,7 @@ _SHIFT = fmpz_poly([1, 1])
 
 @dataclass(frozen=True)
 class _Cell:
-    """The interval [at, at + 1] / 2^bits, or only its lower end if `point`; bits may be negative."""
+    """The interval [at, at + 1] / 2^bits; only its lower end if `point`. `bits` may be negative."""
 
     at: int
     bits: int

@@ -1,6 +1,7 @@
-"""Patterns as NetworkX graphs, for everything that library knows: cycles, components, planarity.
+"""Patterns as NetworkX graphs, to use that library's cycles, components, planarity tests and more.
 
-Validation has short code of its own, which names the vertex or edge to blame and is faster.
+Validation does not use it: it has short code of its own, which is faster and names the vertex or
+edge to blame.
 """
 
 from __future__ import annotations
@@ -12,14 +13,14 @@ if TYPE_CHECKING:
 
     from exactfold.pattern.crease_pattern import CreasePattern
 
-# NetworkX is imported in each function, as loading it takes longer than reading a pattern.
+# Each function imports NetworkX itself, as loading it takes longer than reading a pattern.
 
 
 def vertex_graph(pattern: CreasePattern) -> nx.Graph:
-    """Vertices and edges, frozen.
+    """The frozen graph of the vertices and edges of a pattern.
 
-    Nodes have `pos`, the exact point, `interior` and `rigid` (inside a triangulated triangle);
-    edges have `fold` (not on the boundary) and `chord`.
+    Its nodes have the attributes `pos` (the exact point), `interior` and `rigid` (inside a
+    triangulated triangle). Its edges have `fold` (not on the boundary) and `chord`.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> graph = vertex_graph(single_vertex(3))
@@ -39,11 +40,11 @@ def vertex_graph(pattern: CreasePattern) -> nx.Graph:
 
 
 def face_graph(pattern: CreasePattern) -> nx.Graph:
-    """Faces, one edge for each fold between two, frozen.
+    """The frozen graph of the faces, with one edge for each fold between two faces.
 
-    Nodes are positions in `triangles`, with `triangle`; edges have `fold`, (i, j) with i < j. A
-    spanning tree lays the faces out one after the other, the cycles close around interior
-    vertices, and the bridges are the chords.
+    Nodes are positions in `triangles` and have the attribute `triangle`; edges have `fold`, (i, j)
+    with i < j. Along a spanning tree the faces can be laid out one after the other. Cycles close
+    around interior vertices, and the bridges are the chords.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> sorted(face_graph(single_vertex(3)).edges(data="fold"))
@@ -63,9 +64,9 @@ def face_graph(pattern: CreasePattern) -> nx.Graph:
 
 
 def embedding(pattern: CreasePattern) -> nx.PlanarEmbedding:
-    """The rotation around every vertex, clockwise as NetworkX has it, frozen.
+    """The frozen planar embedding: the rotation around every vertex, clockwise as in NetworkX.
 
-    `traverse_face(i, j)` goes around the face to the right of the edge from i to j.
+    `traverse_face(i, j)` goes around the face on the right of the edge from i to j.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> embedding(single_vertex(3)).traverse_face(1, 0)

@@ -1,4 +1,4 @@
-"""Reading `.ori` files of Oriedita (JSON) and the older `.orh` files of Orihime (text)."""
+"""Reads `.ori` files of Oriedita (JSON) and the older `.orh` files of Orihime (text)."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ _COLOURS: Final = {"BLACK_0": "B", "RED_1": "M", "BLUE_2": "V"}
 _NUMBERS: Final = {"0": "B", "1": "M", "2": "V"}
 
 LINES: Final = "<線分集合>"
-"""The heading of the lines in an `.orh` file; other headings begin other sections."""
+"""The heading of the section of lines in an `.orh` file; other headings begin other sections."""
 
 
 def read_ori(text: str) -> Drawing:
     """The drawing in an `.ori` file: `lineSegments` with ends "x,y" and colours, exactly.
 
-    Black lines are the border, red ones mountains, blue ones valleys; lines in other colours and
-    `auxLineSegments` are auxiliary lines, which are left out. Coordinates are kept as they stand,
-    as in Oriedita's own FOLD files. Raises `NotJSONError`, `MalformedDrawingError`, which numbers
-    the line from 0, and `EmptyDrawingError`.
+    Black lines are the boundary, red ones mountains, blue ones valleys. Lines in other colours and
+    `auxLineSegments` are auxiliary lines, which are left out. Coordinates are not transformed, as
+    in Oriedita's own FOLD files. Raises `NotJSONError`, `EmptyDrawingError`, and
+    `MalformedDrawingError`, which counts lines from 0.
 
     >>> line = '{"a": "0.0,0.0", "b": "0.1,-2", "color": "RED_1"}'
     >>> read_ori('{"lineSegments": [' + line + ']}').points[1]
@@ -39,7 +39,9 @@ def read_ori(text: str) -> Drawing:
     others: Counter[str] = Counter()
     for k, line in enumerate(lines):
         if not isinstance(line, dict):
-            raise MalformedDrawingError(f"line {k} in `lineSegments` is {shown(line)}")
+            raise MalformedDrawingError(
+                f"line {k} in `lineSegments` is {shown(line)}, not an object"
+            )
         colour = line.get("color")
         start, end = _end(k, line.get("a")), _end(k, line.get("b"))
         if isinstance(colour, str) and colour in _COLOURS:
@@ -67,11 +69,12 @@ def _place(what: str, parts: Sequence[str]) -> Place:
 
 
 def read_orh(text: str) -> Drawing:
-    """The drawing in an `.orh` file of Orihime, exactly as written.
+    """The drawing in an `.orh` file of Orihime, with the numbers exactly as written.
 
-    After the heading of the lines, each line of the drawing has a row "色,colour" (0 border,
-    1 mountain, 2 valley, others auxiliary, which are left out) and a row "座標,x1,y1,x2,y2". Raises
-    `MalformedDrawingError`, which names the row of the file, and `EmptyDrawingError`.
+    After the heading of the lines, each line of the drawing has a row "色,colour" and a row
+    "座標,x1,y1,x2,y2". The colours are 0 for the boundary, 1 for mountains and 2 for valleys; lines
+    of other colours are auxiliary and left out. Raises `MalformedDrawingError`, which names the row
+    of the file, and `EmptyDrawingError`.
 
     >>> read_orh("<線分集合>\\n番号,1\\n色,2\\n座標,0.0,0.0,10.5,0.0\\n").points[1]
     (Fraction(21, 2), Fraction(0, 1))
@@ -87,7 +90,9 @@ def read_orh(text: str) -> Drawing:
             colour = words[1]
         elif inside and words[0] == "座標":
             if len(words) != 5:
-                raise MalformedDrawingError(f"row {number}: {shown(row)} has no four numbers")
+                raise MalformedDrawingError(
+                    f"row {number}: {shown(row)} does not have four numbers"
+                )
             start, end = (_place(f"row {number}", words[i : i + 2]) for i in (1, 3))
             if colour in _NUMBERS:
                 segments.append((start, end, _NUMBERS[colour]))
