@@ -23,8 +23,8 @@ from exactfold.design.actuation.programs import largest_margin
 from exactfold.design.actuation.result import Actuation, Bounds, checked_torques, outward
 from exactfold.errors import (
     NotApplicableError,
-    TooManyRivalsError,
-    UnprovedRivalsError,
+    NotCountedError,
+    UndecidedBranchError,
     UsageError,
 )
 from exactfold.exact.numbers import RationalLike
@@ -74,7 +74,7 @@ def actuate(
     If `torques` are given, exact numbers by fold, they are judged instead. Then `best` bounds the
     margin of all torques that are at most as large as the largest one given.
 
-    Raises `TooManyRivalsError` if more than 12 vertices are foldable, `UnprovedRivalsError` if some
+    Raises `NotCountedError` if more than 12 vertices are foldable, `UndecidedBranchError` if some
     branch is not proved, `UsageError` for wrong arguments, and the errors of `find_branch`.
 
     >>> found = actuate("two-vertex", "+-")
@@ -92,7 +92,7 @@ def actuate(
     require_few(size)
     named = finder.find(wanted, progress=progress)
     if named.root is None:
-        raise UnprovedRivalsError(f"the branch is not proved: {named.reason}")
+        raise UndecidedBranchError(f"the branch is not proved: {named.reason}")
     branches = proved_branches(pattern, progress)
     return Search(pattern, named, branches, size + 1, creases, torques, nodes, progress).found(
         start
@@ -100,19 +100,19 @@ def actuate(
 
 
 def require_few(size: int) -> None:
-    """Raise `TooManyRivalsError` if too many vertices can pop."""
+    """Raise `NotCountedError` if too many vertices can pop."""
     if size > MOST_FOLDABLE:
-        raise TooManyRivalsError(
+        raise NotCountedError(
             f"{size} vertices can pop: exactfold compares a branch with all others, and there are "
             f"2^{size} of them; it does so if at most {MOST_FOLDABLE} vertices can pop"
         )
 
 
 def proved_branches(pattern: CreasePattern, progress: Progress | None) -> list[Branch]:
-    """All branches of a pattern; raises `UnprovedRivalsError` if some of them are not proved."""
+    """All branches of a pattern; raises `UndecidedBranchError` if some of them are not proved."""
     count = count_branches(pattern, progress=progress)
     if count.status is not PROVED:
-        raise UnprovedRivalsError(f"not all branches are proved: {count.reason}")
+        raise UndecidedBranchError(f"not all branches are proved: {count.reason}")
     return list(count.branches)
 
 
@@ -174,7 +174,7 @@ class Search:
                 self._sharpen([b for b, _ in meeting], bits)
                 meeting = self.directions.meeting(self.own)
         if len(meeting) != 1:
-            raise UnprovedRivalsError("two branches are too close to be told apart")
+            raise UndecidedBranchError("two branches are too close to be told apart")
         [(place, sign)] = meeting
         row = self.directions.alone(place, sign).narrowed(self.own)
         self.directions = self.directions.with_row(place, row)

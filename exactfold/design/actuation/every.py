@@ -49,7 +49,7 @@ def actuate_all(pattern: PatternLike, *, progress: Progress | None = None) -> tu
     decimals with twelve digits after the point. If several torques are equally good, they may
     differ from those of `actuate`.
 
-    Raises `TooManyRivalsError` if more than 12 vertices are foldable, `UnprovedRivalsError` if some
+    Raises `NotCountedError` if more than 12 vertices are foldable, `UndecidedBranchError` if some
     branch is not proved, and the errors of `count_branches`.
 
     >>> for found in actuate_all("two-vertex"):
