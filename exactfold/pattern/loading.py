@@ -1,4 +1,4 @@
-"""One way in for patterns: a pattern, what was read from a file, a path, or a shipped example."""
+"""The one way in for patterns: a pattern, a `FoldFile`, a path, or the name of an example."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ PatternLike: TypeAlias = "CreasePattern | FoldFile | str | PathLike[str]"
 
 
 def load(what: PatternLike, snap: int | None = None) -> CreasePattern:
-    """The pattern that is meant: a shipped example by name, a path, a pattern, or a `FoldFile`.
+    """The pattern that `what` stands for: an example's name, a path, a pattern or a `FoldFile`.
 
-    Text that is a name in `SHEETS` is that example, whatever files there are ("./two-vertex" is
-    a file of this name); all other text and every `Path` is the path of a file of any format, read
-    by `open_pattern`, which also tells what was repaired. The sheet must have triangles and
-    rational coordinates; `count_ways` takes the others. With `snap`, all coordinates are rounded to
-    multiples of 1/snap.
+    A text that is a name in `SHEETS` stands for this example, even if there is a file of the same
+    name (write "./two-vertex" for that). Every other text and every `Path` is the path of a file of
+    any format, which `open_pattern` reads; `open_pattern` itself also says what it repaired. The
+    sheet must have triangles and rational coordinates; `count_ways` takes other sheets. With
+    `snap`, all coordinates are rounded to multiples of 1/snap.
 
-    Raises `UnreadableFileError`, which lists the names, for text that is neither a name nor a file;
-    what `open_pattern` raises; `NotCountedError` for a sheet with larger panels or square
-    roots; `UsageError` for the name of a drawing, and for anything else than the four kinds.
+    Raises `UnreadableFileError`, which lists the names, if a text is neither a name nor a file;
+    the errors of `open_pattern`; `NotCountedError` for a sheet with larger panels or square
+    roots; `UsageError` for the name of a drawing and for objects of other types.
 
     >>> load("two-vertex")
     <CreasePattern: 2 interior and 4 boundary vertices>
@@ -51,19 +51,19 @@ def load(what: PatternLike, snap: int | None = None) -> CreasePattern:
     if isinstance(what, str):
         if what in DRAWINGS:
             raise UsageError(
-                f"{what} is a drawing with panels of any number of sides, not a sheet of "
+                f"{what} is a drawing whose panels may have any number of sides, not a sheet of "
                 "triangles: `count_ways` takes it"
             )
         if what in SHEETS:
             return triangles(open_pattern(example_path(what), snap), "load")
         if not os.path.exists(what):
             raise UnreadableFileError(
-                f"{shown(what)} is neither a file nor an example; the examples are: "
+                f"{shown(what)} is neither a file nor the name of an example; the examples are: "
                 f"{', '.join(SHEETS)}"
             )
     return triangles(open_pattern(what, snap), "load")
 
 
 def as_pattern(what: PatternLike) -> CreasePattern:
-    """`load(what)`, for functions that take a pattern: a pattern passes through untouched."""
+    """`load(what)` for functions that take a pattern; a `CreasePattern` is returned unchanged."""
     return what if isinstance(what, CreasePattern) else load(what)
