@@ -16,7 +16,6 @@ from exactfold import checker
 from exactfold.branches.counting.find import find_branch
 from exactfold.checker.core.reading import CertificateError, shown
 from exactfold.checker.motion import boxes as motion_boxes
-from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion import contacts as motion_contacts
 from exactfold.checker.motion import lengths as motion_lengths
 from exactfold.checker.motion.bounds import dot
@@ -60,7 +59,7 @@ def pieces(name: str) -> tuple[Any, ...]:
     """The verified pieces of a certificate, which forged contacts leave as they are."""
     found: list[tuple[Any, ...]] = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(motion, "check_contacts", lambda *all_: found.append(all_))
+        patch.setattr(motion_contacts, "check_contacts", lambda *all_: found.append(all_))
         verified(given(name))
     return found[0][:3]
 
