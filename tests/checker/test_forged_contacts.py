@@ -16,6 +16,7 @@ from exactfold import checker
 from exactfold.branches.counting.find import find_branch
 from exactfold.checker.core.reading import CertificateError, shown
 from exactfold.checker.motion import boxes as motion_boxes
+from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion import contacts as motion_contacts
 from exactfold.checker.motion import lengths as motion_lengths
 from exactfold.checker.motion.bounds import dot
@@ -133,7 +134,7 @@ def test_less_may_be_claimed() -> None:
 
         document = forged(name, only_clear)
         judged(document, name)
-        assert "; no two faces touch before 1" in checker.summary(
+        assert "; no two faces touch before 1" in motion.summary(
             {**document["claims"], "tubes": 1, "sha256": ""}
         )
         document["claims"]["clear"] = longer(document["claims"]["clear"], "1/2")

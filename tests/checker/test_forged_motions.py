@@ -17,6 +17,7 @@ from exactfold import checker
 from exactfold.branches.counting.find import find_branch
 from exactfold.checker.core.reading import CertificateError, FormatError, shown
 from exactfold.checker.motion import bounds as motion_bounds
+from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.bounds import Bounds
 from exactfold.checker.motion.equations import LengthEquations
 from exactfold.checker.motion.half_branch import check_half_branch
@@ -63,11 +64,11 @@ def test_claims_come_with_the_pattern(name: str) -> None:
 
 def test_summaries() -> None:
     claims = {"vertex_signs": [1] * 61, "side": -1, "length": "1", "tubes": 1, "sha256": "x"}
-    assert checker.summary(claims) == (
+    assert motion.summary(claims) == (
         f"VALID: the motion along the half-branch {'+' * 60}... (61), side -, is one curve "
         "without a gap of length 1 or more; 1 tube; sha256 x"
     )
-    assert f"{'+' * 60} (60)" in checker.summary({**claims, "vertex_signs": [1] * 60})
+    assert f"{'+' * 60} (60)" in motion.summary({**claims, "vertex_signs": [1] * 60})
 
 
 def test_formats() -> None:

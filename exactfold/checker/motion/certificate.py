@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..core.formats import MOTION, MOTION_VERSION
-from ..core.reading import counted, document, items, refusing
+from ..core.kinds import DocumentKind
+from ..core.reading import counted, items, refusing
 from ..sheets.reduced import emptied_sheet
 from ..sheets.sheet import read_sheet
 from .boundary import RimClaim
@@ -34,11 +34,6 @@ CLAIMS: tuple[type[BranchClaim], ...] = (
 """All claims that there are, in the order in which a summary has them."""
 
 _EVIDENCE = ("emptied", "pinned", "bits", "start", "tubes")
-
-
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate of a motion; raises `FormatError`."""
-    return document(data, MOTION, MOTION_VERSION, "format version pattern claims evidence")
 
 
 @refusing()
@@ -72,3 +67,13 @@ def summary(claims: dict[str, Any]) -> str:
     """One line for verified claims."""
     tubes = counted(claims["tubes"], "tube", "tubes")
     return f"VALID: {words(CLAIMS, claims)}; {tubes}; sha256 {claims['sha256']}"
+
+
+MOTION = DocumentKind(
+    format="exactfold motion",
+    versions=(1,),
+    names="format version pattern claims evidence",
+    check=check,
+    summary=summary,
+)
+"""The motion along a half-branch, as a chain of tubes (docs/motion.md)."""
