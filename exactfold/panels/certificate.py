@@ -103,13 +103,8 @@ def number_document(value: Number, field: SurdField) -> list[str]:
     return [format_rational(c) for c in field.number(value).coefficients]
 
 
-<<<<<<< HEAD
 def _spaces(part: Part) -> PartClaim:
-    """The leaves of a part by their folds, dimension and cones, and how many of each kind fold."""
-=======
-def _spaces(part: Part) -> Document:
     """The leaves of a part, grouped by folds, dimension and cones, with the number that fold."""
->>>>>>> main
     kinds: dict[tuple[tuple[Edge, ...], int, tuple[int, ...]], list[bool]] = {}
     for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True):
         kinds.setdefault((leaf.folds, leaf.dimension, leaf.vertices), []).append(folds)
@@ -176,15 +171,10 @@ def _support(
     moving: Mapping[int, Star],
     together: _Together,
     listed: list[Mode] | None,
-<<<<<<< HEAD
 ) -> SupportClaim:
-    """A support with the number of its modes that truly fold, and the modes if they are listed."""
-=======
-) -> Document:
     """A support with the number of its modes that truly fold, and with the modes if they are
     listed.
     """
->>>>>>> main
     first = extension(pattern, moving, together.choices[0])
     by, extending = "loops", None
     if first.verdict is PROVED and not first.order:

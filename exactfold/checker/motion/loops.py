@@ -1,8 +1,8 @@
 """Certificates of loops, line by line: motions from the flat state back to it (docs/motions.md).
 
 Why it is a proof: a loop leaves the flat state as the motions of `motion` do. It passes from tube
-to tube, and through nodes on arcs that are analytic there (`motion_nodes`). On its last tube lies a
-point of the start tube of another half-branch, which passes it in the opposite direction: so it
+to tube, and through nodes on arcs that are analytic there (`branch_points`). On its last tube lies
+a point of the start tube of another half-branch, which passes it in the opposite direction: so it
 ends in the flat state along this one. Every half-branch is the beginning of one curve only, which
 makes loops that are given a matching, complete if all 2^(n + 1) names occur in it.
 """
@@ -29,11 +29,11 @@ from ..core.reading import (
     refusing,
     require,
 )
+from ..sheets.reduced import emptied_sheet
 from ..sheets.sheet import read_sheet
-from .certificate import check_steps, framework, walked
-from .names import names
-from .paths import Path
-from .pieces import first_piece, land
+from .chain import Chain, check_work, equations_of
+from .half_branch import names
+from .returns import land
 from .tubes import Start
 
 HalfBranch = tuple[tuple[int, ...], int]
@@ -45,7 +45,9 @@ class LoopSheet:
 
     def __init__(self, header: dict[str, Any]) -> None:
         self.given, self.sha256 = read_sheet(header["pattern"])
-        self.equations, self.removed = framework(self.given, header)
+        points = dict(self.given.points)
+        sheet, self.removed = emptied_sheet(self.given, points, header["emptied"])
+        self.equations = equations_of(sheet, header["pinned"], header["bits"])
 
     @property
     def half_branches(self) -> int:
@@ -68,17 +70,18 @@ class LoopSheet:
         evidence = entry["evidence"]
         keys(evidence, "start steps landing", "evidence")
         steps = items(evidence["steps"], "steps")
-        check_steps(self.equations, steps)
-        start, tau = first_piece(self.equations, evidence["start"])
-        require(self._named(start) == self.half_branch(entry["from"]), "it begins along another")
-        path = Path(start.configuration(tau), self.equations.bits)
-        walked(self.equations, path, steps, leaves=False)
-        end, side = land(self.equations, path, evidence["landing"])
+        check_work(self.equations, steps)
+        chain = Chain(self.given, self.removed, self.equations, evidence["start"])
+        require(
+            self._named(chain.start) == self.half_branch(entry["from"]), "it begins along another"
+        )
+        chain.walk(steps, leaves=False)
+        end, side = land(chain, evidence["landing"])
         signs, saddle = self._named(end)
         target = tuple(side * s for s in signs), side * saddle
         require(target == self.half_branch(entry["to"]), "it ends along another")
         claimed = parse_rational(entry["length"])
-        require(claimed <= path.land() * self.equations.unit, "it is shorter than claimed")
+        require(claimed <= chain.path.length * self.equations.unit, "it is shorter than claimed")
 
     def _named(self, start: Start) -> HalfBranch:
         signs, side = names(self.given, self.removed, start)
