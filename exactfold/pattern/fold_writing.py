@@ -37,7 +37,8 @@ def fold_document(
     `vertices_exactfold:coords` the exact "p/q" pairs. `edges_foldAngle` has the sign of the letter
     (valley positive), and is 0 for F, U and B: with `angles` the degrees given there by fold,
     without it 180 for V and -180 for M. A simulator that is told 180 everywhere need not stay on
-    the branch that has these letters: `exactfold.export_branch` writes the angles of a branch.
+    the branch that has these letters: `exactfold.branches.export_branch` writes the angles of a
+    branch.
 
     Raises `UsageError` for a letter or an angle that is not of a fold of the pattern, or an angle
     that contradicts its letter, and `NotApplicableError` if a coordinate is beyond the range of

@@ -277,15 +277,15 @@ def triangles(opened: Opened, needs: str) -> CreasePattern:
     if sheet.field.radicands:
         raise NotTriangulatedError(
             f"{needs} takes triangulated sheets with rational coordinates, and those of this "
-            f"one lie in {opened.field_name}: `exactfold count` (`count_ways`) takes them as they "
-            "are, and `exactfold convert --triangulate --snap DEN` rounds those of a drawing"
+            f"one lie in {opened.field_name}: `exactfold count` (`count` in Python) takes them as "
+            "they are, and `exactfold convert --triangulate --snap DEN` rounds those of a drawing"
         )
     large = sum(len(face) > 3 for face in sheet.faces)
     raise NotTriangulatedError(
         f"{needs} takes triangulated sheets, and this one has {counted(large, 'panel')} with "
-        "more than three sides: `exactfold count` (`count_ways`) says how its panels fold while "
-        "they stay rigid, and `exactfold convert --triangulate` cuts them into triangles that may "
-        "bend"
+        "more than three sides: `exactfold count` (`count` in Python) says how its panels "
+        "fold while they stay rigid, and `exactfold convert --triangulate` cuts them into "
+        "triangles that may bend"
     )
 
 

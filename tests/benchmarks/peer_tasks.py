@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 from peer_programs import PEERS, decimals, macaulay2_input, phcpack_input
 
-from exactfold import certificate, count_branches, find_branch
+from exactfold.branches import certificate, count_branches, find_branch
 from exactfold.branches.certificates.check import check_compact
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.branches.values.roots import BoxRoot

@@ -23,7 +23,7 @@ from forge import (
 )
 from sheets import relabelled
 
-from exactfold import certificate, count_branches
+from exactfold.branches import certificate, count_branches
 from exactfold.checker.branches.flat_sheets import FlatSheets
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.sheets.equations import BranchSystem

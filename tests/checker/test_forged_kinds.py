@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 
-from exactfold import certificate, checker, count_branches
+from exactfold import checker
+from exactfold.branches import certificate, count_branches
 from exactfold.branches.counting import multiple_roots
 from exactfold.checker.branches import listing
 from exactfold.checker.sheets.equations import BranchSystem

@@ -16,7 +16,8 @@ from certificates import (
     type_changes,
 )
 
-from exactfold import PROVED, certificate, checker, count_branches
+from exactfold import PROVED, checker
+from exactfold.branches import certificate, count_branches
 from exactfold.errors import InputError
 from exactfold.pattern.crease_pattern import CreasePattern
 

@@ -9,7 +9,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from exactfold import count_branches, random_square
+from exactfold import random_square
+from exactfold.branches import count_branches
 from exactfold.design import actuate
 from exactfold.rigidity import BranchSystem, perturbed
 from exactfold.rigidity.functionals import saddle_functional

@@ -7,7 +7,8 @@ import pytest
 from counting import counts
 from sheets import wheel
 
-from exactfold import PROVED, UNDECIDED, CreasePattern, checker, count_branches
+from exactfold import PROVED, UNDECIDED, CreasePattern, checker
+from exactfold.branches import count_branches
 from exactfold.branches.certificates.listing import certificate
 from exactfold.branches.counting import collect as module
 from exactfold.branches.counting import fallback as hand_over

@@ -7,7 +7,8 @@ import pytest
 from counting import counts
 from sheets import TRIANGLE, scrambled, two_triangles
 
-from exactfold import PROVED, UNDECIDED, checker, count_branches
+from exactfold import PROVED, UNDECIDED, checker
+from exactfold.branches import count_branches
 from exactfold.branches.certificates.listing import certificate
 from exactfold.branches.counting import fallback as hand_over
 from exactfold.branches.counting import multiple_roots
