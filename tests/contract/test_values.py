@@ -187,6 +187,7 @@ VALUES = {
         MOTION.curve.framework, np.array([0.0, 0.0, 0.0, 1.0, 0.3, -0.1])
     ),
     "actuation": DRIVEN,
+    "checked certificate": exactfold.check(exactfold.branches.certificate(COUNT)),
     "match": MATCH,
     "half of a branch": MATCH.matches[0],
     "nearest branches": exactfold.design.nearest_branches(MATCH),

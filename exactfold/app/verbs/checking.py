@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -61,7 +62,7 @@ def check(
     name = "the certificate" if isinstance(certificate, Mapping) else os.fspath(certificate)
     try:
         if isinstance(certificate, Mapping):
-            claims = checker.check(dict(certificate))
+            claims = checker.check(checker.load(json.dumps(certificate)))
         else:
             claims = _verified(certificate, workers or available_cores())
     except checker.CertificateError as error:

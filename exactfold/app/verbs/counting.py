@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from os import PathLike
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, TypeGuard, cast, overload
 
 from exactfold._support.progress import Progress
 from exactfold.app.verbs.choosing import the_branch
@@ -59,7 +59,7 @@ def read(
 
 
 @overload
-def count(
+def count(  # type: ignore[overload-overlap]  # text is one sheet, not a list of letters
     sheet: PatternLike,
     *,
     method: str = ...,
@@ -114,19 +114,21 @@ def count(
     two-vertex 4
     flat-vertex 3
     """
-    if not _is_one(sheet):
-        return count_many(
-            sheet,
-            jobs=workers,
-            method=method,
-            seed=seed,
-            snap=snap,
-            number=number,
-            progress=progress,
+    if _is_one(sheet):
+        if workers != 1:
+            raise UsageError(f"{workers} workers share a list of sheets; one is counted by one")
+        return count_ways(
+            sheet, method=method, seed=seed, snap=snap, number=number, progress=progress
         )
-    if workers != 1:
-        raise UsageError(f"{workers} workers share a list of sheets; one sheet is counted by one")
-    return count_ways(sheet, method=method, seed=seed, snap=snap, number=number, progress=progress)
+    return count_many(
+        cast("Iterable[PatternLike]", sheet),
+        jobs=workers,
+        method=method,
+        seed=seed,
+        snap=snap,
+        number=number,
+        progress=progress,
+    )
 
 
 def decompose(
@@ -190,7 +192,7 @@ def branch(
     return found
 
 
-def _is_one(sheet: object) -> bool:
+def _is_one(sheet: object) -> TypeGuard[PatternLike]:
     """Whether this is one sheet, and not many: patterns and mappings are no lists of sheets."""
     one = (str, bytes, PathLike, Mapping, CreasePattern, FoldFile, Opened, Drawing)
     return isinstance(sheet, one) or not isinstance(sheet, Iterable)
