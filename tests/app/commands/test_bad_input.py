@@ -8,10 +8,8 @@ from files import CORNERS, FACES, written
 from running import BAD_INPUT, PROVED, UNDECIDED, error_class, process, run
 from sheets import SQUARE, with_point
 
-from exactfold import (
-    random_square,
-    write_fold,
-)
+from exactfold import random_square
+from exactfold.pattern import write_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 
 SQUARE_FOLD = {"vertices_coords": CORNERS, "faces_vertices": FACES}

@@ -24,12 +24,14 @@ from running import (
 )
 from sheets import DENTED, scrambled
 
-from exactfold import count_branches, random_square, write_fold
+from exactfold import random_square
 from exactfold.app.commands import batch
 from exactfold.app.shell.shell import Bar
+from exactfold.branches import count_branches
 from exactfold.branches.counting.batch import count_many
 from exactfold.branches.counting.pools import dask_pool, process_pool
 from exactfold.errors import NotFoldError, UnreadableFileError, UsageError, WorkerDiedError
+from exactfold.pattern import write_fold
 from exactfold.pattern.data import example_path
 
 KEYS = {
