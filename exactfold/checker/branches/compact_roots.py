@@ -14,6 +14,7 @@ from ..core.reading import UnfinishedError, at_most, items, keys, natural, refus
 from ..sheets.sheet import facts_of, read_sheet
 from . import listing
 
+
 @refusing()
 def check_roots(header: dict[str, Any], found: Iterator[str]) -> tuple[dict[str, Any], int]:
     """What the blocks that follow a header prove, and their number; all of them are kept."""
