@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
 
-from exactfold.errors import InputError, SeveralSheetsError, UnknownPatternError, UsageError
+from exactfold.errors import InputError, SeveralSheetsError, UnreadableFileError, UsageError
 from exactfold.exact.numbers import shown
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import EXAMPLES, example_path
@@ -53,7 +53,7 @@ def open_sheet(
     other text and every `Path` is the path of a file of any format. `number`, from 1, chooses among
     the sheets of a drawing with several; the rest is as for `open_pattern`.
 
-    Raises the errors of `open_pattern`; `UnknownPatternError`, which lists the names, for text that
+    Raises the errors of `open_pattern`; `UnreadableFileError`, which lists the names, for text that
     is neither a name nor a file; `SeveralSheetsError` for another `number` than 1 of a pattern; and
     `UsageError` for a `snap` that a pattern has not, and for anything that is no sheet.
 
@@ -95,7 +95,7 @@ def load(what: PatternLike, snap: Snap | None = None) -> CreasePattern:
     The sheet must have triangles and rational coordinates. With `snap`, all coordinates are rounded
     to multiples of 1/snap.
 
-    Raises the errors of `open_sheet`, and `NotTriangulatedError` for a sheet with larger panels or
+    Raises the errors of `open_sheet`, and `NotCountedError` for a sheet with larger panels or
     square roots.
 
     >>> load("two-vertex")
@@ -124,7 +124,7 @@ def _located(sheet: str | PathLike[str]) -> str | PathLike[str]:
     if sheet in EXAMPLES:
         return example_path(sheet)
     if not os.path.exists(sheet):
-        raise UnknownPatternError(
+        raise UnreadableFileError(
             f"{shown(sheet)} is neither a file nor an example; the examples are: "
             f"{', '.join(EXAMPLES)}"
         )

@@ -9,7 +9,9 @@ from typing import Any
 from exactfold import checker
 from exactfold._support.schemas import headed
 from exactfold.app.shell.shell import Bar, name_of, regular, said
+from exactfold.app.verbs.checking import quickest
 from exactfold.checker.command import refusal
+from exactfold.checker.core.kinds import Verified
 from exactfold.checker.core.reading import UnfinishedError, plain
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 
@@ -31,37 +33,23 @@ def valid(path: Path, workers: int | None, as_json: bool) -> bool:
     return claims is not None
 
 
-def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, str, str]:
+def verified(path: Path, workers: int | None) -> tuple[Verified[Any] | None, str, str]:
     """The claims of a file, what to print, and the reason; None if one does not hold.
 
     Raises `CertificateFormatError`, `UnreadableFileError`, `WorkerDiedError`.
     """
+    from exactfold._support.processes import available_cores
+
     with regular(path) as file:
         try:
-            claims = _claims(file, workers, path)
+            claims = checker.verify(file, workers or available_cores(), quickest)
         except checker.CertificateError as error:
             unfinished = "unfinished: " if isinstance(error, UnfinishedError) else ""
             return None, refusal(error), unfinished + plain(error)
         except checker.FormatError as error:
             raise CertificateFormatError(f"{said(path)}: {plain(error)}") from None
+        except WorkerDiedError as error:
+            raise type(error)(f"{error}; nothing is known of the file") from None
         except OSError as error:
             raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
     return claims, checker.summary(claims), "every claim holds"
-
-
-def _claims(file: Path, workers: int | None, name: Path) -> dict[str, Any]:
-    from exactfold._support.processes import available_cores
-    from exactfold.certificates.sharing import shared
-    from exactfold.checker.branches.compact import INTEGERS
-
-    workers = workers or available_cores()
-    if not checker.is_compact(file):
-        try:
-            return checker.verify(file, workers, INTEGERS._replace(share=shared))
-        except WorkerDiedError as error:
-            raise type(error)(f"{error}; nothing is known of the file") from None
-    from exactfold.branches.certificates.check import (
-        check_compact,  # needs NumPy, as no other kind does
-    )
-
-    return check_compact(file, workers=workers, name=name)

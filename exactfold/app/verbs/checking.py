@@ -12,8 +12,10 @@ from exactfold import checker
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED, REFUTED, Verdict
 from exactfold.certificates.sharing import shared
-from exactfold.checker.branches.compact import INTEGERS
+from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.command import refusal
+from exactfold.checker.core.kinds import LineKind
+from exactfold.checker.core.parts import Engine
 from exactfold.checker.core.reading import plain
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 
@@ -62,25 +64,24 @@ def check(
     name = "the certificate" if isinstance(certificate, Mapping) else os.fspath(certificate)
     try:
         if isinstance(certificate, Mapping):
-            claims = checker.check(checker.load(json.dumps(certificate)))
+            found = checker.check(checker.load(json.dumps(certificate)))
         else:
-            claims = _verified(certificate, workers or available_cores())
+            found = checker.verify(certificate, workers or available_cores(), quickest)
     except checker.CertificateError as error:
         return Checked(REFUTED, plain(error), refusal(error))
     except checker.FormatError as error:
         raise CertificateFormatError(f"{name}: {plain(error)}") from None
-    except OSError as error:
-        raise UnreadableFileError(f"cannot read {name}: {error.strerror}") from None
-    return Checked(PROVED, "every claim holds", checker.summary(claims), claims)
-
-
-def _verified(path: str | os.PathLike[str], workers: int) -> dict[str, Any]:
-    """The claims of a file; roots of compact ones are verified in bounded floats where they can."""
-    if checker.is_compact(path):
-        from exactfold.branches.certificates.check import check_compact  # it needs NumPy
-
-        return check_compact(path, workers=workers)
-    try:
-        return checker.verify(path, workers, INTEGERS._replace(share=shared))
     except WorkerDiedError as error:
         raise type(error)(f"{error}; nothing is known of the file") from None
+    except OSError as error:
+        raise UnreadableFileError(f"cannot read {name}: {error.strerror}") from None
+    return Checked(PROVED, "every claim holds", checker.summary(found), dict(found))
+
+
+def quickest(kind: LineKind[Any]) -> Engine:
+    """How the lines of a file are verified: on processes, and where it can be in floats first."""
+    if kind is COMPACT:
+        from exactfold.branches.certificates.check import FLOATS  # needs NumPy, as no other does
+
+        return FLOATS
+    return kind.engine._replace(share=shared)

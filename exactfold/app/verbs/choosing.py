@@ -12,9 +12,7 @@ from exactfold.branches.counting.find import Deficits, Rim, Signs, branch_finder
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.errors import (
-    NoLettersError,
     NotCountedError,
-    NotTriangulatedError,
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -85,14 +83,12 @@ def listed(result: BranchCount, way: int) -> Branch:
 def asked_letters(opened: Opened, letters: Letters | None) -> Letters:
     """The letters that are meant; those of the file for None and "drawn".
 
-    Raises `NoLettersError` where the file has none.
+    Raises `UsageError` where the file has none.
     """
     if letters is not None and letters != DRAWN:
         return letters
     if not opened.letters:
-        raise NoLettersError(
-            "no fold of the sheet is drawn as a mountain or a valley: give letters"
-        )
+        raise UsageError("no fold of the sheet is drawn as a mountain or a valley: give letters")
     return opened.letters
 
 
@@ -137,7 +133,7 @@ def _triangulated(opened: Opened) -> CreasePattern:
         return opened.sheet
     if opened.sheet.field.radicands or all(len(face) == 3 for face in opened.sheet.faces):
         return triangles(opened, "branch")
-    raise NotTriangulatedError(
+    raise NotCountedError(
         "this sheet of rigid panels has modes in place of branches: `count` lists them, and "
         "`follow(sheet, 1)` follows the first"
     )

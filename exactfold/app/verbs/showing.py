@@ -56,7 +56,7 @@ def draw(
     ways that it lists. Of a motion: the sheet in space, in a row of stills.
 
     Raises `UsageError` for a way that is not there or a file with another ending,
-    `PicturesMissingError` for .png and .pdf without the extra `exactfold[pictures]`, and as `read`
+    `PackageMissingError` for .png and .pdf without the extra `exactfold[pictures]`, and as `read`
     and `branch`.
 
     >>> import exactfold

@@ -10,9 +10,7 @@ import exactfold
 from exactfold import PROVED, REFUTED
 from exactfold.design import Match, PanelMatch, RimMatch
 from exactfold.errors import (
-    NoLettersError,
     NotCountedError,
-    NotTriangulatedError,
     UsageError,
 )
 from exactfold.pattern import families
@@ -35,7 +33,7 @@ def test_letters_are_those_of_the_file_unless_others_are_given():
     assert exactfold.match("miura").letters == exactfold.read("miura").letters
     free = exactfold.match("miura", {})
     assert set(free.letters.values()) == {"U"}
-    with pytest.raises(NoLettersError, match="no fold of the sheet is drawn as a mountain"):
+    with pytest.raises(UsageError, match="no fold of the sheet is drawn as a mountain"):
         exactfold.match("two-vertex")
 
 
@@ -69,5 +67,5 @@ def test_torques_for_a_branch_however_it_is_named():
 
 
 def test_torques_need_triangles():
-    with pytest.raises(NotTriangulatedError, match="actuate takes triangulated sheets"):
+    with pytest.raises(NotCountedError, match="actuate takes triangulated sheets"):
         exactfold.actuate("miura", "+")

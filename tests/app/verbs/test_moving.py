@@ -8,7 +8,7 @@ import exactfold
 from exactfold.branches import find_branch
 from exactfold.checker import summary
 from exactfold.design import match
-from exactfold.errors import NotCountedError, NotTriangulatedError, UsageError
+from exactfold.errors import NotCountedError, UsageError
 from exactfold.motion import find_driven, follow_panels
 from exactfold.motion import follow as follow_branch
 from exactfold.pattern import families
@@ -161,5 +161,5 @@ def test_loops_are_written_and_checked(tmp_path):
     found = exactfold.loops("two-vertex", workers=2, certificate=file)
     assert (found.status, len(found.loops)) == (exactfold.PROVED, 2)
     assert exactfold.check(file).claims["loops"] == 2
-    with pytest.raises(NotTriangulatedError):
+    with pytest.raises(NotCountedError):
         exactfold.loops("miura")
