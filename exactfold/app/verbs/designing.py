@@ -83,8 +83,8 @@ def actuate(
     The branch is named as for `branch`. On at most `creases` folds, if that is given. With
     `torques`, exact numbers by fold, these are judged instead (docs/actuation.md).
 
-    Raises `NotCountedError` for larger panels and for more than 12 vertices that fold, and the errors
-    of `branch` and of `exactfold.design.actuate`.
+    Raises `NotCountedError` for larger panels and for more than 12 vertices that fold, and the
+    errors of `branch` and of `exactfold.design.actuate`.
 
     >>> import exactfold
     >>> exactfold.actuate("two-vertex", "+-")
