@@ -56,7 +56,7 @@ def test_the_name_of_an_example_is_not_a_file(here):
 
 @pytest.mark.parametrize("what", ["two_vertex", "sheet", "", "a\0b", "none/sheet.fold", "x" * 5000])
 def test_unknown_pattern_error_lists_the_names(what, here):
-    with pytest.raises(UnreadableFileError, match="is neither a file nor an example") as caught:
+    with pytest.raises(UnreadableFileError, match="is neither a file nor the name of an") as caught:
         load(what)
     assert str(caught.value).endswith(", ".join(EXAMPLES))
     assert len(str(caught.value)) < 310

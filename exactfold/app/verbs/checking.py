@@ -42,7 +42,9 @@ class Checked:
 
 
 def check(
-    certificate: str | os.PathLike[str] | Mapping[str, Any], *, workers: int | None = None
+    certificate: str | os.PathLike[str] | Mapping[str, Any] | tuple[str, ...],
+    *,
+    workers: int | None = None,
 ) -> Checked:
     """Verify every claim of a certificate by the stand-alone checker, which believes nothing.
 
@@ -61,12 +63,16 @@ def check(
     >>> exactfold.check(forged).status
     <Verdict.REFUTED: 'refuted'>
     """
-    name = "the certificate" if isinstance(certificate, Mapping) else os.fspath(certificate)
+    workers = workers or available_cores()
+    name = "the certificate"
     try:
         if isinstance(certificate, Mapping):
             found = checker.check(checker.load(json.dumps(certificate)))
+        elif isinstance(certificate, tuple):
+            found = checker.check(certificate, workers, quickest)
         else:
-            found = checker.verify(certificate, workers or available_cores(), quickest)
+            name = os.fspath(certificate)
+            found = checker.verify(certificate, workers, quickest)
     except checker.CertificateError as error:
         return Checked(REFUTED, plain(error), refusal(error))
     except checker.FormatError as error:

@@ -14,7 +14,11 @@ from ..core.lines import lines, read_object
 from ..core.parts import Engine, here, on_processes
 from ..core.reading import CertificateError, FormatError, UnfinishedError, keys, refusing, require
 from .compact_blocks import CompactSheet
+from .compact_roots import check_roots
 from .listing import summary
+
+CHAMBERS, ROOTS = 1, 2
+"""The versions: one simple root for each sign vector; an entry for each root, of any kind."""
 
 
 class IntegerVerifier:
@@ -58,21 +62,29 @@ def check_lines(
     if first is None:
         raise FormatError("the file is empty")
     header = COMPACT.header(first)
-    with refusing("in the first line"):
-        sheet = CompactSheet(header)
-    _check_blocks(found, first, sheet.blocks, workers, engine)
+    if header["version"] == ROOTS:
+        facts, blocks = check_roots(header, found)
+    else:
+        with refusing("in the first line"):
+            sheet = CompactSheet(header)
+        _check_blocks(found, first, sheet.blocks, workers, engine)
+        facts, blocks = sheet.claims(), sheet.blocks
+    _check_claims(found, facts, blocks)
+    return facts
+
+
+def _check_claims(found: Iterator[str], facts: dict[str, Any], blocks: int) -> None:
+    """The last line claims what was found, no more and no less."""
     last = next(found, None)
     if last is None:
-        raise UnfinishedError(f"all {sheet.blocks} blocks hold, but the claims are missing")
+        raise UnfinishedError(f"all {blocks} blocks hold, but the claims are missing")
     claims = read_object(last, "the last line")
     keys(claims, "claims", "the last line")
     require(next(found, None) is None, "something follows the claims")
-    facts = sheet.claims()
     keys(claims["claims"], " ".join(facts), "claims")
     for key, fact in facts.items():
         claim = claims["claims"][key]
         require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
-    return facts
 
 
 def _check_blocks(
@@ -106,10 +118,10 @@ def _check_blocks(
 
 COMPACT = LineKind(
     format="exactfold compact certificate",
-    versions=(1,),
+    versions=(CHAMBERS, ROOTS),
     names="format version pattern evidence provenance",
     check=check_lines,
     summary=summary,
     engine=INTEGERS,
 )
-"""One root for each sign vector, line by line (docs/compact-certificate.md)."""
+"""All branches of a triangulated sheet, line by line (docs/compact-certificate.md)."""

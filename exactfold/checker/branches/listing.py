@@ -44,13 +44,24 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
     Returns the verified claims. Passing means that the claims hold for the pattern in the file.
     """
-    claims, evidence = data["claims"], data["evidence"]
+    claims = data["claims"]
     keys(claims, f"{FACTS} {COUNTS} branches", "claims")
-    require(isinstance(evidence, dict), "the evidence is not an object")
     sheet, digest = read_sheet(data["pattern"])
+    branches = items(claims["branches"], "branches")
+    facts = facts_of(sheet, digest) | proved(sheet, data["evidence"], branches)
+    for key, fact in facts.items():
+        require(
+            type(claims[key]) is type(fact) and claims[key] == fact,
+            f"claim {key} = {claims[key]!a}, but it is {fact!a}",
+        )
+    return dict(claims)
+
+
+def proved(sheet: Sheet, evidence: Any, branches: list[Any]) -> dict[str, Any]:
+    """The counts that the evidence proves of a sheet, whose branches are those listed."""
+    require(isinstance(evidence, dict), "the evidence is not an object")
     emptied = check_triangles(sheet, evidence.get("triangles"))
     kind = evidence.get("kind")
-    branches = items(claims["branches"], "branches")
     if kind == "rigid":
         counts = _rigid(sheet, emptied, evidence, branches)
     elif kind == "single vertex":
@@ -59,13 +70,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
         counts = _lines(sheet, emptied, evidence, branches)
     else:
         raise CertificateError(f"unknown kind of evidence {kind!a}")
-    facts = facts_of(sheet, digest) | dict(zip(COUNTS.split(), counts, strict=True))
-    for key, fact in facts.items():
-        require(
-            type(claims[key]) is type(fact) and claims[key] == fact,
-            f"claim {key} = {claims[key]!a}, but it is {fact!a}",
-        )
-    return dict(claims)
+    return dict(zip(COUNTS.split(), counts, strict=True))
 
 
 def _rigid(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> Counts:

@@ -104,7 +104,7 @@ def test_nothing_found_is_undecided(tmp_path):
     write_fold(random_square(4, seed=1), tmp_path / "p.fold")
     result = run("actuate", tmp_path / "p.fold", "--signs", "+-+-", "--creases", 1)
     assert result.exit_code == UNDECIDED
-    assert "UNDECIDED (no torques on so few creases that prefer the branch" in result.stdout
+    assert "UNDECIDED (no torques on so few creases were found that prefer" in result.stdout
     assert "crease  letter" not in result.stdout
 
 

@@ -58,7 +58,7 @@ def test_the_sheet_that_is_read_again_is_the_identical_one(
     assert again.sheet == first.sheet
     assert again.sheet.sha256 == first.sheet.sha256
     assert again.assignment == first.assignment
-    assert again.lines[1] == "coordinates kept as they are written: the file has exact ones"
+    assert again.lines[1] == "coordinates kept as written: the file states exact coordinates"
     document = json.loads(out.read_text())
     assert ("J" in document["edges_assignment"]) is triangulate
     assert document["frame_exactfold:field"] == [["2"]]

@@ -278,7 +278,7 @@ def test_a_branch_is_written_for_coq():
         (["two-vertex", "-o", "two-vertex.v"], USAGE, "which two-vertex.v cannot be"),
         (["two-vertex", "-o", "two_vertex.coq"], USAGE, "which two_vertex.coq cannot be"),
         (["miura"], UNDECIDED, "16 panels with more than three sides"),
-        (["bird-base"], UNDECIDED, "those of this one lie in Q(sqrt 2)"),
+        (["bird-base"], UNDECIDED, "the coordinates of this one lie in Q(sqrt 2)"),
     ],
 )
 def test_what_coq_does_not_take_is_refused(arguments, code, said):

@@ -43,10 +43,10 @@ def test_a_vertex_that_is_almost_flat_is_named(
     assert result.exit_code == PROVED
     (line,) = result.stderr.splitlines()
     assert line.startswith(
-        "exactfold: warning: vertex 4 is within 1e-13 of (1/2, 1/2), but not there"
+        "exactfold: warning: vertex 4 is within 1e-13 of (1/2, 1/2), but not at it"
     )
     assert "the path 0-4-2 is nearly straight, but not quite" in line
-    assert line.endswith("rounds to the simpler pattern")
+    assert "rounds the coordinates to the simpler pattern" in line
     snap = line.split("--snap ")[1].split()[0]
     again = run(command, moved, *more, "--snap", snap)
     assert (again.exit_code, again.stderr) == (PROVED, "")

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from exactfold import random_square
 from exactfold.app.cli.main import app
-from exactfold.branches.certificates.streamed import block_line
+from exactfold.branches.certificates.blocks import block_line
 from exactfold.branches.counting import on_dask as engine_module
 from exactfold.branches.counting import pools
 from exactfold.branches.counting.conveyor import Conveyor

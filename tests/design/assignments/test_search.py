@@ -212,7 +212,7 @@ def test_a_sheet_with_a_reflex_corner():
         ("MVXMVMV", "fold (1, 5) has the letter 'X', not one of M, V, F, U"),
         ({(0, 1): "M"}, "(0, 1) is not a fold of the sheet"),
         ({(1, 5): 1}, "fold (1, 5) has the letter 1, not one of M, V, F, U"),
-        (None, "letters are a text, or a mapping from folds to letters"),
+        (None, "letters have to be a text"),
     ],
 )
 def test_letters_that_do_not_fit(letters, message):
