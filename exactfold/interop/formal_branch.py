@@ -115,8 +115,8 @@ def branches_to_coq(certificates: Sequence[Mapping[str, Any]]) -> str:
     if flat := [s for s in signs if 0 in s]:
         shown, v = _shown(min(flat)), pattern.interior[min(flat).index(0)]
         raise NotApplicableError(
-            f"vertex {v} is flat on the branch with the signs {shown}: the formal proof counts only "
-            "branches of sheets on which no vertex can stay flat"
+            f"vertex {v} is flat on the branch with the signs {shown}: the formal proof counts "
+            "only branches of sheets on which no vertex can stay flat"
         )
     if missing := set(product((1, -1), repeat=pattern.Vi)) - signs:
         raise NotApplicableError(
