@@ -14,7 +14,7 @@ from numbers import Rational
 from typing import TypeAlias
 
 from exactfold.checker.core.limits import MOST_EXPONENT, MOST_NUMBER
-from exactfold.errors import FloatRefusedError, NotANumberError, UsageError
+from exactfold.errors import FloatRefusedError, NumberError, UsageError
 
 RationalLike: TypeAlias = "int | Fraction | Decimal | str"
 
@@ -36,10 +36,10 @@ def long_integer(text: str) -> int:
 def _int(text: str) -> int:
     """Reads like `long_integer`, but refuses more digits than a file may ask for.
 
-    Raises `NotANumberError` for them.
+    Raises `NumberError` for them.
     """
     if (digits := len(text.lstrip("+-"))) > MOST_NUMBER:
-        raise NotANumberError(
+        raise NumberError(
             f"{shown(text)} has {digits} digits, but at most {MOST_NUMBER} digits are read: "
             "round the number"
         )
@@ -49,7 +49,7 @@ def _int(text: str) -> int:
 def parse_rational(text: str) -> Fraction:
     """The exact value of "p", "p/q" or decimal text such as "-1.25e-3".
 
-    Raises `NotANumberError` for any other text, such as "NaN", "Infinity" and a zero denominator,
+    Raises `NumberError` for any other text, such as "NaN", "Infinity" and a zero denominator,
     and for numbers that are longer than the limits of `exactfold.checker.core.limits`.
 
     >>> parse_rational("0.1")
@@ -58,7 +58,7 @@ def parse_rational(text: str) -> Fraction:
     Fraction(-1, 2)
     >>> parse_rational("inf")
     Traceback (most recent call last):
-    exactfold.errors.NotANumberError: 'inf' is not a number: write an integer, "p/q" or a decimal
+    exactfold.errors.NumberError: 'inf' is not a number: write an integer, "p/q" or a decimal
     """
     text = text.strip()
     if _INTEGER.match(text):
@@ -66,43 +66,43 @@ def parse_rational(text: str) -> Fraction:
     if quotient := _QUOTIENT.match(text):
         denominator = _int(quotient[2])
         if denominator == 0:
-            raise NotANumberError(f"{shown(text)} has a zero denominator")
+            raise NumberError(f"{shown(text)} has a zero denominator")
         return Fraction(_int(quotient[1]), denominator)
     decimal = _DECIMAL.match(text)
     if decimal and (decimal[2] or decimal[3]):
         sign, whole, part, power = decimal[1], decimal[2], decimal[3] or "", _int(decimal[4] or "0")
         if abs(power) > MOST_EXPONENT:
-            raise NotANumberError(
+            raise NumberError(
                 f"the exponent of {shown(text)} exceeds {MOST_EXPONENT} in size: "
                 "rescale the coordinates"
             )
         digits = _int(f"{sign}{whole}{part}")
         power -= len(part)
         return Fraction(digits * 10**power) if power >= 0 else Fraction(digits, 10**-power)
-    raise NotANumberError(f'{shown(text)} is not a number: write an integer, "p/q" or a decimal')
+    raise NumberError(f'{shown(text)} is not a number: write an integer, "p/q" or a decimal')
 
 
 def parse_whole(text: str) -> int:
     """Reads a whole number of at most 4000 decimal digits, such as "-12".
 
-    Raises `NotANumberError` for any other text, also for "1_0", which `int` would read as 10.
+    Raises `NumberError` for any other text, also for "1_0", which `int` would read as 10.
 
     >>> parse_whole(" -12 ")
     -12
     >>> parse_whole("1_0")
     Traceback (most recent call last):
-    exactfold.errors.NotANumberError: '1_0' is not a whole number
+    exactfold.errors.NumberError: '1_0' is not a whole number
     """
     digits = text.strip()
     if not _INTEGER.match(digits) or len(digits) > _MOST_DIGITS:
-        raise NotANumberError(f"{shown(text)} is not a whole number")
+        raise NumberError(f"{shown(text)} is not a whole number")
     return int(digits)
 
 
 def approx_number(text: str) -> float:
     """The float nearest to the number that `parse_rational` reads; infinite if no float is near.
 
-    Raises `NotANumberError` for the same texts as `parse_rational`, such as "nan" and "1_0".
+    Raises `NumberError` for the same texts as `parse_rational`, such as "nan" and "1_0".
 
     >>> approx_number("0.1"), approx_number("-1e400")
     (0.1, -inf)
@@ -135,7 +135,7 @@ def as_rational(value: object) -> Fraction:
     """The Fraction equal to `value`: an int, Fraction, `numbers.Rational`, Decimal, or text.
 
     Raises `FloatRefusedError` for floats, as their binary value is rarely what was meant, and
-    `NotANumberError` for booleans, non-finite numbers and all other objects.
+    `NumberError` for booleans, non-finite numbers and all other objects.
 
     >>> as_rational("0.25"), as_rational(3)
     (Fraction(1, 4), Fraction(3, 1))
@@ -146,18 +146,18 @@ def as_rational(value: object) -> Fraction:
     if isinstance(value, Fraction):
         return value
     if isinstance(value, bool):
-        raise NotANumberError(f"{value!r} is a truth value, not a number")
+        raise NumberError(f"{value!r} is a truth value, not a number")
     if isinstance(value, Rational):
         return Fraction(int(value.numerator), int(value.denominator))
     if isinstance(value, str):
         return parse_rational(value)
     if isinstance(value, Decimal):
         if not value.is_finite():
-            raise NotANumberError(f"{value} is not a finite number")
+            raise NumberError(f"{value} is not a finite number")
         return parse_rational(str(value))
     if isinstance(value, float) or (type(value).__module__ == "numpy" and hasattr(value, "dtype")):
         raise _float_refused(value)
-    raise NotANumberError(f"{shown(value)} is not a rational number")
+    raise NumberError(f"{shown(value)} is not a rational number")
 
 
 def _float_refused(value: object) -> FloatRefusedError:

@@ -21,8 +21,7 @@ def to_networkx(
     Nodes have `pos`, the exact point in the unit of the pattern, and `interior`. Edges have `fold`
     (not on the boundary) and `letter`. The letter is that of `assignment` (in the form of
     `Branch.assignment`), "U" for a fold without one, and "B" on the boundary.
-    `graph.graph["faces"]` are the faces, counter-clockwise. `CreasePattern.graph` is the frozen
-    graph that exactfold itself uses. Raises the errors of `load`.
+    `graph.graph["faces"]` are the faces, counter-clockwise. Raises the errors of `load`.
 
     >>> graph = to_networkx("two-vertex", {(4, 5): "M"})
     >>> graph.nodes[4], graph.edges[4, 5]

@@ -153,8 +153,7 @@ def hypar(rings: int = 1, twist: RationalLike | None = None) -> CreasePattern:
     form a straight path from corner to corner. On the branch that folds along this path alone,
     every vertex off the path is flat.
 
-    Raises `UsageError` for rings < 1, and `OverlapError` or `MixedOrientationError` if the twist is
-    too large for the rings.
+    Raises `UsageError` for rings < 1 and `OverlapError` for a twist too large for the rings.
 
     >>> hypar(2).Vi, hypar(2).Ve, collinear_folds(hypar(2))
     (8, 4, ())

@@ -8,16 +8,18 @@ from dataclasses import replace
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.certificates.blocks import compact_lines
 from exactfold.branches.counting.attempt import Attempt
 from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many, too_many
-from exactfold.branches.counting.conveyor import LISTED_BITS, Conveyor
+from exactfold.branches.counting.conveyor import Conveyor
+from exactfold.branches.counting.engines import in_this_process
 from exactfold.branches.counting.fallback import isolated, solved_exactly, with_flat_vertices
 from exactfold.branches.counting.registry import METHODS, NEWTON, Choice, choose, find_candidates
 from exactfold.branches.counting.true_bounds import with_true_bounds
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount, Proof
 from exactfold.checker.core.limits import MOST_UNKNOWNS
-from exactfold.errors import NoInteriorVertexError
+from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.rigidity.definite_stresses import definite_stress
@@ -55,7 +57,7 @@ def count_branches(
     in memory: `too_many` says what is known, at once; `stream_branches` goes on to 40.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
-    `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.
+    `NotCountedError` if there is nothing to count, `UsageError` for an unknown method.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> result = count_branches(single_vertex(4))
@@ -89,9 +91,9 @@ def count_branches(
 
 
 def check_countable(pattern: CreasePattern) -> None:
-    """Raise `NoInteriorVertexError` if there is nothing to count."""
+    """Raise `NotCountedError` if there is nothing to count."""
     if not pattern.interior:
-        raise NoInteriorVertexError(
+        raise NotCountedError(
             "the pattern has no interior vertex, so there is nothing to count: every fold bends by "
             "itself"
         )
@@ -185,7 +187,7 @@ def _lines(
     """
     ends: Candidates | None = None
     if choice.method == NEWTON and 0 < problem.size <= MOST_UNKNOWNS:
-        conveyor = Conveyor.of(problem, bits=LISTED_BITS)
+        conveyor = Conveyor.of(problem)
         attempt = Attempt(problem, problem.chart, choice, progress)
         ends = _ends(conveyor, attempt)
         if not (ends.lost or ends.agree_to(_MEET)):
@@ -214,17 +216,19 @@ def _collected(conveyor: Conveyor, attempt: Attempt, ends: Candidates) -> Branch
     """The branches of all blocks, None if a root or a letter stays open."""
     stage, count = attempt.stage("certifying"), conveyor.block_size
     branches: list[Branch] = []
-    for index in range(conveyor.blocks):
-        block = conveyor.prove(index)
-        if block.open or any("U" in root.assignment for root in block.exact.values()):
+    proved: list[str] = []
+    for block, line in in_this_process(conveyor, range(conveyor.blocks)):
+        if not block.is_decided:
             return None
         branches += conveyor.branches(block)
-        stage((index + 1) * count, attempt.total)
+        proved.append(line)
+        stage(len(proved) * count, attempt.total)
     branches.sort(key=Branch.sort_key)
     return attempt.isolated(
         attempt.undecided("", branches=tuple(branches), settings={**ends.settings, "lost": 0}),
         real=attempt.total,
         nonreal=0,
+        lines=compact_lines(conveyor.problem, count, proved),
     )
 
 

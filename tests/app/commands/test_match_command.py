@@ -6,16 +6,10 @@ import pytest
 from jsonschema import Draft202012Validator, ValidationError
 from running import BAD_INPUT, INVALID, PROVED, UNDECIDED, USAGE, error_class, run
 
-from exactfold import (
-    CreasePattern,
-    count_branches,
-    find_branch,
-    load,
-    random_square,
-    schema,
-    write_fold,
-)
+from exactfold import CreasePattern, random_square, schema
+from exactfold.branches import count_branches, find_branch
 from exactfold.design import match, nearest_branches
+from exactfold.pattern import load, write_fold
 
 TURNED = str.maketrans("MV", "VM")
 CP = """1 0 0 4 0
@@ -191,7 +185,7 @@ def test_letters_that_do_not_fit(letters, message):
     result = run("match", "two-vertex", "--letters", letters, "--json")
     assert result.exit_code == USAGE
     assert message in result.stderr
-    assert error_class(result) == "LettersError"
+    assert error_class(result) == "UsageError"
 
 
 def test_files_of_letters_that_cannot_be_read(tmp_path):
@@ -209,7 +203,7 @@ def test_files_of_letters_that_cannot_be_read(tmp_path):
 def test_a_file_without_letters():
     result = run("match", "two-vertex", "--json")
     assert result.exit_code == USAGE
-    assert error_class(result) == "NoLettersError"
+    assert error_class(result) == "UsageError"
     assert "no fold is a mountain or a valley in the file" in result.stderr
 
 

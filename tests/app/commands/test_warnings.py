@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 from running import PROVED, run
 
-from exactfold import CreasePattern, count_branches, count_many, read_fold, write_fold
+from exactfold import CreasePattern
+from exactfold.branches import count_branches, count_many
 from exactfold.exact.numbers import as_rational
-from exactfold.pattern import near_degenerate
+from exactfold.pattern import near_degenerate, read_fold, write_fold
 from exactfold.pattern.data import SHEETS, example_path
 
 
