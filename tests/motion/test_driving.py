@@ -146,7 +146,9 @@ def test_what_cannot_be_driven() -> None:
     refused({(0, 1): 90, (1, 5): 90}, "0-1 is an edge of the border, not a fold to drive")
     refused({(1, 5): 0, (2, 6): 90}, "fold 1-5: the angle 0: a fold that stays flat")
     refused({(1, 5): 181, (2, 6): 90}, "fold 1-5: the angle 181: it is beyond 180")
-    refused({(1, 5): 9, (2, 6): 9, (3, 6): 9}, "3 folds to drive: .* 2 folds can be driven at once")
+    refused(
+        {(1, 5): 9, (2, 6): 9, (3, 6): 9}, "3 folds cannot be driven at once: .* at most 2 folds"
+    )
     # Both are at vertex 5, which has four folds: the angle of one gives that of the other.
     refused({(1, 5): 9, (4, 5): 9}, "fold 4-5 cannot be driven with 1-5")
     inside = CreasePattern(
@@ -178,10 +180,10 @@ def test_folds_that_are_missing_are_named_and_can_be_driven() -> None:
 
 def test_a_ratio_that_is_not_met() -> None:
     """At a vertex with four folds the signs of all depend on its own: here 1-5 is no valley."""
-    with pytest.raises(NotFollowedError, match="the nearest that was met is") as caught:
+    with pytest.raises(NotFollowedError, match="the nearest ratio that was found is") as caught:
         find_driven(PENTAGON, {(1, 5): 90, (2, 6): -45}, "+-")
     assert caught.value.folds == ((1, 5), (2, 6))
-    with pytest.raises(BadDriveError, match="do not start in the ratio"):
+    with pytest.raises(BadDriveError, match="have to start in the ratio"):
         follow(find_branch(PENTAGON, "+-"), drive=Drive.of(ANGLES))
     with pytest.raises(BadDriveError, match="there is no fold 0-6"):
         follow(find_branch(PENTAGON, "+-"), drive=Drive.of({(0, 6): 3, (2, 6): 3}))

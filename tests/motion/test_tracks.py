@@ -370,7 +370,7 @@ def test_flat_vertices_and_unproved_branches_are_refused() -> None:
     branch = find_branch(single_vertex(4), "+")
     with pytest.raises(UsageError, match="the side is 0"):
         half_branch(branch, 0)
-    with pytest.raises(UsageError, match="a branch that is proved"):
+    with pytest.raises(UsageError, match="proved from a proved branch"):
         half_branch(replace(branch, status=UNDECIDED))
 
 
