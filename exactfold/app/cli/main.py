@@ -78,15 +78,26 @@ def check(
     workers: Annotated[
         int | None,
         number(
-            "Processes for a compact certificate (`count --stream`) or one of `motions`. "
+            "Processes for a certificate of all branches (`count`) or of loops (`motions`). "
             "Default: all cores."
         ),
     ] = None,
+    listed: Annotated[
+        bool,
+        flag(
+            "--list", text="Also list the branches, as `count` does; for certificates of `count`."
+        ),
+    ] = False,
+    heights: Annotated[
+        bool,
+        flag("--heights", text="List them with heights of the vertices and angles of the folds."),
+    ] = False,
 ) -> None:
     """Verify every claim of a certificate with code that trusts nothing."""
     from exactfold.app.commands.check import valid
 
-    raise typer.Exit(0 if valid(certificate, workers, as_json) else 1)
+    done = valid(certificate, workers, as_json, listed=listed, heights=heights)
+    raise typer.Exit(0 if done else 1)
 
 
 for command in (*PICTURES, *BRANCHES, *MOTIONS, *STUDIES):

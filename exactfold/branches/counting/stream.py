@@ -13,16 +13,16 @@ from typing import Any
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.certificates.blocks import chamber_counts, claims_line, header_line
 from exactfold.branches.certificates.check import FastChecker
-from exactfold.branches.certificates.streamed import claims_line, header_line
 from exactfold.branches.counting.collect import check_countable, count_branches
 from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.counting.engines import Engine, processes
 from exactfold.branches.counting.open_roots import OpenRoot, Tally, by_limit
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.journal import Journal
+from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.branches.compact_blocks import CompactSheet
-from exactfold.checker.core.lines import read_header
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
 
@@ -129,7 +129,7 @@ def stream_branches(
     header = header_line(problem, conveyor.block_size)
     tally = Tally()
     if resume:
-        known = FastChecker(CompactSheet(read_header(header)))
+        known = FastChecker(CompactSheet(COMPACT.header(header)))
 
         def refusal(text: str, number: int) -> str | None:
             if progress is not None:
@@ -148,7 +148,7 @@ def stream_branches(
             if progress is not None:
                 progress("proving", journal.blocks * conveyor.block_size, total)
         if not tally.unproved:
-            journal.finish(claims_line(problem))
+            journal.finish(claims_line(pattern, chamber_counts(problem)))
         else:
             journal.sync()
     if journal.complete:

@@ -16,11 +16,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..core.formats import COUNTS, FACTS, LISTING, LISTING_VERSION
+from ..core.kinds import DocumentKind
 from ..core.reading import (
     CertificateError,
     counted,
-    document,
     items,
     keys,
     refusing,
@@ -30,18 +29,13 @@ from ..core.reading import (
 from ..sheets.boxes import Root, check_isolated
 from ..sheets.equations import BranchSystem, read_chart
 from ..sheets.flat_folds import close_flat
-from ..sheets.sheet import Sheet, facts_of, read_sheet
+from ..sheets.sheet import FACTS, Sheet, facts_of, read_sheet
 from ..sheets.stress import check_lorentzian, check_triangles
 from .algebraic import check_algebraic
 
 UPSIDE_DOWN = str.maketrans("+-MV", "-+VM")
+COUNTS = "distinct with_multiplicity real nonreal true_branches"
 Counts = tuple[int, int, int, int, str]
-
-
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate that lists branches; raises `FormatError`."""
-    names = "format version pattern claims evidence provenance"
-    return document(data, LISTING, LISTING_VERSION, names)
 
 
 @refusing()
@@ -50,13 +44,24 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
 
     Returns the verified claims. Passing means that the claims hold for the pattern in the file.
     """
-    claims, evidence = data["claims"], data["evidence"]
+    claims = data["claims"]
     keys(claims, f"{FACTS} {COUNTS} branches", "claims")
-    require(isinstance(evidence, dict), "the evidence is not an object")
     sheet, digest = read_sheet(data["pattern"])
+    branches = items(claims["branches"], "branches")
+    facts = facts_of(sheet, digest) | proved(sheet, data["evidence"], branches)
+    for key, fact in facts.items():
+        require(
+            type(claims[key]) is type(fact) and claims[key] == fact,
+            f"claim {key} = {claims[key]!a}, but it is {fact!a}",
+        )
+    return dict(claims)
+
+
+def proved(sheet: Sheet, evidence: Any, branches: list[Any]) -> dict[str, Any]:
+    """The counts that the evidence proves of a sheet, whose branches are those listed."""
+    require(isinstance(evidence, dict), "the evidence is not an object")
     emptied = check_triangles(sheet, evidence.get("triangles"))
     kind = evidence.get("kind")
-    branches = items(claims["branches"], "branches")
     if kind == "rigid":
         counts = _rigid(sheet, emptied, evidence, branches)
     elif kind == "single vertex":
@@ -65,13 +70,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
         counts = _lines(sheet, emptied, evidence, branches)
     else:
         raise CertificateError(f"unknown kind of evidence {kind!a}")
-    facts = facts_of(sheet, digest) | dict(zip(COUNTS.split(), counts, strict=True))
-    for key, fact in facts.items():
-        require(
-            type(claims[key]) is type(fact) and claims[key] == fact,
-            f"claim {key} = {claims[key]!a}, but it is {fact!a}",
-        )
-    return dict(claims)
+    return dict(zip(COUNTS.split(), counts, strict=True))
 
 
 def _rigid(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> Counts:
@@ -180,3 +179,13 @@ def summary(claims: dict[str, Any]) -> str:
         f"multiplicity, {claims['real']} real) of the sheet with {claims['interior']} interior "
         f"and {claims['boundary']} boundary vertices, sha256 {claims['sha256']}"
     )
+
+
+LISTING = DocumentKind(
+    format="exactfold certificate",
+    versions=(2,),
+    names="format version pattern claims evidence provenance",
+    check=check,
+    summary=summary,
+)
+"""All branches of a sheet in one JSON object (docs/certificate.md)."""

@@ -1,19 +1,27 @@
-"""The lines of a compact certificate: each chained to the one before it by a digest."""
+"""Files of lines: each is chained to the one before it by a digest."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import IO, Any
 
-from .formats import COMPACT, COMPACT_VERSION
 from .limits import MOST_LINE
-from .reading import FormatError, document, read_json
+from .reading import FormatError, read_json
 
 
 def digest(previous: str, body: str) -> str:
     """The digest of a line: SHA-256 of the digest before it and its JSON text."""
     return hashlib.sha256((previous + body).encode()).hexdigest()
+
+
+def chained(texts: Iterable[str]) -> str:
+    """The file with these JSON texts as its lines, each with its digest."""
+    previous, found = "", []
+    for text in texts:
+        previous = digest(previous, text)
+        found.append(f"{text}\t{previous}\n")
+    return "".join(found)
 
 
 def lines(stream: IO[bytes], first: bytes = b"") -> Iterator[str]:
@@ -41,9 +49,3 @@ def read_object(text: str, what: str) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise FormatError(f"{what} is not an object")
     return data
-
-
-def read_header(text: str) -> dict[str, Any]:
-    """The first line, if it is that of a compact certificate."""
-    names = "format version pattern evidence provenance"
-    return document(read_json(text), COMPACT, COMPACT_VERSION, names)
