@@ -31,6 +31,9 @@ from exactfold.exact.numbers import shown
 MOST_ROOTS = 256
 """Roots in a line, fewer where their numbers are so long that the line would be."""
 
+_DIGEST = 66
+"""What the file adds to each line: a tab, the digest, and the end of the line."""
+
 
 def certificate(result: BranchCount) -> Document | CertificateLines:
     """The certificate of a proved count: lines for `checker.check` and `write_certificate`.
@@ -56,32 +59,24 @@ def certificate(result: BranchCount) -> Document | CertificateLines:
 
 
 def _root_lines(result: BranchCount, proof: Proof) -> list[str]:
-    """The lines of a count whose roots are not one simple root for each sign vector."""
+    """The lines of a count whose roots are not one simple root for each sign vector.
+
+    Raises `NotApplicableError` if one would be longer than what the checker reads.
+    """
     evidence: Document = {"kind": proof.kind, "triangles": triangle_evidence(proof.triangles)}
-    entries, block = list[Document](), 1
+    blocks: list[str] = []
     if proof.chart is not None:
-        entries = [_entry(proof, branch) for branch in result.branches]
         evidence["chart"] = chart_evidence(proof.chart, proof.labels)
         if proof.algebraic is not None:
             evidence |= algebraic_evidence(proof.algebraic, proof.labels)
+        entries = [_entry(proof, branch) for branch in result.branches]
         longest = max(len(line_text(entry)) for entry in entries)
         block = max(1, min(MOST_ROOTS, MOST_LINE // (2 * longest)))
         evidence |= {"roots": len(entries), "block": block}
-    header = {
-        "format": COMPACT.format,
-        "version": ROOTS,
-        "pattern": pattern_document(result.pattern),
-        "evidence": evidence,
-        "provenance": {
-            "method": result.method,
-            "settings": dict(result.settings),
-            "python": platform.python_version(),
-        },
-    }
-    blocks = [
-        line_text({"block": number, "roots": entries[start : start + block]})
-        for number, start in enumerate(range(0, len(entries), block))
-    ]
+        blocks = [
+            line_text({"block": number, "roots": entries[start : start + block]})
+            for number, start in enumerate(range(0, len(entries), block))
+        ]
     counts = {
         "distinct": result.distinct,
         "with_multiplicity": result.with_multiplicity,
@@ -90,7 +85,30 @@ def _root_lines(result: BranchCount, proof: Proof) -> list[str]:
         "true_branches": str(_true_branches(result)),
     }
     claims = claims_line(result.pattern, cast("Counts", counts))  # all are known, once proved
-    return [line_text(header), *blocks, claims]
+    lines = [_header(result, evidence), *blocks, claims]
+    longest = max(map(len, lines))
+    if longest + _DIGEST > MOST_LINE:
+        raise NotApplicableError(
+            f"no certificate: a line of it would have {longest} characters, more than is read"
+        )
+    return lines
+
+
+def _header(result: BranchCount, evidence: Document) -> str:
+    """The first line."""
+    return line_text(
+        {
+            "format": COMPACT.format,
+            "version": ROOTS,
+            "pattern": pattern_document(result.pattern),
+            "evidence": evidence,
+            "provenance": {
+                "method": result.method,
+                "settings": dict(result.settings),
+                "python": platform.python_version(),
+            },
+        }
+    )
 
 
 def _entry(proof: Proof, branch: Branch) -> Document:
