@@ -73,6 +73,7 @@ MOTION = DocumentKind(
     format="exactfold motion",
     versions=(1,),
     names="format version pattern claims evidence",
+    claims=dict[str, Any],
     check=check,
     summary=summary,
 )

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing
-from typing import Any
+from typing import Any, TypedDict
 
 from ..core.kinds import LineKind
 from ..core.lines import read_object
@@ -24,6 +24,7 @@ from ..core.reading import (
     integer,
     items,
     keys,
+    keys_of,
     parse_rational,
     refusing,
     require,
@@ -123,13 +124,21 @@ class Matching:
         self.matched |= ends
 
 
+class LoopsClaims(TypedDict):
+    """How many loops there are, and how many of the half-branches they match."""
+
+    sha256: str
+    loops: int
+    matched: int
+    half_branches: int
+    complete: bool
+
+
 BY_TUBES = Engine(LoopVerifier, 1, on_processes)
 """Loops are followed from tube to tube."""
 
 
-def check_lines(
-    found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBES
-) -> dict[str, Any]:
+def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBES) -> LoopsClaims:
     """Verify every claim, given the lines of a file; returns the claims.
 
     With several workers, loops are checked in that many processes. The claims are: so many loops,
@@ -173,7 +182,7 @@ def check_lines(
     if not last:
         number = counted(matching.loops, "loop holds", "loops hold")
         raise UnfinishedError(f"{number}, but the claims are missing")
-    facts: dict[str, Any] = {
+    facts: LoopsClaims = {
         "sha256": sheet.sha256,
         "loops": matching.loops,
         "matched": len(matching.matched),
@@ -181,14 +190,14 @@ def check_lines(
         "complete": len(matching.matched) == sheet.half_branches,
     }
     (claims,) = last
-    keys(claims, " ".join(facts), "claims")
+    keys(claims, keys_of(LoopsClaims), "claims")
     for key, fact in facts.items():
         claim = claims[key]
         require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
     return facts
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: LoopsClaims) -> str:
     """One line for verified claims."""
     loops = counted(claims["loops"], "loop", "loops")
     matched, all_of_them = claims["matched"], claims["half_branches"]
@@ -201,6 +210,7 @@ LOOPS = LineKind(
     format="exactfold loops",
     versions=(1,),
     names="format version pattern emptied pinned bits",
+    claims=LoopsClaims,
     check=check_lines,
     summary=summary,
     engine=BY_TUBES,

@@ -49,6 +49,7 @@ PANEL_MOTION = DocumentKind(
     format="exactfold panel motion",
     versions=(PLAIN, RATED),
     names="format version pattern claims evidence",
+    claims=dict[str, Any],
     check=check,
     summary=summary,
 )
