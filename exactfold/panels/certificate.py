@@ -1,4 +1,4 @@
-"""The certificate of a decomposition: the exact pattern and every claim, from a proved result."""
+"""The certificate of a decomposition: the exact pattern and every claim of a proved result."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 def certificate_of_panels(result: Decomposition) -> Document:
     """The certificate of a complete decomposition, as a JSON object for `exactfold.checker`.
 
-    It holds the pattern and the claims (docs/certificate.md, Panels); the checker finds all of them
-    again. Raises `NotApplicableError` if the decomposition is not proved.
+    It contains the pattern and the claims (docs/certificate.md, Panels). The checker computes all
+    the claims again. Raises `NotApplicableError` if the decomposition is not proved.
 
     >>> from exactfold.panels.decomposition import decompose
     >>> from exactfold.pattern.panel_pattern import PanelPattern
@@ -35,7 +35,10 @@ def certificate_of_panels(result: Decomposition) -> Document:
     {'1': 1}
     """
     if result.status is not PROVED or result.second_order is None:
-        raise NotApplicableError(f"the decomposition is {result.status} ({result.reason})")
+        raise NotApplicableError(
+            f"only a proved decomposition has a certificate; this one is {result.status} "
+            f"({result.reason})"
+        )
     pattern = result.pattern
     moving = stars(pattern, result.held)
     listed: dict[tuple[Edge, ...], list[Mode]] = {}
@@ -73,7 +76,7 @@ def certificate_of_panels(result: Decomposition) -> Document:
 
 
 def panels_document(pattern: PanelPattern) -> Document:
-    """Vertices in their field, and edges, exactly."""
+    """The vertices, as exact numbers in their field, and the edges."""
     field = pattern.field
     return {
         "radicands": [[format_rational(c) for c in r] for r in field.radicands],
@@ -92,7 +95,7 @@ def number_document(value: Number, field: SurdField) -> list[str]:
 
 
 def _spaces(part: Part) -> Document:
-    """The leaves of a part by their folds, dimension and cones, and how many of each kind fold."""
+    """The leaves of a part, grouped by folds, dimension and cones, with the number that fold."""
     kinds: dict[tuple[tuple[Edge, ...], int, tuple[int, ...]], list[bool]] = {}
     for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True):
         kinds.setdefault((leaf.folds, leaf.dimension, leaf.vertices), []).append(folds)
@@ -112,7 +115,7 @@ def _spaces(part: Part) -> Document:
 
 @dataclass(frozen=True)
 class _Together:
-    """Folds that move together, and in how many ways, which make up a part of a `Support`."""
+    """Folds that move together, and the number of ways in which they do; a part of a `Support`."""
 
     vertices: tuple[int, ...]
     folds: tuple[Edge, ...]
@@ -123,14 +126,18 @@ class _Together:
 def _by_folds(
     pattern: PanelPattern, moving: Mapping[int, Star], supports: Iterable[Support]
 ) -> Iterator[_Together]:
-    """The supports by their active folds: one for most, more where straight creases cross."""
+    """The supports, split by their active folds.
+
+    Most supports have a single set of active folds; crossing straight creases give several.
+    """
     search = ModeSearch(moving, pattern.field)
     for support in supports:
         kinds = [{mode.folds for mode in search.modes[v]} for v in support.vertices]
         if support.count > MOST_LISTED:
             if any(len(kind) > 1 for kind in kinds):
                 raise NotApplicableError(
-                    f"{support.count} modes of different folds are too many for a certificate"
+                    f"no certificate: it would have to list {support.count} modes of different "
+                    f"folds round vertex {support.vertices[0]}; at most {MOST_LISTED} are listed"
                 )
             folds = {edge for [found] in kinds for edge in found}
             yield _Together(
@@ -141,7 +148,9 @@ def _by_folds(
         try:
             modes = search.listed(support)
         except TooManyModesError as error:
-            raise NotApplicableError(f"a certificate lists the modes: {error}") from None
+            raise NotApplicableError(
+                f"no certificate, because it would have to list all modes: {error}"
+            ) from None
         for mode in modes:
             groups.setdefault(tuple(mode.densities), []).append(mode.choice)
         for edges, choices in sorted(groups.items()):
@@ -154,7 +163,9 @@ def _support(
     together: _Together,
     listed: list[Mode] | None,
 ) -> Document:
-    """A support with the number of its modes that truly fold, and the modes if they are listed."""
+    """A support with the number of its modes that truly fold, and with the modes if they are
+    listed.
+    """
     first = extension(pattern, moving, together.choices[0])
     by, extending = "loops", None
     if first.verdict is PROVED and not first.order:
@@ -187,7 +198,9 @@ def _mode(mode: Mode, together: _Together, moving: Mapping[int, Star]) -> Docume
 
 
 def _line(local: LocalMode, star: Star) -> str:
-    """Which of the local modes with the same active folds it is: by the gain of the first two."""
+    """Which of the local modes with the same active folds this is, by the gain of the first two
+    folds.
+    """
     first, second = sorted(local.folds, key=lambda edge: sum(edge) - local.vertex)[:2]
     gains = [mode.gain(first, second) for mode in local_modes(star) if mode.folds == local.folds]
     if len(gains) == 1:

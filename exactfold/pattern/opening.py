@@ -19,6 +19,7 @@ from exactfold.errors import (
     InputError,
     MalformedPatternError,
     NotCountedError,
+    NotFoldError,
     NumberError,
     PatternError,
     SeveralSheetsError,
@@ -41,7 +42,7 @@ Steps: TypeAlias = "Literal['all', 'least'] | Collection[str]"
 
 # What the strict reader says of these is right, whatever the file: repair does not help.
 _FINAL = (NumberError, StaleExactCoordinatesError)
-_OF_EDGES = (MalformedPatternError, DisconnectedError)
+_OF_EDGES = (MalformedPatternError, MalformedPatternError, DisconnectedError, MalformedPatternError)
 """What can be wrong with a triangulated sheet and not with a drawing, or is said better of that."""
 _LEAST = ("merge", "duplicates", "split", "dangling")
 """Steps without which some drawings have no panels; the others only change what they are."""
@@ -146,7 +147,7 @@ def opened(
             file = parse_bytes(raw, name, snap if isinstance(snap, int) else None)
         except _FINAL:
             raise
-        except (FoldError, PatternError) as error:
+        except (NotFoldError, FoldError, PatternError) as error:
             strict = error
         else:
             again = partial(opened, raw, name, number=number)
@@ -158,7 +159,7 @@ def opened(
         drawing = parse_drawing(raw, name)
     except _FINAL:
         raise
-    except (FoldError, UnknownFormatError) as error:
+    except (NotFoldError, FoldError, UnknownFormatError) as error:
         folded = isinstance(error, FoldedStateError)
         if strict is None or folded or Path(name).suffix.lower() not in (".fold", ".json", ""):
             raise
@@ -274,15 +275,15 @@ def triangles(opened: Opened, needs: str) -> CreasePattern:
     if sheet.field.radicands:
         raise NotCountedError(
             f"{needs} takes triangulated sheets with rational coordinates, and those of this "
-            f"one lie in {opened.field_name}: `exactfold count` (`count_ways`) takes them as they "
-            "are, and `exactfold convert --triangulate --snap DEN` rounds those of a drawing"
+            f"one lie in {opened.field_name}: `exactfold count` (`count` in Python) takes them as "
+            "they are, and `exactfold convert --triangulate --snap DEN` rounds those of a drawing"
         )
     large = sum(len(face) > 3 for face in sheet.faces)
     raise NotCountedError(
         f"{needs} takes triangulated sheets, and this one has {counted(large, 'panel')} with "
-        "more than three sides: `exactfold count` (`count_ways`) says how its panels fold while "
-        "they stay rigid, and `exactfold convert --triangulate` cuts them into triangles that may "
-        "bend"
+        "more than three sides: `exactfold count` (`count` in Python) says how its panels "
+        "fold while they stay rigid, and `exactfold convert --triangulate` cuts them into "
+        "triangles that may bend"
     )
 
 

@@ -21,10 +21,11 @@ import numpy as np
 import numpy.typing as npt
 from peer_programs import PEERS, decimals, macaulay2_input, phcpack_input
 
-from exactfold import certificate, count_branches, find_branch, write_certificate
+from exactfold.branches import certificate, count_branches, find_branch
 from exactfold.branches.certificates.check import check_compact
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.branches.values.roots import BoxRoot
+from exactfold.certificates import write_certificate
 from exactfold.interop.export import to_msolve
 from exactfold.pattern.fold import read_fold
 from exactfold.pattern.fold_writing import write_fold

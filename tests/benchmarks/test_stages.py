@@ -4,7 +4,8 @@ from typing import Any
 
 import pytest
 
-from exactfold import certificate, checker, count_branches, random_square
+from exactfold import checker, random_square
+from exactfold.branches import certificate, count_branches
 from exactfold.rigidity import BranchSystem
 from exactfold.solve import isolate
 from exactfold.solve.algebraic.from_roots import parametrisation_from_roots

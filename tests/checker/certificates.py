@@ -11,7 +11,7 @@ from typing import Any
 from old_listing import old_listing
 from sheets import SQUARE, TRIANGLE, dart, scrambled, straight_side, with_point
 
-from exactfold import count_branches
+from exactfold.branches import count_branches
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, single_vertex, two_vertex
 

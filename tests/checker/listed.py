@@ -19,7 +19,8 @@ from sheets import (
     with_point,
 )
 
-from exactfold import PROVED, count_branches, random_square
+from exactfold import PROVED, random_square
+from exactfold.branches import count_branches
 from exactfold.checker.sheets.sheet import Sheet
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES, hypar, two_vertex

@@ -10,7 +10,8 @@ from sheets import (
     dart,
 )
 
-from exactfold import checker, count_branches
+from exactfold import checker
+from exactfold.branches import count_branches
 from exactfold.branches.values.classify import classify
 from exactfold.branches.values.roots import AlgebraicRoot
 from exactfold.certificates.entries import algebraic_evidence, class_entry

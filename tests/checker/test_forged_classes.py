@@ -24,7 +24,7 @@ from forge import (
 from old_listing import old_listing
 from sheets import relabelled
 
-from exactfold import count_branches
+from exactfold.branches import count_branches
 from exactfold.checker.branches.flat_sheets import FlatSheets
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.sheets.equations import BranchSystem

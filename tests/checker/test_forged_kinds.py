@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 from old_listing import old_listing
 
-from exactfold import checker, count_branches
+from exactfold import checker
+from exactfold.branches import count_branches
 from exactfold.branches.counting import multiple_roots
 from exactfold.checker.branches import listing
 from exactfold.checker.sheets.equations import BranchSystem

@@ -17,7 +17,8 @@ from certificates import (
 )
 from old_listing import old_listing
 
-from exactfold import PROVED, checker, count_branches
+from exactfold import PROVED, checker
+from exactfold.branches import count_branches
 from exactfold.errors import InputError
 from exactfold.pattern.crease_pattern import CreasePattern
 

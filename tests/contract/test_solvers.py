@@ -23,8 +23,9 @@ from known_systems import (
 from plain_solver import random_newton
 from sheets import dart
 
-from exactfold import certificate, checker, count_branches
+from exactfold import checker
 from exactfold._support.verdict import PROVED
+from exactfold.branches import certificate, count_branches
 from exactfold.branches.counting.registry import (
     find_candidates,
     register_solver,

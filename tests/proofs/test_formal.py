@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 
-from exactfold import find_branch, find_branches, load
-from exactfold.branches import branch_certificate
+from exactfold.branches import branch_certificate, find_branch, find_branches
 from exactfold.errors import NotApplicableError, NotCountedError
 from exactfold.interop import branch_to_coq, branches_to_coq, to_coq
+from exactfold.pattern import load
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.opening import open_pattern, triangles

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any
 from exactfold import checker
 from exactfold._support.schemas import headed
 from exactfold.app.shell.shell import Bar, name_of, regular, said
-from exactfold.checker.branches.compact import COMPACT
+from exactfold.app.verbs.checking import quickest
 from exactfold.checker.command import refusal
-from exactfold.checker.core.kinds import LineKind, Verified
-from exactfold.checker.core.parts import Engine
+from exactfold.checker.core.kinds import Verified
 from exactfold.checker.core.reading import UnfinishedError, plain
 from exactfold.errors import (
     CertificateFormatError,
@@ -71,7 +70,7 @@ def verified(path: Path, workers: int | None) -> Said:
     """
     cores = _cores(workers)
     with regular(path) as file:
-        return _said_of(path, lambda: checker.verify(file, cores, _quickest))
+        return _said_of(path, lambda: checker.verify(file, cores, quickest))
 
 
 def verified_branches(path: Path, workers: int | None) -> tuple[Said, list[Branch] | None]:
@@ -88,7 +87,7 @@ def verified_branches(path: Path, workers: int | None) -> tuple[Said, list[Branc
 
     def verify() -> Verified[Any]:
         read.append(read_listing(file))
-        claims = checker.check(read[0], cores, _quickest)
+        claims = checker.check(read[0], cores, quickest)
         if claims["real"] > 1 << IN_MEMORY:
             raise NotApplicableError(
                 f"{claims['real']} branches are too many to list here, though every claim holds; "
@@ -146,14 +145,3 @@ def _cores(workers: int | None) -> int:
     from exactfold._support.processes import available_cores
 
     return workers or available_cores()
-
-
-def _quickest(kind: LineKind[Any]) -> Engine:
-    """How the lines of a file are verified: on processes, and where it can be in floats first."""
-    if kind is COMPACT:
-        from exactfold.branches.certificates.check import FLOATS  # needs NumPy, as no other does
-
-        return FLOATS
-    from exactfold.certificates.sharing import shared
-
-    return kind.engine._replace(share=shared)

@@ -11,9 +11,10 @@ import jsonschema
 import pytest
 from running import error_class, run
 
-from exactfold import checker, delaunay, families, write_fold
+from exactfold import checker, delaunay
 from exactfold._support.schemas import schema
 from exactfold.branches import fold_angles
+from exactfold.pattern import families, write_fold
 from exactfold.rigidity.equations.boundary_heights import default_rim
 
 RIM = '{"0": 1, "1": "-1/2", "2": 0.25, "3": 0, "4": 1e-1}'

@@ -19,16 +19,8 @@ from flint import fmpq, fmpq_mat
 from rivals.hermite import hermite_counts
 from sheets import SQUARE, reflex_corners, scrambled, straight_side
 
-from exactfold import (
-    PROVED,
-    UNDECIDED,
-    CreasePattern,
-    certificate,
-    checker,
-    count_branches,
-    random_square,
-)
-from exactfold.branches import find_candidates
+from exactfold import PROVED, UNDECIDED, CreasePattern, checker, random_square
+from exactfold.branches import certificate, count_branches, find_candidates
 from exactfold.exact.linalg import from_fmpq, inertia
 from exactfold.pattern.degenerate import (
     DEGENERATE,

@@ -25,10 +25,11 @@ from sheets import (
     wheel,
 )
 
-from exactfold import PROVED, UNDECIDED, count_branches, families, random_square
+from exactfold import PROVED, UNDECIDED, random_square
+from exactfold.branches import count_branches
 from exactfold.branches.counting.find import BranchFinder, find_branch, find_branches, neighbours
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.pattern import degenerate
+from exactfold.pattern import degenerate, families
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.equations.problem import Problem

@@ -8,7 +8,8 @@ from counting import counts
 from old_listing import old_listing
 from sheets import wheel
 
-from exactfold import PROVED, UNDECIDED, CreasePattern, checker, count_branches
+from exactfold import PROVED, UNDECIDED, CreasePattern, checker
+from exactfold.branches import count_branches
 from exactfold.branches.certificates.listing import certificate
 from exactfold.branches.counting import collect as module
 from exactfold.branches.counting import fallback as hand_over

@@ -13,7 +13,8 @@ from independent import curvature
 from scipy.optimize import root
 from sheets import HEXAGON, dart, nested_triangles, scrambled, wheel
 
-from exactfold import PROVED, checker, find_branch, follow, random_square
+from exactfold import PROVED, checker, random_square
+from exactfold.branches import find_branch
 from exactfold.branches.certificates.single import branch_certificate
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import (
@@ -22,6 +23,7 @@ from exactfold.errors import (
     NotApplicableError,
     NotFollowedError,
 )
+from exactfold.motion import follow
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.boundary_heights import (
     above_plane,

@@ -2,7 +2,8 @@
 
 import pytest
 
-from exactfold import PROVED, certificate, checker, count_branches, random_square
+from exactfold import PROVED, checker, random_square
+from exactfold.branches import certificate, count_branches
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,8 @@ from counting import counts
 from old_listing import old_listing
 from sheets import TRIANGLE, scrambled, two_triangles
 
-from exactfold import PROVED, UNDECIDED, checker, count_branches
+from exactfold import PROVED, UNDECIDED, checker
+from exactfold.branches import count_branches
 from exactfold.branches.counting import fallback as hand_over
 from exactfold.branches.counting import multiple_roots
 from exactfold.branches.values import classify
