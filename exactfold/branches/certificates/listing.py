@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from typing import Any
+from typing import Any, cast
 
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.certificates.blocks import claims_line, line_text
@@ -23,6 +23,7 @@ from exactfold.certificates.entries import (
     triangle_evidence,
 )
 from exactfold.checker.branches.compact import COMPACT, ROOTS
+from exactfold.checker.branches.listing import Counts
 from exactfold.checker.core.limits import MOST_LINE
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.numbers import shown
@@ -76,9 +77,7 @@ def _root_lines(result: BranchCount, proof: Proof) -> list[str]:
             line_text({"block": number, "roots": entries[start : start + block]})
             for number, start in enumerate(range(0, len(entries), block))
         ]
-    counts = result.distinct, result.with_multiplicity, result.real, result.nonreal
-    claims = claims_line(result.pattern, (*counts, str(_true_branches(result))))
-    lines = [_header(result, evidence), *blocks, claims]
+    lines = [_header(result, evidence), *blocks, claims_line(result.pattern, _counts(result))]
     longest = max(map(len, lines))
     if longest + _DIGEST > MOST_LINE:
         raise NotApplicableError(
@@ -102,6 +101,18 @@ def _header(result: BranchCount, evidence: Document) -> str:
             },
         }
     )
+
+
+def _counts(result: BranchCount) -> Counts:
+    """What is claimed of the branches; all numbers are known, once proved."""
+    counts = {
+        "distinct": result.distinct,
+        "with_multiplicity": result.with_multiplicity,
+        "real": result.real,
+        "nonreal": result.nonreal,
+        "true_branches": str(_true_branches(result)),
+    }
+    return cast("Counts", counts)
 
 
 def _entry(proof: Proof, branch: Branch) -> Document:
