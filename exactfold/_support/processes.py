@@ -36,14 +36,14 @@ _ONE_THREAD = {
 }
 
 _KEEP = {"MALLOC_TOP_PAD_": str(1 << 26)}
-"""glibc: keep 64 MB instead of returning it after every array; saves a fifth of the time."""
+"""glibc: keep 64 MB instead of returning them after every array; this saves a fifth of the time."""
 
 
 def one_thread() -> None:
-    """Keep NumPy, if it is not loaded yet, from starting threads unless the environment says so.
+    """Keeps NumPy, if it is not loaded yet, from starting threads, unless the environment says so.
 
-    Dense matrices here have at most some hundred rows: threads that wait for each other cost more
-    than they save, above all where other programs run.
+    Dense matrices have at most a few hundred rows here. Threads that wait for each other cost more
+    than they save, above all if other programs run.
     """
     for name, value in _ONE_THREAD.items():
         os.environ.setdefault(name, value)
@@ -51,8 +51,8 @@ def one_thread() -> None:
 
 @contextmanager
 def worker_environment() -> Iterator[None]:
-    """Within this block, processes started anew have the settings of a worker."""
-    # The workers share the cores already.
+    """Within this block, new processes start with the settings of a worker."""
+    # The workers already use all cores.
     settings = _ONE_THREAD if memory_is_limited() else _ONE_THREAD | _KEEP
     before = {name: os.environ.get(name) for name in settings}
     os.environ.update(settings)
@@ -68,13 +68,13 @@ def worker_environment() -> Iterator[None]:
 
 @contextmanager
 def held_interrupts() -> Iterator[None]:
-    """Within this block Ctrl-C waits; processes and threads started in it never see one."""
+    """Within this block Ctrl-C waits; processes and threads started in the block never see it."""
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
         return
     from multiprocessing import resource_tracker
 
-    resource_tracker.ensure_running()  # where it is started later, it lets them through again
+    resource_tracker.ensure_running()  # if it started later, it would unblock interrupts
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -83,10 +83,10 @@ def held_interrupts() -> Iterator[None]:
 
 
 def become_worker() -> None:
-    """Ignore Ctrl-C from now on, and end with the parent; nothing in the main process.
+    """Makes this process ignore Ctrl-C, and end with its parent; does nothing in the main process.
 
-    Where memory is limited a worker ends after the job that it has: no thread waits for the parent,
-    as starting one may wait for ever.
+    If memory is limited, a worker ends after its current job. No thread waits for the parent then,
+    as starting a thread may wait forever.
     """
     from multiprocessing import parent_process
 
@@ -98,14 +98,14 @@ def become_worker() -> None:
         return
 
     def follow() -> None:
-        parent.join()  # returns when the parent has gone, however it went
+        parent.join()  # returns when the parent has ended in any way
         os._exit(1)
 
     threading.Thread(target=follow, daemon=True).start()
 
 
 def available_cores() -> int:
-    """Number of processors that this process may use."""
+    """The number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
