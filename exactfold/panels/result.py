@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, overload
 
 from exactfold._support.notebook import Page
 from exactfold._support.schemas import headed
@@ -87,6 +87,22 @@ class Decomposition(Page):
     found_true: Counts | None = None
     still: tuple[Edge, ...] = ()
     seconds: float = field(default=0.0, compare=False)
+
+    def __len__(self) -> int:
+        return len(self.modes)
+
+    def __iter__(self) -> Iterator[Mode]:
+        return iter(self.modes)
+
+    def __bool__(self) -> bool:
+        return True  # a result, also where no mode is listed
+
+    @overload
+    def __getitem__(self, which: int) -> Mode: ...
+    @overload
+    def __getitem__(self, which: slice) -> tuple[Mode, ...]: ...
+    def __getitem__(self, which: int | slice) -> Mode | tuple[Mode, ...]:
+        return self.modes[which]
 
     def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
         """The object printed by `exactfold count --json`: `schema("count")`.

@@ -12,14 +12,16 @@ import numpy as np
 import pytest
 from sixty_digits import driven_newton, holds
 
-from exactfold import CreasePattern, delaunay, families, find_branch
+from exactfold import CreasePattern, delaunay
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import find_branch
 from exactfold.checker import check, summary
 from exactfold.errors import BadDriveError, NotFollowedError
 from exactfold.motion import Motion, find_driven, follow, prove
 from exactfold.motion.curves.drive import Drive
 from exactfold.motion.tubes.driven import Driven, off_the_ratio
 from exactfold.motion.tubes.tracks import follow_proved
+from exactfold.pattern import families
 
 PENTAGON = delaunay([(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9), (5, 4), (8, 7)])
 ANGLES = {(1, 5): 60.0, (2, 6): -45.0}

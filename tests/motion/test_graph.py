@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 from loops import Tracker
 
-from exactfold import find_branch, find_loops, random_square
+from exactfold import random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import find_branch
 from exactfold.branches.counting.pools import process_pool
+from exactfold.motion import find_loops
 from exactfold.motion.contacts.fold_ranges import SLACK, Stretch, angles_in, box_angles, fold_ranges
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.following import follow

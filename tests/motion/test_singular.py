@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from sheets import reflex_corners, star_in, wheel
 
-from exactfold import count_branches, find_branch, load
 from exactfold._support.verdict import UNDECIDED
+from exactfold.branches import count_branches, find_branch
 from exactfold.errors import FlatVertexError
 from exactfold.exact.linalg import rank
 from exactfold.motion import find_loops, follow_proved
@@ -19,6 +19,7 @@ from exactfold.motion.curves.framework import Framework
 from exactfold.motion.curves.straight_folds import straight_fold
 from exactfold.motion.loops.loops import LoopFinder
 from exactfold.motion.tubes.singular import folds_flat, half_turn
+from exactfold.pattern import load
 from exactfold.rigidity import Problem
 
 BRANCHING = "motions may branch there"

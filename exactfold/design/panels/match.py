@@ -11,7 +11,6 @@ from exactfold._support.plurals import agreeing, counted
 from exactfold._support.progress import Progress
 from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
-from exactfold.branches.counting.ways import Sheet, open_sheet
 from exactfold.design.panels.parts import PartAnswer, answered
 from exactfold.design.panels.refutation import PanelRefutation, held
 from exactfold.design.panels.together import Together, going_together
@@ -21,6 +20,7 @@ from exactfold.panels.decomposition import groups_of
 from exactfold.panels.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described_panels
+from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -108,7 +108,7 @@ class PanelMatch:
 
 
 def match_panels(
-    pattern: Sheet,
+    pattern: PatternLike,
     letters: Mapping[Edge, str] | str | None = None,
     *,
     progress: Progress | None = None,

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.motion.loops import LOOPS
+from exactfold.checker.motion.loops import LOOPS, LoopsClaims
 from exactfold.pattern.crease_pattern import CreasePattern
 
 OPENING = '{"from":'
@@ -46,17 +46,14 @@ def loop_line(
 def claims_line(pattern: CreasePattern, loops: int, matched: int) -> str:
     """The last line, with the claims."""
     half_branches = 2 << len(pattern.foldable_vertices)
-    return _text(
-        {
-            "claims": {
-                "sha256": pattern.sha256,
-                "loops": loops,
-                "matched": matched,
-                "half_branches": half_branches,
-                "complete": matched == half_branches,
-            }
-        }
-    )
+    claims: LoopsClaims = {
+        "sha256": pattern.sha256,
+        "loops": loops,
+        "matched": matched,
+        "half_branches": half_branches,
+        "complete": matched == half_branches,
+    }
+    return _text({"claims": claims})
 
 
 def _text(data: dict[str, Any]) -> str:

@@ -7,8 +7,9 @@ import pytest
 from jsonschema import Draft202012Validator
 from running import BAD_INPUT, INVALID, PROVED, UNDECIDED, USAGE, error_class, run
 
-from exactfold import random_square, schema, write_fold
+from exactfold import random_square, schema
 from exactfold.design import actuate
+from exactfold.pattern import write_fold
 from exactfold.pattern.families import two_vertex
 
 TORQUES = {"0-4": -1, "2-5": 0.5, "4-5": "-1/3"}

@@ -13,9 +13,11 @@ from panel_sheets import miura
 from running import BAD_INPUT, UNDECIDED, USAGE, error_class, run
 from sheets import HEXAGON, TRIANGLE, scrambled
 
-from exactfold import count_ways, find_branch, follow, random_square, schema, write_fold
+from exactfold import random_square, schema
+from exactfold.branches import count_ways, find_branch
 from exactfold.interop import meshes
-from exactfold.motion import follow_panels
+from exactfold.motion import follow, follow_panels
+from exactfold.pattern import write_fold
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.opening import Opened
 from exactfold.pattern.panel_writing import converted

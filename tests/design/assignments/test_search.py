@@ -6,12 +6,14 @@ from fractions import Fraction
 import pytest
 from sheets import dart
 
-from exactfold import CreasePattern, count_branches, find_branch, load, random_square
+from exactfold import CreasePattern, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import count_branches, find_branch
 from exactfold.design import Refutation, match
 from exactfold.design.refutations.cone_program import ConeProgram
 from exactfold.design.refutations.refutation import refuted_at
 from exactfold.errors import UsageError
+from exactfold.pattern import load
 from exactfold.pattern.data import example_path
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity.curvature import curvature_form
