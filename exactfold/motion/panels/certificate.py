@@ -1,4 +1,4 @@
-"""A motion of panels and its first contact in a certificate (docs/panel_motion.md, 6)."""
+"""The certificate of a motion of panels and of its first contact (docs/panel_motion.md, 6)."""
 
 from __future__ import annotations
 
@@ -23,18 +23,21 @@ from exactfold.pattern.panel_pattern import Edge
 
 _PARAMETER_BITS = 40
 _SLACK = Fraction(1, 1 << 22)
-"""Of the parameter, before what is not proved: the checker has coarser directions of planes."""
+"""The claim ends this much of the parameter early, because the checker has coarser separating
+planes.
+"""
 _PLACES = 44
-"""Binary places of times."""
+"""Times are rounded to this many binary places."""
 
 
 def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -> Document:
-    """The motion and what is proved of its contacts as a JSON object for `exactfold.checker`.
+    """The certificate of a motion and its contacts, as a JSON object for `exactfold.checker`.
 
-    It claims that the panels fold so, and a time before which none touch; and by when some do, if
-    that is proved. Times are those of `contacts` with a little room.
+    It claims that the panels fold in this way, and a time before which no two of them touch. If a
+    contact is proved, it also claims a time by which some panels touch. The times are those of
+    `contacts`, made slightly weaker.
 
-    Raises `NotApplicableError` where a vertex needs more than one square root beside those of the
+    Raises `NotApplicableError` if a vertex needs more than one square root besides those of the
     coordinates.
 
     >>> from exactfold import checker
@@ -145,7 +148,7 @@ def _drivers(motion: PanelMotion) -> list[list[int]]:
 
 
 def _vertex(field: SurdField, mode: LocalMode, v: int) -> Document:
-    """The densities of the active folds at a vertex, in the field of the sheet or one root more."""
+    """The densities of the active folds at a vertex, in the sheet's field or with one root more."""
     radicand, values = _in_field(field, mode.values)
     return {
         "vertex": v,
@@ -158,7 +161,9 @@ def _vertex(field: SurdField, mode: LocalMode, v: int) -> Document:
 
 
 def _in_field(field: SurdField, values: tuple[Number, ...]) -> tuple[Surd | None, list[Surd]]:
-    """Numbers in a field, or in it with the root of a number that is returned."""
+    """The numbers in a field, or in the field with the square root of a number; also this
+    number.
+    """
     found: list[Surd | tuple[Surd, Surd]] = []
     radicand: Surd | None = None
     for value in map(simple, values):
@@ -167,7 +172,9 @@ def _in_field(field: SurdField, values: tuple[Number, ...]) -> tuple[Surd | None
             continue
         square, low, high = split(value)
         if not _extends(field, square.field) or radicand not in (None, field.number(square)):
-            raise NotApplicableError("a vertex needs more than one square root of its own")
+            raise NotApplicableError(
+                "no certificate: a vertex needs more than one square root of its own"
+            )
         radicand = field.number(square)
         found.append((field.number(low), field.number(high)))
     if radicand is None:
@@ -176,7 +183,7 @@ def _in_field(field: SurdField, values: tuple[Number, ...]) -> tuple[Surd | None
     above = field if root is not None else field.adjoined(radicand)
     root = above.square_root(radicand)
     if root is None:
-        raise ArithmeticError("no root in the field made for it")
+        raise ArithmeticError("a field does not contain the square root that was adjoined to it")
     pairs = (value if isinstance(value, tuple) else (value, 0) for value in found)
     numbers = [above.number(low + root * high) for low, high in pairs]
     return None if above is field else radicand, numbers
@@ -191,7 +198,7 @@ def _other(fold: Edge, v: int) -> int:
 
 
 def _at_most(x: float) -> Fraction:
-    """A number with few digits, not above a parameter."""
+    """A number with few digits that is at most a parameter."""
     return Fraction(floor(x * 2.0**_PARAMETER_BITS) - 1, 1 << _PARAMETER_BITS)
 
 
@@ -204,6 +211,6 @@ def _in_places(x: Fraction) -> int:
 
 
 def _rounded(value: Fraction, direction: int) -> Fraction:
-    """A number near another with few digits, below (-1) or above it (1)."""
+    """A number with few digits near another: at most (-1) or at least (1) that number."""
     scaled = value * (1 << _PLACES)
     return Fraction(floor(scaled) if direction < 0 else ceil(scaled), 1 << _PLACES)
