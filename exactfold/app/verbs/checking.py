@@ -12,6 +12,7 @@ from exactfold import checker
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED, REFUTED, Verdict
 from exactfold.certificates.entries import CertificateLines
+from exactfold.certificates.sharing import shared
 from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.command import refusal
 from exactfold.checker.core.kinds import LineKind, Verified
@@ -77,7 +78,7 @@ def check(
         raise type(error)(f"{error}; nothing is known of the file") from None
     except OSError as error:
         raise UnreadableFileError(f"cannot read {name}: {error.strerror}") from None
-    return Checked(PROVED, "every claim holds", checker.summary(claims), claims)
+    return Checked(PROVED, "every claim holds", checker.summary(claims), dict(claims))
 
 
 def _verified(
@@ -97,6 +98,4 @@ def quickest(kind: LineKind[Any]) -> Engine:
         from exactfold.branches.certificates.check import FLOATS  # needs NumPy, as no other does
 
         return FLOATS
-    from exactfold.certificates.sharing import shared
-
     return kind.engine._replace(share=shared)
