@@ -111,7 +111,7 @@ def test_an_angle_against_its_letter_is_refused():
         ({}, {(0, 1): 1.0}),
         ({}, {(4, 0): 0.0}),
     ]:
-        with pytest.raises(UsageError, match=r"angle cannot be|not an edge"):
+        with pytest.raises(UsageError, match=r"angle cannot be|has no edge"):
             branch_document(pattern, letters, angles, points, **common)
 
 

@@ -192,7 +192,7 @@ def test_lines_that_are_missing_and_nodes_that_are_not_located_are_said(monkeypa
     monkeypatch.setattr(graph_building.LocatedNode, "of", lambda *_: None)
     found = graph_of(PROBLEM, [loop()], "", process_pool(1))
     assert found.nodes == ()
-    assert "not located" in found.reason
+    assert "could not be located" in found.reason
 
 
 def test_an_arc_that_is_not_followed_is_open(monkeypatch):
@@ -202,7 +202,7 @@ def test_an_arc_that_is_not_followed_is_open(monkeypatch):
     left = [arc for arc in found.arcs if arc.end is None]
     assert len(left) == 4
     assert all(arc.reason == "lost" and arc.length[0] > 0 for arc in left)
-    assert found.reason == "4 arcs are not proved to an end"
+    assert found.reason == "4 arcs are not proved from end to end"
 
 
 def test_loops_that_contradict_each_other_are_a_defect():

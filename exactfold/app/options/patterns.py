@@ -57,7 +57,7 @@ class CountOptions:
     stream: Annotated[
         Path | None,
         written(
-            "Prove block by block and write each branch to FILE, a compact certificate: the "
+            "Prove block by block and write each branch to FILE, a certificate: the "
             "way for 14 foldable vertices and more. Memory: 100 MB for each worker and 100 MB "
             "more, whatever the size; disk: 200 bytes a branch."
         ),

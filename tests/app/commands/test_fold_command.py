@@ -173,9 +173,9 @@ def test_free_folds_fold_where_nothing_else_can(tmp_path):
         (["--branch", "1"], "--branch is for branches"),
         (["--side", "-"], "--side is for branches"),
         (["--through-nodes"], "--through-nodes is for branches"),
-        (["--component", "4"], "there is no component 4: they are 1 to 3"),
+        (["--component", "4"], "there is no component 4: give a number from 1 to 3"),
         (["--modes", "1,2"], "modes 1 and 2 cannot fold together"),
-        (["--modes", "9"], "there is no mode 9: they are 1 to 5"),
+        (["--modes", "9"], "there is no mode 9: give numbers from 1 to 5"),
         (["--until", "return"], "give contact, or an angle"),
         (["--by", "8-9"], "fold 8-9 stays flat"),
     ],
@@ -253,7 +253,7 @@ def test_wrong_usage_is_one_line(options, words, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("pattern", "words"),
     [
-        (scrambled(1, HEXAGON, 2, loose=True), "the sheet folds in families of several dimensions"),
+        (scrambled(1, HEXAGON, 2, loose=True), "the sheet folds only in families of several"),
         (scrambled(1, TRIANGLE, 3), "boundary"),
     ],
     ids=["hexagon", "triangle"],
@@ -269,8 +269,8 @@ def test_sheets_that_have_no_single_motion(pattern, words, tmp_path):
 def test_a_branch_with_a_flat_vertex_is_not_followed():
     result = run("fold", "flat-vertex", "--signs", "+0", "--json")
     assert result.exit_code == UNDECIDED
-    what = "the sheet turns about the straight line 0-4-2, exactly, up to 180 degrees"
-    assert f"vertex 5 is flat on this branch: {what}; this is not followed" in result.stderr
+    what = "the sheet turns exactly about the straight line 0-4-2, up to 180 degrees"
+    assert f"vertex 5 is flat on this branch: {what}, and exactfold does not" in result.stderr
     assert error_class(result) == "NotFollowedError"
 
 
@@ -278,7 +278,7 @@ def test_a_branch_that_is_not_proved_is_not_followed_where_it_is_not_simple(tmp_
     write_fold(ringed_square(4), tmp_path / "p.fold")
     result = run("fold", tmp_path / "p.fold", "--signs", "+++++")
     assert result.exit_code == UNDECIDED
-    assert "it is not simple, or too close to another one for floats" in result.stderr
+    assert "the branch is not simple, or floats cannot distinguish it" in result.stderr
 
 
 def test_folds_that_stay_flat_do_not_turn_back(tmp_path):

@@ -306,7 +306,7 @@ def test_a_rim_that_does_not_fit_is_refused() -> None:
     with pytest.raises(BadRimError, match="each boundary vertex"):
         find_branch(pattern, "+++", rim={0: 1})
     flat = {v: 2 * pattern.vertices[v][0] + 7 for v in pattern.boundary}
-    with pytest.raises(BadRimError, match="rim is flat"):
+    with pytest.raises(BadRimError, match="boundary is flat"):
         find_branch(pattern, "+++", rim=flat)
     with pytest.raises(NotApplicableError, match="convex"):
         find_branch(dart(), "+", rim=dict.fromkeys(dart().boundary, 1))
