@@ -19,7 +19,7 @@ from exactfold.branches.connected_components import flat_stars, joining
 from exactfold.branches.connected_components.cubes import components
 from exactfold.branches.connected_components.no_zero import have_no_common_zero
 from exactfold.branches.counting import lines
-from exactfold.branches.counting.true_bounds import with_true_bounds
+from exactfold.branches.counting.collect import with_true_bounds
 from exactfold.errors import NotApplicableError
 from exactfold.motion import follow_proved
 from exactfold.panels.stars import Star, edge_of, stars
