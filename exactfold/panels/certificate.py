@@ -9,6 +9,13 @@ from dataclasses import dataclass
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.certificates.entries import Document
 from exactfold.checker.panels.certificate import PANELS
+from exactfold.checker.panels.claims import (
+    LeafClaim,
+    ModeClaim,
+    PanelsClaims,
+    PartClaim,
+    SupportClaim,
+)
 from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, SurdField
@@ -51,26 +58,28 @@ def certificate_of_panels(result: Decomposition) -> Document:
         for together in _by_folds(pattern, {v: moving[v] for v in part.vertices}, part.supports)
     ]
     spaces = [_spaces(part) for part in result.parts if part.theory == "subspaces"]
+    claims: PanelsClaims = {
+        "interior": len(pattern.interior),
+        "border": len(pattern.border),
+        "folds": len(pattern.folds),
+        "sha256": pattern.sha256,
+        "held": _pairs(result.held),
+        "flat": _pairs(result.flat),
+        "free": _pairs(result.free),
+        "second_order": _counts(result.second_order),
+        "true": None if result.true is None else _counts(result.true),
+        "rigid": str(result.rigid),
+        "modes": result.modes_count,
+        "supports": supports,
+    }
+    if spaces:
+        claims["spaces"] = spaces
     return {
         "format": PANELS.format,
         "version": PANELS.version,
         "kind": PANELS.named,
         "pattern": panels_document(pattern),
-        "claims": {
-            "interior": len(pattern.interior),
-            "border": len(pattern.border),
-            "folds": len(pattern.folds),
-            "sha256": pattern.sha256,
-            "held": _pairs(result.held),
-            "flat": _pairs(result.flat),
-            "free": _pairs(result.free),
-            "second_order": _counts(result.second_order),
-            "true": None if result.true is None else _counts(result.true),
-            "rigid": str(result.rigid),
-            "modes": result.modes_count,
-            "supports": supports,
-            **({"spaces": spaces} if spaces else {}),
-        },
+        "claims": claims,
         "provenance": {"method": result.theory, "python": platform.python_version()},
     }
 
@@ -94,12 +103,12 @@ def number_document(value: Number, field: SurdField) -> list[str]:
     return [format_rational(c) for c in field.number(value).coefficients]
 
 
-def _spaces(part: Part) -> Document:
+def _spaces(part: Part) -> PartClaim:
     """The leaves of a part, grouped by folds, dimension and cones, with the number that fold."""
     kinds: dict[tuple[tuple[Edge, ...], int, tuple[int, ...]], list[bool]] = {}
     for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True):
         kinds.setdefault((leaf.folds, leaf.dimension, leaf.vertices), []).append(folds)
-    leaves = [
+    leaves: list[LeafClaim] = [
         {
             "folds": _pairs(folds),
             "dimension": dimension,
@@ -162,7 +171,7 @@ def _support(
     moving: Mapping[int, Star],
     together: _Together,
     listed: list[Mode] | None,
-) -> Document:
+) -> SupportClaim:
     """A support with the number of its modes that truly fold, and with the modes if they are
     listed.
     """
@@ -185,7 +194,7 @@ def _support(
     }
 
 
-def _mode(mode: Mode, together: _Together, moving: Mapping[int, Star]) -> Document:
+def _mode(mode: Mode, together: _Together, moving: Mapping[int, Star]) -> ModeClaim:
     verdict = mode.extends.verdict
     refuted = verdict is REFUTED
     return {

@@ -37,7 +37,7 @@ def fold_document(
     `vertices_exactfold:coords` has the exact "p/q" pairs. `edges_foldAngle` has the sign of the
     letter (valley positive), and is 0 for F, U and B. `angles` maps folds to degrees; without it V
     gets 180 and M gets -180. A simulator that is told 180 everywhere need not stay on the branch
-    with these letters; `exactfold.branches.export_branch` writes the angles.
+    with these letters; `exactfold.branches.export_branch` writes the angles of a branch.
 
     Raises `UsageError` if a letter or an angle is given for an edge that is not a fold of the
     pattern, and if an angle contradicts its letter. Raises `NotApplicableError` if a coordinate is

@@ -1,4 +1,4 @@
-"""One way in for sheets: a pattern, what was read, FOLD text, a path, or a shipped pattern."""
+"""The one way in for sheets: a pattern, what was read, FOLD, a path, or the name of an example."""
 
 from __future__ import annotations
 
@@ -46,16 +46,17 @@ def open_sheet(
     steps: Steps = "all",
     merge: Fraction | None = None,
 ) -> Opened:
-    """The sheet that is meant: any pattern, what was read, a drawing, FOLD, a file, or a name.
+    """The sheet that `sheet` stands for, read if it is in a file or in FOLD.
 
-    Text that is a name in `EXAMPLES` is that shipped pattern, whatever files there are
-    ("./two-vertex" is a file of this name). Text that begins with "{", and a mapping, are FOLD. All
-    other text and every `Path` is the path of a file of any format. `number`, from 1, chooses among
-    the sheets of a drawing with several; the rest is as for `open_pattern`.
+    A text that is a name in `EXAMPLES` stands for this shipped pattern, even if there is a file of
+    the same name (write "./two-vertex" for that). A text that begins with "{" is the text of a FOLD
+    file, and a mapping is its JSON object. Every other text and every `Path` is the path of a file
+    of any format. `number`, from 1, chooses among the sheets of a drawing with several; the rest is
+    as for `open_pattern`.
 
-    Raises the errors of `open_pattern`; `UnreadableFileError`, which lists the names, for text that
-    is neither a name nor a file; `SeveralSheetsError` for another `number` than 1 of a pattern; and
-    `UsageError` for a `snap` that a pattern has not, and for anything that is no sheet.
+    Raises the errors of `open_pattern`; `UnreadableFileError`, which lists the names, if a text is
+    neither a name nor a file; `SeveralSheetsError` if a pattern is given and `number` is not 1;
+    `UsageError` if a pattern is given and `snap` is "auto", and for objects of other types.
 
     >>> open_sheet("miura").sheet
     <PanelPattern: 9 interior vertices, 24 folds, 16 panels>
@@ -90,7 +91,7 @@ def open_sheet(
 
 
 def load(what: PatternLike, snap: Snap | None = None) -> CreasePattern:
-    """The triangulated sheet that is meant, as `open_sheet` understands it.
+    """The triangulated sheet that `what` stands for, as for `open_sheet`.
 
     The sheet must have triangles and rational coordinates. With `snap`, all coordinates are rounded
     to multiples of 1/snap.
@@ -113,7 +114,7 @@ def load(what: PatternLike, snap: Snap | None = None) -> CreasePattern:
 
 
 def as_pattern(what: PatternLike) -> CreasePattern:
-    """`load(what)`, for functions that take a pattern: a pattern passes through untouched."""
+    """`load(what)` for functions that take a pattern; a `CreasePattern` is returned unchanged."""
     return what if isinstance(what, CreasePattern) else load(what)
 
 
@@ -125,7 +126,7 @@ def _located(sheet: str | PathLike[str]) -> str | PathLike[str]:
         return example_path(sheet)
     if not os.path.exists(sheet):
         raise UnreadableFileError(
-            f"{shown(sheet)} is neither a file nor an example; the examples are: "
+            f"{shown(sheet)} is neither a file nor the name of an example; the examples are: "
             f"{', '.join(EXAMPLES)}"
         )
     return sheet

@@ -52,7 +52,7 @@ def project(pattern: PatternLike, matrix: Sequence[Sequence[RationalLike]]) -> P
     >>> image = project("flat-vertex", [(1, 0, 0), ("1/8", 1, 0), (0, 0, 1)])
     >>> image.determinant, [str(mu) for mu in image.factors]
     (Fraction(1, 1), ['1', '9/8', '9/8', '1', '17/16', '87/80'])
-    >>> from exactfold import count_branches
+    >>> from exactfold.branches import count_branches
     >>> [branch.multiplicity for branch in count_branches(image.pattern)]
     [1, 1, 2]
     """

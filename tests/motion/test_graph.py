@@ -202,7 +202,7 @@ def test_an_arc_that_is_not_followed_is_open(monkeypatch):
     left = [arc for arc in found.arcs if arc.end is None]
     assert len(left) == 4
     assert all(arc.reason == "lost" and arc.length[0] > 0 for arc in left)
-    assert found.reason == "4 arcs are not proved to an end"
+    assert found.reason == "4 arcs are not proved from end to end"
 
 
 def test_loops_that_contradict_each_other_are_a_defect():

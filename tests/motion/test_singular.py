@@ -138,11 +138,11 @@ def test_edges_that_depend_are_named():
 def test_a_fold_along_a_straight_line_is_named():
     found = find_loops("flat-vertex")
     assert found.skipped == {
-        "+0": "a vertex is flat on it: the sheet turns about the straight line 0-4-2, exactly, and "
-        f"at 180 degrees, folded flat, {BRANCHING.removesuffix(' there')}"
+        "+0": "a vertex is flat on it: the sheet turns exactly about the straight line 0-4-2, and "
+        f"at 180 degrees, where it is folded flat, {BRANCHING.removesuffix(' there')}"
     }
     assert found.reason == "1 branch is not simple"
-    with pytest.raises(FlatVertexError, match="turns about the straight line 0-4-2, which is not"):
+    with pytest.raises(FlatVertexError, match="a rotation about the straight line 0-4-2, and"):
         follow_proved(find_branch("flat-vertex", "+0"))
 
 

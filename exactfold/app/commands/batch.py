@@ -16,6 +16,7 @@ from exactfold._support.processes import available_cores
 from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.jsonl import Lines
+from exactfold.app.options.patterns import CountOptions
 from exactfold.app.shell.guard import NO_MEMORY
 from exactfold.app.shell.patterns import located
 from exactfold.app.shell.shell import (
@@ -40,7 +41,6 @@ from exactfold.errors import (
     UsageError,
     WorkerDiedError,
 )
-from exactfold.pattern.drawing.drawing import Snap
 
 if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
@@ -88,20 +88,8 @@ class Tally:
         return "".join(f", {n} {s}" for s in STATUSES[1:] if (n := self.statuses[s]))
 
 
-@dataclass(frozen=True)
-class Batch:
-    """What was asked for."""
-
-    patterns: list[Path]
-    out: Path | None
-    jobs: int | None
-    dask: str | None
-    method: str
-    seed: int
-    snap: Snap | None
-    sheet: int | None
-    as_json: bool
-    everything: bool
+class Batch(CountOptions):
+    """What was asked for of several patterns."""
 
     def run(self) -> int:
         """Count all and print what became of them; the worst exit code.
@@ -114,12 +102,12 @@ class Batch:
             raise UsageError("a pattern from standard input is counted by itself")
         if self.jobs is not None and self.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --jobs goes with --dask local")
-        apart(self.out, *self.patterns)
+        apart(self.jsonl, *self.patterns)
         tally, shown = Tally(), []
         with ExitStack() as stack:
             lines = None
-            if self.out is not None:
-                lines = Lines(self.out, headed("batch-line")["format"])
+            if self.jsonl is not None:
+                lines = Lines(self.jsonl, headed("batch-line")["format"])
                 stack.callback(lines.close)
             stack.enter_context(self._resumable())
             for line in stack.enter_context(closing(self._lines(lines, tally))):
@@ -133,7 +121,7 @@ class Batch:
         shown.sort(key=lambda row: place[row[0]])
         if not self.as_json:
             report.show(report.batch_report(shown, self._summary(tally), self.everything))
-        elif self.out is not None:
+        elif self.jsonl is not None:
             print(json.dumps(self._summary(tally)))
         return tally.code
 
@@ -174,7 +162,7 @@ class Batch:
     @contextmanager
     def _resumable(self) -> Iterator[None]:
         """Say how to go on when the batch stops early."""
-        again = "the same command goes on" if self.out is not None else ""
+        again = "the same command goes on" if self.jsonl is not None else ""
         try:
             with interruptible():
                 yield
@@ -195,7 +183,7 @@ class Batch:
             "skipped": tally.skipped,
             "warned": tally.warned,
             "exit_code": tally.code,
-            "jsonl": None if self.out is None else str(self.out),
+            "jsonl": None if self.jsonl is None else str(self.jsonl),
         }
 
 

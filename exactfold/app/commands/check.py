@@ -91,7 +91,7 @@ def verified_branches(path: Path, workers: int | None) -> tuple[Said, list[Branc
         if claims["real"] > 1 << IN_MEMORY:
             raise NotApplicableError(
                 f"{claims['real']} branches are too many to list here, though every claim holds; "
-                "`exactfold.read_branches` reads them one by one"
+                "`exactfold.branches.read_branches` reads them one by one"
             )
         return claims
 

@@ -11,9 +11,10 @@ from typing import Any
 from exactfold import checker
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED, REFUTED, Verdict
+from exactfold.certificates.sharing import shared
 from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.command import refusal
-from exactfold.checker.core.kinds import LineKind, Verified
+from exactfold.checker.core.kinds import LineKind
 from exactfold.checker.core.parts import Engine
 from exactfold.checker.core.reading import plain
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
@@ -41,7 +42,9 @@ class Checked:
 
 
 def check(
-    certificate: str | os.PathLike[str] | Mapping[str, Any], *, workers: int | None = None
+    certificate: str | os.PathLike[str] | Mapping[str, Any] | tuple[str, ...],
+    *,
+    workers: int | None = None,
 ) -> Checked:
     """Verify every claim of a certificate by the stand-alone checker, which believes nothing.
 
@@ -60,27 +63,25 @@ def check(
     >>> exactfold.check(forged).status
     <Verdict.REFUTED: 'refuted'>
     """
-    name = "the certificate" if isinstance(certificate, Mapping) else os.fspath(certificate)
+    workers = workers or available_cores()
+    name = "the certificate"
     try:
         if isinstance(certificate, Mapping):
-            claims = checker.check(checker.load(json.dumps(certificate)))
+            found = checker.check(checker.load(json.dumps(certificate)))
+        elif isinstance(certificate, tuple):
+            found = checker.check(certificate, workers, quickest)
         else:
-            claims = _verified(certificate, workers or available_cores())
+            name = os.fspath(certificate)
+            found = checker.verify(certificate, workers, quickest)
     except checker.CertificateError as error:
         return Checked(REFUTED, plain(error), refusal(error))
     except checker.FormatError as error:
         raise CertificateFormatError(f"{name}: {plain(error)}") from None
-    except OSError as error:
-        raise UnreadableFileError(f"cannot read {name}: {error.strerror}") from None
-    return Checked(PROVED, "every claim holds", checker.summary(claims), claims)
-
-
-def _verified(path: str | os.PathLike[str], workers: int) -> Verified[Any]:
-    """The claims of a file."""
-    try:
-        return checker.verify(path, workers, quickest)
     except WorkerDiedError as error:
         raise type(error)(f"{error}; nothing is known of the file") from None
+    except OSError as error:
+        raise UnreadableFileError(f"cannot read {name}: {error.strerror}") from None
+    return Checked(PROVED, "every claim holds", checker.summary(found), dict(found))
 
 
 def quickest(kind: LineKind[Any]) -> Engine:
@@ -89,6 +90,4 @@ def quickest(kind: LineKind[Any]) -> Engine:
         from exactfold.branches.certificates.check import FLOATS  # needs NumPy, as no other does
 
         return FLOATS
-    from exactfold.certificates.sharing import shared
-
     return kind.engine._replace(share=shared)

@@ -173,10 +173,9 @@ def branch(
     vertices of a convex sheet with more than four corners. `curvature`: angle deficits of interior
     vertices; both as for `exactfold.branches.find_branch`.
 
-    Raises `NotCountedError` for a sheet of panels, which has modes; `UsageError` where
-    nothing, or more than one thing, names the branch, and for letters that several branches have;
-    `NotCountedError` where no branch has the letters or the number; and the errors of
-    `find_branch`.
+    Raises `NotCountedError` for a sheet of panels, which has modes, and where no branch has the
+    letters; `UsageError` where nothing, or more than one thing, names the branch, for letters that
+    several branches have, and for a number that is not listed; and the errors of `find_branch`.
 
     >>> import exactfold
     >>> exactfold.branch("two-vertex", "+-")

@@ -44,8 +44,8 @@ def match(
     rigid panels do. `most`: how many sign vectors of a triangulated sheet are tried before the
     answer is UNDECIDED.
 
-    Raises `UsageError` for a file without mountains and valleys, `UsageError` for letters that
-    do not fit, `NotCountedError` for a triangle, which is rigid.
+    Raises `UsageError` for a file without mountains and valleys and for letters that do not fit,
+    `NotCountedError` for a triangle, which is rigid.
 
     >>> import exactfold
     >>> exactfold.match("two-vertex", "MVVVMVM")
@@ -83,8 +83,8 @@ def actuate(
     The branch is named as for `branch`. On at most `creases` folds, if that is given. With
     `torques`, exact numbers by fold, these are judged instead (docs/actuation.md).
 
-    Raises `NotCountedError` for larger panels, `NotCountedError` for more than 12 vertices
-    that fold, and the errors of `branch` and of `exactfold.design.actuate`.
+    Raises `NotCountedError` for larger panels and for more than 12 vertices that fold, and the
+    errors of `branch` and of `exactfold.design.actuate`.
 
     >>> import exactfold
     >>> exactfold.actuate("two-vertex", "+-")

@@ -157,8 +157,8 @@ def loops(
     `workers` processes share the work. The file `certificate` takes the proofs as they are found;
     with `resume`, one that was interrupted is continued.
 
-    Raises `NotCountedError` for larger panels, `NotCountedError` for a sheet without four
-    corners or whose branches are not proved, and as `exactfold.motion.find_loops`.
+    Raises `NotCountedError` for larger panels, for a sheet without four corners, and for one whose
+    branches are not proved, and as `exactfold.motion.find_loops`.
 
     >>> import exactfold
     >>> exactfold.loops("two-vertex")

@@ -18,13 +18,10 @@ from exactfold.branches.values.blocks import ProvedBlock
 from exactfold.certificates.entries import chart_evidence, pattern_document, triangle_evidence
 from exactfold.checker.branches.compact import CHAMBERS, COMPACT
 from exactfold.checker.branches.compact_blocks import UNPROVED
-from exactfold.checker.branches.listing import COUNTS
+from exactfold.checker.branches.listing import CountClaims, Counts
 from exactfold.exact.numbers import format_integer
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.problem import Problem
-
-Counts = tuple[int | None, int | None, int | None, int | None, str]
-"""The numbers of solutions in the order of `COUNTS`."""
 
 
 def header_line(problem: Problem, block_size: int) -> str:
@@ -84,23 +81,26 @@ def compact_lines(problem: Problem, block_size: int, blocks: Sequence[str]) -> t
 
 def chamber_counts(problem: Problem) -> Counts:
     """What one root for each sign vector proves."""
-    return 1 << problem.size, 1 << problem.pattern.Vi, 1 << problem.size, 0, "proved"
+    return {
+        "distinct": 1 << problem.size,
+        "with_multiplicity": 1 << problem.pattern.Vi,
+        "real": 1 << problem.size,
+        "nonreal": 0,
+        "true_branches": "proved",
+    }
 
 
 def claims_line(pattern: CreasePattern, counts: Counts) -> str:
-    """The last line of a file without open roots; `counts` in the order of `COUNTS`."""
-    return line_text(
-        {
-            "claims": {
-                "interior": pattern.Vi,
-                "boundary": pattern.Ve,
-                "folds": len(pattern.folds),
-                "degrees_of_freedom": pattern.degrees_of_freedom,
-                "sha256": pattern.sha256,
-                **dict(zip(COUNTS.split(), counts, strict=True)),
-            }
-        }
-    )
+    """The last line of a file without open roots."""
+    claims: CountClaims = {
+        "interior": pattern.Vi,
+        "boundary": pattern.Ve,
+        "folds": len(pattern.folds),
+        "degrees_of_freedom": pattern.degrees_of_freedom,
+        "sha256": pattern.sha256,
+        **counts,
+    }
+    return line_text({"claims": claims})
 
 
 def line_text(data: Mapping[str, Any]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from typing import Any
+from typing import Any, cast
 
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.certificates.blocks import claims_line, line_text
@@ -23,12 +23,16 @@ from exactfold.certificates.entries import (
     triangle_evidence,
 )
 from exactfold.checker.branches.compact import COMPACT, ROOTS
+from exactfold.checker.branches.listing import Counts
 from exactfold.checker.core.limits import MOST_LINE
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.numbers import shown
 
 MOST_ROOTS = 256
 """Roots in a line, fewer where their numbers are so long that the line would be."""
+
+_DIGEST = 66
+"""What the file adds to each line: a tab, the digest, and the end of the line."""
 
 
 def certificate(result: BranchCount) -> Document | CertificateLines:
@@ -55,35 +59,56 @@ def certificate(result: BranchCount) -> Document | CertificateLines:
 
 
 def _root_lines(result: BranchCount, proof: Proof) -> list[str]:
-    """The lines of a count whose roots are not one simple root for each sign vector."""
+    """The lines of a count whose roots are not one simple root for each sign vector.
+
+    Raises `NotApplicableError` if one would be longer than what the checker reads.
+    """
     evidence: Document = {"kind": proof.kind, "triangles": triangle_evidence(proof.triangles)}
-    entries, block = list[Document](), 1
+    blocks: list[str] = []
     if proof.chart is not None:
-        entries = [_entry(proof, branch) for branch in result.branches]
         evidence["chart"] = chart_evidence(proof.chart, proof.labels)
         if proof.algebraic is not None:
             evidence |= algebraic_evidence(proof.algebraic, proof.labels)
+        entries = [_entry(proof, branch) for branch in result.branches]
         longest = max(len(line_text(entry)) for entry in entries)
         block = max(1, min(MOST_ROOTS, MOST_LINE // (2 * longest)))
         evidence |= {"roots": len(entries), "block": block}
-    header = {
-        "format": COMPACT.format,
-        "version": ROOTS,
-        "pattern": pattern_document(result.pattern),
-        "evidence": evidence,
-        "provenance": {
-            "method": result.method,
-            "settings": dict(result.settings),
-            "python": platform.python_version(),
-        },
+        blocks = [
+            line_text({"block": number, "roots": entries[start : start + block]})
+            for number, start in enumerate(range(0, len(entries), block))
+        ]
+    counts = {
+        "distinct": result.distinct,
+        "with_multiplicity": result.with_multiplicity,
+        "real": result.real,
+        "nonreal": result.nonreal,
+        "true_branches": str(_true_branches(result)),
     }
-    blocks = [
-        line_text({"block": number, "roots": entries[start : start + block]})
-        for number, start in enumerate(range(0, len(entries), block))
-    ]
-    counts = result.distinct, result.with_multiplicity, result.real, result.nonreal
-    claims = claims_line(result.pattern, (*counts, str(_true_branches(result))))
-    return [line_text(header), *blocks, claims]
+    claims = claims_line(result.pattern, cast("Counts", counts))  # all are known, once proved
+    lines = [_header(result, evidence), *blocks, claims]
+    longest = max(map(len, lines))
+    if longest + _DIGEST > MOST_LINE:
+        raise NotApplicableError(
+            f"no certificate: a line of it would have {longest} characters, more than is read"
+        )
+    return lines
+
+
+def _header(result: BranchCount, evidence: Document) -> str:
+    """The first line."""
+    return line_text(
+        {
+            "format": COMPACT.format,
+            "version": ROOTS,
+            "pattern": pattern_document(result.pattern),
+            "evidence": evidence,
+            "provenance": {
+                "method": result.method,
+                "settings": dict(result.settings),
+                "python": platform.python_version(),
+            },
+        }
+    )
 
 
 def _entry(proof: Proof, branch: Branch) -> Document:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from functools import cached_property
 
-from exactfold._support.shared_work import in_order
+from exactfold._support.processes import in_order
 from exactfold.branches.certificates.blocks import block_line
 from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.values.blocks import ProvedBlock

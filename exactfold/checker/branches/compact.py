@@ -7,15 +7,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing
-from typing import Any
 
 from ..core.kinds import LineKind
 from ..core.lines import lines, read_object
 from ..core.parts import Engine, here, on_processes
-from ..core.reading import CertificateError, FormatError, UnfinishedError, keys, refusing, require
+from ..core.reading import (
+    CertificateError,
+    FormatError,
+    UnfinishedError,
+    keys,
+    keys_of,
+    refusing,
+    require,
+)
 from .compact_blocks import CompactSheet
 from .compact_roots import check_roots
-from .listing import summary
+from .listing import CountClaims, summary
 
 CHAMBERS, ROOTS = 1, 2
 """The versions: one simple root for each sign vector; an entry for each root, of any kind."""
@@ -41,7 +48,7 @@ INTEGERS = Engine(IntegerVerifier, 1, on_processes)
 """All in integers, by the standard library alone."""
 
 
-def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> dict[str, Any]:
+def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> CountClaims:
     """Verify every claim of a compact certificate; returns the claims.
 
     Raises `CertificateError` if one is not supported, `FormatError` if the file is no compact
@@ -51,9 +58,7 @@ def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> dict[str, A
         return check_lines(lines(stream), workers, engine)
 
 
-def check_lines(
-    found: Iterator[str], workers: int = 1, engine: Engine = INTEGERS
-) -> dict[str, Any]:
+def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = INTEGERS) -> CountClaims:
     """Verify every claim, given the lines of a file; returns the claims.
 
     With several workers, blocks are checked in that many processes.
@@ -73,7 +78,7 @@ def check_lines(
     return facts
 
 
-def _check_claims(found: Iterator[str], facts: dict[str, Any], blocks: int) -> None:
+def _check_claims(found: Iterator[str], facts: CountClaims, blocks: int) -> None:
     """The last line claims what was found, no more and no less."""
     last = next(found, None)
     if last is None:
@@ -81,7 +86,7 @@ def _check_claims(found: Iterator[str], facts: dict[str, Any], blocks: int) -> N
     claims = read_object(last, "the last line")
     keys(claims, "claims", "the last line")
     require(next(found, None) is None, "something follows the claims")
-    keys(claims["claims"], " ".join(facts), "claims")
+    keys(claims["claims"], keys_of(CountClaims), "claims")
     for key, fact in facts.items():
         claim = claims["claims"][key]
         require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
@@ -120,6 +125,7 @@ COMPACT = LineKind(
     format="exactfold compact certificate",
     versions=(CHAMBERS, ROOTS),
     names="format version pattern evidence provenance",
+    claims=CountClaims,
     check=check_lines,
     summary=summary,
     engine=INTEGERS,

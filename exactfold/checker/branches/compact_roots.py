@@ -16,11 +16,12 @@ from . import listing
 
 
 @refusing()
-def check_roots(header: dict[str, Any], found: Iterator[str]) -> tuple[dict[str, Any], int]:
+def check_roots(header: dict[str, Any], found: Iterator[str]) -> tuple[listing.CountClaims, int]:
     """What the blocks that follow a header prove, and their number; all of them are kept."""
     sheet, digest = read_sheet(header["pattern"])
     evidence, branches, blocks = gathered(header, found)
-    return facts_of(sheet, digest) | listing.proved(sheet, evidence, branches), blocks
+    counts = listing.proved(sheet, evidence, branches)
+    return {**facts_of(sheet, digest), **counts}, blocks
 
 
 def gathered(header: dict[str, Any], found: Iterator[str]) -> tuple[dict[str, Any], list[Any], int]:

@@ -7,7 +7,7 @@ from math import lcm
 from exactfold._support.verdict import PROVED
 from exactfold.branches.certificates.single import branch_certificate, heights_evidence
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.letters.letters import LETTERS
+from exactfold.checker.letters.letters import LETTERS, LettersClaims
 from exactfold.design.assignments.boundary_match import RimMatch
 from exactfold.design.assignments.search import Match, Matched
 from exactfold.design.circles.certificate import assignments_certificate
@@ -72,20 +72,18 @@ def _letters(
     found: Match | RimMatch, matches: tuple[Matched, ...], leaves: list[list[Document]]
 ) -> Document:
     pattern = found.pattern
+    claims: LettersClaims = {
+        "letters": "".join(found.letters[fold] for fold in pattern.folds),
+        "halves": [
+            {"vertex_signs": [half.vertex_signs[v] for v in pattern.interior], "side": half.side}
+            for half in matches
+        ],
+    }
     return {
         "format": LETTERS.format,
         "version": LETTERS.version,
         "pattern": pattern_document(pattern),
-        "claims": {
-            "letters": "".join(found.letters[fold] for fold in pattern.folds),
-            "halves": [
-                {
-                    "vertex_signs": [half.vertex_signs[v] for v in pattern.interior],
-                    "side": half.side,
-                }
-                for half in matches
-            ],
-        },
+        "claims": claims,
         "evidence": {
             "emptied": emptied_evidence(pattern),
             "refuted": [_refuted(found, each) for each in found.tree.refuted],

@@ -20,7 +20,12 @@ from exactfold._support.progress import Progress
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.letters.arcs import Arcs, Word
-from exactfold.checker.letters.assignments import ASSIGNMENTS, MOST_VERTICES, free_border
+from exactfold.checker.letters.assignments import (
+    ASSIGNMENTS,
+    MOST_VERTICES,
+    AssignmentsClaims,
+    free_border,
+)
 from exactfold.checker.sheets.sheet import Sheet
 from exactfold.design.circles.nappe_points import NappePoints
 from exactfold.exact.numbers import format_integer
@@ -85,11 +90,12 @@ def covering(pattern: CreasePattern, progress: Progress | None = None) -> Coveri
 
 def covering_document(pattern: CreasePattern, points: Covering) -> Document:
     """The certificate of the list, not yet verified (docs/circles.md, The certificate)."""
+    claims: AssignmentsClaims = {"assignments": list(points.assignments)}
     return {
         "format": ASSIGNMENTS.format,
         "version": ASSIGNMENTS.version,
         "pattern": pattern_document(pattern),
-        "claims": {"assignments": list(points.assignments)},
+        "claims": claims,
         "evidence": {
             "emptied": emptied_evidence(pattern),
             "circles": [

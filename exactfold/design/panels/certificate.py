@@ -12,7 +12,7 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document
-from exactfold.checker.letters.panels import PANEL_LETTERS
+from exactfold.checker.letters.panels import PANEL_LETTERS, PanelLettersClaims
 from exactfold.design.panels.cells import CellSearch, Steps
 from exactfold.design.panels.match import PanelMatch, flat_with_letters
 from exactfold.design.panels.parts import PartAnswer
@@ -51,21 +51,19 @@ def starting_certificate(found: PanelMatch) -> Document:
     else:
         evidence, truly = _refuted(found, moving)
     first = found.first_order
-    if first is not None:
-        moved = {"together": _pairs(first.together), "never": _pairs(first.never)}
-    else:
-        moved = {"together": [], "never": []}
+    claims: PanelLettersClaims = {
+        "letters": "".join(found.letters[fold] for fold in found.pattern.folds),
+        "starts": str(found.starts),
+        "truly": str(truly),
+        "together": [] if first is None else _pairs(first.together),
+        "never": [] if first is None else _pairs(first.never),
+    }
     evidence |= _first_order(found)
     return {
         "format": PANEL_LETTERS.format,
         "version": PANEL_LETTERS.version,
         "pattern": panels_document(found.pattern),
-        "claims": {
-            "letters": "".join(found.letters[fold] for fold in found.pattern.folds),
-            "starts": str(found.starts),
-            "truly": str(truly),
-            **moved,
-        },
+        "claims": claims,
         "evidence": evidence,
     }
 
