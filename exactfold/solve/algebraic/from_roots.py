@@ -113,7 +113,7 @@ def _parametrised(system: QuadraticSystem, refined: RefinedRoots) -> RootClass |
 
 
 def _separating_form(roots: RefinedRoots) -> tuple[int, ...] | None:
-    """A form whose values differ at all zeros, as far as their accuracy shows."""
+    """A form whose values differ at all zeros, within their accuracy; None if none is found."""
     for form in islice(separating_forms(roots.system.size), _FORMS_TRIED):
         with ctx.workprec(roots.accuracy + _magnitude(roots, form)):
             values = [acb(_value(form, row)) for row in (*roots.real, *roots.upper)]

@@ -365,7 +365,7 @@ class _Kernel:
 
 
 def _fixed_point(matrices: FloatArray) -> tuple[list[int], list[list[int]]]:
-    """Shifts q, and entries times 2^q of at most `_Y_BITS` bits, of finite nonzero matrices."""
+    """For finite nonzero matrices: shifts q, and entries times 2^q of at most `_Y_BITS` bits."""
     sizes = np.frexp(np.abs(matrices).max(axis=(1, 2)))[1]
     shifts = _Y_BITS - sizes
     entries = np.rint(np.ldexp(matrices, shifts[:, None, None])).astype(np.int64)
