@@ -160,6 +160,9 @@ def _snapped(pattern: CreasePattern, snap: Snap | None) -> Opened:
 
 
 def _is_panels(sheet: object) -> TypeGuard[PanelPattern]:
-    """Asked of the module, as a pattern that is there has loaded it."""
+    """Whether `sheet` is a `PanelPattern`, without importing that class.
+
+    If its module has not been loaded, no panel pattern exists.
+    """
     module = sys.modules.get("exactfold.pattern.panel_pattern")
     return module is not None and isinstance(sheet, module.PanelPattern)

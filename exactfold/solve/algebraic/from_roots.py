@@ -279,7 +279,7 @@ def _integers(polynomials: Sequence[arb_poly], common: int) -> list[list[int]] |
 
 
 def _without_zeros(line: list[int]) -> list[int]:
-    """The coefficients without zeros at the end, where the leading ones stand."""
+    """The coefficients, constant term first, without the zeros after the leading one."""
     length = len(line)
     while length and line[length - 1] == 0:
         length -= 1

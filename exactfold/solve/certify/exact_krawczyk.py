@@ -265,7 +265,7 @@ class _Kernel:
         return self._test(m, jacobian, values, bits, y, entries, shift)
 
     def _attempt_exactly(self, m: list[int], bits: int) -> IsolatingBox | str:
-        """Newton steps with the rounded exact inverse; doubles cannot separate clusters."""
+        """Newton steps with the rounded exact inverse, for clusters that doubles cannot resolve."""
         n = self.system.size
         result: IsolatingBox | str = "no Newton step was possible"
         length: int | None = None
