@@ -2,7 +2,7 @@
 
 Let p be a prime that does not divide the leading coefficient of f, and let f be squarefree modulo
 p. Then the degrees of the factors of f modulo p are the cycle lengths of an element of the Galois
-group, which permutes the roots (Dedekind; Frobenius). What a few primes prove can be checked again
+group, which permutes the roots (Dedekind; Frobenius). A proof by a few primes can be checked again
 from these primes alone.
 """
 

@@ -256,7 +256,7 @@ class _Kernel:
         return self._test(m, jacobian, values, bits, y, entries, shift)
 
     def _attempt_exactly(self, m: list[int], bits: int) -> IsolatingBox | str:
-        """Newton steps with the rounded exact inverse; doubles cannot separate clusters."""
+        """Newton steps with the rounded exact inverse, for clusters that doubles cannot resolve."""
         n = self.system.size
         result: IsolatingBox | str = "no Newton step was possible"
         length: int | None = None
@@ -356,7 +356,7 @@ class _Kernel:
 
 
 def _fixed_point(matrices: FloatArray) -> tuple[list[int], list[list[int]]]:
-    """Shifts q, and entries times 2^q of at most `_Y_BITS` bits, of finite nonzero matrices."""
+    """For finite nonzero matrices: shifts q, and entries times 2^q of at most `_Y_BITS` bits."""
     sizes = np.frexp(np.abs(matrices).max(axis=(1, 2)))[1]
     shifts = _Y_BITS - sizes
     entries = np.rint(np.ldexp(matrices, shifts[:, None, None])).astype(np.int64)
