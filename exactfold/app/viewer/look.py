@@ -1,4 +1,4 @@
-"""Colours, widths and dashes of the page: those of the pictures, taken from them."""
+"""Colours, widths and dashes of the page, taken from the pictures."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from exactfold.app.pictures import crease_style
 
 _DARK: Final = {"B": 0.92}
 _LIGHTNESS: Final = 0.66
-"""Least lightness of a line on dark ground; the border is lighter still."""
+"""The least lightness of a line on dark ground; the border is lighter still."""
 
 
 def look_css() -> str:
-    """Colours of lines by letter as custom properties of CSS, lighter on dark ground.
+    """The colours of lines by letter as CSS custom properties, lighter on dark ground.
 
     >>> look_css().split(";")[0]
     ':root { --M: #c8202f'
@@ -27,7 +27,7 @@ def look_css() -> str:
 
 
 def look_script() -> str:
-    """The widths and dashes of lines as a constant of the page's script.
+    """The widths and dashes of lines as a constant in the page's script.
 
     >>> look_script()[:14]
     'const LOOK = {'
@@ -48,7 +48,7 @@ def look_script() -> str:
 
 
 def _dark(letter: str) -> str:
-    """The colour of a letter on dark ground: the same hue, and light enough to be seen."""
+    """The colour of a letter on dark ground: the same hue, but light enough to be seen."""
     text = crease_style.COLOUR[letter]
     hue, lightness, saturation = colorsys.rgb_to_hls(
         *(int(text[k : k + 2], 16) / 255 for k in (1, 3, 5))

@@ -1,4 +1,4 @@
-"""The page: one HTML file with everything in it, which opens without a network or a server."""
+"""The page: one HTML file that contains everything and needs neither a network nor a server."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ _PLACE: Final = re.compile(r"\{\{(\w+)\}\}")
 def view_page(document: Mapping[str, Any]) -> str:
     """The HTML text of the page that shows a `view_document`.
 
-    Its scripts and styles are allowed by their digests and nothing else is, so that no text of a
-    pattern can run as code, and the page asks nothing of any network.
+    A content security policy allows its scripts and styles by their digests, and nothing else. So
+    no text in a pattern can run as code, and the page sends no requests to any network.
 
     >>> page = view_page(view_document("single-vertex-4", name="</script>", frames=3))
     >>> page.count("</script>")
@@ -64,9 +64,9 @@ def write_view(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
-    """Write the page of a sheet to a file; the document that it shows (see `view_document`).
+    """Write the page of a sheet to a file, and return the document that it shows.
 
-    Raises the errors of `view_document`, and `UnwritableFileError`.
+    See `view_document`. Raises the errors of `view_document`, and `UnwritableFileError`.
 
     >>> import os, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -88,7 +88,7 @@ def write_view(
 
 
 def checked_page(path: Path) -> str:
-    """The ending of the path of a page; raises as `checked_target`."""
+    """The ending of the path of a page; raises the errors of `checked_target`."""
     return checked_target(path, _ENDINGS, "a page")
 
 
@@ -103,7 +103,7 @@ def script_json(value: object) -> str:
 
 @cache
 def _script() -> str:
-    """The modules of the page joined into one, each after those that it imports."""
+    """The modules of the page joined into one; each comes after the modules that it imports."""
     done: list[str] = []
     parts: list[str] = []
 
@@ -121,7 +121,7 @@ def _script() -> str:
 
 
 def _policy(scripts: Sequence[str], style: str, served: bool) -> str:
-    """A content security policy that allows these texts only."""
+    """A content security policy that allows only these texts."""
     allowed = " ".join(_digest(text) for text in scripts)
     return (
         f"default-src 'none'; script-src {allowed}; style-src {_digest(style)}; "
