@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final, overload
+from typing import Any, ClassVar, Final
 
 from exactfold._support.notebook import Page
+from exactfold._support.results import Certified, Ways
 from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.panels.elementary import Support
@@ -49,7 +50,7 @@ class Mode:
 
 
 @dataclass(frozen=True)
-class Decomposition(Page):
+class Decomposition(Page, Ways[Mode], Certified):
     """The ways in which a sheet of rigid panels starts to fold, and which of them truly fold.
 
     `second_order` is {dimension: number} of the components of all motions to second order; some of
@@ -88,21 +89,11 @@ class Decomposition(Page):
     still: tuple[Edge, ...] = ()
     seconds: float = field(default=0.0, compare=False)
 
-    def __len__(self) -> int:
-        return len(self.modes)
+    WRITER: ClassVar = "exactfold.panels.certificate:certificate_of_panels"
 
-    def __iter__(self) -> Iterator[Mode]:
-        return iter(self.modes)
-
-    def __bool__(self) -> bool:
-        return True  # a result, also where no mode is listed
-
-    @overload
-    def __getitem__(self, which: int) -> Mode: ...
-    @overload
-    def __getitem__(self, which: slice) -> tuple[Mode, ...]: ...
-    def __getitem__(self, which: int | slice) -> Mode | tuple[Mode, ...]:
-        return self.modes[which]
+    def listed(self) -> tuple[Mode, ...]:
+        """`modes`."""
+        return self.modes
 
     def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
         """The object printed by `exactfold count --json`: `schema("count")`.

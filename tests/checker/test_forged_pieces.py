@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from forge import Document, given, refused, verified, with_one_key_more, without
+from forge import Document, beyond, given, refused, verified, with_one_key_more, without
 from sheets import HEXAGON, scrambled, wheel, with_point
 
 from exactfold import CreasePattern, checker, random_square
@@ -183,7 +183,8 @@ def test_the_border_is_convex() -> None:
 def test_how_many_vertices_can_pop(monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         patch.setattr(pieces, "MOST_VERTICES", 1)
-        stopped(foreign(SHEETS["pentagon"]), "more than 1 vertices can pop")
+        message = beyond("the vertices that can pop", 2, 1, "PIECE_VERTICES")
+        stopped(foreign(SHEETS["pentagon"]), message)
     fan = foreign(CreasePattern(HEXAGON[:5], [(0, 1, 2), (0, 2, 3), (0, 3, 4)]))
     fan["evidence"]["chord"] = [0, 2]
     stopped(fan, "no vertex can pop")

@@ -200,7 +200,7 @@ def test_what_is_not_proved_counts_nowhere():
     unclear = {**proved, "with_letters": None, "with_signs": None}
     main, comparison, _ = table1.tables([proved, undecided, unclear])
     assert main.rows == ((3, 3, 2, 2, 0, 0, 0, 0),)
-    assert main.notes[-1] == "squares with a letter that is not decided, not counted there: 1."
+    assert main.notes[-1] == "squares with an undecided letter, which are not counted there: 1."
     assert [line[4] for line in comparison.rows] == ["0/2", "0/1", "0/1"]
 
 

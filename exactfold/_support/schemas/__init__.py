@@ -1,4 +1,4 @@
-"""The JSON that exactfold prints: a format and a version in every object, and a schema for each."""
+"""The JSON that exactfold prints: each object has a format, a version, and a schema."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ VERSIONS: Final = {
     "match": 1,
     "starting": 1,
     "export": 1,
-    "motion": 1,
+    "motion": 2,
     "motions": 1,
     "view": 1,
     "actuate": 1,
@@ -34,14 +34,14 @@ VERSIONS: Final = {
     "batch": 1,
     "error": 1,
 }
-"""The kinds of output and their versions; a version changes when a key goes or changes."""
+"""The kinds of output and their versions; a version rises when a key is removed or changed."""
 
 _PARTS: Final = ("pattern", "panels", "stream", "warning")
 _URN: Final = "urn:exactfold:schema:"
 
 
 def headed(kind: str) -> dict[str, Any]:
-    """The first two keys of an object of a kind.
+    """The first two keys of an object of this kind.
 
     >>> headed("count")
     {'format': 'exactfold count result', 'version': 1}
@@ -50,22 +50,22 @@ def headed(kind: str) -> dict[str, Any]:
 
 
 def schema(name: str) -> dict[str, Any]:
-    """The JSON Schema (draft 2020-12) of a kind of output, whole: it refers to no other file.
+    """The complete JSON Schema (draft 2020-12) of a kind of output; it refers to no other file.
 
-    Raises `UsageError` for a name not in `VERSIONS`.
+    Raises `UsageError` for a name that is not in `VERSIONS`.
 
     >>> schema("count")["properties"]["format"]
     {'const': 'exactfold count result'}
     """
     if name not in VERSIONS:
-        raise UsageError(f"no schema {name!r}; there are: {', '.join(VERSIONS)}")
+        raise UsageError(f"there is no schema {name!r}; the schemas are: {', '.join(VERSIONS)}")
     found = _read(name)
     parts = _parts(found)
     return found | ({"$defs": parts} if parts else {})
 
 
 def _parts(found: dict[str, Any]) -> dict[str, Any]:
-    """The schemas that one refers to, and those that they refer to, by name."""
+    """All schemas to which a schema refers, directly or not, by name."""
     text, parts = json.dumps(found), {}
     for name in (*VERSIONS, *_PARTS):
         if f'"$ref": "{_URN}{name}"' in text:

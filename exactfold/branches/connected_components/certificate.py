@@ -12,7 +12,7 @@ from exactfold import checker
 from exactfold.branches.connected_components.result import PartProof, Pieces, RegularPoint
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
 from exactfold.checker.branches.connected_components import MOST_VERTICES, PIECES, PiecesClaims
-from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.core.reading import CertificateError, LimitError
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.loading import PatternLike, as_pattern
@@ -70,7 +70,7 @@ def pieces_certificate(pattern: PatternLike, pieces: Pieces) -> Document:
     }
     try:
         checker.check(document)
-    except CertificateError as error:
+    except (CertificateError, LimitError) as error:
         raise NotApplicableError(f"the checker refuses the proof: {error}") from None
     return document
 

@@ -3,39 +3,31 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING, Final
 
-from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.branches.certificates.blocks import compact_lines
-from exactfold.branches.counting.attempt import Attempt
 from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many, too_many
-from exactfold.branches.counting.conveyor import Conveyor
-from exactfold.branches.counting.engines import in_this_process
-from exactfold.branches.counting.fallback import isolated, solved_exactly, with_flat_vertices
-from exactfold.branches.counting.registry import METHODS, NEWTON, Choice, choose, find_candidates
-from exactfold.branches.counting.true_bounds import with_true_bounds
+from exactfold.branches.counting.lines import count_lines
+from exactfold.branches.counting.registry import METHODS, choose
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount, Proof
-from exactfold.checker.core.limits import MOST_UNKNOWNS
 from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.rigidity.definite_stresses import definite_stress
-from exactfold.rigidity.equations.branch_system import BranchSystem, notch_chart
 from exactfold.rigidity.equations.problem import Problem
 from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
-from exactfold.solve.numeric.candidates import Candidates
-from exactfold.solve.numeric.newton import candidates_of
+
+if TYPE_CHECKING:
+    from exactfold.branches.connected_components.result import Joint
 
 __all__ = ["METHODS", "count_branches"]
 
-_MEET = 9
-"""Digits to which ends agree where a root is multiple: they are as good there as elsewhere."""
-
-GROEBNER_LIMIT = 6
-"""Largest number of unknowns for which "auto" turns to the exact engine."""
+_MOST_CLASSES: Final = 24
+"""Most sets of flat vertices that are looked at one by one."""
 
 
 def count_branches(
@@ -80,7 +72,7 @@ def count_branches(
     elif pattern.Ve == 3:
         result = _rigid(pattern, triangles)
     elif pattern.degrees_of_freedom == 1:
-        result = with_true_bounds(_lines(Problem.of(pattern), choice, method, seed, progress))
+        result = with_true_bounds(count_lines(Problem.of(pattern), choice, method, seed, progress))
     else:
         result = _higher(pattern, triangles, progress)
     seconds = time.perf_counter() - start
@@ -176,91 +168,69 @@ def not_convex(pattern: CreasePattern) -> str:
     )
 
 
-def _lines(
-    problem: Problem, choice: Choice, method: str, seed: int, progress: Progress | None
-) -> BranchCount:
-    """D = 1: branches are isolated lines.
+# --- true branches -------------------------------------------------------------------------------
 
-    Where the conveyor leaves something open, and for other methods, zeros are proved in the chart
-    `saddle = 1`; as with a reflex corner some may lie at infinity there, then also in the chart of
-    the closed notch, which misses none.
+
+def with_true_bounds(result: BranchCount) -> BranchCount:
+    """A count with bounds of the number of true branches, and the verdict that follows.
+
+    Near the flat state there is exactly one true configuration for each sign vector and each small
+    rim (docs/any_border.md, Theorem 8). So a branch with f flat vertices is the start of at least
+    one and at most 2^f true branches, and of exactly one if the sheet with these stars held flat
+    truly folds along it.
     """
-    ends: Candidates | None = None
-    if choice.method == NEWTON and 0 < problem.size <= MOST_UNKNOWNS:
-        conveyor = Conveyor.of(problem)
-        attempt = Attempt(problem, problem.chart, choice, progress)
-        ends = _ends(conveyor, attempt)
-        if not (ends.lost or ends.agree_to(_MEET)):
-            result = _collected(conveyor, attempt, ends)
-            if result is not None:
-                return result
-    attempt = Attempt(problem, BranchSystem(problem.sheet).chart, choice, progress)
-    result = _in_chart(attempt, ends, method, seed)
-    if result.status is PROVED or problem.sheet.is_convex:
-        return result
-    again = _in_chart(replace(attempt, chart=notch_chart(problem.sheet)), ends, method, seed)
-    return again if again.status is PROVED else result
+    if result.status is not PROVED or result.distinct is None:
+        most = 1 << len(result.pattern.foldable_vertices)
+        return replace(result, true_bounds=(1, most))
+    multiple = [branch for branch in result.branches if _flat(result.pattern, branch)]
+    more = 0
+    for branch, single in zip(multiple, _single(result.pattern, multiple), strict=True):
+        more += 0 if single else (1 << len(_flat(result.pattern, branch))) - 1
+    bounds = (result.distinct, result.distinct + more)
+    verdict = UNDECIDED if more else PROVED
+    return replace(result, true_bounds=bounds, true_branches=verdict)
 
 
-def _ends(conveyor: Conveyor, attempt: Attempt) -> Candidates:
-    """The ends of all blocks, in the chart of the problem."""
-    stage, count = attempt.stage("solving"), conveyor.block_size
+def _flat(pattern: CreasePattern, branch: Branch) -> frozenset[int]:
+    """The foldable vertices whose stars are flat."""
+    return frozenset(v for v in pattern.foldable_vertices if not branch.vertex_signs[v])
+
+
+def _single(pattern: CreasePattern, branches: list[Branch]) -> list[bool]:
+    """Whether each branch is proved to fold truly with the same stars flat."""
+    if not branches:
+        return []
+    from exactfold.branches.connected_components.flat_stars import flat_solutions
+    from exactfold.panels.stars import edge_of, stars  # here, as most counts do without
+    from exactfold.pattern.opening import panels
+
+    sheet, labels = pattern.without_rigid_parts()
+    place = {v: k for k, v in enumerate(labels)}
+    flat_sheet = panels(sheet)
+    known: dict[frozenset[int], tuple[Joint, ...]] = {}
+    complete: dict[frozenset[int], bool] = {}
+    rows = {tuple(branch.vertex_signs.items()) for branch in branches}
     found = []
-    for index in range(conveyor.blocks):
-        found.append(conveyor.ends(index))
-        stage((index + 1) * count, attempt.total)
-    return candidates_of(found, conveyor.size).finite()
+    for branch in branches:
+        held = frozenset(place[v] for v in _flat(pattern, branch))
+        if held not in known and len(known) < _MOST_CLASSES:
+            moving = stars(flat_sheet, [edge_of(v, u) for v in held for u in sheet.star(v)])
+            solutions = flat_solutions(moving)
+            known[held], complete[held] = solutions.joints, not solutions.open
+        signs = {v: branch.vertex_signs[labels[v]] for v in sheet.interior}
+        same = [joint.folds for joint in known.get(held, ()) if _are_same(signs, joint.signs)]
+        # A solution does not say on which side of the saddle it is. Where another branch has the
+        # opposite signs, its reflection has the same; with a reflex corner others can, too. Then
+        # all must be known.
+        opposite = tuple((v, -sign) for v, sign in branch.vertex_signs.items())
+        alone = opposite not in rows or not any(signs.values())
+        sure = complete.get(held, False) or (pattern.is_convex and alone)
+        found.append(sure and bool(same) and all(same))
+    return found
 
 
-def _collected(conveyor: Conveyor, attempt: Attempt, ends: Candidates) -> BranchCount | None:
-    """The branches of all blocks, None if a root or a letter stays open."""
-    stage, count = attempt.stage("certifying"), conveyor.block_size
-    branches: list[Branch] = []
-    proved: list[str] = []
-    for block, line in in_this_process(conveyor, range(conveyor.blocks)):
-        if not block.is_decided:
-            return None
-        branches += conveyor.branches(block)
-        proved.append(line)
-        stage(len(proved) * count, attempt.total)
-    branches.sort(key=Branch.sort_key)
-    return attempt.isolated(
-        attempt.undecided("", branches=tuple(branches), settings={**ends.settings, "lost": 0}),
-        real=attempt.total,
-        nonreal=0,
-        lines=compact_lines(conveyor.problem, count, proved),
+def _are_same(signs: Mapping[int, int], others: Mapping[int, int]) -> bool:
+    """Whether signs are those of a solution or of its reflection, absent ones being 0."""
+    return any(
+        all(sign == side * others.get(v, 0) for v, sign in signs.items()) for side in (1, -1)
     )
-
-
-def _in_chart(attempt: Attempt, ends: Candidates | None, method: str, seed: int) -> BranchCount:
-    """Prove zeros in one chart; those with flat vertices are solved for apart from the others.
-
-    Where that fails too, "auto" turns to the exact engine for small systems.
-    """
-    size = attempt.chart.system.size
-    if attempt.choice.method == "groebner" and size:
-        return solved_exactly(attempt)
-    if ends is not None:
-        candidates = attempt.in_chart(ends)
-    else:
-        stage = attempt.stage("solving")
-        candidates = find_candidates(attempt.chart, method, seed=seed, progress=stage)
-    multiple = bool(candidates.lost) or candidates.some_meet
-    result = with_flat_vertices(attempt, candidates) if multiple else None
-    if result is None:
-        result = isolated(attempt, candidates)
-        if result.status is not PROVED and not multiple:
-            result = with_flat_vertices(attempt, candidates) or result
-    proved = result.status is PROVED
-    if method != "auto" or (proved and not (result.undecided_folds and size <= GROEBNER_LIMIT)):
-        return result
-    if size > GROEBNER_LIMIT:
-        advice = (
-            f"the exact engine is tried up to {counted(GROEBNER_LIMIT, 'unknown')}, not with "
-            f"{size} (--method groebner insists)"
-        )
-        return replace(result, reason=f"{result.reason}; {advice}")
-    exactly = solved_exactly(
-        replace(attempt, choice=Choice("groebner", "floating point did not prove it"))
-    )
-    return result if proved and exactly.status is not PROVED else exactly

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 from exactfold._support.notebook import Picture
+from exactfold._support.results import Certified
 from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, Verdict
 from exactfold.branches.values.angles import FoldAngles, fold_angles
@@ -25,7 +26,7 @@ Bounds = tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True, repr=False)
-class Branch(Picture):
+class Branch(Picture, Certified):
     """One branch of a pattern, represented by one of its two rays (docs/mathematics.md, Branch).
 
     `vertex_signs` gives, for each interior vertex, +1 popped up, -1 popped down, or 0 proved flat.
@@ -68,6 +69,8 @@ class Branch(Picture):
     steps: int = 0
     seconds: float = field(default=0.0, compare=False)
     curvature: Mapping[int, Fraction] = field(default_factory=dict)
+
+    WRITER: ClassVar = "exactfold.branches.certificates.single:branch_certificate"
 
     @cached_property
     def sign_text(self) -> str:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
+from exactfold._support.results import Certified
 from exactfold._support.schemas import headed
 from exactfold._support.verdict import Verdict
 from exactfold.branches.values.branch import Branch
@@ -69,7 +70,7 @@ class Circle:
 
 
 @dataclass(frozen=True, repr=False)
-class AllAssignments:
+class AllAssignments(Certified):
     """The mountain-valley assignments that occur; the list is complete if `status` is PROVED.
 
     `circles` has one circle for each sign vector, in the order of the sign vectors. Where folds are
@@ -83,6 +84,8 @@ class AllAssignments:
     reason: str
     circles: tuple[Circle, ...]
     points: Covering | None = None
+
+    WRITER: ClassVar = "exactfold.design.circles.certificate:assignments_certificate"
 
     @cached_property
     def assignments(self) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from typing import Any
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document, write_certificate
 from exactfold.errors import NotApplicableError
-from exactfold.motion.panels.claims import certificate_of_panel_motion
+from exactfold.motion.panels.certificate import certificate_of_panel_motion
 from exactfold.motion.panels.clearance import PanelClearance, with_proved_contact
 from exactfold.motion.panels.motion import PanelMotion
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, cos, floor, sin
 
 from exactfold.certificates.entries import Document
 from exactfold.checker.motion.panels.certificate import PANEL_MOTION, PLAIN, RATED
-from exactfold.checker.motion.panels.times import OneRate, Rates, time_of
+from exactfold.checker.motion.panels.times import Clock, OneRate, Rates, time_of
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, Surd, SurdField, simple
-from exactfold.motion.curves.events import CONTACT
+from exactfold.motion.claims import Claim, joined
+from exactfold.motion.curves.events import CONTACT, Event
 from exactfold.motion.panels.clearance import PanelClearance
 from exactfold.motion.panels.motion import PanelMotion
 from exactfold.panels.certificate import number_document, panels_document
@@ -47,54 +49,102 @@ def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -
     >>> checker.check(certificate_of_panel_motion(motion, prove_contacts(motion)))["drivers"]
     [[0, 4]]
     """
-    pattern = motion.pattern
-    letters = motion.assignment
-    drivers = [list(fold) for fold in (*motion.drivers, *motion.free_rates)]
-    sizes = [Fraction(abs(rate)) for rate in (*motion.rates, *motion.free_rates.values())]
-    rates = [format_rational(size) for size in sizes]
-    rated = min(sizes) < 1
-    clock = Rates(drivers, rates) if rated else OneRate()
-    parameter = _time_itself if rated else _tangent
-    last = max(_at_most(parameter(contacts.clear)) - _SLACK, Fraction(0))
-    if contacts.clear >= motion.duration:
-        last = _at_least(parameter(motion.duration))
-        clear = min(Fraction(motion.duration), clock.time(last)[0])
-    else:
-        clear = _rounded(clock.time(last)[0], -1)
-    document: Document = {
+    timing = Timing.of(motion)
+    claims = [driven_claim(motion)]
+    if timing.rates is not None:
+        claims.append(Claim({"rates": timing.rates}))
+    clear, clear_claimed = clear_claim(motion, contacts, timing)
+    claims.append(clear_claimed)
+    if contacts.event is not None:
+        claims.append(contact_claim(contacts.event, clear, timing))
+    return {
         "format": PANEL_MOTION.format,
-        "version": RATED if rated else PLAIN,
-        "pattern": panels_document(pattern),
-        "claims": {
+        "version": PLAIN if timing.rates is None else RATED,
+        "pattern": panels_document(motion.pattern),
+        **joined(claims),
+    }
+
+
+@dataclass(frozen=True)
+class Timing:
+    """The parameter of the times of a motion, as the checker has it.
+
+    `rates` are those of the drivers, None if all are 1.
+    """
+
+    clock: Clock
+    rates: list[str] | None
+
+    @classmethod
+    def of(cls, motion: PanelMotion) -> Timing:
+        """That of a motion."""
+        drivers = _drivers(motion)
+        sizes = [Fraction(abs(rate)) for rate in (*motion.rates, *motion.free_rates.values())]
+        if min(sizes) >= 1:
+            return cls(OneRate(), None)
+        rates = [format_rational(size) for size in sizes]
+        return cls(Rates(drivers, rates), rates)
+
+    def parameter(self, time: float) -> float:
+        """A quarter of the time, or x with x / (1 - x) = tan(time / 2)."""
+        if self.rates is not None:
+            return time / 4
+        s, c = sin(time / 2), cos(time / 2)
+        return s / (s + c)
+
+
+def driven_claim(motion: PanelMotion) -> Claim:
+    """How the panels fold, and what drives them."""
+    pattern, letters = motion.pattern, motion.assignment
+    vertices = [
+        _vertex(pattern.field, mode, folds)
+        for curve in motion.curves
+        for mode, folds in zip(curve.mode.choice, curve.mode.vertices, strict=True)
+    ]
+    return Claim(
+        {
             "assignment": "".join(letters[fold] for fold in pattern.folds),
-            "drivers": drivers,
-            **({"rates": rates} if rated else {}),
-            "clear": format_rational(clear),
+            "drivers": _drivers(motion),
         },
-        "evidence": {
-            "vertices": [
-                _vertex(pattern.field, mode, folds)
-                for curve in motion.curves
-                for mode, folds in zip(curve.mode.choice, curve.mode.vertices, strict=True)
-            ],
-            "clear": _in_places(last),
-        },
-    }
-    event = contacts.event
-    if event is None:
-        return document
-    latest = time_of(Fraction(1))[1]
+        {"vertices": vertices},
+    )
+
+
+def clear_claim(
+    motion: PanelMotion, contacts: PanelClearance, timing: Timing
+) -> tuple[Fraction, Claim]:
+    """A time before which no two panels touch, and this claim."""
+    last = max(_at_most(timing.parameter(contacts.clear)) - _SLACK, Fraction(0))
+    if contacts.clear >= motion.duration:
+        last = _at_least(timing.parameter(motion.duration))
+        clear = min(Fraction(motion.duration), timing.clock.time(last)[0])
+    else:
+        clear = _rounded(timing.clock.time(last)[0], -1)
+    return clear, Claim({"clear": format_rational(clear)}, {"clear": _in_places(last)})
+
+
+def contact_claim(event: Event, clear: Fraction, timing: Timing) -> Claim:
+    """Which panels touch or folds are closed, by when; and from when on that may be."""
+    latest, evidence = time_of(Fraction(1))[1], {}
     if event.kind == CONTACT:
-        end = _at_least(parameter(event.time[1]))
-        latest = clock.time(end)[1]
-        document["evidence"]["contact"] = _in_places(end)
-    document["claims"]["contact"] = {
-        "kind": event.kind,
-        "time": [format_rational(clear), format_rational(_rounded(latest, 1))],
-        "faces": [list(face) for face in event.faces],
-        "folds": [list(fold) for fold in event.folds],
-    }
-    return document
+        end = _at_least(timing.parameter(event.time[1]))
+        latest, evidence = timing.clock.time(end)[1], {"contact": _in_places(end)}
+    return Claim(
+        {
+            "contact": {
+                "kind": event.kind,
+                "time": [format_rational(clear), format_rational(_rounded(latest, 1))],
+                "faces": [list(face) for face in event.faces],
+                "folds": [list(fold) for fold in event.folds],
+            }
+        },
+        evidence,
+    )
+
+
+def _drivers(motion: PanelMotion) -> list[list[int]]:
+    """The folds that drive it: those of the modes, then those that are free."""
+    return [list(fold) for fold in (*motion.drivers, *motion.free_rates)]
 
 
 def _vertex(field: SurdField, mode: LocalMode, v: int) -> Document:
@@ -154,16 +204,6 @@ def _at_most(x: float) -> Fraction:
 
 def _at_least(x: float) -> Fraction:
     return Fraction(ceil(x * 2.0**_PARAMETER_BITS) + 1, 1 << _PARAMETER_BITS)
-
-
-def _tangent(time: float) -> float:
-    """The x with x / (1 - x) = tan(time / 2)."""
-    s, c = sin(time / 2), cos(time / 2)
-    return s / (s + c)
-
-
-def _time_itself(time: float) -> float:
-    return time / 4
 
 
 def _in_places(x: Fraction) -> int:
