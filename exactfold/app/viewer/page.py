@@ -143,7 +143,7 @@ def _digest(text: str) -> str:
 
 
 def look_css() -> str:
-    """Colours of lines by letter as custom properties of CSS, lighter on dark ground.
+    """The colours of lines by letter as CSS custom properties, lighter on dark ground.
 
     >>> look_css().split(";")[0]
     ':root { --M: #c8202f'
@@ -156,7 +156,7 @@ def look_css() -> str:
 
 
 def look_script() -> str:
-    """The widths and dashes of lines as a constant of the page's script.
+    """The widths and dashes of lines as a constant in the page's script.
 
     >>> look_script()[:14]
     'const LOOK = {'
@@ -177,7 +177,7 @@ def look_script() -> str:
 
 
 def _dark(letter: str) -> str:
-    """The colour of a letter on dark ground: the same hue, and light enough to be seen."""
+    """The colour of a letter on dark ground: the same hue, but light enough to be seen."""
     text = crease_style.COLOUR[letter]
     hue, lightness, saturation = colorsys.rgb_to_hls(
         *(int(text[k : k + 2], 16) / 255 for k in (1, 3, 5))
