@@ -1,4 +1,4 @@
-"""The page: one HTML file with everything in it, which opens without a network or a server."""
+"""The page: one HTML file that contains everything and needs neither a network nor a server."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ _LIGHTNESS: Final = 0.66
 def view_page(document: Mapping[str, Any]) -> str:
     """The HTML text of the page that shows a `view_document`.
 
-    Its scripts and styles are allowed by their digests and nothing else is, so that no text of a
-    pattern can run as code, and the page asks nothing of any network.
+    A content security policy allows its scripts and styles by their digests, and nothing else. So
+    no text in a pattern can run as code, and the page sends no requests to any network.
 
     >>> page = view_page(view_document("single-vertex-4", name="</script>", frames=3))
     >>> page.count("</script>")
@@ -68,9 +68,9 @@ def write_view(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
-    """Write the page of a sheet to a file; the document that it shows (see `view_document`).
+    """Write the page of a sheet to a file, and return the document that it shows.
 
-    Raises the errors of `view_document`, and `UnwritableFileError`.
+    See `view_document`. Raises the errors of `view_document`, and `UnwritableFileError`.
 
     >>> import os, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -92,7 +92,7 @@ def write_view(
 
 
 def checked_page(path: Path) -> str:
-    """The ending of the path of a page; raises as `checked_target`."""
+    """The ending of the path of a page; raises the errors of `checked_target`."""
     return checked_target(path, _ENDINGS, "a page")
 
 
@@ -107,7 +107,7 @@ def script_json(value: object) -> str:
 
 @cache
 def _script() -> str:
-    """The modules of the page joined into one, each after those that it imports."""
+    """The modules of the page joined into one; each comes after the modules that it imports."""
     done: list[str] = []
     parts: list[str] = []
 
@@ -125,7 +125,7 @@ def _script() -> str:
 
 
 def _policy(scripts: Sequence[str], style: str, served: bool) -> str:
-    """A content security policy that allows these texts only."""
+    """A content security policy that allows only these texts."""
     allowed = " ".join(_digest(text) for text in scripts)
     return (
         f"default-src 'none'; script-src {allowed}; style-src {_digest(style)}; "
@@ -143,7 +143,7 @@ def _digest(text: str) -> str:
 
 
 def look_css() -> str:
-    """Colours of lines by letter as custom properties of CSS, lighter on dark ground.
+    """The colours of lines by letter as CSS custom properties, lighter on dark ground.
 
     >>> look_css().split(";")[0]
     ':root { --M: #c8202f'
@@ -156,7 +156,7 @@ def look_css() -> str:
 
 
 def look_script() -> str:
-    """The widths and dashes of lines as a constant of the page's script.
+    """The widths and dashes of lines as a constant in the page's script.
 
     >>> look_script()[:14]
     'const LOOK = {'
@@ -177,7 +177,7 @@ def look_script() -> str:
 
 
 def _dark(letter: str) -> str:
-    """The colour of a letter on dark ground: the same hue, and light enough to be seen."""
+    """The colour of a letter on dark ground: the same hue, but light enough to be seen."""
     text = crease_style.COLOUR[letter]
     hue, lightness, saturation = colorsys.rgb_to_hls(
         *(int(text[k : k + 2], 16) / 255 for k in (1, 3, 5))

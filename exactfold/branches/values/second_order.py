@@ -51,8 +51,8 @@ def second_order_sheet(pattern: CreasePattern, raised: Sequence[Fraction]) -> Se
         moved = height = np.empty(0)
     if not (scale and np.isfinite(error)):
         raise NotApplicableError(
-            "no folded form can be drawn: the lengths of the sheet differ too much for floating "
-            "point"
+            "no folded form can be drawn: the lengths of the sheet differ too much in size for "
+            "floats"
         )
     (x, y) = (float(c) for c in pattern.vertices[0])
     first = moved - shape[0]

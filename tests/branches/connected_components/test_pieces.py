@@ -308,10 +308,10 @@ def test_the_answer_in_plain_words(tmp_path):
     assert result.exit_code == 0
     text = " ".join(result.stdout.split())
     for words in (
-        "for every rim exactly one shape for each of 4 choices of vertices that pop up or down",
-        "these 4 graphs of dimension 2 fall into 2 pieces",
-        "1 vertex is flat in no way to start folding: 6",
-        "the true motions near the flat state form as many graphs, in 2 pieces",
+        "there is exactly one shape for each of 4 choices of the vertices that pop up",
+        "these 4 graphs of dimension 2 form 2 connected components",
+        "1 vertex is never flat when the sheet starts to fold: 6",
+        "the true motions near the flat state form as many graphs, with 2 connected components",
         "irreducible components: 2 of dimension 2",
     ):
         assert words in text
