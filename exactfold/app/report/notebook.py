@@ -1,4 +1,4 @@
-"""What notebooks show: pictures of patterns, branches and motions, tables of counts."""
+"""What notebooks show: pictures of patterns, branches and motions, and tables of counts."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 ROWS: Final = 30
-"""Ways with a row each; of more only the number is told."""
+"""At most this many ways have a row each; the others are only counted."""
 _THUMBNAIL: Final = 120.0
 
 
@@ -109,7 +109,9 @@ def _page(
     number: int,
     warning: str | None,
 ) -> str:
-    """The answer, a table with a picture in each row, how many are left out, and the warning."""
+    """The answer, a table with a picture in each row, how many rows are left out, and the
+    warning.
+    """
     parts = [f"<p>{head}</p>"]
     if rows:
         titles = "".join(f"<th>{escape(title)}</th>" for title in heads)
