@@ -12,11 +12,11 @@ from exactfold import pattern as pattern
 from exactfold import rigidity as rigidity
 from exactfold import solve as solve
 from exactfold import studies as studies
-from exactfold._support.schemas import schema as schema
 from exactfold._support.verdict import PROVED as PROVED
 from exactfold._support.verdict import REFUTED as REFUTED
 from exactfold._support.verdict import UNDECIDED as UNDECIDED
 from exactfold._support.verdict import Verdict as Verdict
+from exactfold.app.schemas import schema as schema
 from exactfold.branches import Branch as Branch
 from exactfold.branches import BranchCount as BranchCount
 from exactfold.branches import certificate as certificate

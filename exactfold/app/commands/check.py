@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, TypedDict
 
 from exactfold import checker
-from exactfold._support.schemas import headed
 from exactfold.app.shell.shell import Bar, name_of, regular, said
 from exactfold.checker.command import refusal
 from exactfold.checker.core.reading import UnfinishedError, plain
@@ -18,14 +17,33 @@ LONG = ("branches", "vertex_signs", "assignment", *_LISTS)
 """Claims that grow with the pattern, left out of `check --json`."""
 
 
+class CheckDocument(TypedDict):
+    """What the checker says of a file."""
+
+    format: Literal["exactfold check result"]
+    version: Literal[1]
+    name: str
+    valid: bool
+    reason: str
+    claims: dict[str, Any]
+    """Those of the certificate that do not grow with the pattern; empty if it is invalid."""
+
+
 def valid(path: Path, workers: int | None, as_json: bool) -> bool:
     """Whether every claim of a file holds, which is printed; raises the errors of `verified`."""
     with Bar("checking"):
         claims, text, reason = verified(path, workers)
     if as_json:
         short = {k: v for k, v in (claims or {}).items() if k not in LONG}
-        head = {**headed("check"), "name": name_of(path)}
-        print(json.dumps({**head, "valid": claims is not None, "reason": reason, "claims": short}))
+        document: CheckDocument = {
+            "format": "exactfold check result",
+            "version": 1,
+            "name": name_of(path),
+            "valid": claims is not None,
+            "reason": reason,
+            "claims": short,
+        }
+        print(json.dumps(document))
     else:
         print(text)
     return claims is not None
